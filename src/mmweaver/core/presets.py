@@ -1,0 +1,133 @@
+"""Radars by name. Chirps from the sources named; antenna places from the boards' data sheets."""
+
+from typing import Any
+
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.radar_config import Position, RadarConfig
+from mmweaver.core.registry import Registry
+
+# Half-wavelength units (x right, z up). The third transmitter of the three stands half a wavelength higher.
+XWR1843_TX_HALFWAVES = ((0.0, 0.0), (2.0, 1.0), (4.0, 0.0))
+XWR_RX_HALFWAVES = ((-6.0, 0.0), (-5.0, 0.0), (-4.0, 0.0), (-3.0, 0.0))
+
+
+def halfwave_positions(places: tuple[tuple[float, float], ...], centre_frequency_hz: float) -> tuple[Position, ...]:
+    """(x, z) in half wavelengths of the given frequency -> (x, y, z) in metres, y = 0."""
+    half_m = SPEED_OF_LIGHT_MPS / centre_frequency_hz / 2
+    return tuple((x * half_m, 0.0, z * half_m) for x, z in places)
+
+
+BAND_77_HZ = (76.0e9, 81.0e9)
+BAND_60_HZ = (57.0e9, 64.0e9)
+
+
+def ti_1843(name: str, **chirp: Any) -> RadarConfig:
+    """A board with the xWR1843's 3 x 4 array, spaced half a wavelength at the centre of the chirp given."""
+    values: dict[str, Any] = {
+        "start_frequency_hz": 77.0e9,
+        "frame_period_s": 0.1,
+        "tx_order": (0, 2, 1),
+        "frequency_limits_hz": BAND_77_HZ,
+        **chirp,
+    }
+    sampled_s = values["num_samples"] / values["sample_rate_hz"]
+    middle_hz = values["start_frequency_hz"] + values["chirp_slope_hz_per_s"] * (
+        values["adc_start_time_s"] + sampled_s / 2
+    )
+    return RadarConfig(
+        name=name,
+        tx_position_m=halfwave_positions(XWR1843_TX_HALFWAVES, middle_hz),
+        rx_position_m=halfwave_positions(XWR_RX_HALFWAVES, middle_hz),
+        **values,
+    )
+
+
+# The paper gives 77 GHz, 3 TX and 4 RX, 4.4 cm, 64 x 32 x 12 at 10 fps; its chirp is not published. The slope and
+# the times are mmMesh's, the sample rate the one that makes 256 samples 4.4 cm. Bins 16 to 79 are 0.70 to 3.48 m.
+AWR1843 = ti_1843(
+    "awr1843",
+    chirp_slope_hz_per_s=60.012e12,
+    idle_time_s=7e-6,
+    adc_start_time_s=6e-6,
+    ramp_end_time_s=65e-6,
+    num_samples=256,
+    sample_rate_hz=4.51e6,
+    num_loops=32,
+    first_range_bin=16,
+)
+
+# mmMesh configuration.py and RF-Genesis TI1843_config.json agree.
+MMMESH = ti_1843(
+    "mmmesh",
+    chirp_slope_hz_per_s=60.012e12,
+    idle_time_s=7e-6,
+    adc_start_time_s=6e-6,
+    ramp_end_time_s=65e-6,
+    num_samples=256,
+    sample_rate_hz=4.4e6,
+    num_loops=128,
+    first_range_bin=25,
+    num_range_bins=101,
+)
+
+# HuPR publishes 256 samples, 64 loops, 10 fps, bins 31 to 94 and transmitters in the order 0, 1, 2; its slope and
+# sample rate are not published, TI's best-range-resolution profile is assumed.
+HUPR = ti_1843(
+    "hupr",
+    chirp_slope_hz_per_s=70.0e12,
+    idle_time_s=267e-6,
+    adc_start_time_s=7e-6,
+    ramp_end_time_s=57.14e-6,
+    num_samples=256,
+    sample_rate_hz=5.209e6,
+    num_loops=64,
+    first_range_bin=31,
+    tx_order=(0, 1, 2),
+)
+
+# mmWave Studio set-up of a public IWR6843ISK recording (3.9 cm bins).
+IWR6843 = ti_1843(
+    "iwr6843",
+    start_frequency_hz=60.0e9,
+    chirp_slope_hz_per_s=29.837e12,
+    idle_time_s=280e-6,
+    adc_start_time_s=6e-6,
+    ramp_end_time_s=134e-6,
+    num_samples=512,
+    sample_rate_hz=4.0e6,
+    num_loops=85,
+    frame_period_s=0.15,
+    first_range_bin=16,
+    tx_order=(0, 1, 2),
+    frequency_limits_hz=BAND_60_HZ,
+)
+
+# Infineon BGT60TR13C: 58 to 63.5 GHz in 64 real samples; receivers in an L, its corner the third. Receiver spacing
+# and sides are from the data sheet's drawing, unconfirmed by a recording.
+BGT60 = RadarConfig(
+    name="bgt60",
+    start_frequency_hz=58.0e9,
+    chirp_slope_hz_per_s=5.5e9 / 32e-6,
+    idle_time_s=559.125e-6,
+    adc_start_time_s=0.0,
+    ramp_end_time_s=32e-6,
+    num_samples=64,
+    sample_rate_hz=2.0e6,
+    num_loops=8,
+    frame_period_s=77.2688e-3,
+    tx_position_m=((0.0, 0.0, 0.0),),
+    rx_position_m=halfwave_positions(((1.0, 0.0), (0.0, 1.0), (0.0, 0.0)), 60.75e9),
+    tx_order=(0,),
+    complex_samples=False,
+    num_range_bins=32,
+    tx_power_dbm=5.0,
+    antenna_gain_dbi=5.0,
+    noise_figure_db=12.0,
+    azimuth_beamwidth_deg=75.0,
+    elevation_beamwidth_deg=75.0,
+    frequency_limits_hz=BAND_60_HZ,
+)
+
+PRESETS: Registry[RadarConfig] = Registry(
+    "radar preset", [(config.name, config) for config in (AWR1843, MMMESH, HUPR, IWR6843, BGT60)]
+)

@@ -1,0 +1,256 @@
+"""RadarConfig: the chirp, the array and the frame, and every resolution and limit that follows from them."""
+
+import dataclasses
+import json
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.constants import BOLTZMANN_J_PER_K, NOISE_TEMPERATURE_K, SPEED_OF_LIGHT_MPS
+from mmweaver.core.errors import InputError
+from mmweaver.core.shapes import AntennaPositions, PerDoppler, PerRange
+
+SCHEMA_VERSION = 1
+Position = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadarConfig:
+    """One TDM-MIMO FMCW radar. All lengths in metres, times in seconds, frequencies in hertz.
+
+    Positions are those of the board seen as a person behind the radar would: x right, y away from the radar, z up.
+    The transmitters fire one after the other, `tx_order` saying which is first; a loop is one turn of all of them.
+    Radial velocity is positive for a target that moves away. Raises InputError where the radar could not exist.
+
+    Reference: docs/radar_primer.md, equations 1 to 9.
+    """
+
+    name: str
+    start_frequency_hz: float
+    chirp_slope_hz_per_s: float
+    idle_time_s: float
+    adc_start_time_s: float
+    ramp_end_time_s: float
+    num_samples: int
+    sample_rate_hz: float
+    num_loops: int
+    frame_period_s: float
+    tx_position_m: tuple[Position, ...]
+    rx_position_m: tuple[Position, ...]
+    tx_order: tuple[int, ...]
+    complex_samples: bool = True
+    first_range_bin: int = 0
+    num_range_bins: int = 64
+    tx_power_dbm: float = 12.0
+    antenna_gain_dbi: float = 10.5
+    noise_figure_db: float = 15.0
+    rx_gain_db: float = 30.0
+    azimuth_beamwidth_deg: float = 56.0
+    elevation_beamwidth_deg: float = 28.0
+    adc_full_scale_v: float = 0.5
+    frequency_limits_hz: tuple[float, float] = (57.0e9, 81.5e9)
+
+    def __post_init__(self) -> None:
+        for problem, text in self._problems():
+            if problem:
+                raise InputError(f"radar {self.name!r} is impossible: {text}")
+
+    def _problems(self) -> list[tuple[bool, str]]:
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if isinstance(value, float) and not math.isfinite(value):
+                return [(True, f"{field.name} is {value}")]
+        positive = (
+            "start_frequency_hz", "chirp_slope_hz_per_s", "ramp_end_time_s", "num_samples", "sample_rate_hz",
+            "num_loops", "frame_period_s", "num_range_bins", "azimuth_beamwidth_deg", "elevation_beamwidth_deg",
+            "adc_full_scale_v",
+        )  # fmt: skip
+        for name in positive:
+            if getattr(self, name) <= 0:
+                return [(True, f"{name} must be above 0, not {getattr(self, name)}")]
+        if not self.tx_position_m or not self.rx_position_m:
+            return [(True, "it needs at least one transmitter and one receiver")]
+        adc_end_s = self.adc_start_time_s + self.num_samples / self.sample_rate_hz
+        bins = self.num_unambiguous_range_bins
+        low_hz, high_hz = self.frequency_limits_hz
+        end_hz = self.start_frequency_hz + self.chirp_slope_hz_per_s * self.ramp_end_time_s
+        return [
+            (self.idle_time_s < 0 or self.adc_start_time_s < 0, "idle and ADC start times cannot be negative"),
+            (
+                adc_end_s > self.ramp_end_time_s * (1 + 1e-9),
+                f"the ADC samples until {adc_end_s * 1e6:.2f} us, but the ramp ends at {self.ramp_end_time_s * 1e6:.2f}"
+                " us; take fewer samples, a higher sample rate or a longer ramp",
+            ),
+            (
+                self.start_frequency_hz < low_hz or end_hz > high_hz,
+                f"the chirp runs from {self.start_frequency_hz / 1e9:.3f} to {end_hz / 1e9:.3f} GHz, outside"
+                f" {low_hz / 1e9:g} to {high_hz / 1e9:g} GHz; lower the slope or the ramp end",
+            ),
+            (
+                self.active_time_s > self.frame_period_s * (1 + 1e-9),
+                f"its {self.num_loops} loops last {self.active_time_s * 1e3:.2f} ms, longer than the frame period of"
+                f" {self.frame_period_s * 1e3:.2f} ms; fewer loops or frames further apart",
+            ),
+            (
+                sorted(self.tx_order) != list(range(len(self.tx_position_m))),
+                f"tx_order {self.tx_order} must name each of its {len(self.tx_position_m)} transmitters once",
+            ),
+            (self.first_range_bin < 0, "first_range_bin cannot be negative"),
+            (
+                self.first_range_bin + self.num_range_bins > bins,
+                f"range bins {self.first_range_bin} to {self.first_range_bin + self.num_range_bins - 1} are asked for,"
+                f" but {self.num_samples} samples give only {bins}",
+            ),
+        ]
+
+    # counts -----------------------------------------------------------------------------------------------------
+    @property
+    def num_tx(self) -> int:
+        return len(self.tx_position_m)
+
+    @property
+    def num_rx(self) -> int:
+        return len(self.rx_position_m)
+
+    @property
+    def num_antennas(self) -> int:
+        """Virtual antennas; antenna index = tx * num_rx + rx, with tx the physical transmitter, not its turn."""
+        return self.num_tx * self.num_rx
+
+    @property
+    def num_unambiguous_range_bins(self) -> int:
+        return self.num_samples if self.complex_samples else self.num_samples // 2
+
+    # frequency and range ----------------------------------------------------------------------------------------
+    @property
+    def bandwidth_hz(self) -> float:
+        """The part of the sweep that the ADC samples."""
+        return self.chirp_slope_hz_per_s * self.num_samples / self.sample_rate_hz
+
+    @property
+    def centre_frequency_hz(self) -> float:
+        """Frequency in the middle of the sampled part of the sweep."""
+        return self.start_frequency_hz + self.chirp_slope_hz_per_s * self.adc_start_time_s + self.bandwidth_hz / 2
+
+    @property
+    def wavelength_m(self) -> float:
+        return SPEED_OF_LIGHT_MPS / self.centre_frequency_hz
+
+    @property
+    def range_resolution_m(self) -> float:
+        return SPEED_OF_LIGHT_MPS / (2 * self.bandwidth_hz)
+
+    @property
+    def max_range_m(self) -> float:
+        """Where the range axis of the ADC ends (aliases beyond)."""
+        return self.range_resolution_m * self.num_unambiguous_range_bins
+
+    @cached_property
+    def range_m(self) -> PerRange:
+        """Range of each kept bin, (range,)."""
+        return (self.first_range_bin + np.arange(self.num_range_bins)) * self.range_resolution_m
+
+    # time and velocity ------------------------------------------------------------------------------------------
+    @property
+    def chirp_period_s(self) -> float:
+        return self.idle_time_s + self.ramp_end_time_s
+
+    @property
+    def loop_period_s(self) -> float:
+        return self.num_tx * self.chirp_period_s
+
+    @property
+    def active_time_s(self) -> float:
+        """How long the chirps of one frame last."""
+        return self.num_loops * self.loop_period_s
+
+    @property
+    def max_velocity_mps(self) -> float:
+        """Radial velocity beyond which Doppler aliases."""
+        return self.wavelength_m / (4 * self.loop_period_s)
+
+    @property
+    def velocity_resolution_mps(self) -> float:
+        return self.wavelength_m / (2 * self.active_time_s)
+
+    @cached_property
+    def radial_velocity_mps(self) -> PerDoppler:
+        """Radial velocity of each Doppler bin, (doppler,), rising; bin num_loops // 2 is zero."""
+        return (np.arange(self.num_loops) - self.num_loops // 2) * self.velocity_resolution_mps
+
+    @cached_property
+    def tx_delay_s(self) -> np.ndarray:
+        """When each physical transmitter fires within a loop, (tx,), the first at 0."""
+        turn = np.argsort(np.asarray(self.tx_order))
+        return turn * self.chirp_period_s
+
+    # array ------------------------------------------------------------------------------------------------------
+    @cached_property
+    def antenna_position_m(self) -> AntennaPositions:
+        """Virtual antennas, (antenna, 3): tx + rx. The phase of a far target is -2 pi / wavelength (u . p)."""
+        tx, rx = np.asarray(self.tx_position_m), np.asarray(self.rx_position_m)
+        return (tx[:, None, :] + rx[None, :, :]).reshape(-1, 3)
+
+    # noise ------------------------------------------------------------------------------------------------------
+    @property
+    def noise_power_mw(self) -> float:
+        """Thermal noise of one ADC sample, in mW at the receiver's port."""
+        power_w = BOLTZMANN_J_PER_K * NOISE_TEMPERATURE_K * self.sample_rate_hz
+        return power_w * 1e3 * 10 ** (self.noise_figure_db / 10)
+
+    # files ------------------------------------------------------------------------------------------------------
+    def to_json(self) -> str:
+        """Plain JSON in SI units; `from_json` gives the same RadarConfig back."""
+        return json.dumps({"schema_version": SCHEMA_VERSION, **dataclasses.asdict(self)}, indent=2) + "\n"
+
+    @classmethod
+    def from_json(cls, text: str) -> "RadarConfig":
+        """Reads what `to_json` wrote. Raises InputError for anything else; an unknown key is an error."""
+        try:
+            values = json.loads(text)
+        except json.JSONDecodeError as error:
+            raise InputError(
+                f"the radar file is no JSON ({error}); make one with: mmweaver radar awr1843 --json"
+            ) from None
+        if not isinstance(values, dict):
+            raise InputError("the radar file holds no object; make one with: mmweaver radar awr1843 --json")
+        version = values.pop("schema_version", None)
+        if version != SCHEMA_VERSION:
+            raise InputError(f"the radar file has schema_version {version!r}; this version reads {SCHEMA_VERSION}")
+        fields = {field.name: field for field in dataclasses.fields(cls)}
+        if unknown := sorted(set(values) - set(fields)):
+            raise InputError(f"unknown key in the radar file: {', '.join(unknown)}")
+        required = {name for name, field in fields.items() if field.default is dataclasses.MISSING}
+        if missing := sorted(required - set(values)):
+            raise InputError(f"missing key in the radar file: {', '.join(missing)}")
+        return cls(**{name: _coerced(name, fields[name].type, value) for name, value in values.items()})
+
+
+def _coerced(name: str, kind: Any, value: Any) -> Any:
+    """JSON has lists and whole floats; the record has tuples and floats."""
+    if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value)
+    if kind is int and isinstance(value, int) and not isinstance(value, bool):
+        return value
+    if kind is bool and isinstance(value, bool):
+        return value
+    if kind is str and isinstance(value, str):
+        return value
+    if kind == tuple[int, ...] and isinstance(value, list) and all(type(item) is int for item in value):
+        return tuple(value)
+    if kind == tuple[float, float] and _is_numbers(value, 2):
+        return tuple(float(item) for item in value)
+    if kind == tuple[Position, ...] and isinstance(value, list) and all(_is_numbers(item, 3) for item in value):
+        return tuple(tuple(float(number) for number in item) for item in value)
+    raise InputError(f"radar file: {name} cannot be {value!r}")
+
+
+def _is_numbers(value: Any, count: int) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) == count
+        and all(isinstance(item, int | float) and not isinstance(item, bool) for item in value)
+    )

@@ -1,0 +1,191 @@
+"""The records that cross rooms. A room takes some of these and gives some of these, and nothing else.
+
+Frame of reference for every position: the radar's. x right, y away from the radar, z up (against gravity), metres,
+origin at the radar. Radial velocity positive = moving away.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.shapes import (
+    AdcValues,
+    AntennaPositions,
+    CubeValues,
+    DepthPixels,
+    Faces,
+    GridMask,
+    Joints,
+    PerDoppler,
+    PerFace,
+    PerFrame,
+    PerPoint,
+    PerRange,
+    RgbPixels,
+    Rotation,
+    Vec3,
+    Vertices,
+)
+
+
+# Radar --------------------------------------------------------------------------------------------------------------
+@dataclass(frozen=True, kw_only=True)
+class CubeGrid:
+    """Where the cells of a RadarCube lie: one axis a dimension, in the cube's order."""
+
+    frame_time_s: PerFrame  # start of each frame
+    range_m: PerRange
+    radial_velocity_mps: PerDoppler
+    antenna_position_m: AntennaPositions  # virtual antennas, tx + rx
+    wavelength_m: float
+
+    @classmethod
+    def of(cls, config: RadarConfig, num_frames: int) -> "CubeGrid":
+        """The grid that a radar's own FFTs give for so many frames."""
+        return cls(
+            frame_time_s=np.arange(num_frames) * config.frame_period_s,
+            range_m=config.range_m,
+            radial_velocity_mps=config.radial_velocity_mps,
+            antenna_position_m=config.antenna_position_m,
+            wavelength_m=config.wavelength_m,
+        )
+
+    @property
+    def shape(self) -> tuple[int, int, int, int]:
+        return (
+            len(self.frame_time_s), len(self.range_m), len(self.radial_velocity_mps), len(self.antenna_position_m)
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class AdcCube:
+    """What the receivers' converters wrote: complex64 (frame, loop, tx, rx, sample).
+
+    `tx` counts physical transmitters, not turns. `scale` says what 1.0 means: the amplitude at the receiver's port in
+    sqrt(mW), nan where it is unknown (a recording). A radar with real samples has zero imaginary parts.
+    """
+
+    samples: AdcValues
+    config: RadarConfig
+    scale: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadarCube:
+    """Range-Doppler spectrum of every virtual antenna: complex64 (frame, range, doppler, antenna).
+
+    TDM phase is compensated, so antennas of one cell differ by their places alone. `scale` as in AdcCube.
+    """
+
+    values: CubeValues
+    grid: CubeGrid
+    config: RadarConfig
+    scale: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointCloud:
+    """Detections of all frames, one row each."""
+
+    frame: np.ndarray  # (point,) int, index of the frame
+    x_m: PerPoint
+    y_m: PerPoint
+    z_m: PerPoint
+    radial_velocity_mps: PerPoint
+    snr_db: PerPoint
+
+
+# Motion -------------------------------------------------------------------------------------------------------------
+@dataclass(frozen=True, kw_only=True)
+class PoseSequence:
+    """Joints of one person at given times, in the radar's frame; SMPL order, see core.skeleton.
+
+    A motion room gives it densely (100 Hz and more), so that slow time can be interpolated; `joints_m` at the radar's
+    frames is a resampled one.
+    """
+
+    time_s: PerFrame
+    joints_m: Joints
+    height_m: float
+    subject: int = 0  # names the body: its surface points and micro-phases
+
+
+# Scene --------------------------------------------------------------------------------------------------------------
+@dataclass(frozen=True, kw_only=True)
+class CameraIntrinsics:
+    """Pinhole camera, in pixels of the picture it belongs to; pixel centres at whole numbers."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class RgbdPhoto:
+    """A colour picture and its depth along the optical axis in metres; nan = no measurement."""
+
+    rgb: RgbPixels
+    depth_m: DepthPixels
+    intrinsics: CameraIntrinsics
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plane:
+    """A flat rectangle of the room. axis_u, axis_v and normal are a right-handed orthonormal triple."""
+
+    kind: str  # floor | ceiling | wall | top | panel
+    centre_m: Vec3
+    normal: Vec3  # towards the free side
+    axis_u: Vec3
+    axis_v: Vec3
+    half_size_m: tuple[float, float]  # along axis_u, axis_v
+    material: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreeSpace:
+    """Which places of the floor a body may stand on, on a square grid of cells."""
+
+    x_m: np.ndarray  # (x,) centres of the columns
+    y_m: np.ndarray  # (y,) centres of the rows
+    is_free: GridMask  # nothing stands there between floor and head height
+    is_seen: GridMask  # known from depth; a free cell that is not seen is assumed free
+
+
+@dataclass(frozen=True, kw_only=True)
+class Seat:
+    """A flat surface at sitting height."""
+
+    position_m: Vec3  # middle of where a person sits, on the surface
+    facing_rad: float  # direction the sitter looks, from +x (right) towards +y (away from the radar)
+    size_m: tuple[float, float]  # width across, depth along the facing
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """The room of one photo, as the ray caster and the motion room need it."""
+
+    photo: RgbdPhoto
+    radar_from_camera: Rotation  # camera x right, y down, z forward -> radar frame (same origin)
+    vertices_m: Vertices
+    faces: Faces
+    face_material: PerFace  # index into material_names
+    material_names: tuple[str, ...]
+    planes: tuple[Plane, ...]  # the floor is always among them
+    floor_z_m: float  # below the radar, so negative
+    free_space: FreeSpace
+    seats: tuple[Seat, ...]
+    assumptions: tuple[str, ...]  # sentences for meta.json
+
+    @property
+    def floor(self) -> Plane:
+        return next(plane for plane in self.planes if plane.kind == "floor")
+
+
+def with_assumptions(scene: Scene, *more: str) -> Scene:
+    """The same scene with more sentences for meta.json."""
+    return replace(scene, assumptions=scene.assumptions + more)

@@ -1,0 +1,30 @@
+"""Shape aliases, checked in every test run (jaxtyping + beartype)."""
+
+import numpy as np
+from jaxtyping import Bool, Complex, Float, Int, UInt8
+
+Array = np.ndarray
+
+# one axis
+PerFrame = Float[Array, " frame"]
+PerRange = Float[Array, " range"]
+PerDoppler = Float[Array, " doppler"]
+# vectors
+Vec3 = Float[Array, "3"]
+Rotation = Float[Array, "3 3"]
+Points = Float[Array, "point 3"]
+PerPoint = Float[Array, " point"]
+AntennaPositions = Float[Array, "antenna 3"]
+# signals
+CubeValues = Complex[Array, "frame range doppler antenna"]
+AdcValues = Complex[Array, "frame loop tx rx sample"]
+# poses
+Joints = Float[Array, "frame 22 3"]
+# pictures
+RgbPixels = UInt8[Array, "height width 3"]
+DepthPixels = Float[Array, "height width"]
+# meshes
+Vertices = Float[Array, "vertex 3"]
+Faces = Int[Array, "face 3"]
+PerFace = Int[Array, " face"]
+GridMask = Bool[Array, "y x"]
