@@ -231,26 +231,22 @@ class RadarConfig:
 
 def _coerced(name: str, kind: Any, value: Any) -> Any:
     """JSON has lists and whole floats; the record has tuples and floats."""
-    if kind is float and isinstance(value, int | float) and not isinstance(value, bool):
+    if kind is float and _is_number(value):
         return float(value)
-    if kind is int and isinstance(value, int) and not isinstance(value, bool):
-        return value
-    if kind is bool and isinstance(value, bool):
-        return value
-    if kind is str and isinstance(value, str):
+    if kind in (int, bool, str) and type(value) is kind:
         return value
     if kind == tuple[int, ...] and isinstance(value, list) and all(type(item) is int for item in value):
         return tuple(value)
-    if kind == tuple[float, float] and _is_numbers(value, 2):
+    if kind == tuple[float, float] and _is_vector(value, 2):
         return tuple(float(item) for item in value)
-    if kind == tuple[Position, ...] and isinstance(value, list) and all(_is_numbers(item, 3) for item in value):
+    if kind == tuple[Position, ...] and isinstance(value, list) and all(_is_vector(item, 3) for item in value):
         return tuple(tuple(float(number) for number in item) for item in value)
     raise InputError(f"radar file: {name} cannot be {value!r}")
 
 
-def _is_numbers(value: Any, count: int) -> bool:
-    return (
-        isinstance(value, list)
-        and len(value) == count
-        and all(isinstance(item, int | float) and not isinstance(item, bool) for item in value)
-    )
+def _is_number(value: Any) -> bool:
+    return type(value) in (int, float)
+
+
+def _is_vector(value: Any, length: int) -> bool:
+    return isinstance(value, list) and len(value) == length and all(_is_number(item) for item in value)
