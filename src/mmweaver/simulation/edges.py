@@ -60,7 +60,11 @@ def _in_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, materi
     if len(middle) == 0:
         return Edges(place_m=middle, direction=along, length_m=length, material=material)
     _, first, cell, count = np.unique(
-        np.floor(middle / SEGMENT_M).astype(np.int64), axis=0, return_index=True, return_inverse=True, return_counts=True
+        np.floor(middle / SEGMENT_M).astype(np.int64),
+        axis=0,
+        return_index=True,
+        return_inverse=True,
+        return_counts=True,
     )
     cell = cell.ravel()
     total = np.bincount(cell, length)

@@ -9,8 +9,7 @@ import numpy as np
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.registry import Registry
-
-PerIncidence = np.ndarray  # any shape
+from mmweaver.core.shapes import Values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,9 +61,7 @@ def relative_permittivity(material: Material, frequency_hz: float) -> complex:
     return complex(material.a * f_ghz**material.b, -17.98 * material.c * f_ghz**material.d / f_ghz)
 
 
-def reflection(
-    material: Material, cos_incidence: PerIncidence, frequency_hz: float, *, polarisation: str = "te"
-) -> PerIncidence:
+def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
     """Complex reflection coefficient of a slab at each angle of incidence (its cosine, in [0, 1]).
 
     `te`: the electric field is parallel to the face (a vertically polarised radar and a wall); `tm`: it lies in the

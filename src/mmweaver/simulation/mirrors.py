@@ -3,12 +3,14 @@
 Reference: docs/radar_primer.md, section 5; reflection coefficients from `materials`.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import erf
 
 from mmweaver.core.records import Plane
+from mmweaver.core.shapes import Values
 from mmweaver.simulation.materials import MATERIALS, reflection
 
 MAX_MIRRORS = 10  # the largest faces; smaller ones count as diffuse surface only
@@ -21,21 +23,21 @@ class Mirror:
     plane: Plane
     offset_m: float  # normal . x on the face
 
-    def side(self, points_m: np.ndarray) -> np.ndarray:
+    def side(self, points_m: np.ndarray) -> Values:
         """Signed distance (...,), positive on the free side."""
         return points_m @ self.plane.normal - self.offset_m
 
     def image(self, points_m: np.ndarray) -> np.ndarray:
         """Mirrored points (..., 3)."""
-        return points_m - 2 * self.side(points_m)[..., None] * self.plane.normal
+        return points_m - 2 * np.asarray(self.side(points_m))[..., None] * self.plane.normal
 
     def crossing(self, start_m: np.ndarray, image_m: np.ndarray) -> np.ndarray:
         """Where the segments from `start_m` to `image_m`, one on each side, meet the face (..., 3)."""
         near, far = self.side(start_m), -self.side(image_m)
         share = near / np.maximum(near + far, 1e-9)
-        return start_m + share[..., None] * (image_m - start_m)
+        return start_m + np.asarray(share)[..., None] * (image_m - start_m)
 
-    def inside(self, points_m: np.ndarray, fresnel_m: np.ndarray) -> np.ndarray:
+    def inside(self, points_m: np.ndarray, fresnel_m: Values) -> Values:
         """How much of the first Fresnel zone about each point of the face lies within it, 0 to 1."""
         weight = np.ones(points_m.shape[:-1])
         local = points_m - self.plane.centre_m
@@ -45,7 +47,7 @@ class Mirror:
             weight = weight * 0.5 * (erf((half_m - along) / reach) + erf((half_m + along) / reach))
         return np.clip(weight, 0.0, 1.0)
 
-    def coefficient(self, cos_incidence: np.ndarray, frequency_hz: float) -> np.ndarray:
+    def coefficient(self, cos_incidence: Values, frequency_hz: float) -> Values:
         """Specular reflection coefficient: the slab's, less what roughness scatters."""
         material = MATERIALS[self.plane.material]
         polarisation = "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
@@ -64,9 +66,9 @@ def mirrors_of(planes: tuple[Plane, ...]) -> list[Mirror]:
     return facing[:MAX_MIRRORS]
 
 
-def fresnel_radius_m(first_m: np.ndarray, second_m: np.ndarray, wavelength_m: float) -> np.ndarray:
+def fresnel_radius_m(first_m: Values, second_m: Values, wavelength_m: float) -> Values:
     """Radius of the first Fresnel zone between two ways."""
-    return np.sqrt(wavelength_m * first_m * second_m / np.maximum(first_m + second_m, 1e-9))
+    return np.sqrt(wavelength_m * np.maximum(first_m * second_m, 0) / np.maximum(first_m + second_m, 1e-9))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,19 +110,30 @@ def _path(sequence: list[Mirror], wavelength_m: float, frequency_hz: float) -> S
         normal = mirror.plane.normal
         turn = (np.eye(3) - 2 * np.outer(normal, normal)) @ turn
     length = float(np.linalg.norm(images[-1]))
-    corners, coefficient, end, gone = [], 1.0 + 0j, np.zeros(3), 0.0
+    corners, tapers, coefficient, end, gone = [], [], 1.0 + 0j, np.zeros(3), 0.0
     for mirror, image in zip(reversed(sequence), reversed(images[1:]), strict=True):
-        if mirror.side(end) <= 1e-6 or mirror.side(image) >= 0:
+        if mirror.side(end) < -1e-6 or mirror.side(image) >= 0:
             return None
         corner = mirror.crossing(end, image)
         gone += float(np.linalg.norm(corner - end))
-        taper = mirror.inside(corner, fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m))
-        way = (end - corner) / max(float(np.linalg.norm(end - corner)), 1e-9)
-        coefficient *= float(taper) * complex(mirror.coefficient(np.array(way @ mirror.plane.normal), frequency_hz))
+        fresnel_m = fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m)
+        tapers.append(float(mirror.inside(corner, fresnel_m)))
+        way = (image - end) / np.linalg.norm(image - end)
+        coefficient *= complex(mirror.coefficient(np.abs(way @ mirror.plane.normal), frequency_hz))
         corners.append(corner)
         end = corner
+    coefficient *= _share_of_wave(np.array(corners), min(tapers), length)
     if abs(coefficient) < 1e-5:
         return None
-    return SpecularPath(
-        corners_m=np.array(corners[::-1]), turn=turn, shift_m=images[-1], coefficient=coefficient
-    )  # fmt: skip
+    return SpecularPath(corners_m=np.array(corners[::-1]), turn=turn, shift_m=images[-1], coefficient=coefficient)
+
+
+def _share_of_wave(corners_m: np.ndarray, taper: float, length_m: float) -> float:
+    """How much of the wave goes this way.
+
+    Where right-angled faces meet, the image lies straight through their common edge, and half of the wave meets one
+    face first, half the other: all orders of such a corner make one image, counted once.
+    """
+    steps = np.linalg.norm(np.diff(corners_m, axis=0), axis=1)
+    orders = math.factorial(1 + int((steps < 1e-3 * length_m).sum()))
+    return min(1.0, orders * taper)

@@ -129,7 +129,10 @@ class Room:
         distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
         cos = np.abs((edges.direction * edges.place_m).sum(axis=1)) / distance
         gamma = np.array(
-            [abs(reflection(MATERIALS[n], np.ones(1), self.config.centre_frequency_hz)[0]) for n in scene.material_names]
+            [
+                np.abs(reflection(MATERIALS[n], np.float64(1.0), self.config.centre_frequency_hz))
+                for n in scene.material_names
+            ]
         )
         wave_number = 2 * np.pi / self.config.wavelength_m
         cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * gamma[edges.material] ** 2
