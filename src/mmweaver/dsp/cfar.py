@@ -6,6 +6,7 @@ windows neighbouring cells share noise, so a ring of N training cells is worth f
 Reference: Richards, Fundamentals of Radar Signal Processing, ch. 6; Rohling 1983 (OS-CFAR).
 """
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -134,7 +135,7 @@ def os_factor(false_alarm_rate: float, rank: float, num_training: float, num_loo
         rate = float(density @ gammaincc(num_looks, np.exp(log_factor) * z))
         return np.log(max(rate, 1e-300)) - np.log(false_alarm_rate)
 
-    over_ranked = float(np.exp(brentq(excess, np.log(1e-3), np.log(1e6))))
+    over_ranked = math.exp(float(np.asarray(brentq(excess, math.log(1e-3), math.log(1e6)))))
     level = float(gammaincinv(num_looks, rank / (num_training + 1)) / num_looks)
     return level, over_ranked * level
 

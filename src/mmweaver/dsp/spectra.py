@@ -19,8 +19,9 @@ __all__ = [
 def range_doppler_power(cube: RadarCube) -> RangeDopplerMap:
     """Mean over the antennas of |cube|^2, (frame, range, doppler)."""
     values = cube.values
-    power = np.einsum("frda,frda->frd", values.real, values.real, dtype=np.float64)
-    power += np.einsum("frda,frda->frd", values.imag, values.imag, dtype=np.float64)
+    real, imaginary = np.real(values), np.imag(values)
+    power = np.einsum("frda,frda->frd", real, real, dtype=np.float64)
+    power += np.einsum("frda,frda->frd", imaginary, imaginary, dtype=np.float64)
     return power / values.shape[-1]
 
 
