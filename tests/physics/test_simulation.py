@@ -183,6 +183,14 @@ def test_the_same_seed_gives_the_same_bits_and_another_other_noise():
     assert np.allclose(first, other, atol=30 * np.sqrt(AWR1843.noise_power_mw))
 
 
+def test_cutting_the_frames_changes_no_bit(monkeypatch: pytest.MonkeyPatch):
+    simulator = Simulator(scene_of((floor(), back_wall())), AWR1843)
+    person = standing_person((0.2, 2.0, -1.2), (0.0, -0.5, 0.0))
+    whole = simulator.run(person, num_frames=3, seed=0).adc.samples
+    monkeypatch.setattr("mmweaver.simulation.simulator.CHUNK_FRAMES", 2)
+    assert whole.tobytes() == simulator.run(person, num_frames=3, seed=0).adc.samples.tobytes()
+
+
 def test_real_sampling_radars_run():
     simulator = Simulator(scene_of((back_wall(),)), BGT60, Impairments())
     adc: AdcCube = simulator.run(standing_person((0.0, 0.8, -1.2)), num_frames=2, seed=0).adc

@@ -1,6 +1,6 @@
 """Scene + poses -> ADC samples. Three steps: the room once, the person's echoes, the receiver."""
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, l
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
 from mmweaver.simulation.synthesis import FrameClock, synthesise
 
-CHUNK_FRAMES = 50  # bounds memory: the body of so many frames is posed at once
+CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
 
 ASSUMPTIONS = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
@@ -48,31 +48,33 @@ class Simulator:
         self.room_adc = self.room.adc + leak
 
     def run(
-        self,
-        pose: PoseSequence,
-        *,
-        num_frames: int,
-        seed: int,
-        num_points: int = DEFAULT_NUM_POINTS,
-        progress: Callable[[int], None] | None = None,
+        self, pose: PoseSequence, *, num_frames: int, seed: int, num_points: int = DEFAULT_NUM_POINTS
     ) -> Simulation:
-        """ADC samples (frame, loop, tx, rx, sample) of the posed person; `progress` hears of every frame done."""
-        config = self.config
+        """ADC samples of the posed person, all frames at once: mind the memory, or take `chunks`."""
+        chunks = list(self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points))
+        samples = np.concatenate([chunk.samples for chunk in chunks])
+        return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
+
+    def chunks(
+        self, pose: PoseSequence, *, num_frames: int, seed: int, num_points: int = DEFAULT_NUM_POINTS
+    ) -> Iterator[AdcCube]:
+        """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
+
+        Raises InputError where the pose does not cover the frames or holds numbers that are none.
+        """
         self._check(pose, num_frames)
-        samples = np.empty(
-            (num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples), np.complex64
-        )
-        receiver = Receiver(config, self.impairments, seed)
+        body = body_of(pose, num_points)
+        receiver = Receiver(self.config, self.impairments, seed)
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
-            echoes = BodyEchoes(self.room, body_of(pose, num_points), self._joints_at_nodes(pose, frames))
-            for index, frame in enumerate(frames):
-                room = self.room_adc - static_adc(echoes.shadowed(index), config)
-                person = synthesise(echoes.rows(index), self.clock)
-                samples[frame] = receiver.receive(person, room, self.room.adc_rate, int(frame))
-                if progress:
-                    progress(1)
-        return Simulation(adc=AdcCube(samples=samples, config=config, scale=1.0), assumptions=ASSUMPTIONS)
+            echoes = BodyEchoes(self.room, body, self._joints_at_nodes(pose, frames))
+            samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
+            yield AdcCube(samples=samples, config=self.config, scale=1.0)
+
+    def _frame(self, echoes: BodyEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
+        room = self.room_adc - static_adc(echoes.shadowed(index), self.config)
+        person = synthesise(echoes.rows(index), self.clock)
+        return receiver.receive(person, room, self.room.adc_rate, frame)
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
         """(frame, node, 22, 3): slow time is interpolated, never held."""
