@@ -9,7 +9,7 @@ Array = np.ndarray
 PerFrame = Float[Array, " frame"]
 PerRange = Float[Array, " range"]
 PerDoppler = Float[Array, " doppler"]
-PerIndex = Int[Array, " index"]
+PerIndex = Int[Array, "_"]  # any number of indices
 # vectors
 Vec3 = Float[Array, "3"]
 Rotation = Float[Array, "3 3"]
