@@ -104,7 +104,9 @@ class MmwFile:
 
     def _header_size(self, front: bytes) -> int:
         if len(front) < FRONT.size or front[:4] != MAGIC:
-            raise InputError(f"{self.path} is no .mmw file; make one with: mmweaver compress capture.npz -o capture.mmw")
+            raise InputError(
+                f"{self.path} is no .mmw file; make one with: mmweaver compress capture.npz -o capture.mmw"
+            )
         _, version, size = FRONT.unpack(front)
         if version != VERSION:
             raise InputError(

@@ -30,6 +30,7 @@ ROUNDING = 0.3  # a number is rounded up from 1 - this: small ones cost more tha
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; smaller scatterers are cheaper as residual
 REFINED_STEPS = 4
+SAME_COUNT = 0.1  # points refined for a count that differs by less serve again
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # learned gains that differ less from 1 stay behind
 
@@ -42,6 +43,7 @@ class Decoded:
     layers: Layers
     residual: Tensor | None
     peak: float
+    num_residual_values: int = 0  # numbers of the residual that are not zero
 
     def cube_values(self) -> CubeValues:
         """The frames of the cube, complex64."""
@@ -61,6 +63,7 @@ class ChunkEncoder:
         self.target, self.stretch, self.peak = target, stretch, peak
         self.layers = replace(layers, calibration=_cut_gains(layers.calibration))
         self.beams = beams_of(stretch.config)
+        self._refined_points: tuple[int, Points] | None = None
 
     def encoded(self, step: float) -> bytes:
         """The chunk with errors of about step / sqrt(12) a cell (of the peak) where it says anything."""
@@ -101,13 +104,18 @@ class ChunkEncoder:
     def _refined(self, layers: Layers, steps: PointSteps) -> Points:
         """The points worth writing, fitted again without the others."""
         size = layers.points.amplitude.abs() / steps.amplitude
-        kept = strongest(layers.points, int((size >= LEAST_SIZE).sum()))
-        if not kept.amplitude.shape[1]:
+        count = int((size >= LEAST_SIZE).sum())
+        kept = strongest(layers.points, count)
+        if not count:
             return kept
+        if self._refined_points is not None and abs(self._refined_points[0] / count - 1) < SAME_COUNT:
+            return self._refined_points[1]
         stretch = self.stretch
         target = self.target / layers.calibration - static_cells(layers.static, stretch.response, stretch.axes)
         damping = Damping.fresh(len(target))
-        return refined(kept, target, stretch.response, stretch.axes, damping, steps=REFINED_STEPS, largest=160)[0]
+        points = refined(kept, target, stretch.response, stretch.axes, damping, steps=REFINED_STEPS, largest=160)[0]
+        self._refined_points = count, points
+        return points
 
 
 def decoded(data: bytes, config: RadarConfig, *, with_residual: bool = True) -> Decoded:
@@ -141,10 +149,11 @@ def _decoded(data: bytes, config: RadarConfig, with_residual: bool) -> Decoded:
         steps = PointSteps.of(step, stretch.response, stretch.axes)
         coded = _point_coder(stretch, steps).code(stream, None)
         points, near = _points_of(coded, stretch, steps), nearness(coded, shape)
-    residual = None
+    residual, num_values = None, 0
     if flags & HAS_RESIDUAL and with_residual:
         levels = np.zeros((2, config.num_antennas, *shape), np.int64)
         ResidualCoder(levels.shape[1:]).code(stream, levels, near)
+        num_values = int(np.count_nonzero(levels))
         values = _restored(levels, one, more) * step
         cells = from_coefficients(values[0] + 1j * values[1], beams)
         residual = torch.from_numpy(cells.astype(np.complex64))
@@ -152,7 +161,7 @@ def _decoded(data: bytes, config: RadarConfig, with_residual: bool) -> Decoded:
         points=points, static=_static_of(static, stretch, beams, step), calibration=gains,
         noise_power=10 ** (-noise / 20),
     )  # fmt: skip
-    return Decoded(stretch=stretch, layers=layers, residual=residual, peak=peak)
+    return Decoded(stretch=stretch, layers=layers, residual=residual, peak=peak, num_residual_values=num_values)
 
 
 def _point_coder(stretch: Stretch, steps: PointSteps) -> PointCoder:

@@ -116,7 +116,9 @@ def check_writable(cube: RadarCube) -> None:
         )
     for name in ("range_m", "radial_velocity_mps", "antenna_position_m"):
         if not np.allclose(getattr(cube.grid, name), getattr(own, name), rtol=1e-6, atol=1e-9):
-            raise InputError(f"the cube's {name} is not that of radar {cube.config.name!r}; give the radar that made it")
+            raise InputError(
+                f"the cube's {name} is not that of radar {cube.config.name!r}; give the radar that made it"
+            )
     if not np.isfinite(cube.values).all():
         raise InputError("the cube holds values that are no numbers; mend the recording")
     if not np.any(cube.values):
@@ -168,13 +170,23 @@ def _within_bytes(written: Callable[[float], list[bytes]], header: MmwHeader, nu
 
 
 def _next_guess(seen: list[tuple[float, float]], low: float, high: float) -> float:
-    """Where the line through the two nearest trials meets zero (just below), kept between low and high."""
-    near = sorted(seen, key=lambda trial: abs(trial[1]))[:2]
-    slope = -0.8
-    if len(near) == 2 and near[0][0] != near[1][0]:
-        slope = min((near[1][1] - near[0][1]) / (near[1][0] - near[0][0]), -0.2)
-    guess = near[0][0] + (-0.008 - near[0][1]) / slope
-    edge = 0.02 * (high - low)
+    """Where the line between the trials on either side of zero (just below it) crosses, or the middle where that is slow.
+
+    Trials on one side alone: the line through the last two, or one of the usual slope.
+    """
+    above = [trial for trial in seen if trial[1] > 0]
+    below = [trial for trial in seen if trial[1] <= 0]
+    if above and below:
+        first, second = max(above), min(below)
+        if len(seen) > 2 and (seen[-1][1] > 0) == (seen[-2][1] > 0):
+            return (first[0] + second[0]) / 2  # one side alone moves: the curve is bent
+    elif len(seen) > 1:
+        first, second = seen[-2:]
+    else:
+        first, second = seen[0], (seen[0][0] + 1.0, seen[0][1] - 0.8)
+    slope = min((second[1] - first[1]) / (second[0] - first[0]), -0.2)
+    guess = first[0] + (-0.008 - first[1]) / slope
+    edge = 0.03 * (high - low)
     return min(max(guess, low + edge), high - edge)
 
 

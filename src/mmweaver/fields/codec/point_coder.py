@@ -123,9 +123,7 @@ def points_of(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes
         direction[coded.frame, slot, side] = (coded.direction[:, side] + 0.5) / parts * 2 - 1
     first_range, first_doppler = float(axes.range_bin[0]), float(axes.doppler_bin[0])
     return Points(
-        range_bin=placed(
-            bins(coded.range_cell, coded.range_part, first_range, steps.range_sixteenths), first_range
-        ),
+        range_bin=placed(bins(coded.range_cell, coded.range_part, first_range, steps.range_sixteenths), first_range),
         doppler_bin=placed(bins(coded.doppler_cell, coded.doppler_part, first_doppler, steps.doppler_sixteenths)),
         direction=torch.from_numpy(direction),
         amplitude=placed((coded.size * steps.amplitude * np.exp(1j * angle)).astype(np.complex64)),

@@ -1,9 +1,9 @@
 """Whole numbers on (beam, frame, range, doppler), real and imaginary, that are mostly zero and come in clusters.
 
-Coded beam by beam and range row by range row, all frames at once, every second Doppler bin first. What is likely is
-judged by the neighbours that are already known: rows before, beams before, the other Doppler bins of the row, and
-whether a scatterer is near. The windows of the transforms make neighbours alike in sign, too: their sum says which
-sign comes.
+Coded beam by beam, in blocks of range rows, all frames at once; in a block first the cells of even row and even
+Doppler bin, then those between them along Doppler, then the odd rows the same way. What is likely is judged by the
+neighbours that are already known, by the beams before, and by whether a scatterer is near. The windows of the
+transforms make neighbours alike in sign, too: their weighted sum says which sign comes.
 """
 
 import numpy as np
@@ -21,6 +21,7 @@ NUM_SUMS, NUM_TRENDS = len(SUM_BOUNDS) + 1, len(TREND_BOUNDS) + 1
 NUM_NEAR = 6
 CAP = 40
 MARGIN = 2
+BLOCK_ROWS = 16
 STEPS = 14
 
 
@@ -33,7 +34,7 @@ class ResidualCoder:
         n, t = NUM_SUMS, NUM_TRENDS
         self.zero = Mixture(
             [
-                BitModel(4 * t * n, 0.02, 0.5),
+                BitModel(8 * t * n, 0.02, 0.5),
                 BitModel(n * NUM_NEAR * t, 0.02, 0.5),
                 BitModel(n * 3 * t, 0.02, 0.5),
                 BitModel(beams * num_doppler, 0.02, 0.5),
@@ -53,45 +54,47 @@ class ResidualCoder:
             plane = padded[:, beam]
             size = np.zeros(plane.shape[1:], np.int64)
             other = _spread(before)
-            for row in range(num_range):
-                for first in (0, 1):
-                    self._code_row(stream, levels, plane, size, other, near, beam, row, first)
+            for row in range(0, num_range, BLOCK_ROWS):
+                for phase in range(4):
+                    self._code_cells(stream, levels, plane, size, other, near, beam, row, phase)
             before = (before + 2 * size) // 2
         levels[...] = padded[:, :, :, inside, inside]
 
-    def _code_row(self, stream, levels, plane, size, other, near, beam, row, first) -> None:
-        frames, num_doppler = self.shape[1], self.shape[3]
-        r = row + MARGIN
-        d = np.arange(first, num_doppler, 2) + MARGIN
-        if not len(d):
+    def _code_cells(self, stream, levels, plane, size, other, near, beam, row, phase) -> None:
+        frames, num_range, num_doppler = self.shape[1:]
+        rows = np.arange(row + phase // 2, min(row + BLOCK_ROWS, num_range), 2)
+        bins = np.arange(phase % 2, num_doppler, 2)
+        if not len(rows) or not len(bins):
             return
-        around = 2 * size[:, r - 1, d] + size[:, r - 1, d - 1] + size[:, r - 1, d + 1] + size[:, r - 2, d]
-        around = around + (size[:, r - 1, d + 2] + size[:, r - 1, d - 2]) // 2
-        if first:
-            around = around + 2 * (size[:, r, d - 1] + size[:, r, d + 1])
-        beside = other[:, r, d]
+        within = (slice(None), *np.ix_(rows, bins))
+        at = (slice(None), *np.ix_(rows + MARGIN, bins + MARGIN))
+        around = _around(size, rows + MARGIN, bins + MARGIN)
+        beside = other[at]
         by_around = np.searchsorted(SUM_BOUNDS, around.ravel(), side="right")
         by_beside = np.searchsorted(SUM_BOUNDS, beside.ravel(), side="right")
         by_total = np.searchsorted(SUM_BOUNDS, ((around + beside + 1) // 2).ravel(), side="right")
-        by_near = np.minimum(near[:, row, d - MARGIN], NUM_NEAR - 1).ravel()
-        at_bin = np.tile(beam * num_doppler + d - MARGIN, frames)
+        by_near = np.minimum(near[within], NUM_NEAR - 1).ravel()
+        shape = (frames, len(rows), len(bins))
+        at_bin = np.broadcast_to(beam * num_doppler + bins, shape).ravel()
+        at_row = np.broadcast_to(rows[:, None], shape).ravel()
         known = np.zeros(len(by_around), np.int64)
         for part in (0, 1):
-            trend = _trend(plane[part], r, d, first).ravel()
+            trend = _trend(plane[part], rows + MARGIN, bins + MARGIN, phase).ravel()
             by_trend = np.searchsorted(TREND_BOUNDS, np.abs(trend), side="right")
             t = NUM_TRENDS
             contexts = [
-                ((part * 2 + first) * NUM_SUMS + by_around) * t + by_trend,
+                ((part * 4 + phase) * NUM_SUMS + by_around) * t + by_trend,
                 (by_beside * NUM_NEAR + by_near) * t + by_trend,
                 (by_total * 3 + np.minimum(known, 2)) * t + by_trend,
                 at_bin,
-                row * NUM_NEAR + by_near,
+                at_row * NUM_NEAR + by_near,
             ]
-            wanted = levels[part, beam, :, row, d - MARGIN].T.ravel()  # advanced indices go first
-            values = self._numbers(stream, contexts, by_total, by_trend, trend, part, wanted)
-            plane[part][:, r, d] = values.reshape(frames, len(d))
+            values = self._numbers(
+                stream, contexts, by_total, by_trend, trend, part, levels[part, beam][within].ravel()
+            )
+            plane[part][at] = values.reshape(shape)
             known = np.abs(values) + known
-        size[:, r, d] = np.minimum(known, CAP).reshape(frames, len(d))
+        size[at] = np.minimum(known, CAP).reshape(shape)
 
     def _numbers(self, stream, contexts, by_total, by_trend, trend, part, wanted) -> np.ndarray:
         values = np.zeros(len(wanted), np.int64)
@@ -106,14 +109,33 @@ class ResidualCoder:
         return values
 
 
-def _trend(plane: np.ndarray, r: int, d: np.ndarray, first: int) -> np.ndarray:
-    """What the windows' colour makes of the neighbours, in eighths of a level (frame, bin)."""
-    above, further = plane[:, r - 1], plane[:, r - 2]
-    if not first:
-        return 7 * above[:, d] - 3 * further[:, d]
-    row = plane[:, r]
-    across = 5 * (row[:, d - 1] + row[:, d + 1])
-    return across + 6 * above[:, d] - 3 * (above[:, d - 1] + above[:, d + 1])
+def _around(size: np.ndarray, rows: np.ndarray, bins: np.ndarray) -> np.ndarray:
+    """Weighted sizes of the known neighbours (frame, row, bin); what is not known yet is zero."""
+
+    def at(off_row: int, off_bin: int) -> np.ndarray:
+        return size[:, (rows + off_row)[:, None], bins + off_bin]
+
+    cross = at(-1, 0) + at(1, 0) + at(0, -1) + at(0, 1)
+    corners = at(-1, -1) + at(-1, 1) + at(1, -1) + at(1, 1)
+    far = at(-2, 0) + at(2, 0) + at(0, -2) + at(0, 2)
+    return 2 * cross + corners + far
+
+
+def _trend(plane: np.ndarray, rows: np.ndarray, bins: np.ndarray, phase: int) -> np.ndarray:
+    """What the windows' colour makes of the neighbours, in eighths of a level (frame, row, bin)."""
+
+    def at(off_row: int, off_bin: int) -> np.ndarray:
+        return plane[:, (rows + off_row)[:, None], bins + off_bin]
+
+    if phase == 0:
+        return 6 * at(-1, 0) - 2 * at(-2, 0)
+    across = at(0, -1) + at(0, 1)
+    if phase == 1:
+        return 5 * across
+    along = at(-1, 0) + at(1, 0)
+    if phase == 2:
+        return 5 * along
+    return 4 * (across + along) - 2 * (at(-1, -1) + at(-1, 1) + at(1, -1) + at(1, 1))
 
 
 def _spread(before: np.ndarray) -> np.ndarray:

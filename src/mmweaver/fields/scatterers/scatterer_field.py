@@ -21,6 +21,7 @@ from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.windows import hann
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.sampling import Coordinates, antenna_at, coordinates_on
+from mmweaver.fields.scatterers.between import between, between_rows
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, rendered
 from mmweaver.fields.scatterers.response import PointResponse, Points
@@ -72,8 +73,8 @@ class ScattererField(SignalField):
         frame, range_cell, _, antenna = coordinates_on(self.grid, grid)
         response = PointResponse(self.config)
         axes = response.axes(grid)
-        gains = _between(self.layers.calibration, antenna)
-        still = _between(_between(self.layers.static, range_cell, is_signal=True).T, antenna).T
+        gains = between(self.layers.calibration, antenna)
+        still = between(between(self.layers.static, range_cell, is_signal=True).T, antenna).T
         with torch.inference_mode():
             points = self._at(_frames_of(self.grid, frame), response)
             cells = torch.cat([response.render(part, axes) for part in _each(points)])
@@ -157,10 +158,10 @@ class ScattererField(SignalField):
         with torch.inference_mode():
             points = self._at(np.array([frame]), response)
             total = response.at_cells(points, axes)[0]
-            still = _between(self.layers.static, coordinates[:, 1], is_signal=True)
-            still = _between_rows(still, coordinates[:, 3])
+            still = between(self.layers.static, coordinates[:, 1], is_signal=True)
+            still = between_rows(still, coordinates[:, 3])
             total += still * response.doppler_kernel(axes.doppler_bin)[0]
-            total *= _between(self.layers.calibration, coordinates[:, 3])
+            total *= between(self.layers.calibration, coordinates[:, 3])
             return (total * response.turn_at_cells(axes) * self.peak).numpy()
 
     def _static_points(self) -> Points:
@@ -244,21 +245,3 @@ def _frames_at(grid: CubeGrid, time_s: np.ndarray) -> np.ndarray:
 def _along(axis: np.ndarray, cell: np.ndarray) -> np.ndarray:
     step = axis[1] - axis[0] if len(axis) > 1 else 0.0
     return axis[0] + cell * step
-
-
-def _between(values: Tensor, cell: np.ndarray, *, is_signal: bool = False) -> Tensor:
-    """Values (cell, ...) at fractional cells: straight lines, or band-limited for a centred signal along range."""
-    at = torch.from_numpy(np.asarray(cell, np.float64))
-    index = torch.arange(len(values))
-    if is_signal:
-        weight = torch.sinc(at[:, None] - index)
-    else:
-        weight = (1 - (at[:, None] - index).abs()).clamp(min=0)
-    return (weight.to(values.dtype) @ values.reshape(len(values), -1)).reshape(-1, *values.shape[1:])
-
-
-def _between_rows(values: Tensor, cell: np.ndarray) -> Tensor:
-    """One entry of each row (row, cell), at fractional cells."""
-    at = torch.from_numpy(np.asarray(cell, np.float64))
-    weight = (1 - (at[:, None] - torch.arange(values.shape[1])).abs()).clamp(min=0)
-    return (values * weight.to(values.dtype)).sum(1)
