@@ -108,7 +108,7 @@ def _time_colour(colours: "Callable[[float], tuple[float, ...]]", share: float) 
     return float(red), float(green), float(blue)
 
 
-def _time_map():  # noqa: ANN202
+def _time_map():
     import matplotlib
     from matplotlib.colors import ListedColormap
 
