@@ -9,6 +9,7 @@ Array = np.ndarray
 PerFrame = Float[Array, " frame"]
 PerRange = Float[Array, " range"]
 PerDoppler = Float[Array, " doppler"]
+PerIndex = Int[Array, " index"]
 # vectors
 Vec3 = Float[Array, "3"]
 Rotation = Float[Array, "3 3"]
@@ -18,6 +19,10 @@ AntennaPositions = Float[Array, "antenna 3"]
 # signals
 CubeValues = Complex[Array, "frame range doppler antenna"]
 AdcValues = Complex[Array, "frame loop tx rx sample"]
+RangeDopplerMap = Float[Array, "frame range doppler"]
+RangeDopplerMask = Bool[Array, "frame range doppler"]
+RangeAngleMap = Float[Array, "frame range angle"]
+PerAngle = Float[Array, " angle"]
 # poses
 Joints = Float[Array, "frame 22 3"]
 # pictures

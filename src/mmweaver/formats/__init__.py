@@ -1,0 +1,1 @@
+"""Files other people use: recordings and radar set-ups."""

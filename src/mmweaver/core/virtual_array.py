@@ -1,0 +1,72 @@
+"""Which virtual antennas tell azimuth and which tell elevation."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.shapes import AntennaPositions, PerIndex
+
+# Places closer than this share of a wavelength count as one place.
+SAME_PLACE_WAVELENGTHS = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class RowPair:
+    """Antennas of two rows that stand above one another, column by column."""
+
+    lower: PerIndex
+    upper: PerIndex
+    spacing_m: float  # upper row above lower row
+
+
+def azimuth_row(position_m: AntennaPositions, wavelength_m: float) -> PerIndex:
+    """Antennas, left to right, of the horizontal row that spans the most; the lowest of equals.
+
+    >>> from mmweaver.core.presets import AWR1843
+    >>> azimuth_row(AWR1843.antenna_position_m, AWR1843.wavelength_m).tolist()
+    [0, 1, 2, 3, 8, 9, 10, 11]
+    """
+    widest = max(_rows(position_m, wavelength_m), key=lambda row: float(np.ptp(position_m[row, 0])))
+    return widest
+
+
+def elevation_rows(position_m: AntennaPositions, wavelength_m: float) -> RowPair | None:
+    """The two rows that share the most columns (the closest of equals), or None where no column has two antennas."""
+    rows = _rows(position_m, wavelength_m)
+    pairs = [_pair(position_m, wavelength_m, low, high) for at, low in enumerate(rows) for high in rows[at + 1 :]]
+    found = [pair for pair in pairs if pair is not None]
+    return max(found, key=lambda pair: (len(pair.lower), -pair.spacing_m)) if found else None
+
+
+def has_elevation(config: RadarConfig) -> bool:
+    """Whether this radar's array can tell up from down."""
+    return elevation_rows(config.antenna_position_m, config.wavelength_m) is not None
+
+
+def azimuth_resolution_rad(config: RadarConfig) -> float:
+    """Beam width of the azimuth row at broadside, wavelength / (aperture + one spacing); nan for a single column."""
+    position_m = config.antenna_position_m
+    x_m = position_m[azimuth_row(position_m, config.wavelength_m), 0]
+    columns = len(np.unique(np.round(x_m / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))))
+    if columns < 2:
+        return float("nan")
+    return float(config.wavelength_m / (np.ptp(x_m) * columns / (columns - 1)))
+
+
+def _rows(position_m: AntennaPositions, wavelength_m: float) -> list[PerIndex]:
+    """Antennas of equal height, lowest row first, each left to right."""
+    same_m = SAME_PLACE_WAVELENGTHS * wavelength_m
+    order = np.lexsort((position_m[:, 0], np.round(position_m[:, 2] / same_m)))
+    height_m = position_m[order, 2]
+    return np.split(order, np.flatnonzero(np.diff(height_m) > same_m) + 1)
+
+
+def _pair(position_m: AntennaPositions, wavelength_m: float, low: PerIndex, high: PerIndex) -> RowPair | None:
+    same_m = SAME_PLACE_WAVELENGTHS * wavelength_m
+    near = np.abs(position_m[low, 0][:, None] - position_m[high, 0][None, :]) < same_m
+    columns = [(int(low[at]), int(high[np.argmax(line)])) for at, line in enumerate(near) if line.any()]
+    if not columns:
+        return None
+    lower, upper = (np.array(side) for side in zip(*columns, strict=True))
+    return RowPair(lower=lower, upper=upper, spacing_m=float(np.mean(position_m[upper, 2] - position_m[lower, 2])))

@@ -1,0 +1,1 @@
+"""ADC samples to cube, maps and points."""

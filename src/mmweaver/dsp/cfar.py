@@ -1,0 +1,209 @@
+"""Constant false alarm rate detection on range-Doppler power, with thresholds from the statistics of noise.
+
+A cell of noise that is the mean of |.|^2 over M antennas ("looks") is gamma distributed with shape M. Under Hann
+windows neighbouring cells share noise, so a ring of N training cells is worth fewer independent ones; both enter.
+
+Reference: Richards, Fundamentals of Radar Signal Processing, ch. 6; Rohling 1983 (OS-CFAR).
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
+
+# Correlation of the power of noise in cells 0, 1, 2 bins apart under a Hann window: (1, 2/3, 1/6) squared.
+HANN_CORRELATION = (1.0, 4 / 9, 1 / 36)
+OS_QUANTILE = 0.75
+
+
+@dataclass(frozen=True, kw_only=True)
+class CfarCells:
+    """Half extents (range, doppler) of the guard area around the cell under test and of the training ring around it."""
+
+    guard: tuple[int, int] = (2, 2)
+    training: tuple[int, int] = (8, 4)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CfarResult:
+    """What was found, and the noise power estimated around each cell."""
+
+    is_detected: RangeDopplerMask
+    noise_power: RangeDopplerMap
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Ring:
+    """The training cells of one range bin, as offsets."""
+
+    range_offset: np.ndarray
+    doppler_offset: np.ndarray
+    num_independent: float
+
+
+def ca_cfar(
+    power: RangeDopplerMap,
+    *,
+    false_alarm_rate: float = 1e-4,
+    num_looks: int = 1,
+    cells: CfarCells = CfarCells(),
+    hann_windowed: bool = True,
+) -> CfarResult:
+    """Cell averaging: a cell is detected where it exceeds a factor times the mean of its training cells.
+
+    `num_looks` = antennas averaged in `power`; `hann_windowed` says that neighbouring cells are correlated as Hann
+    windows make them (False: independent cells). Doppler wraps around; near the ends of range the ring is what is
+    left of it. Raises InputError for a rate outside (0, 1) or a map too small for any training cell.
+    """
+    _check(power, false_alarm_rate)
+    rings = _rings(power.shape[1], power.shape[2], cells, hann_windowed)
+    mean = _ring_mean(power, cells)
+    factor = np.array([ca_factor(false_alarm_rate, ring.num_independent, num_looks) for ring in rings])
+    return CfarResult(is_detected=power > factor[:, None] * mean, noise_power=mean)
+
+
+def os_cfar(
+    power: RangeDopplerMap,
+    *,
+    false_alarm_rate: float = 1e-4,
+    num_looks: int = 1,
+    cells: CfarCells = CfarCells(),
+    hann_windowed: bool = True,
+) -> CfarResult:
+    """Ordered statistic: as `ca_cfar`, but against the 75 % quantile of the training cells.
+
+    Other targets among the training cells do not raise the threshold as long as they fill less than a quarter.
+    """
+    _check(power, false_alarm_rate)
+    num_range, num_doppler = power.shape[1:]
+    noise = np.empty_like(power)
+    factor = np.empty(num_range)
+    for at, ring in enumerate(_rings(num_range, num_doppler, cells, hann_windowed)):
+        num = len(ring.range_offset)
+        rank = max(1, round(OS_QUANTILE * num))
+        columns = (np.arange(num_doppler)[:, None] + ring.doppler_offset) % num_doppler
+        training = power[:, at + ring.range_offset[None, :], columns]
+        ordered = np.partition(training, rank - 1, axis=-1)[..., rank - 1]
+        effective = ring.num_independent / num
+        level, factor[at] = os_factor(false_alarm_rate, rank * effective, num * effective, num_looks)
+        noise[:, at] = ordered / level
+    return CfarResult(is_detected=power > factor[:, None] * noise, noise_power=noise)
+
+
+CFAR_METHODS = {"ca": ca_cfar, "os": os_cfar}
+
+
+def ca_factor(false_alarm_rate: float, num_training: float, num_looks: int) -> float:
+    """Threshold over the mean of the training cells, exact for independent gamma cells (an F distribution).
+
+    For one look it is the textbook's N (rate^(-1/N) - 1):
+
+    >>> round(ca_factor(1e-4, 16.0, 1), 6) == round(16 * (1e-4 ** (-1 / 16) - 1), 6)
+    True
+    """
+    from scipy.special import betaincinv
+
+    share = betaincinv(num_looks * num_training, num_looks, false_alarm_rate)
+    return float(num_training * (1 - share) / share)
+
+
+@lru_cache(maxsize=256)
+def os_factor(false_alarm_rate: float, rank: float, num_training: float, num_looks: int) -> tuple[float, float]:
+    """(level of the ranked training cell in units of the mean noise, threshold over that mean).
+
+    Exact for independent gamma cells: the rate is the mean of P(cell > threshold z) over the ranked cell's density.
+    For one look it is Rohling's product over i < rank of (N - i) / (N - i + T).
+    """
+    from scipy.optimize import brentq
+    from scipy.special import betaln, gammainc, gammaincc, gammaincinv, gammaln
+
+    above = num_training - rank + 1
+    log_z = np.linspace(np.log(1e-6), np.log(1e3), 4000) + np.log(num_looks)
+    z = np.exp(log_z)
+    below, beyond = np.maximum(gammainc(num_looks, z), 1e-300), np.maximum(gammaincc(num_looks, z), 1e-300)
+    log_density = (
+        (rank - 1) * np.log(below) + (above - 1) * np.log(beyond) - betaln(rank, above)
+        + num_looks * log_z - z - gammaln(num_looks)
+    )  # fmt: skip
+    density = np.exp(log_density) * (log_z[1] - log_z[0])
+
+    def excess(log_factor: float) -> float:
+        rate = float(density @ gammaincc(num_looks, np.exp(log_factor) * z))
+        return np.log(max(rate, 1e-300)) - np.log(false_alarm_rate)
+
+    over_ranked = math.exp(float(np.asarray(brentq(excess, math.log(1e-3), math.log(1e6)))))
+    level = float(gammaincinv(num_looks, rank / (num_training + 1)) / num_looks)
+    return level, over_ranked * level
+
+
+def _check(power: RangeDopplerMap, false_alarm_rate: float) -> None:
+    if not 0 < false_alarm_rate < 1:
+        raise InputError(f"the false alarm rate must lie between 0 and 1, not {false_alarm_rate}")
+    if power.shape[1] * power.shape[2] < 2:
+        raise InputError("a range-Doppler map of one cell has nothing to compare it with")
+
+
+def _half_extents(num_doppler: int, cells: CfarCells) -> tuple[int, int]:
+    """Guard and whole half extents in Doppler, cut so that no cell is met twice around the circle."""
+    limit = (num_doppler - 1) // 2
+    guard = min(cells.guard[1], limit)
+    return guard, min(guard + cells.training[1], limit)
+
+
+def _rings(num_range: int, num_doppler: int, cells: CfarCells, hann_windowed: bool) -> list[_Ring]:
+    """The training ring of each range bin."""
+    guard, whole = cells.guard[0], cells.guard[0] + cells.training[0]
+    guard_doppler, whole_doppler = _half_extents(num_doppler, cells)
+    rings = []
+    for at in range(num_range):
+        low, high = min(at, whole), min(num_range - 1 - at, whole)
+        rings.append(_ring(low, high, guard, guard_doppler, whole_doppler, hann_windowed))
+    return rings
+
+
+@lru_cache(maxsize=1024)
+def _ring(low: int, high: int, guard: int, guard_doppler: int, whole_doppler: int, hann_windowed: bool) -> _Ring:
+    in_range, in_doppler = np.arange(-low, high + 1), np.arange(-whole_doppler, whole_doppler + 1)
+    is_training = (np.abs(in_range)[:, None] > guard) | (np.abs(in_doppler)[None, :] > guard_doppler)
+    row, column = np.nonzero(is_training)
+    if not len(row):
+        raise InputError("the range-Doppler map is too small for training cells; use fewer guard cells")
+    independent = _num_independent(is_training) if hann_windowed else float(len(row))
+    return _Ring(range_offset=in_range[row], doppler_offset=in_doppler[column], num_independent=independent)
+
+
+def _num_independent(is_training: np.ndarray) -> float:
+    """N^2 over the sum of all pairwise correlations: how many independent cells have as steady a mean."""
+    reach = len(HANN_CORRELATION) - 1
+    mask = np.pad(is_training.astype(float), reach)
+    total = 0.0
+    for rows in range(-reach, reach + 1):
+        for columns in range(-reach, reach + 1):
+            correlation = HANN_CORRELATION[abs(rows)] * HANN_CORRELATION[abs(columns)]
+            total += correlation * float(np.sum(mask * np.roll(mask, (rows, columns), (0, 1))))
+    return float(mask.sum()) ** 2 / total
+
+
+def _ring_mean(power: RangeDopplerMap, cells: CfarCells) -> RangeDopplerMap:
+    """Mean of the training cells, from box sums."""
+    guard, whole = cells.guard[0], cells.guard[0] + cells.training[0]
+    guard_doppler, whole_doppler = _half_extents(power.shape[2], cells)
+    outer, outer_count = _box_sum(power, whole, whole_doppler)
+    inner, inner_count = _box_sum(power, guard, guard_doppler)
+    return np.maximum(outer - inner, 0) / (outer_count - inner_count)[:, None]
+
+
+def _box_sum(power: RangeDopplerMap, half_range: int, half_doppler: int) -> tuple[RangeDopplerMap, np.ndarray]:
+    """Sums over (2 half + 1)^2 boxes, wrapped in Doppler, cut in range; and the number of cells for each range bin."""
+    num_range = power.shape[1]
+    padded = np.pad(power, ((0, 0), (0, 0), (half_doppler + 1, half_doppler)), mode="wrap")
+    running = np.cumsum(padded, axis=2, dtype=np.float64)
+    rows = running[:, :, 2 * half_doppler + 1 :] - running[:, :, : -2 * half_doppler - 1]
+    running = np.concatenate([np.zeros_like(rows[:, :1]), np.cumsum(rows, axis=1)], axis=1)
+    low = np.maximum(np.arange(num_range) - half_range, 0)
+    high = np.minimum(np.arange(num_range) + half_range + 1, num_range)
+    return running[:, high] - running[:, low], (high - low) * (2 * half_doppler + 1)

@@ -1,0 +1,135 @@
+"""ADC samples <-> range-Doppler cube."""
+
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import Complex
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
+from mmweaver.dsp.windows import hann
+
+# Singular values below this share of the largest carry nothing but rounding.
+SMALLEST_SINGULAR_VALUE = 1e-9
+STATIC_REMOVALS = ("mean_chirp", "none")
+
+
+def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
+    """Range FFT, Doppler FFT and TDM phase compensation, both FFTs under a Hann window.
+
+    Normalised so that a tone of amplitude a peaks at a (for a radar with real samples: a cosine of amplitude a).
+    Keeps the configuration's range bins; Doppler bins rise with radial velocity. The antennas of one transmitter are
+    turned back by the phase that the cell's velocity gathers until that transmitter fires: left out
+    (`compensate_tdm=False`), a moving target shows at a wrong angle.
+
+    Reference: docs/radar_primer.md; Bechter et al., "Compensation of motion-induced phase errors in TDM MIMO radars".
+    """
+    config = adc.config
+    first, last = config.first_range_bin, config.first_range_bin + config.num_range_bins
+    window = hann(config.num_samples)
+    weight = (window / window.sum()).astype(np.float32)
+    if config.complex_samples:
+        spectrum = _fft(adc.samples * weight, -1)[..., first:last]
+    else:
+        spectrum = _fft(np.real(adc.samples) * (2 * weight), -1)[..., first:last]
+    frames, loops = spectrum.shape[:2]
+    slow = spectrum.reshape(frames, loops, config.num_antennas, config.num_range_bins).transpose(0, 3, 1, 2)
+    values = _fft(slow * _doppler_weight(loops)[:, None], 2)
+    if compensate_tdm:
+        values *= tdm_compensation(config)
+    return RadarCube(
+        values=values.astype(np.complex64, copy=False), grid=CubeGrid.of(config, frames), config=config, scale=adc.scale
+    )
+
+
+def adc_from_cube(cube: RadarCube) -> AdcCube:
+    """The ADC samples of least energy whose `radar_cube` is this cube.
+
+    What the cube does not hold comes out as zero: the range bins it left out, and sample 0 and loop 0, where a Hann
+    window is zero. A cube that no samples can give (a Doppler spectrum with energy in loop 0) is met as closely as
+    can be (least squares).
+    """
+    config = cube.config
+    turned = cube.values.astype(np.complex128) * tdm_compensation(config).conj()
+    loops = _inverse_fft(turned, 2)
+    weight = _doppler_weight(config.num_loops).astype(np.complex128)
+    loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > SMALLEST_SINGULAR_VALUE)[:, None]
+    slow = loops.transpose(0, 2, 3, 1)
+    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
+    samples = slow @ inverse if config.complex_samples else np.concatenate([slow.real, slow.imag], axis=-1) @ inverse
+    shape = (len(samples), config.num_loops, config.num_tx, config.num_rx, config.num_samples)
+    return AdcCube(samples=samples.reshape(shape).astype(np.complex64), config=config, scale=cube.scale)
+
+
+def remove_static_adc(adc: AdcCube) -> AdcCube:
+    """Takes the mean over the loops of each frame away: what does not move vanishes, for every antenna and sample."""
+    still = adc.samples.mean(axis=1, keepdims=True, dtype=np.complex128)
+    return AdcCube(samples=(adc.samples - still).astype(np.complex64), config=adc.config, scale=adc.scale)
+
+
+def remove_static(cube: RadarCube, how: str = "mean_chirp") -> RadarCube:
+    """Static clutter removal on a cube: "mean_chirp" takes the mean over the loops away, "none" gives the cube back.
+
+    The mean is that of the samples before the Doppler window, found from the Doppler spectrum, so this equals
+    `remove_static_adc` before `radar_cube`, but for the first loop, to which a Hann window is blind: with it left
+    out of the mean the two agree. A body that stands still goes too. Raises InputError for another `how`.
+    """
+    if how not in STATIC_REMOVALS:
+        raise InputError(f"unknown static removal {how!r}; known: {', '.join(STATIC_REMOVALS)}")
+    if how == "none":
+        return cube
+    config = cube.config
+    compensation = tdm_compensation(config)
+    weight = _doppler_weight(config.num_loops).astype(np.complex128)
+    seen = np.abs(weight) > SMALLEST_SINGULAR_VALUE
+    # mean of the loops seen = sum over doppler of (mean_of_doppler * spectrum)
+    share = np.divide(1, weight, out=np.zeros_like(weight), where=seen) / seen.sum()
+    mean_of_doppler = _inverse_fft(share, 0)
+    still = np.einsum("frda,da->fra", cube.values, mean_of_doppler[:, None] * compensation.conj(), optimize=True)
+    response = _fft(weight.copy(), 0)[:, None] * compensation
+    values = cube.values - still[:, :, None, :] * response
+    return RadarCube(values=values.astype(np.complex64), grid=cube.grid, config=config, scale=cube.scale)
+
+
+def tdm_compensation(config: RadarConfig) -> Complex[np.ndarray, "doppler antenna"]:
+    """Turns each virtual antenna back to the start of the loop: exp(-j 2 pi f_doppler delay of its transmitter)."""
+    doppler_hz = 2 * config.radial_velocity_mps / config.wavelength_m
+    delay_s = np.repeat(config.tx_delay_s, config.num_rx)
+    return np.exp(-2j * np.pi * doppler_hz[:, None] * delay_s).astype(np.complex64)
+
+
+def _fft(values: np.ndarray, axis: int) -> np.ndarray:
+    """scipy's FFT, which keeps single precision and is several times faster than numpy's; `values` may be lost."""
+    from scipy import fft
+
+    if np.iscomplexobj(values):
+        return np.asarray(fft.fft(values, axis=axis, overwrite_x=True))
+    return np.asarray(fft.rfft(values, axis=axis))
+
+
+def _inverse_fft(values: np.ndarray, axis: int) -> np.ndarray:
+    from scipy import fft
+
+    return np.asarray(fft.ifft(values, axis=axis))
+
+
+def _doppler_weight(num_loops: int) -> Complex[np.ndarray, " loop"]:
+    """Hann over loops, normalised, with the turn that moves zero Doppler to bin num_loops // 2."""
+    window = hann(num_loops)
+    loop = np.arange(num_loops)
+    # exact integers under the 2 pi: an FFT of it has then true zeros to rounding
+    turn = np.exp(2j * np.pi * ((loop * (num_loops // 2)) % num_loops) / num_loops)
+    return (window / window.sum() * turn).astype(np.complex64)
+
+
+@lru_cache(maxsize=4)
+def _range_inverse(num_samples: int, first_bin: int, num_bins: int, complex_samples: bool) -> np.ndarray:
+    """Pseudo-inverse of the windowed range FFT, transposed: (range, sample), or (2 range, sample) for real samples."""
+    window = hann(num_samples)
+    bins = first_bin + np.arange(num_bins)
+    turns = np.outer(bins, np.arange(num_samples)) % num_samples / num_samples
+    forward = window / window.sum() * np.exp(-2j * np.pi * turns)
+    if not complex_samples:
+        forward = 2 * np.concatenate([forward.real, forward.imag])
+    return np.linalg.pinv(forward, rcond=SMALLEST_SINGULAR_VALUE).T

@@ -1,0 +1,104 @@
+"""Radars by name or from any file that describes one, and a description for people."""
+
+import json
+import math
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import PRESETS
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
+from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio
+from mmweaver.formats.ti_cfg import read_ti_cfg
+
+
+def load_radar(name_or_path: str) -> RadarConfig:
+    """A preset's name, a TI .cfg, a mmWave Studio .json, or the .json of a RadarConfig.
+
+    Raises InputError where it is none of them, or the file describes no possible radar.
+    """
+    if name_or_path in PRESETS:
+        return PRESETS[name_or_path]
+    path = Path(name_or_path)
+    if path.suffix.lower() == ".cfg" and path.is_file():
+        return read_ti_cfg(path)
+    if path.suffix.lower() == ".json" and path.is_file():
+        return _from_json(path)
+    what = "is neither .cfg nor .json" if path.is_file() else "is no radar preset and no file"
+    raise InputError(
+        f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, a mmWave Studio .json, or a .json"
+        " from: mmweaver radar awr1843 --json"
+    )
+
+
+def _from_json(path: Path) -> RadarConfig:
+    try:
+        text = path.read_text(encoding="utf-8")
+        if is_mmwave_studio(json.loads(text)):
+            return read_mmwave_studio(path)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except (UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise InputError(f"{path} is no JSON ({error}); make one with: mmweaver radar awr1843 --json") from None
+    try:
+        return RadarConfig.from_json(text)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def describe_radar(config: RadarConfig) -> str:
+    """A table of chirp, array, resolutions and limits, in the units people use."""
+    rows = [*_chirp_rows(config), *_array_rows(config), *_limit_rows(config), *_data_rows(config)]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join([f"radar {config.name}", *(f"  {name:<{width}}  {value}" for name, value in rows)])
+
+
+def _chirp_rows(config: RadarConfig) -> list[tuple[str, str]]:
+    end_hz = config.start_frequency_hz + config.chirp_slope_hz_per_s * config.ramp_end_time_s
+    kind = "complex" if config.complex_samples else "real"
+    return [
+        ("sweep", f"{config.start_frequency_hz / 1e9:.3f} to {end_hz / 1e9:.3f} GHz"),
+        ("slope", f"{config.chirp_slope_hz_per_s / 1e12:.3f} MHz/us"),
+        ("idle, ADC start, ramp end",
+         f"{config.idle_time_s * 1e6:.2f}, {config.adc_start_time_s * 1e6:.2f}, {config.ramp_end_time_s * 1e6:.2f} us"),
+        ("samples a chirp", f"{config.num_samples} {kind} at {config.sample_rate_hz / 1e6:.3f} Msps"),
+        ("sampled bandwidth", f"{config.bandwidth_hz / 1e9:.3f} GHz around {config.centre_frequency_hz / 1e9:.3f} GHz"),
+        ("loops a frame", f"{config.num_loops}, each {config.loop_period_s * 1e6:.1f} us"),
+        ("frames", f"every {config.frame_period_s * 1e3:.1f} ms, {1 / config.frame_period_s:.2f} a second,"
+         f" {100 * config.active_time_s / config.frame_period_s:.1f} % of the time chirping"),
+    ]  # fmt: skip
+
+
+def _array_rows(config: RadarConfig) -> list[tuple[str, str]]:
+    resolution = math.degrees(azimuth_resolution_rad(config))
+    return [
+        ("array", f"{config.num_tx} TX x {config.num_rx} RX = {config.num_antennas} virtual antennas"),
+        ("transmitters fire in order", ", ".join(str(tx) for tx in config.tx_order)),
+        ("azimuth resolution", "none, one column" if math.isnan(resolution) else f"{resolution:.1f} deg at broadside"),
+        ("elevation", "yes" if has_elevation(config) else "no"),
+    ]
+
+
+def _limit_rows(config: RadarConfig) -> list[tuple[str, str]]:
+    low_m, high_m = config.range_m[0], config.range_m[-1]
+    last_bin = config.first_range_bin + config.num_range_bins - 1
+    return [
+        ("range resolution", f"{config.range_resolution_m * 100:.2f} cm"),
+        ("range", f"up to {config.max_range_m:.2f} m"),
+        ("range kept", f"{low_m:.2f} to {high_m:.2f} m (bins {config.first_range_bin} to {last_bin})"),
+        ("velocity resolution", f"{config.velocity_resolution_mps:.3f} m/s"),
+        ("velocity", f"+-{config.max_velocity_mps:.2f} m/s"),
+    ]
+
+
+def _data_rows(config: RadarConfig) -> list[tuple[str, str]]:
+    cube = (config.num_range_bins, config.num_loops, config.num_antennas)
+    words = 2 if config.complex_samples else 1
+    adc_bytes = 2 * words * config.num_loops * config.num_antennas * config.num_samples
+    return [
+        (
+            "cube a frame",
+            f"{cube[0]} range x {cube[1]} Doppler x {cube[2]} antennas, {8 * math.prod(cube) / 1e6:.2f} MB",
+        ),
+        ("ADC data a frame", f"{adc_bytes / 1e6:.2f} MB ({adc_bytes / config.frame_period_s / 1e6:.1f} MB a second)"),
+    ]

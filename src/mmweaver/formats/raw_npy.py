@@ -1,0 +1,95 @@
+"""Raw ADC samples in a .npy file, with the order of its axes given."""
+
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube
+from mmweaver.formats.dca1000 import by_transmitter
+
+# An axis that counts several things: the one that turns slowest first. Transmitters in firing order.
+PARTS = {
+    "frame": ("frame",),
+    "loop": ("loop",),
+    "tx": ("tx",),
+    "rx": ("rx",),
+    "sample": ("sample",),
+    "chirp": ("loop", "tx"),
+    "antenna": ("tx", "rx"),
+    "vrx": ("tx", "rx"),
+}
+ORDER = ("frame", "loop", "tx", "rx", "sample")
+
+
+def read_adc_npy(path: Path | str, config: RadarConfig, axes: str) -> AdcCube:
+    """Reads an array whose axes are named in order, as "frame,loop,tx,rx,sample" or "loop,antenna,sample".
+
+    `tx` is in firing order (`config.tx_order`); `antenna` (or `vrx`) = tx * num_rx + rx and `chirp` = loop * num_tx
+    + tx, with that same tx. An axis that is not named has size 1. For a radar with real samples: real numbers, whose
+    mean over each chirp is taken away; int16 that was stored as uint16 (values above 32767) is turned back. Samples
+    stay in the file's unit, so their scale is unknown (nan). Raises InputError where the file is no such array.
+    """
+    names = [name.strip() for name in axes.split(",")]
+    values = _loaded(Path(path))
+    sizes = {"loop": config.num_loops, "tx": config.num_tx, "rx": config.num_rx, "sample": config.num_samples}
+    parts = _checked_axes(Path(path), names, values.shape, sizes)
+    sizes["frame"] = values.shape[names.index("frame")] if "frame" in names else 1
+    if not values.size:
+        raise InputError(f"{path} is empty: its shape is {values.shape}")
+    values = _numbers(Path(path), values, config)
+    values = values.reshape([sizes[part] for part in parts])
+    missing = [name for name in ORDER if name not in parts]
+    values = values.reshape(values.shape + (1,) * len(missing))
+    values = values.transpose([(parts + missing).index(name) for name in ORDER])
+    if not config.complex_samples:
+        values = values - values.mean(axis=-1, keepdims=True)
+    samples = by_transmitter(values, config.tx_order).astype(np.complex64)
+    return AdcCube(samples=np.ascontiguousarray(samples), config=config, scale=float("nan"))
+
+
+def _loaded(path: Path) -> np.ndarray:
+    try:
+        values = np.load(path, allow_pickle=False)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, EOFError, SyntaxError) as error:
+        raise InputError(f"{path} is no .npy array of numbers ({str(error).splitlines()[0]})") from None
+    if not isinstance(values, np.ndarray):
+        raise InputError(f"{path} holds several arrays; save the ADC samples alone as .npy")
+    return values
+
+
+def _checked_axes(path: Path, names: list[str], shape: tuple[int, ...], sizes: dict[str, int]) -> list[str]:
+    if unknown := [name for name in names if name not in PARTS]:
+        raise InputError(f"unknown axis {unknown[0]!r}; known: {', '.join(PARTS)}")
+    parts = [part for name in names for part in PARTS[name]]
+    if len(set(parts)) < len(parts):
+        raise InputError(f"the axes {','.join(names)} name the same thing twice")
+    expected = [
+        str(int(np.prod([sizes[part] for part in PARTS[name]]))) if name != "frame" else "any" for name in names
+    ]
+    wanted = ", ".join(f"{name} {size}" for name, size in zip(names, expected, strict=True))
+    if missing := [name for name in ORDER if name not in parts and sizes.get(name, 1) != 1]:
+        raise InputError(f"the axes {','.join(names)} lack {missing[0]}, of which the radar has {sizes[missing[0]]}")
+    fits = len(shape) == len(names) and all(
+        size in ("any", str(length)) for size, length in zip(expected, shape, strict=True)
+    )
+    if not fits:
+        raise InputError(f"{path} has shape {shape}; the radar and the axes named want ({wanted})")
+    return parts
+
+
+def _numbers(path: Path, values: np.ndarray, config: RadarConfig) -> np.ndarray:
+    if config.complex_samples:
+        if values.dtype.kind != "c":
+            raise InputError(f"{path} holds {values.dtype}, but radar {config.name!r} has complex samples (I + jQ)")
+    elif values.dtype.kind not in "iuf":
+        raise InputError(f"{path} holds {values.dtype}, but radar {config.name!r} has real samples")
+    if values.dtype == np.uint16 and values.max() > np.iinfo(np.int16).max:
+        values = values.astype(np.int16)
+    values = values.astype(np.complex128 if config.complex_samples else np.float64)
+    if not np.isfinite(values).all():
+        raise InputError(f"{path} holds values that are not finite")
+    return values
