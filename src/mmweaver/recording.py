@@ -1,6 +1,6 @@
 """A real recording in, the same cube, points, files and pictures out as for a signal that was made."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -50,14 +50,16 @@ def process_recording(
     first (default: the radar's). Raises InputError for anything that cannot be read so.
     """
     path, stages = Path(path), stages or Stages()
-    config = radar if isinstance(radar, RadarConfig) else load_radar(radar)
+    config = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
+    if tx_order is not None:
+        config = replace(config, tx_order=tx_order)
     with stages("read the recording"):
         if path.suffix == ".npy":
             if axes is None:
                 raise InputError(f"{path}: say which axis is which, for example --axes frame,loop,tx,rx,sample")
             adc = read_adc_npy(path, config, axes)
         else:
-            adc = read_bin(path, config, iq_order=iq_order, tx_order=tx_order or config.tx_order)
+            adc = read_bin(path, config, iq_order=iq_order)
         digest = file_digest(path)
     with stages("range, Doppler, antennas"):
         cube = radar_cube(adc)
@@ -69,7 +71,7 @@ def process_recording(
         "version": __version__,
         "frames": len(cube.grid.frame_time_s),
         "iq_order": None if path.suffix == ".npy" else iq_order,
-        "tx_order": tx_order or config.tx_order,
+        "tx_order": config.tx_order,
         "axes": axes,
         **radar_meta(adc.config),
         "inputs": {"recording": digest},

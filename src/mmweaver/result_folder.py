@@ -32,28 +32,20 @@ FILES = {
 }
 
 
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class BinLayout:
-    """How adc_data.bin is laid out: which of I and Q comes first, and the transmitters in their turns."""
-
-    iq_order: str = "iq"
-    tx_order: tuple[int, ...] | None = None  # None = the radar's own
-
-
 def save_results(
     out: str | Path,
     view: View,
     meta: dict[str, Any],
     *,
     adc: AdcCube | None = None,
-    layout: BinLayout | None = None,
+    iq_order: str = "iq",
     overwrite: bool = False,
     stages: Stages | None = None,
 ) -> dict[str, Any]:
     """Writes all files into the folder `out`, or none; returns what meta.json holds.
 
-    `adc_data.bin` is written where `layout` and `adc` are given. Raises InputError where `out` holds other files and
-    `overwrite` is not set, or where it cannot be written.
+    Where `adc` is given it is written as `adc_data.bin`, I or Q first as `iq_order` says. Raises InputError where
+    `out` holds other files and `overwrite` is not set, or where it cannot be written.
     """
     stages = stages or Stages()
     with staged_folder(Path(out), overwrite=overwrite) as stage:
@@ -63,8 +55,13 @@ def save_results(
             write_points_npz(stage / "points.npz", view.points)
             if view.pose is not None:
                 write_pose_npz(stage / "pose.npz", view.pose)
-            if adc is not None and layout is not None:
-                meta["adc_data_bin"] = _write_bin(stage / "adc_data.bin", adc, layout)
+            if adc is not None:
+                counts = write_bin(stage / "adc_data.bin", adc, iq_order=iq_order)
+                meta["adc_data_bin"] = {
+                    "iq_order": iq_order,
+                    "tx_order": adc.config.tx_order,
+                    "counts_per_unit": counts,
+                }
             (stage / "radar.json").write_text(view.cube.config.to_json())
         with stages("draw preview.png"):
             draw_preview(view, stage / "preview.png")
@@ -75,12 +72,6 @@ def save_results(
         meta["seconds"] = {name: round(seconds, 3) for name, seconds in stages.seconds.items()}
         (stage / "meta.json").write_text(json.dumps(plain(meta), indent=2, allow_nan=False, ensure_ascii=False) + "\n")
     return plain(meta)
-
-
-def _write_bin(path: Path, adc: AdcCube, layout: BinLayout) -> dict[str, Any]:
-    tx_order = adc.config.tx_order if layout.tx_order is None else layout.tx_order
-    scale = write_bin(path, adc, iq_order=layout.iq_order, tx_order=tx_order)
-    return {"iq_order": layout.iq_order, "tx_order": tx_order, "scale": scale}
 
 
 def radar_meta(config: RadarConfig) -> dict[str, Any]:

@@ -29,7 +29,7 @@ from mmweaver.formats.radar_file import load_radar
 from mmweaver.motion.compose import compose
 from mmweaver.motion.resample import resample
 from mmweaver.pictures.view import View
-from mmweaver.result_folder import META_VERSION, BinLayout, file_digest, radar_meta, save_results
+from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
@@ -114,21 +114,24 @@ class Generation:
         return self.scene.photo
 
     def save(
-        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: BinLayout | None = None
+        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: bool = False, iq_order: str = "iq"
     ) -> dict[str, Any]:
         """Writes all files and pictures into a folder, or none of them; returns what meta.json holds.
 
-        `adc_data_bin` asks for the raw samples as a DCA1000 `.bin` too. Raises InputError where the folder cannot be
-        written, or holds other files and `overwrite` is not set.
+        `adc_data_bin` asks for the raw samples too, as a DCA1000 writes them, I or Q first. Raises InputError where
+        the folder cannot be written, or holds other files and `overwrite` is not set.
         """
+        if adc_data_bin and self.adc is None:
+            raise InputError(f"method {self.meta['method']!r} makes no ADC samples, so there is no .bin to write")
         view = View(
             title=f"{self.meta['text']}   ({self.cube.config.name}, seed {self.meta['seed']})",
             cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
             pose=self.pose, motion=self.motion,
         )  # fmt: skip
         return save_results(
-            out, view, self.meta, adc=self.adc, layout=adc_data_bin, overwrite=overwrite, stages=self.stages
-        )
+            out, view, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order, overwrite=overwrite,
+            stages=self.stages,
+        )  # fmt: skip
 
 
 # the door -----------------------------------------------------------------------------------------------------------
@@ -148,7 +151,7 @@ class Weaver:
     ):
         self.method_name = method
         self.method = METHODS[method]()
-        self.radar = radar if isinstance(radar, RadarConfig) else load_radar(radar)
+        self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
 
     def read_room(self, rgb: str | Path, depth: str | Path, camera: str | Path | None = None) -> Room:

@@ -6,6 +6,7 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CameraIntrinsics, CubeGrid, PointCloud, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.seeding import stream
+from mmweaver.dsp.windows import hann
 from mmweaver.pictures.view import View
 
 RADAR_FROM_CAMERA = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
@@ -51,8 +52,9 @@ def make_cube(pose: PoseSequence) -> RadarCube:
 def _target(grid: CubeGrid, place_m: np.ndarray, speed_mps: float) -> np.ndarray:
     distance_m = float(np.linalg.norm(place_m))
     in_range = np.sinc((grid.range_m - distance_m) / (grid.range_m[1] - grid.range_m[0]) / 2)
-    step_mps = grid.radial_velocity_mps[1] - grid.radial_velocity_mps[0]
-    in_velocity = np.exp(-(((grid.radial_velocity_mps - speed_mps) / step_mps) ** 2))
+    loops = np.arange(AWR1843.num_loops)
+    slow = hann(len(loops)) * np.exp(4j * np.pi / grid.wavelength_m * speed_mps * AWR1843.loop_period_s * loops)
+    in_velocity = np.fft.fftshift(np.fft.fft(slow)) / len(loops)
     antennas = np.exp(-2j * np.pi / grid.wavelength_m * (grid.antenna_position_m @ (place_m / distance_m)))
     return in_range[:, None, None] * in_velocity[None, :, None] * antennas
 

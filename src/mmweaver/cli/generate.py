@@ -1,6 +1,7 @@
 """mmweaver generate: photo and sentence in, radar signal out."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -77,15 +78,17 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_output_folder(out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
-        from mmweaver.result_folder import BinLayout
+        from mmweaver.formats.radar_file import load_radar
         from mmweaver.weaver import Weaver, check_request
 
-        weaver = Weaver(method=arguments.method, radar=arguments.radar, listener=bar)
+        radar = load_radar(arguments.radar)
+        if arguments.tx_order is not None:
+            radar = replace(radar, tx_order=arguments.tx_order)
+        weaver = Weaver(method=arguments.method, radar=radar, listener=bar)
         request = {"frames": arguments.frames, "fps": arguments.fps, "seed": arguments.seed, "at": arguments.at}
         check_request(weaver.radar, text=text, **request)
         result = weaver.generate(_read_room(weaver, arguments), text, **request)
-        layout = BinLayout(iq_order=arguments.iq_order, tx_order=arguments.tx_order) if arguments.bin else None
-        meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=layout)
+        meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order)
     print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
 

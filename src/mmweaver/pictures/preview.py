@@ -21,7 +21,7 @@ from mmweaver.pictures.theme import (
     label_axes,
     shortened,
 )
-from mmweaver.pictures.view import ELEVATION_RAD, Fan, View, decibels
+from mmweaver.pictures.view import Fan, View, decibels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -162,8 +162,12 @@ def draw_range_doppler(axes: "Axes", view: View) -> None:
 
 def draw_range_elevation(axes: "Axes", view: View) -> None:
     """Moving power seen from the side, mean over frames; two rows of antennas tell little about height."""
+    if not view.has_elevation:
+        axes.set_axis_off()
+        axes.text(0.5, 0.5, "this array cannot tell up from down", transform=axes.transAxes, ha="center")
+        return
     power = view.range_elevation_moving.mean(axis=0)
-    fan = Fan.over(view.cube.grid.range_m, ELEVATION_RAD)
+    fan = Fan.over(view.cube.grid.range_m, view.elevation_rad)
     low, high, near, far = fan.extent
     image = _power(axes, fan.lay(decibels(power)).T, (near, far, low, high))
     axes.set_aspect("equal", anchor="N")
@@ -223,7 +227,9 @@ def draw_points_side(axes: "Axes", view: View) -> None:
             trace_m = view.pose.joints_m[:, joint(name)]
             axes.plot(trace_m[:, 1], trace_m[:, 2], color=INK, linewidth=0.8)
         _note(axes, "lines: head, left foot", corner="upper right")
-    axes.set(xlim=(0, reach_m), ylim=(-0.32 * reach_m, 0.32 * reach_m))
+    highest_m = float(np.max(np.abs(view.points.z_m), initial=0.0))
+    half_m = float(np.clip(1.1 * highest_m, 0.32 * reach_m, 0.45 * reach_m))
+    axes.set(xlim=(0, reach_m), ylim=(-half_m, half_m))
     axes.set_aspect("equal", anchor="N")
     label_axes(axes, "Points from the side", "ahead (m)", "up (m)")
 

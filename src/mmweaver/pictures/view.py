@@ -8,13 +8,21 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.shapes import Array, PerFrame, Rotation
-from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power, range_elevation_power
+from mmweaver.core.virtual_array import has_elevation
+from mmweaver.dsp.cube import remove_static
+from mmweaver.dsp.spectra import (
+    azimuth_axis_rad,
+    elevation_axis_rad,
+    range_azimuth_power,
+    range_doppler_power,
+    range_elevation_power,
+)
 from mmweaver.pictures.theme import SPAN_DB
 
 MAX_FRAMES = 100  # more are thinned out: no picture shows more
-ELEVATION_RAD = np.deg2rad(np.arange(-40.0, 41.0))
 Power = Float[Array, "frame range column"]
-Image = Float[Array, "row column"]
+RangeAngle = Float[Array, "range column"]
+Raster = Float[Array, "ahead aside"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,18 +56,31 @@ class View:
         return replace(self.cube, values=self.cube.values[self.frames], grid=grid)
 
     @cached_property
+    def _moving(self) -> RadarCube:
+        return remove_static(self._shown)
+
+    @property
+    def has_elevation(self) -> bool:
+        """Whether the array can tell up from down."""
+        return has_elevation(self.cube.config)
+
+    @cached_property
     def range_doppler(self) -> Power:
         """Power (frame, range, doppler), the standing room included."""
         return range_doppler_power(self._shown)
 
     @cached_property
     def range_doppler_moving(self) -> Power:
-        """Power (frame, range, doppler) without what stands still."""
-        return range_doppler_power(self._shown, moving_only=True)
+        """Power (frame, range, doppler) less the mean chirp of each frame."""
+        return range_doppler_power(self._moving)
 
     @cached_property
     def azimuth_rad(self) -> Float[Array, " column"]:
         return azimuth_axis_rad()
+
+    @cached_property
+    def elevation_rad(self) -> Float[Array, " column"]:
+        return elevation_axis_rad()
 
     @cached_property
     def range_azimuth(self) -> Power:
@@ -68,13 +89,13 @@ class View:
 
     @cached_property
     def range_azimuth_moving(self) -> Power:
-        """Power (frame, range, azimuth) without what stands still."""
-        return range_azimuth_power(self._shown, self.azimuth_rad, moving_only=True)
+        """Power (frame, range, azimuth) less the mean chirp of each frame."""
+        return range_azimuth_power(self._moving, self.azimuth_rad)
 
     @cached_property
     def range_elevation_moving(self) -> Power:
-        """Power (frame, range, elevation) without what stands still."""
-        return range_elevation_power(self._shown, ELEVATION_RAD, moving_only=True)
+        """Power (frame, range, elevation) less the mean chirp of each frame."""
+        return range_elevation_power(self._moving, self.elevation_rad)
 
     @cached_property
     def liveliest(self) -> int:
@@ -148,6 +169,6 @@ class Fan:
             extent=(-width_m, width_m, 0.0, reach_m),
         )
 
-    def lay(self, values: Image) -> Image:
+    def lay(self, values: RangeAngle) -> Raster:
         """(range, angle) -> (ahead, aside)."""
         return np.where(self.inside, values[self.range_index, self.angle_index], np.nan)
