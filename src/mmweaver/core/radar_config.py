@@ -201,6 +201,12 @@ class RadarConfig:
         power_w = BOLTZMANN_J_PER_K * NOISE_TEMPERATURE_K * self.sample_rate_hz
         return power_w * 1e3 * 10 ** (self.noise_figure_db / 10)
 
+    @property
+    def adc_count_sqrt_mw(self) -> float:
+        """Amplitude at the receiver's port, in sqrt(mW), of one count of the 16-bit converter (50 ohm)."""
+        full_scale_mw = self.adc_full_scale_v**2 / (2 * 50) * 1e3
+        return math.sqrt(full_scale_mw / 10 ** (self.rx_gain_db / 10)) / 32768
+
     # files ------------------------------------------------------------------------------------------------------
     def to_json(self) -> str:
         """Plain JSON in SI units; `from_json` gives the same RadarConfig back."""

@@ -4,6 +4,7 @@ import numpy as np
 from jaxtyping import Bool, Complex, Float, Int, UInt8
 
 Array = np.ndarray
+Values = np.ndarray | np.number  # any shape, a single number too
 
 # one axis
 PerFrame = Float[Array, " frame"]

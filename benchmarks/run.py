@@ -1,0 +1,114 @@
+"""`make bench`: what the physics costs, as ratios measured in one run, CPU-seconds and peak memory.
+
+Writes results/benchmark/physics.json in the project's results schema and prints the same as a table.
+"""
+
+import argparse
+import json
+import os
+import platform
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+
+RESULTS = Path(__file__).resolve().parents[1] / "results" / "benchmark" / "physics.json"
+SENTENCE = "a person walks towards the radar, then waves with the left hand"
+
+
+def cpu_seconds(function, repeats: int = 3) -> float:
+    """The least of some runs; CPU time, so that a busy machine counts less."""
+    best = np.inf
+    for _ in range(repeats):
+        start = time.process_time()
+        function()
+        best = min(best, time.process_time() - start)
+    return float(best)
+
+
+def simulation_costs() -> dict[str, float]:
+    from mmweaver.motion.compose import compose
+
+    from mmweaver import Weaver
+    from mmweaver.dsp.cube import radar_cube
+    from mmweaver.simulation.body import body_of
+    from mmweaver.simulation.echoes import BodyEchoes
+    from mmweaver.simulation.exact import exact_frame
+    from mmweaver.simulation.simulator import Simulator
+
+    weaver = Weaver(method="physics", radar="awr1843")
+    scene = weaver.sample_room()
+    config = weaver.config
+    window = (float(config.range_m[0]), float(config.range_m[-1]))
+    pose = compose(SENTENCE, scene, duration_s=2.0, seed=0, range_window_m=window).pose
+    room_s = cpu_seconds(lambda: Simulator(scene, config), 1)
+    simulator = Simulator(scene, config)
+    run_s = cpu_seconds(lambda: simulator.run(pose, num_frames=20, seed=0, num_points=800))
+    adc = simulator.run(pose, num_frames=20, seed=0).adc
+    frame = np.arange(1)
+    rows = BodyEchoes(simulator.room, body_of(pose), simulator._joints_at_nodes(pose, frame)).rows(0)
+    direct = rows.out_m[~rows.is_mixed][:100]
+    one_frame_s = cpu_seconds(
+        lambda: exact_frame(lambda t: np.repeat(direct[:, :1], len(t), axis=1), np.ones(len(direct), complex), config),
+        1,
+    )
+    exact_s = one_frame_s / len(direct) * len(rows) * 20
+    a = np.ones((256, 560), np.complex64)
+    b = np.ones((560, 384), np.complex64)
+    gemm_s = cpu_seconds(lambda: [a @ b for _ in range(20)])
+    return {
+        "room_cpu_s": room_s,
+        "sequence_cpu_s": run_s,
+        "cube_cpu_s": cpu_seconds(lambda: radar_cube(adc)),
+        "echo_rows_in_frame_0": float(len(rows)),
+        "exact_sum_cpu_s_extrapolated": exact_s,
+        "times_cheaper_than_exact": exact_s / run_s,
+        "times_gemm_of_560_rows": run_s / gemm_s,
+    }
+
+
+def whole_command() -> dict[str, float]:
+    """`mmweaver generate --demo` in a process of its own: wall, CPU, peak memory."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "mmweaver", "generate", "--demo", "--text", SENTENCE, "--out", f"{folder}/out"]
+        start = time.perf_counter()
+        subprocess.run(command, check=True, capture_output=True)
+        wall = time.perf_counter() - start
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return {
+        "command_wall_s": wall,
+        "command_cpu_s": usage.ru_utime + usage.ru_stime,
+        "command_peak_memory_gb": usage.ru_maxrss / 1e6,
+    }
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=RESULTS)
+    out = parser.parse_args().out
+    values = {**whole_command(), **simulation_costs()}
+    record = {
+        "schema_version": 1,
+        "origin": "measured",
+        "experiment": "benchmark",
+        "method": "physics",
+        "dataset": "bundled sample room, one sentence, 20 frames, 800 body points, one BLAS thread",
+        "metrics": {name: {"value": round(value, 4)} for name, value in values.items()},
+        "hardware": {"machine": platform.machine(), "cores": os.cpu_count(), "python": platform.python_version()},
+    }
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(json.dumps(record, indent=2) + "\n")
+    for name, value in values.items():
+        print(f"{name:32} {value:10.3f}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Rays, pinhole cameras and planes: geometry that knows nothing of radars."""

@@ -1,0 +1,1 @@
+"""A photo with depth in, the room it shows out."""

@@ -1,0 +1,191 @@
+"""The person's echoes: direct, over one wall, over a wall both ways; and the shadow the person casts."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.simulation.antenna import pattern, scatterer_gain
+from mmweaver.simulation.body import ALBEDO, Body
+from mmweaver.simulation.mirrors import Mirror, fresnel_radius_m
+from mmweaver.simulation.room import Room, StaticEchoes
+from mmweaver.simulation.synthesis import EchoRows
+
+GHOST_POINTS = 200
+SKIN_MARGIN_M = 0.03  # a point on the skin is not hidden by its own capsule's hull
+ROOM_MARGIN_M = 0.05  # nor by the seat it touches
+WALL_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
+FAINTEST = 1e-4  # ghosts over one face of less power than this share of the direct echoes are left out,
+LEFT_OUT = 0.02  # and so much of the others' power, in their faintest rows
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyAtFrames:
+    """One body posed at the nodes of every frame; `middle` arrays belong to the frame's middle."""
+
+    nodes_m: np.ndarray  # (frame, node, point, 3)
+    place_m: np.ndarray  # (frame, point, 3)
+    normal: np.ndarray  # (frame, point, 3)
+    hulls: list[RayCaster]  # one a frame
+
+    @classmethod
+    def of(cls, body: Body, joints_m: np.ndarray) -> "BodyAtFrames":
+        """Joints (frame, node, 22, 3); the middle node counts as the frame's middle."""
+        frames, nodes = joints_m.shape[:2]
+        skin = body.skin(joints_m.reshape(-1, 22, 3))
+        places = skin.place_m.reshape(frames, nodes, -1, 3)
+        normals = skin.normal.reshape(frames, nodes, -1, 3)
+        vertices, faces = body.hull(joints_m[:, nodes // 2])
+        return cls(
+            nodes_m=places,
+            place_m=places[:, nodes // 2],
+            normal=normals[:, nodes // 2],
+            hulls=[RayCaster(frame, faces) for frame in vertices],
+        )
+
+    def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float, wanted: np.ndarray) -> np.ndarray:
+        """True where wanted and the body itself does not lie between; start (frame, point, 3) or (3,)."""
+        clear = wanted.copy()
+        for frame, hull in enumerate(self.hulls):
+            ask = np.flatnonzero(wanted[frame])
+            start = np.broadcast_to(start_m, end_m.shape)[frame, ask].astype(float)
+            clear[frame, ask] = hull.is_clear(start, end_m[frame, ask].astype(float), margin_m)
+        return clear
+
+
+class BodyEchoes:
+    """Echo rows of one person in one room, frame by frame."""
+
+    def __init__(self, room: Room, body: Body, joints_m: np.ndarray):
+        self.room, self.body, self.config = room, body, room.config
+        self.posed = BodyAtFrames.of(body, joints_m)
+        self.num_frames = len(joints_m)
+        self.distance_m = np.linalg.norm(self.posed.place_m, axis=-1)
+        self.towards = -self.posed.place_m / np.maximum(self.distance_m, 1e-6)[..., None]
+        self.cos = (self.posed.normal * self.towards).sum(-1)
+        self.visible = self._visible()
+        self.gain = scatterer_gain(self.config)
+        self.parts = [self._direct()]
+        direct = self.parts[0].power()
+        for mirror in room.mirrors:
+            self.parts += self._ghosts(mirror, direct)
+
+    def rows(self, frame: int) -> EchoRows:
+        """Everything of the person that arrives in one frame."""
+        return EchoRows.joined([part.rows(frame, self.posed.nodes_m[frame]) for part in self.parts])
+
+    def shadowed(self, frame: int) -> StaticEchoes:
+        """The room's echoes that the person hides in one frame."""
+        echoes, hull = self.room.echoes, self.posed.hulls[frame]
+        near = self._near_body(echoes, frame)
+        first, last = echoes.first_m[near], echoes.last_m[near]
+        blocked = ~hull.is_clear(np.zeros_like(first), first, 0.02)
+        other = np.flatnonzero(np.any(first != last, axis=1))
+        blocked[other] |= ~hull.is_clear(last[other], np.zeros_like(last[other]), 0.02)
+        return echoes.part(near[blocked])
+
+    def _near_body(self, echoes: StaticEchoes, frame: int) -> np.ndarray:
+        """Rows within the cone that the body fills, seen from the radar."""
+        axis = self.posed.place_m[frame].mean(axis=0)
+        axis = axis / np.linalg.norm(axis)
+        opening = (-self.towards[frame] @ axis).min() - 0.02
+        unit = [
+            ends / np.maximum(np.linalg.norm(ends, axis=1, keepdims=True), 1e-9)
+            for ends in (echoes.first_m, echoes.last_m)
+        ]
+        return np.flatnonzero((unit[0] @ axis > opening) | (unit[1] @ axis > opening))
+
+    def _visible(self) -> np.ndarray:
+        facing = self.cos > 0.02
+        facing &= self.room.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
+        return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
+
+    def _direct(self) -> "Rows":
+        cross_section = 4 * ALBEDO * np.maximum(self.cos, 0) ** 2 * self.body.area_m2
+        amplitude = self.gain * self._pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
+        return Rows(
+            None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible, False
+        )
+
+    def _ghosts(self, mirror: Mirror, direct_power: np.ndarray) -> list["Rows"]:
+        """Out directly and back over the face (and the reverse), and over the face both ways."""
+        count = len(self.body.micro_phase)
+        chosen = np.unique(np.linspace(0, count - 1, min(GHOST_POINTS, count)).astype(int))
+        place, normal = self.posed.place_m[:, chosen], self.posed.normal[:, chosen]
+        area_m2 = self.body.area_m2 * count / len(chosen)
+        image = mirror.image(place)
+        way_m = np.linalg.norm(image, axis=-1)
+        corner = mirror.crossing(np.zeros(3), image)
+        leg_m = np.linalg.norm(corner, axis=-1)
+        to_corner = (corner - place) / np.maximum(way_m - leg_m, 1e-6)[..., None]
+        cos = (normal * to_corner).sum(-1)
+        taper = mirror.inside(corner, fresnel_radius_m(leg_m, way_m - leg_m, self.config.wavelength_m))
+        cos_face = np.abs(to_corner @ mirror.plane.normal)
+        seen = (cos > 0.02) & (mirror.side(place) > 0.02) & (taper > 0.02) & (way_m < 2 * self.config.max_range_m)
+        if not seen.any():
+            return []
+        coefficient = taper * mirror.coefficient(cos_face, self.config.centre_frequency_hz)
+        over = self.gain * self._pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / way_m * coefficient
+        micro = self.body.micro_phase[chosen]
+        direct = self._pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]
+        skin = np.sqrt(4 * ALBEDO * area_m2 * np.maximum(cos, 0))
+        mixed = over * direct * skin * np.sqrt(np.maximum(self.cos[:, chosen], 0)) * micro
+        double = over**2 / self.gain * skin * np.sqrt(np.maximum(cos, 0)) * micro
+        ghosts = [
+            Rows(None, mirror, chosen, mixed, seen & self.visible[:, chosen], True),
+            Rows(mirror, mirror, chosen, double, seen, False),
+        ]
+        ghosts = [ghost for ghost in (ghost.strongest(direct_power) for ghost in ghosts) if ghost.present.any()]
+        if not ghosts:
+            return []
+        clear = self._clear_legs(corner, place, np.any([ghost.present for ghost in ghosts], axis=0))
+        return [replace(ghost, present=ghost.present & clear) for ghost in ghosts]
+
+    def _clear_legs(self, corner: np.ndarray, place: np.ndarray, ask: np.ndarray) -> np.ndarray:
+        """Radar to face and face to skin, past the room and past the body."""
+        which = np.nonzero(ask)
+        clear = ask.copy()
+        for start, end in ((np.zeros_like(corner), corner), (corner, place)):
+            clear[which] &= self.room.is_clear(start[which], end[which], WALL_MARGIN_M)
+        clear = self.posed.is_clear(np.zeros(3), corner, SKIN_MARGIN_M, clear)
+        return self.posed.is_clear(corner, place, SKIN_MARGIN_M, clear)
+
+    def _pattern(self, direction: np.ndarray) -> np.ndarray:
+        return pattern(direction.reshape(-1, 3), self.config).reshape(direction.shape[:-1])
+
+
+@dataclass(frozen=True)
+class Rows:
+    """One kind of echo of the chosen skin points in all frames."""
+
+    out: Mirror | None
+    back: Mirror | None
+    points: np.ndarray  # (row,)
+    amplitude: np.ndarray  # (frame, row) complex
+    present: np.ndarray  # (frame, row)
+    is_mixed: bool
+
+    def power(self) -> np.ndarray:
+        """(frame,) of all rows that are present."""
+        return (np.abs(self.amplitude) ** 2 * self.present).sum(axis=1)
+
+    def strongest(self, direct_power: np.ndarray) -> "Rows":
+        """Without the frames that hardly add to the direct echoes, and without the faintest rows of the others."""
+        power = np.abs(self.amplitude) ** 2 * self.present
+        order = np.argsort(power, axis=1)
+        below = np.cumsum(np.take_along_axis(power, order, axis=1), axis=1)
+        total = below[:, -1:]
+        strong = np.zeros_like(self.present)
+        np.put_along_axis(strong, order, below > LEFT_OUT * total, axis=1)
+        return replace(self, present=self.present & strong & (total > FAINTEST * direct_power[:, None]))
+
+    def rows(self, frame: int, nodes_m: np.ndarray) -> EchoRows:
+        """The rows of one frame; `nodes_m` (node, point, 3)."""
+        there = self.present[frame]
+        place = nodes_m[:, self.points[there]].transpose(1, 0, 2)
+        return EchoRows(
+            out_m=self.out.image(place) if self.out else place,
+            back_m=self.back.image(place) if self.back else place,
+            amplitude=self.amplitude[frame, there],
+            is_mixed=np.full(int(there.sum()), self.is_mixed),
+        )

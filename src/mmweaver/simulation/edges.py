@@ -1,0 +1,78 @@
+"""Edges of furniture: where the room's mesh ends before something farther away."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.core.records import Scene
+from mmweaver.geometry.ray_caster import RayCaster
+
+SEGMENT_M = 0.065  # about 1.1 sqrt(wavelength . distance / 2): what of an edge adds up in phase
+STEP_OVER_M = 0.10  # the ground behind an edge lies at least so much farther
+
+
+@dataclass(frozen=True, kw_only=True)
+class Edges:
+    """Short straight pieces of edge, one row each."""
+
+    place_m: np.ndarray  # (edge, 3)
+    direction: np.ndarray  # (edge, 3) unit
+    length_m: np.ndarray  # (edge,)
+    material: np.ndarray  # (edge,) index into the scene's material_names
+
+
+def find_edges(scene: Scene, caster: RayCaster) -> Edges:
+    """Free edges of the mesh that the radar sees before a farther background, in pieces of SEGMENT_M."""
+    ends, opposite, face = _free_edges(scene.faces)
+    vertices = scene.vertices_m.astype(float)
+    middle = vertices[ends].mean(axis=1)
+    outward = middle - vertices[opposite]
+    along = vertices[ends[:, 1]] - vertices[ends[:, 0]]
+    length = np.linalg.norm(along, axis=1)
+    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9)
+    behind = _reach(caster, middle + 0.04 * outward)
+    seen = _reach(caster, middle - 0.01 * outward)
+    distance = np.linalg.norm(middle, axis=1)
+    step = np.isfinite(behind) & (behind > distance + STEP_OVER_M) & (np.abs(seen - distance) < 0.05)
+    step &= length < 0.3  # longer ones are rims of completed planes, not furniture
+    return _in_pieces(middle[step], along[step], length[step], scene.face_material[face[step]])
+
+
+def _free_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Edges of exactly one face: their ends (edge, 2), the face's third vertex, the face."""
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    third = np.concatenate([faces[:, 2], faces[:, 0], faces[:, 1]])
+    face = np.tile(np.arange(len(faces)), 3)
+    key = np.sort(ends, axis=1).astype(np.int64)
+    _, first, count = np.unique(key[:, 0] << 32 | key[:, 1], return_index=True, return_counts=True)
+    alone = first[count == 1]
+    return ends[alone], third[alone], face[alone]
+
+
+def _reach(caster: RayCaster, target_m: np.ndarray) -> np.ndarray:
+    """How far a ray from the radar towards each target goes."""
+    way = target_m / np.maximum(np.linalg.norm(target_m, axis=1, keepdims=True), 1e-9)
+    return caster.distance_m(np.zeros_like(way), way)
+
+
+def _in_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, material: np.ndarray) -> Edges:
+    """One piece for each small cube of space: its mean place and main direction, no longer than the cube."""
+    if len(middle) == 0:
+        return Edges(place_m=middle, direction=along, length_m=length, material=material)
+    _, first, cell, count = np.unique(
+        np.floor(middle / SEGMENT_M).astype(np.int64),
+        axis=0,
+        return_index=True,
+        return_inverse=True,
+        return_counts=True,
+    )
+    cell = cell.ravel()
+    total = np.bincount(cell, length)
+    place = np.stack([np.bincount(cell, middle[:, i]) for i in range(3)], 1) / count[:, None]
+    spread = along[:, :, None] * along[:, None, :]
+    tensor = np.zeros((len(count), 3, 3))
+    np.add.at(tensor, cell, spread)
+    direction = np.linalg.eigh(tensor)[1][:, :, -1]
+    return Edges(
+        place_m=place, direction=direction, length_m=np.minimum(total, SEGMENT_M), material=material[first].astype(int)
+    )

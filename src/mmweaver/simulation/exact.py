@@ -1,0 +1,35 @@
+"""The sum that the separable synthesis approximates: every sample, chirp and antenna on its own, in float64.
+
+Slow, and the referee: tests and benchmarks compare against it.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.radar_config import RadarConfig
+
+
+def exact_frame(
+    position_m: Callable[[np.ndarray], np.ndarray], amplitude: np.ndarray, config: RadarConfig
+) -> np.ndarray:
+    """ADC samples of one frame, complex128 (loop, tx, rx, sample), of moving point scatterers.
+
+    `position_m` maps times (time,) from the frame's start to positions (point, time, 3); it is asked for every
+    sample. `amplitude` (point,) complex. Reference: docs/radar_primer.md, equation 7.
+    """
+    tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
+    ramp_s = config.adc_start_time_s + np.arange(config.num_samples) / config.sample_rate_hz
+    slope = config.chirp_slope_hz_per_s
+    adc = np.zeros((config.num_loops, config.num_tx, config.num_rx, config.num_samples), complex)
+    for loop in range(config.num_loops):
+        for m in range(config.num_tx):
+            start_s = loop * config.loop_period_s + config.tx_delay_s[m] + config.idle_time_s
+            places = position_m(start_s + ramp_s)  # (point, sample, 3)
+            out = np.linalg.norm(places - tx[m], axis=-1)
+            for k in range(config.num_rx):
+                tau = (out + np.linalg.norm(places - rx[k], axis=-1)) / SPEED_OF_LIGHT_MPS
+                turns = config.start_frequency_hz * tau + slope * ramp_s * tau - slope * tau**2 / 2
+                adc[loop, m, k] = amplitude @ np.exp(2j * np.pi * turns)
+    return adc

@@ -1,0 +1,100 @@
+"""Scene + poses -> ADC samples. Three steps: the room once, the person's echoes, the receiver."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, PoseSequence, Scene
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS, body_of
+from mmweaver.simulation.echoes import BodyEchoes
+from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
+from mmweaver.simulation.room import Room, StaticEchoes, static_adc
+from mmweaver.simulation.synthesis import FrameClock, synthesise
+
+CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
+
+ASSUMPTIONS = (
+    "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
+    " makers' documents; they are not calibrated against a recording",
+    "the body is made of capsules with a diffuse skin (albedo 0.18 at 77 GHz); clothes are not modelled",
+    "nothing passes through furniture, and waves do not bend around edges",
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simulation:
+    """What the receivers recorded, and what was assumed to get there."""
+
+    adc: AdcCube
+    assumptions: tuple[str, ...]
+
+
+class Simulator:
+    """One radar in one room. Making it loads the room; `run` may then be called for many motions.
+
+    The room's and the body's micro-phases belong to the room and the person; the seed draws the receiver's noise.
+    """
+
+    def __init__(self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None):
+        self.config = config
+        self.impairments = impairments or Impairments()
+        self.clock = FrameClock(config)
+        self.room = Room(scene, config)
+        leak = self._leakage()
+        self.room_adc = self.room.adc + leak
+
+    def run(
+        self, pose: PoseSequence, *, num_frames: int, seed: int, num_points: int = DEFAULT_NUM_POINTS
+    ) -> Simulation:
+        """ADC samples of the posed person, all frames at once: mind the memory, or take `chunks`."""
+        chunks = list(self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points))
+        samples = np.concatenate([chunk.samples for chunk in chunks])
+        return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
+
+    def chunks(
+        self, pose: PoseSequence, *, num_frames: int, seed: int, num_points: int = DEFAULT_NUM_POINTS
+    ) -> Iterator[AdcCube]:
+        """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
+
+        Raises InputError where the pose does not cover the frames or holds numbers that are none.
+        """
+        self._check(pose, num_frames)
+        body = body_of(pose, num_points)
+        receiver = Receiver(self.config, self.impairments, seed)
+        for first in range(0, num_frames, CHUNK_FRAMES):
+            frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
+            echoes = BodyEchoes(self.room, body, self._joints_at_nodes(pose, frames))
+            samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
+            yield AdcCube(samples=samples, config=self.config, scale=1.0)
+
+    def _frame(self, echoes: BodyEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
+        room = self.room_adc - static_adc(echoes.shadowed(index), self.config)
+        person = synthesise(echoes.rows(index), self.clock)
+        return receiver.receive(person, room, self.room.adc_rate, frame)
+
+    def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
+        """(frame, node, 22, 3): slow time is interpolated, never held."""
+        times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
+        spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
+        return spline(np.clip(times, pose.time_s[0], pose.time_s[-1]))
+
+    def _check(self, pose: PoseSequence, num_frames: int) -> None:
+        needed_s = (num_frames - 1) * self.config.frame_period_s
+        if pose.time_s[-1] < needed_s - 1e-9 or pose.time_s[0] > 1e-9:
+            raise InputError(
+                f"the motion covers {pose.time_s[0]:.2f} to {pose.time_s[-1]:.2f} s, but {num_frames} frames need 0 to"
+                f" {needed_s:.2f} s; give a longer motion or fewer frames"
+            )
+        if not np.isfinite(pose.joints_m).all():
+            raise InputError("the motion has joints that are not numbers; mend the pose file")
+
+    def _leakage(self) -> np.ndarray:
+        config = self.config
+        way_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_WAY_M)
+        amplitude = np.array([leakage(config, self.impairments)])
+        nowhere = np.zeros((1, 3))
+        return static_adc(StaticEchoes(way_m=way_m, amplitude=amplitude, first_m=nowhere, last_m=nowhere), config)

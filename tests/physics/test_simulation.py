@@ -1,0 +1,206 @@
+"""What any radar simulation must obey, whatever its code."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.rooms import back_wall, floor, plane, scene_of, side_wall, standing_person
+
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.presets import AWR1843, BGT60
+from mmweaver.core.records import AdcCube
+from mmweaver.simulation.antenna import mirror_gain, scatterer_gain
+from mmweaver.simulation.materials import MATERIALS, reflection
+from mmweaver.simulation.mirrors import mirrors_of, specular_paths
+from mmweaver.simulation.receiver import IDEAL, Impairments
+from mmweaver.simulation.simulator import Simulator
+from mmweaver.simulation.synthesis import EchoRows, FrameClock, synthesise
+
+CLOCK = FrameClock(AWR1843)
+
+
+def rows_at(*places: tuple[float, float, float], amplitude: float = 1.0) -> EchoRows:
+    nodes = np.repeat(np.array(places, float)[:, None], len(CLOCK.node_s), axis=1)
+    count = len(places)
+    return EchoRows(out_m=nodes, back_m=nodes, amplitude=np.full(count, amplitude + 0j), is_mixed=np.zeros(count, bool))
+
+
+def loop_spectrum(adc: np.ndarray) -> np.ndarray:
+    """Power over Doppler (doppler,) of one frame (loop, tx, rx, sample), zero in the middle."""
+    window = np.sin(np.pi * np.arange(adc.shape[0]) / adc.shape[0]) ** 2
+    spectrum = np.fft.fftshift(np.fft.fft(adc * window[:, None, None, None], axis=0), axes=0)
+    return (np.abs(spectrum) ** 2).sum(axis=(1, 2, 3))
+
+
+def test_superposition():
+    one, two = rows_at((0.3, 2.0, 0.1)), rows_at((-0.5, 1.5, -0.4), amplitude=0.3)
+    both = synthesise(EchoRows.joined([one, two]), CLOCK)
+    assert np.allclose(both, synthesise(one, CLOCK) + synthesise(two, CLOCK), atol=1e-5)
+
+
+def test_reciprocity_transmitters_and_receivers_may_change_places():
+    """One at a time, so that turns do not matter: tx at A and rx at B hear what tx at B and rx at A hear."""
+    a, b = (0.01, 0.0, 0.004), (-0.02, 0.0, 0.0)
+    there = replace(AWR1843, tx_position_m=(a,), rx_position_m=(b,), tx_order=(0,))
+    back = replace(AWR1843, tx_position_m=(b,), rx_position_m=(a,), tx_order=(0,))
+    out, over = np.array([[[0.4, 1.8, -0.3]]] * 1), np.array([[[1.9, 2.4, -0.2]]])
+    signals = []
+    for config in (there, back):
+        clock = FrameClock(config)
+        nodes = [np.repeat(place, len(clock.node_s), axis=1) for place in (out, over)]
+        rows = EchoRows(out_m=nodes[0], back_m=nodes[1], amplitude=np.ones(1, complex), is_mixed=np.ones(1, bool))
+        signals.append(synthesise(rows, clock))
+    assert np.allclose(signals[0], signals[1], atol=2e-2)
+    assert np.abs(signals[0]).max() > 1.0
+
+
+def test_amplitude_falls_with_the_square_of_the_range():
+    """A whole person, glided from 1.5 m to 3 m straight ahead: a quarter of the amplitude, less the beam's shape."""
+    power = []
+    for distance_m in (3.0, 6.0):
+        simulator = Simulator(scene_of((floor(-1.2),)), AWR1843, IDEAL)
+        empty = simulator.room_adc
+        total = 0.0
+        for shift_m in np.linspace(-0.05, 0.05, 8):  # speckle averages out
+            pose = standing_person((0.0, distance_m + shift_m, -1.2))
+            adc = simulator.run(pose, num_frames=1, seed=0).adc.samples[0]
+            total += float((np.abs(adc - empty) ** 2).sum())
+        power.append(total)
+    fall_db = 10 * np.log10(power[0] / power[1])
+    assert fall_db == pytest.approx(12.0, abs=3.0)  # the near person fills more than the elevation beam
+
+
+def test_a_resting_scene_has_no_doppler():
+    simulator = Simulator(scene_of((floor(), back_wall(), side_wall())), AWR1843, IDEAL)
+    adc = simulator.run(standing_person((0.2, 2.0, -1.2)), num_frames=1, seed=0).adc.samples[0]
+    power = loop_spectrum(adc)
+    zero = len(power) // 2
+    away = np.delete(power, [zero - 1, zero, zero + 1]).sum()
+    assert 10 * np.log10(away / power.sum()) < -60
+
+
+def test_jitter_lets_resting_clutter_leak_into_doppler():
+    adc = []
+    for impairments in (IDEAL, replace(IDEAL, chirp_jitter_s=1.1e-9, phase_noise_dbc_per_hz=-93.0)):
+        simulator = Simulator(scene_of((floor(), back_wall())), AWR1843, impairments)
+        adc.append(simulator.run(standing_person((0.2, 2.0, -1.2)), num_frames=1, seed=0).adc.samples[0])
+    leak_db = 10 * np.log10((np.abs(adc[1] - adc[0]) ** 2).sum() / (np.abs(adc[0]) ** 2).sum())
+    assert -60 < leak_db < -30
+
+
+def test_one_wall_is_the_closed_form_image():
+    wall = back_wall(y_m=2.5)
+    (path,) = specular_paths(mirrors_of((wall,)), AWR1843.wavelength_m, AWR1843.centre_frequency_hz)
+    assert np.allclose(path.shift_m, [0, 5.0, 0])
+    assert np.allclose(path.corners_m, [[0, 2.5, 0]])
+    material = MATERIALS["plasterboard"]
+    gamma = reflection(material, np.ones(1), AWR1843.centre_frequency_hz)[0] * np.sqrt(1 - material.scattering**2)
+    assert path.coefficient == pytest.approx(gamma, rel=1e-3)
+    room = Simulator(scene_of((wall,)), AWR1843, IDEAL).room
+    start = room.counts["diffuse"]
+    assert abs(room.echoes.amplitude[start]) == pytest.approx(mirror_gain(AWR1843) * abs(gamma) / 5.0, rel=1e-3)
+    tx, rx = np.asarray(AWR1843.tx_position_m), np.asarray(AWR1843.rx_position_m)
+    image = tx * [1, -1, 1] + [0, 5.0, 0]
+    assert np.allclose(room.echoes.way_m[start], np.linalg.norm(image[:, None] - rx, axis=-1), atol=1e-9)
+
+
+def test_a_corner_has_its_double_bounce_once():
+    """Wall and floor at right angles: two single images and one corner image, straight through the corner."""
+    paths = specular_paths(
+        mirrors_of((back_wall(y_m=2.5), floor(-1.2))), AWR1843.wavelength_m, AWR1843.centre_frequency_hz
+    )
+    images = sorted(tuple(np.round(path.shift_m, 6)) for path in paths)
+    assert images == [(0.0, 0.0, -2.4), (0.0, 5.0, -2.4), (0.0, 5.0, 0.0)]
+    corner = next(path for path in paths if len(path.corners_m) == 2)
+    assert np.allclose(corner.corners_m, [0, 2.5, -1.2], atol=1e-6)
+    way = np.array([0, 5.0, -2.4]) / np.hypot(5.0, 2.4)
+    expected = 1.0 + 0j
+    for mirror in mirrors_of((back_wall(y_m=2.5), floor(-1.2))):
+        expected *= complex(mirror.coefficient(np.abs(way @ mirror.plane.normal), AWR1843.centre_frequency_hz))
+    assert corner.coefficient == pytest.approx(expected, rel=0.05)
+
+
+def test_ghost_appears_where_the_mirror_says():
+    """With a metal wall beside, the mirrored ways of a person add echoes behind the person, and only there."""
+    wall = side_wall(x_m=0.9, material="metal")
+    person = standing_person((0.0, 1.6, -1.2))
+    with_wall = Simulator(scene_of((wall,)), AWR1843, IDEAL)
+    without = Simulator(scene_of((floor(-8.0),)), AWR1843, IDEAL)
+    extra = with_wall.run(person, num_frames=1, seed=0).adc.samples[0] - with_wall.room_adc
+    extra -= without.run(person, num_frames=1, seed=0).adc.samples[0] - without.room_adc
+    window = np.sin(np.pi * np.arange(256) / 256) ** 2
+    profile = (np.abs(np.fft.fft(extra * window, axis=-1)) ** 2).sum(axis=(0, 1, 2))
+    range_m = np.arange(256) * AWR1843.range_resolution_m
+    mixed_m = (1.6 + np.hypot(1.8, 1.6)) / 2
+    peak_m = range_m[np.argmax(profile)]
+    assert mixed_m - 0.35 < peak_m < np.hypot(1.8, 1.6) + 0.35
+    assert profile[range_m < 1.5].sum() < 0.02 * profile.sum()
+
+
+def test_furniture_hides_the_person_and_the_person_hides_the_wall():
+    screen = plane("panel", (0.0, 1.0, 0.0), (0, -1, 0), (1, 0, 0), (1.5, 1.2), "metal")
+    person = standing_person((0.0, 2.0, -1.2))
+    hidden = Simulator(scene_of((screen,)), AWR1843, IDEAL)
+    seen = Simulator(scene_of((back_wall(),)), AWR1843, IDEAL)
+    echo = hidden.run(person, num_frames=1, seed=0).adc.samples[0] - hidden.room_adc
+    assert np.abs(echo).max() == 0
+    without_shadow = seen.run(person, num_frames=1, seed=0).adc.samples[0] - seen.room_adc
+    from mmweaver.simulation.body import body_of
+    from mmweaver.simulation.echoes import BodyEchoes
+
+    echoes = BodyEchoes(seen.room, body_of(person), seen._joints_at_nodes(person, np.arange(1)))
+    shadow = echoes.shadowed(0)
+    assert 50 < len(shadow) < len(seen.room.echoes) / 2
+    assert np.all(np.linalg.norm(shadow.first_m, axis=1) > 2.0)
+    person_only = synthesise(echoes.rows(0), seen.clock)
+    assert np.abs(without_shadow - person_only).max() > 0
+
+
+def test_thermal_noise_has_the_power_of_its_formula():
+    impairments = replace(IDEAL, thermal_noise=True)
+    simulator = Simulator(scene_of(()), AWR1843, impairments)
+    person = standing_person((0.0, 200.0, -1.2))  # out of earshot
+    adc = simulator.run(person, num_frames=1, seed=3).adc.samples
+    assert np.mean(np.abs(adc) ** 2) == pytest.approx(AWR1843.noise_power_mw, rel=0.02)
+    dbm = 10 * np.log10(AWR1843.noise_power_mw)
+    assert dbm == pytest.approx(-174 + 10 * np.log10(4.51e6) + 15, abs=0.2)
+
+
+def test_samples_are_whole_counts_and_fit_sixteen_bits():
+    simulator = Simulator(scene_of((floor(), back_wall())), AWR1843)
+    adc = simulator.run(standing_person((0.2, 2.0, -1.2)), num_frames=1, seed=0).adc.samples
+    counts = adc.view(np.float32) / AWR1843.adc_count_sqrt_mw
+    assert np.abs(counts - np.rint(counts)).max() < 1e-2
+    assert 100 < np.abs(counts).max() <= 32768
+
+
+def test_the_same_seed_gives_the_same_bits_and_another_other_noise():
+    simulator = Simulator(scene_of((floor(), back_wall())), AWR1843)
+    person = standing_person((0.2, 2.0, -1.2), (0.0, -0.5, 0.0))
+    first, again, other = (simulator.run(person, num_frames=2, seed=s).adc.samples for s in (0, 0, 1))
+    assert first.tobytes() == again.tobytes()
+    assert not np.array_equal(first, other)
+    assert np.allclose(first, other, atol=30 * np.sqrt(AWR1843.noise_power_mw))
+
+
+def test_cutting_the_frames_changes_no_bit(monkeypatch: pytest.MonkeyPatch):
+    simulator = Simulator(scene_of((floor(), back_wall())), AWR1843)
+    person = standing_person((0.2, 2.0, -1.2), (0.0, -0.5, 0.0))
+    whole = simulator.run(person, num_frames=3, seed=0).adc.samples
+    monkeypatch.setattr("mmweaver.simulation.simulator.CHUNK_FRAMES", 2)
+    assert whole.tobytes() == simulator.run(person, num_frames=3, seed=0).adc.samples.tobytes()
+
+
+def test_real_sampling_radars_run():
+    simulator = Simulator(scene_of((back_wall(),)), BGT60, Impairments())
+    adc: AdcCube = simulator.run(standing_person((0.0, 0.8, -1.2)), num_frames=2, seed=0).adc
+    assert adc.samples.shape == (2, 8, 1, 3, 64)
+    assert np.all(adc.samples.imag == 0)
+
+
+def test_gains_are_the_radar_equation_in_decibels():
+    c = AWR1843
+    one_m2_at_2_m = 20 * np.log10(scatterer_gain(c) / 4)
+    by_hand = 12 + 2 * 10.5 + 20 * np.log10(SPEED_OF_LIGHT_MPS / c.centre_frequency_hz)
+    by_hand -= 30 * np.log10(4 * np.pi) + 40 * np.log10(2)
+    assert one_m2_at_2_m == pytest.approx(by_hand, abs=1e-6)

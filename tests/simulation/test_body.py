@@ -1,0 +1,70 @@
+"""The body: skin near the bones, outward normals, the same person every time, a believable cross-section."""
+
+import numpy as np
+import pytest
+from tests.rooms import standing_person
+
+from mmweaver.simulation.body import ALBEDO, CAPSULES, Body
+
+PERSON = standing_person((0.0, 2.0, -1.2))
+JOINTS = PERSON.joints_m[:1]
+
+
+def distance_to_bones(points: np.ndarray, starts: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    along = np.einsum("pi,ci->pc", points, axes) - (starts * axes).sum(-1)
+    share = np.clip(along / np.maximum((axes**2).sum(-1), 1e-9), 0, 1)
+    nearest = starts[None] + share[..., None] * axes[None]
+    return np.linalg.norm(points[:, None] - nearest, axis=-1).min(axis=1)
+
+
+def test_skin_lies_about_the_bones_and_looks_outwards():
+    body = Body(0, 1.75)
+    skin = body.skin(JOINTS)
+    starts, axes, _ = body.frames(JOINTS)
+    distance = distance_to_bones(skin.place_m[0], starts[0], axes[0])
+    assert distance.max() < 0.20
+    assert np.allclose(np.linalg.norm(skin.normal, axis=-1), 1)
+    further = distance_to_bones(skin.place_m[0] + 0.02 * skin.normal[0], starts[0], axes[0])
+    assert (further > distance).mean() > 0.85  # joints overlap, so not all
+
+
+def test_rotations_are_rotations():
+    _, axes, turn = Body(0, 1.75).frames(JOINTS)
+    assert np.allclose(np.swapaxes(turn, -1, -2) @ turn, np.eye(3), atol=1e-9)
+    unit = axes / np.linalg.norm(axes, axis=-1, keepdims=True)
+    assert np.allclose(turn[..., 2], unit)
+    assert np.allclose(np.linalg.det(turn), 1)
+
+
+def test_the_hull_is_closed_and_within_the_skin():
+    vertices, faces = Body(0, 1.75).hull(JOINTS)
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    _, count = np.unique(edges, axis=0, return_counts=True)
+    assert np.all(count == 2)
+    corners = vertices[0][faces]
+    volume = np.einsum("fi,fi->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+    assert 0.04 < volume < 0.16  # m3; overlaps count twice
+    assert len(vertices[0]) == len(CAPSULES) * 14
+
+
+def test_the_person_keeps_the_skin_and_others_have_another():
+    assert np.array_equal(Body(1, 1.7).micro_phase, Body(1, 1.9).micro_phase)
+    assert not np.array_equal(Body(1, 1.7).micro_phase, Body(2, 1.7).micro_phase)
+
+
+def test_skin_area_and_frontal_cross_section_are_a_persons():
+    body = Body(0, 1.75)
+    assert 1.5 < body.area_m2 * 800 < 2.2
+    cos = np.maximum(body.skin(JOINTS).normal[0] @ [0.0, -1.0, 0.0], 0)
+    dbsm = 10 * np.log10((4 * ALBEDO * cos**2 * body.area_m2).sum())
+    assert -9 < dbsm < -3
+
+
+def test_turning_an_arm_spins_no_skin():
+    """Raising the arm by 2 mm moves no point of it by more than its lever allows."""
+    joints = np.repeat(JOINTS, 2, axis=0)
+    joints[1, [20]] += [0.0, 0.0, 0.002]
+    body = Body(0, 1.75)
+    places = body.skin(joints).place_m
+    assert np.linalg.norm(places[1] - places[0], axis=-1).max() < 0.005
+    assert np.linalg.norm(places[1] - places[0], axis=-1).max() == pytest.approx(0.003, abs=0.0015)
