@@ -19,7 +19,7 @@ import numpy as np
 from mmweaver import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
+from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.registry import Registry
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
@@ -33,13 +33,13 @@ from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_r
 from mmweaver.scene.photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
-from mmweaver.simulation.simulator import Simulator
+from mmweaver.simulation.simulator import ASSUMPTIONS, Simulator
 
 MAX_FRAMES = 2000
 FPS_LIMITS = (0.1, 1000.0)
 MAX_SECONDS = 600.0
 MAX_TEXT = 1000
-MAX_ADC_BYTES = 4_000_000_000
+MAX_BYTES = 2_000_000_000  # of the largest array
 
 
 # methods ------------------------------------------------------------------------------------------------------------
@@ -53,10 +53,21 @@ class Signal:
 
 
 class Method(Protocol):
-    """A way from a scene and a moving person to the signal; physics now, a network later."""
+    """A way from a scene and a moving person to the signal; physics now, a network later.
+
+    ADC samples are given where the method has them and `keep_adc` asks for them.
+    """
 
     def __call__(
-        self, scene: Scene, pose: PoseSequence, config: RadarConfig, *, num_frames: int, seed: int, stages: Stages
+        self,
+        scene: Scene,
+        pose: PoseSequence,
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
     ) -> Signal: ...
 
 
@@ -67,20 +78,43 @@ class Physics:
         self._ready: tuple[Scene, RadarConfig, Simulator] | None = None
 
     def __call__(
-        self, scene: Scene, pose: PoseSequence, config: RadarConfig, *, num_frames: int, seed: int, stages: Stages
+        self,
+        scene: Scene,
+        pose: PoseSequence,
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
     ) -> Signal:
         with stages("prepare the room"):
             simulator = self._simulator(scene, config)
+        grid = CubeGrid.of(config, num_frames)
+        values = np.empty(grid.shape, np.complex64)
+        samples = np.empty(_adc_shape(config, num_frames if keep_adc else 0), np.complex64)
+        scale, done = math.nan, 0
         with stages("simulate"):
-            simulation = simulator.run(pose, num_frames=num_frames, seed=seed)
-        with stages("range, Doppler, antennas"):
-            cube = radar_cube(simulation.adc)
-        return Signal(cube=cube, adc=simulation.adc, assumptions=simulation.assumptions)
+            for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed):
+                part = slice(done, done + len(chunk.samples))
+                values[part] = radar_cube(chunk).values
+                if keep_adc:
+                    samples[part] = chunk.samples
+                scale, done = chunk.scale, part.stop
+        return Signal(
+            cube=RadarCube(values=values, grid=grid, config=config, scale=scale),
+            adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
+            assumptions=ASSUMPTIONS,
+        )
 
     def _simulator(self, scene: Scene, config: RadarConfig) -> Simulator:
         if self._ready is None or self._ready[0] is not scene or self._ready[1] != config:
             self._ready = (scene, config, Simulator(scene, config))
         return self._ready[2]
+
+
+def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
+    return num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples
 
 
 METHODS: Registry[Callable[[], Method]] = Registry("method", [("physics", Physics)])
@@ -122,7 +156,9 @@ class Generation:
         the folder cannot be written, or holds other files and `overwrite` is not set.
         """
         if adc_data_bin and self.adc is None:
-            raise InputError(f"method {self.meta['method']!r} makes no ADC samples, so there is no .bin to write")
+            raise InputError(
+                "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
+            )
         view = View(
             title=f"{self.meta['text']}   ({self.cube.config.name}, seed {self.meta['seed']})",
             cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
@@ -185,14 +221,16 @@ class Weaver:
         fps: float | None = None,
         seed: int = 0,
         at: tuple[float, float] | None = None,
+        keep_adc: bool = True,
     ) -> Generation:
         """The signal of one person who does in the room what the text says.
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
-        y away from the radar) in metres, chosen if not given. The same seed gives the same bits. Raises InputError
-        for a request that cannot be met.
+        y away from the radar) in metres, chosen if not given. Without `keep_adc` the raw samples are
+        dropped as soon as they are processed, for long sequences. The same seed gives the same bits. Raises
+        InputError for a request that cannot be met.
         """
-        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at)
+        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at, keep_adc=keep_adc)
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
@@ -200,7 +238,9 @@ class Weaver:
                 text, room.scene, duration_s=frames * config.frame_period_s, seed=seed,
                 range_window_m=(float(config.range_m[0]), float(config.range_m[-1])), start_m=at,
             )  # fmt: skip
-        signal = self.method(room.scene, motion.pose, config, num_frames=frames, seed=seed, stages=stages)
+        signal = self.method(
+            room.scene, motion.pose, config, num_frames=frames, seed=seed, keep_adc=keep_adc, stages=stages
+        )
         with stages("point cloud"):
             points = point_cloud(signal.cube)
         pose = resample(motion.pose, signal.cube.grid.frame_time_s)
@@ -241,6 +281,7 @@ def check_request(
     fps: float | None = None,
     seed: int = 0,
     at: tuple[float, float] | None = None,
+    keep_adc: bool = True,
 ) -> RadarConfig:
     """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
 
@@ -264,10 +305,11 @@ def check_request(
         raise InputError(
             f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"
         )
-    frame_bytes = config.num_loops * config.num_antennas * config.num_samples * 8
-    if frames * frame_bytes > MAX_ADC_BYTES:
+    numbers = config.num_loops * config.num_antennas * (config.num_samples if keep_adc else config.num_range_bins)
+    most = MAX_BYTES // (8 * numbers)
+    if frames > most:
         raise InputError(
-            f"{frames} frames of radar {config.name!r} fill {frames * frame_bytes / 1e9:.1f} GB of memory;"
-            f" at most {MAX_ADC_BYTES // frame_bytes} frames are made at a time"
+            f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
+            f" {most} are made at a time"
         )
     return config

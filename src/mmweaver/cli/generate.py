@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
 DEMO_OUT = "demo"
-NUM_STAGES = 10
+NUM_STAGES = 9
 EXAMPLES = """examples:
   mmweaver generate --demo
   mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json \\
@@ -85,7 +85,13 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.tx_order is not None:
             radar = replace(radar, tx_order=arguments.tx_order)
         weaver = Weaver(method=arguments.method, radar=radar, listener=bar)
-        request = {"frames": arguments.frames, "fps": arguments.fps, "seed": arguments.seed, "at": arguments.at}
+        request = {
+            "frames": arguments.frames,
+            "fps": arguments.fps,
+            "seed": arguments.seed,
+            "at": arguments.at,
+            "keep_adc": arguments.bin,
+        }
         check_request(weaver.radar, text=text, **request)
         result = weaver.generate(_read_room(weaver, arguments), text, **request)
         meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order)
