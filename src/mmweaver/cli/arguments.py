@@ -5,6 +5,8 @@ from typing import Any, NoReturn
 
 from mmweaver.core.errors import InputError
 
+Options = argparse.ArgumentParser | argparse._ArgumentGroup
+
 
 class Parser(argparse.ArgumentParser):
     """argparse that raises InputError rather than print its usage and exit."""
@@ -67,14 +69,14 @@ def number(word: str) -> float:
         raise argparse.ArgumentTypeError(f"{word!r} is no number") from None
 
 
-def add_output_options(parser: argparse.ArgumentParser) -> None:
+def add_output_options(parser: Options) -> None:
     """The options that every writing verb shares."""
     parser.add_argument("--overwrite", action="store_true", help="replace files of an earlier run in --out")
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
-def add_layout_options(parser: argparse.ArgumentParser) -> None:
+def add_layout_options(parser: Options) -> None:
     """The options that say how a DCA1000 .bin is laid out."""
     parser.add_argument("--iq-order", choices=("iq", "qi"), default="iq", help="I or Q first in the .bin (default iq)")
     parser.add_argument(

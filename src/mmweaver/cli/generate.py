@@ -63,8 +63,8 @@ def add_verb(verbs: Any) -> None:
     output = parser.add_argument_group("output")
     output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
     output.add_argument("--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would")
-    add_layout_options(output)  # type: ignore[arg-type]
-    add_output_options(output)  # type: ignore[arg-type]
+    add_layout_options(output)
+    add_output_options(output)
     parser.set_defaults(run=run)
 
 

@@ -235,14 +235,20 @@ def draw_points_side(axes: "Axes", view: View) -> None:
 
 
 def _scatter(axes: "Axes", view: View, across_m: np.ndarray, up_m: np.ndarray) -> None:
-    top_mps = max(float(np.max(np.abs(view.points.radial_velocity_mps), initial=0.0)), 0.1)
+    """Weak detections are pale; the colours span all but the fastest few, which are mostly noise."""
+    from matplotlib.cm import ScalarMappable
+
+    velocity_mps, snr_db = view.points.radial_velocity_mps, view.points.snr_db
+    top_mps = max(float(np.percentile(np.abs(velocity_mps), 95)), 0.1) if len(velocity_mps) else 0.1
+    rising = np.argsort(snr_db, kind="stable")
     dots = axes.scatter(
-        across_m, up_m, c=view.points.radial_velocity_mps, cmap=VELOCITY_MAP, vmin=-top_mps, vmax=top_mps,
-        s=12, linewidths=0.3, edgecolors=INK,
+        across_m[rising], up_m[rising], c=velocity_mps[rising], cmap=VELOCITY_MAP, vmin=-top_mps, vmax=top_mps,
+        s=12, linewidths=0.3, edgecolors=INK, alpha=np.clip((snr_db[rising] - 10) / 20, 0.2, 1.0),
     )  # fmt: skip
     axes.grid(color="#d8dce0", linewidth=0.5)
     axes.set_axisbelow(True)
-    colour_bar(axes, dots, "m/s, away +")
+    solid = ScalarMappable(norm=dots.norm, cmap=VELOCITY_MAP)
+    colour_bar(axes, solid, "m/s, away +")
 
 
 # pieces -------------------------------------------------------------------------------------------------------------
@@ -274,4 +280,5 @@ def _note(axes: "Axes", text: str, *, corner: str = "lower right") -> None:
     axes.text(
         x, y, text, transform=axes.transAxes, ha=horizontal, va={"lower": "bottom", "upper": "top"}[vertical],
         fontsize=7.5, color=TRUTH if corner == "lower right" else INK,
+        bbox=None if corner == "lower right" else {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
     )  # fmt: skip

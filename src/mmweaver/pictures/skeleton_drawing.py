@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 HIDDEN_BEYOND_M = 0.25  # a joint so far behind the measured surface is hidden; a body is thicker than its joints
 NEAREST_M = 0.05
-HEAD_RADIUS_M = 0.1
+HEAD_RADIUS_M = 0.09
 PER_BONE = 6  # pieces a bone is drawn in, so that it can vanish behind an edge
 
 
