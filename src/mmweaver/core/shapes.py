@@ -10,7 +10,7 @@ Values = np.ndarray | np.number  # any shape, a single number too
 PerFrame = Float[Array, " frame"]
 PerRange = Float[Array, " range"]
 PerDoppler = Float[Array, " doppler"]
-PerIndex = Int[Array, " index"]
+PerIndex = Int[Array, "_"]  # any number of indices
 # vectors
 Vec3 = Float[Array, "3"]
 Rotation = Float[Array, "3 3"]

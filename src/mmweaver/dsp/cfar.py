@@ -16,7 +16,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
 
 # Correlation of the power of noise in cells 0, 1, 2 bins apart under a Hann window: (1, 2/3, 1/6) squared.
-HANN_CORRELATION = (1.0, 4 / 9, 1 / 36)
+HANN_CORRELATION = np.array([1.0, 4 / 9, 1 / 36])
+POWER_CORRELATION = np.outer(HANN_CORRELATION, HANN_CORRELATION)  # (range bins, Doppler bins) apart
 OS_QUANTILE = 0.75
 
 
@@ -60,7 +61,7 @@ def ca_cfar(
     left of it. Raises InputError for a rate outside (0, 1) or a map too small for any training cell.
     """
     _check(power, false_alarm_rate)
-    rings = _rings(power.shape[1], power.shape[2], cells, hann_windowed)
+    rings = _rings(power.shape[1], power.shape[2], cells, POWER_CORRELATION if hann_windowed else None)
     mean = _ring_mean(power, cells)
     factor = np.array([ca_factor(false_alarm_rate, ring.num_independent, num_looks) for ring in rings])
     return CfarResult(is_detected=power > factor[:, None] * mean, noise_power=mean)
@@ -82,14 +83,16 @@ def os_cfar(
     num_range, num_doppler = power.shape[1:]
     noise = np.empty_like(power)
     factor = np.empty(num_range)
-    for at, ring in enumerate(_rings(num_range, num_doppler, cells, hann_windowed)):
+    correlation = _exceedance_correlation(num_looks) if hann_windowed else None
+    for at, ring in enumerate(_rings(num_range, num_doppler, cells, correlation)):
         num = len(ring.range_offset)
         rank = max(1, round(OS_QUANTILE * num))
         columns = (np.arange(num_doppler)[:, None] + ring.doppler_offset) % num_doppler
         training = power[:, at + ring.range_offset[None, :], columns]
         ordered = np.partition(training, rank - 1, axis=-1)[..., rank - 1]
-        effective = ring.num_independent / num
-        level, factor[at] = os_factor(false_alarm_rate, rank * effective, num * effective, num_looks)
+        # fewer independent cells spread the ranked one wider, but do not move its mean, rank / (num + 1)
+        independent_rank = rank * (ring.num_independent + 1) / (num + 1)
+        level, factor[at] = os_factor(false_alarm_rate, independent_rank, ring.num_independent, num_looks)
         noise[:, at] = ordered / level
     return CfarResult(is_detected=power > factor[:, None] * noise, noise_power=noise)
 
@@ -154,38 +157,60 @@ def _half_extents(num_doppler: int, cells: CfarCells) -> tuple[int, int]:
     return guard, min(guard + cells.training[1], limit)
 
 
-def _rings(num_range: int, num_doppler: int, cells: CfarCells, hann_windowed: bool) -> list[_Ring]:
+def _rings(num_range: int, num_doppler: int, cells: CfarCells, correlation: np.ndarray | None) -> list[_Ring]:
     """The training ring of each range bin."""
     guard, whole = cells.guard[0], cells.guard[0] + cells.training[0]
-    guard_doppler, whole_doppler = _half_extents(num_doppler, cells)
+    extents = (guard, *_half_extents(num_doppler, cells))
+    known: dict[tuple[int, int], _Ring] = {}
     rings = []
     for at in range(num_range):
-        low, high = min(at, whole), min(num_range - 1 - at, whole)
-        rings.append(_ring(low, high, guard, guard_doppler, whole_doppler, hann_windowed))
+        cut = (min(at, whole), min(num_range - 1 - at, whole))
+        if cut not in known:
+            known[cut] = _ring(cut, extents, correlation)
+        rings.append(known[cut])
     return rings
 
 
-@lru_cache(maxsize=1024)
-def _ring(low: int, high: int, guard: int, guard_doppler: int, whole_doppler: int, hann_windowed: bool) -> _Ring:
-    in_range, in_doppler = np.arange(-low, high + 1), np.arange(-whole_doppler, whole_doppler + 1)
+def _ring(cut: tuple[int, int], extents: tuple[int, int, int], correlation: np.ndarray | None) -> _Ring:
+    """From the bins nearer and farther that there are, and half extents: guard in range, guard and all in Doppler."""
+    guard, guard_doppler, whole_doppler = extents
+    in_range, in_doppler = np.arange(-cut[0], cut[1] + 1), np.arange(-whole_doppler, whole_doppler + 1)
     is_training = (np.abs(in_range)[:, None] > guard) | (np.abs(in_doppler)[None, :] > guard_doppler)
     row, column = np.nonzero(is_training)
     if not len(row):
         raise InputError("the range-Doppler map is too small for training cells; use fewer guard cells")
-    independent = _num_independent(is_training) if hann_windowed else float(len(row))
+    independent = float(len(row)) if correlation is None else _num_independent(is_training, correlation)
     return _Ring(range_offset=in_range[row], doppler_offset=in_doppler[column], num_independent=independent)
 
 
-def _num_independent(is_training: np.ndarray) -> float:
+def _num_independent(is_training: np.ndarray, correlation: np.ndarray) -> float:
     """N^2 over the sum of all pairwise correlations: how many independent cells have as steady a mean."""
-    reach = len(HANN_CORRELATION) - 1
-    mask = np.pad(is_training.astype(float), reach)
-    total = 0.0
-    for rows in range(-reach, reach + 1):
-        for columns in range(-reach, reach + 1):
-            correlation = HANN_CORRELATION[abs(rows)] * HANN_CORRELATION[abs(columns)]
-            total += correlation * float(np.sum(mask * np.roll(mask, (rows, columns), (0, 1))))
-    return float(mask.sum()) ** 2 / total
+    mask = np.pad(is_training.astype(float), ((2, 2), (2, 2)))
+    pairs = 0.0
+    for rows in range(-2, 3):
+        for columns in range(-2, 3):
+            both = mask * np.roll(mask, (rows, columns), (0, 1))
+            pairs += float(correlation[abs(rows), abs(columns)] * both.sum())
+    return float(mask.sum()) ** 2 / pairs
+
+
+@lru_cache(maxsize=16)
+def _exceedance_correlation(num_looks: int) -> np.ndarray:
+    """As POWER_CORRELATION, but of "this cell lies above the OS quantile", which is what steadies an ordered cell.
+
+    Kibble's expansion of two correlated gamma variables in Laguerre polynomials; integrated from the quantile up,
+    each term is r^n c_n^2.
+    """
+    from scipy.special import eval_genlaguerre, gammaincinv, gammaln
+
+    order = np.arange(1, 60)
+    level = gammaincinv(num_looks, OS_QUANTILE)
+    log_scale = num_looks * math.log(level) - level - 0.5 * gammaln(num_looks)
+    log_norm = 0.5 * (gammaln(order + 1) - gammaln(num_looks + order)) - np.log(order)
+    term = (eval_genlaguerre(order - 1, num_looks, level) * np.exp(log_norm + log_scale)) ** 2
+    shared = np.sum(term * POWER_CORRELATION[..., None] ** order, axis=-1) / (OS_QUANTILE * (1 - OS_QUANTILE))
+    shared[0, 0] = 1.0
+    return shared
 
 
 def _ring_mean(power: RangeDopplerMap, cells: CfarCells) -> RangeDopplerMap:

@@ -57,7 +57,9 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > SMALLEST_SINGULAR_VALUE)[:, None]
     slow = loops.transpose(0, 2, 3, 1)
     inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
-    samples = slow @ inverse if config.complex_samples else np.concatenate([slow.real, slow.imag], axis=-1) @ inverse
+    samples = (
+        slow @ inverse if config.complex_samples else np.concatenate([np.real(slow), np.imag(slow)], axis=-1) @ inverse
+    )
     shape = (len(samples), config.num_loops, config.num_tx, config.num_rx, config.num_samples)
     return AdcCube(samples=samples.reshape(shape).astype(np.complex64), config=config, scale=cube.scale)
 

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from jaxtyping import Bool, Complex
+from jaxtyping import Bool, Complex, Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
@@ -72,7 +72,9 @@ def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_on
     return _beam_power(cube, columns, direction, moving_only)
 
 
-def steering(cube: RadarCube, antennas: PerIndex, direction: np.ndarray) -> Complex[np.ndarray, "index angle"]:
+def steering(
+    cube: RadarCube, antennas: PerIndex, direction: Float[np.ndarray, "3 angle"]
+) -> Complex[np.ndarray, "_ angle"]:
     """exp(+j 2 pi / wavelength u.p): times a far target's samples at direction u it makes them equal."""
     path_m = cube.grid.antenna_position_m[antennas] @ direction
     return np.exp(2j * np.pi / cube.grid.wavelength_m * path_m)

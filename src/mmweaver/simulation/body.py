@@ -91,15 +91,19 @@ class Body:
         rng = stream(subject, "body", num_points)
         area = np.array([self._side_area(capsule) for capsule in CAPSULES])
         self.part = np.sort(rng.choice(len(CAPSULES), size=num_points, p=area / area.sum()))
-        self.along = rng.uniform(-0.08, 1.08, num_points)
+        # Uniform over the sides and, by Archimedes, over the round caps.
+        caps = np.array([_cap_shares(c) for c in CAPSULES])[self.part]
+        self.along = rng.random(num_points) * (1 + caps.sum(axis=1)) - caps[:, 0]
+        over = self.along - np.clip(self.along, 0.0, 1.0)
+        self.cap_sine = over / np.maximum(np.where(over < 0, caps[:, 0], caps[:, 1]), 1e-9)
         self.angle_rad = rng.uniform(0, 2 * np.pi, num_points)
         self.micro_phase = np.exp(2j * np.pi * rng.random(num_points))
         self.area_m2 = area.sum() * self.scale**2 / num_points
 
     @staticmethod
     def _side_area(capsule: Capsule) -> float:
-        length = NOMINAL_LENGTH_M.get((capsule.start, capsule.end), 0.14) + capsule.extend_m
-        return np.pi * (capsule.start_radius_m + capsule.end_radius_m) * length
+        radius = (capsule.start_radius_m + capsule.end_radius_m) / 2
+        return 2 * np.pi * radius * _length_m(capsule) * (1 + sum(_cap_shares(capsule)))
 
     @cached_property
     def _radii(self) -> np.ndarray:
@@ -136,12 +140,9 @@ class Body:
         starts, axes, rotations = self.frames(joints_m)
         part, radii = self.part, self._radii
         along = np.clip(self.along, 0.0, 1.0)
-        cap = self.along - along  # beyond the ends: on the round cap
         radius = radii[part, 0] + (radii[part, 1] - radii[part, 0]) * along
-        tilt = np.clip(cap / 0.08, -1, 1) * (np.pi / 2)
-        local = np.stack(
-            [np.cos(self.angle_rad) * np.cos(tilt), np.sin(self.angle_rad) * np.cos(tilt), np.sin(tilt)], -1
-        )  # fmt: skip
+        ring = np.sqrt(1 - self.cap_sine**2)
+        local = np.stack([np.cos(self.angle_rad) * ring, np.sin(self.angle_rad) * ring, self.cap_sine], -1)
         width = self._widths[part]
         offset = local * radius[:, None]
         offset[:, 0] *= width
@@ -181,6 +182,17 @@ NOMINAL_LENGTH_M = {
     ("right_collar", "right_shoulder"): 0.12, ("left_wrist", "left_wrist"): 0.02, ("right_wrist", "right_wrist"): 0.02,
     ("head", "head"): 0.05,
 }  # fmt: skip
+
+
+def _length_m(capsule: Capsule) -> float:
+    return NOMINAL_LENGTH_M.get((capsule.start, capsule.end), 0.02) + capsule.extend_m
+
+
+def _cap_shares(capsule: Capsule) -> tuple[float, float]:
+    """Length of the round caps at start and end relative to the side; only free ends have skin on them."""
+    share = capsule.end_radius_m / _length_m(capsule) if capsule.extend_m else 0.0
+    is_lump = capsule.start == capsule.end and capsule.start not in CONTINUES
+    return (share if is_lump else 0.0, share)
 
 
 def _torso_rotation(joints_m: np.ndarray) -> np.ndarray:

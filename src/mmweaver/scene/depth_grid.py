@@ -1,0 +1,138 @@
+"""A depth picture thinned to a grid of about 160 x 120 cells, with clean edges and a normal for every cell."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
+from mmweaver.core.shapes import Array, DepthPixels
+from mmweaver.geometry.pinhole import unproject
+
+GridBool = Bool[Array, "row column"]
+GridFloat = Float[Array, "row column"]
+GridVectors = Float[Array, "row column 3"]
+
+_CELLS_ACROSS = 160
+_NORMAL_RADIUS = 3  # cells: a window of 7 x 7
+_MIN_NORMAL_SUPPORT = 12  # cells of that window on one surface
+_MIN_CELL_SUPPORT = 0.35  # share of a cell's pixels with a measurement
+_SHIFTS = ((0, 1), (1, 0), (0, -1), (-1, 0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DepthGrid:
+    """Cells in the camera's frame; nan where nothing was measured."""
+
+    intrinsics: CameraIntrinsics  # in cells
+    depth_m: GridFloat
+    points_m: GridVectors  # (row, column, 3)
+    normals: GridVectors  # unit, towards the camera; nan where no surface could be fitted
+    rgb: GridVectors  # mean colour, 0 to 1
+
+
+def depth_tolerance_m(depth_m: Float[Array, "..."]) -> Float[Array, "..."]:
+    """How far two measurements of one surface may lie apart. Structured light and stereo err with depth squared."""
+    return 0.015 + 0.0035 * np.square(depth_m)
+
+
+def make_grid(photo: RgbdPhoto) -> DepthGrid:
+    """Thins a photo to cells: the median depth of each (no bridging of edges), strays dropped, normals fitted."""
+    height, width = photo.depth_m.shape
+    size = max(1, round(width / _CELLS_ACROSS))
+    rows, columns = height // size, width // size
+    depth = drop_strays(_block_median(_blocks(photo.depth_m[: rows * size, : columns * size], size)))
+    colours = photo.rgb[: rows * size, : columns * size].reshape(rows, size, columns, size, 3)
+    camera = photo.intrinsics
+    intrinsics = CameraIntrinsics(
+        fx=camera.fx / size,
+        fy=camera.fy / size,
+        cx=(camera.cx + 0.5) / size - 0.5,
+        cy=(camera.cy + 0.5) / size - 0.5,
+        width=columns,
+        height=rows,
+    )
+    return DepthGrid(
+        intrinsics=intrinsics,
+        depth_m=depth,
+        points_m=unproject(depth, intrinsics),
+        normals=_fitted_normals(depth, intrinsics),
+        rgb=colours.mean(axis=(1, 3)) / 255.0,
+    )
+
+
+def drop_strays(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixels:
+    """Removes pixels that fewer than two of their four neighbours support: speckle, and pixels between two surfaces."""
+    padded = np.pad(depth_m, 1, constant_values=np.nan)
+    support = np.zeros(depth_m.shape, int)
+    # A surface seen at a grazing angle steps by more than its noise from cell to cell.
+    limit = depth_tolerance_m(depth_m) + 0.03 * depth_m
+    for row, column in _SHIFTS:
+        support += np.abs(_shifted(padded, row, column, 1) - depth_m) < limit
+    return np.where(support >= min_neighbours, depth_m, np.nan)
+
+
+def _blocks(depth_m: DepthPixels, size: int) -> Float[Array, "row column pixel"]:
+    rows, columns = depth_m.shape[0] // size, depth_m.shape[1] // size
+    blocks = depth_m.reshape(rows, size, columns, size).transpose(0, 2, 1, 3)
+    return blocks.reshape(rows, columns, size * size)
+
+
+def _block_median(blocks: Float[Array, "row column pixel"]) -> GridFloat:
+    """Median of the measured; of two middle ones their mean if they agree, else the nearer."""
+    ordered = np.sort(blocks, axis=2)  # nan last
+    count = np.isfinite(ordered).sum(axis=2)
+    low = np.take_along_axis(ordered, (np.maximum(count - 1, 0) // 2)[..., None], axis=2)[..., 0]
+    high = np.take_along_axis(ordered, np.minimum(count // 2, blocks.shape[2] - 1)[..., None], axis=2)[..., 0]
+    median = np.where(high - low < depth_tolerance_m(low), (low + high) / 2, low)
+    return np.where(count >= max(1, _MIN_CELL_SUPPORT * blocks.shape[2]), median, np.nan)
+
+
+def _fitted_normals(depth_m: GridFloat, intrinsics: CameraIntrinsics) -> GridVectors:
+    """Plane through each cell's neighbours: 1/z is linear in the picture, where Kinect's noise is even as well."""
+    rows, columns = depth_m.shape
+    radius = _NORMAL_RADIUS
+    inverse = np.pad(1 / depth_m, radius, constant_values=np.nan)
+    centre = 1 / depth_m
+    limit = (depth_tolerance_m(depth_m) + 0.04 * depth_m) / np.square(depth_m)
+    # Sums of 1, u, v, uu, uv, vv, q, uq, vq over the neighbours on the same surface (u, v in cells from the centre).
+    sums = np.zeros((9, rows, columns))
+    for v in range(-radius, radius + 1):
+        for u in range(-radius, radius + 1):
+            difference = _shifted(inverse, v, u, radius) - centre
+            same = np.abs(difference) < limit * max(1, abs(u), abs(v)) / 1.5
+            value = np.where(same, difference, 0.0)
+            for index, factor in enumerate((1, u, v, u * u, u * v, v * v)):
+                if factor:
+                    sums[index] += factor * same
+            for index, factor in enumerate((1, u, v)):
+                if factor:
+                    sums[6 + index] += factor * value
+    slope_u, slope_v, offset, is_sound = _solved(sums)
+    # 1/z = a x + b y + c in normalised coordinates is the plane (a, b, c) . P = 1.
+    x = (np.arange(columns) - intrinsics.cx) / intrinsics.fx
+    y = ((np.arange(rows) - intrinsics.cy) / intrinsics.fy)[:, None]
+    a, b = slope_u * intrinsics.fx, slope_v * intrinsics.fy
+    normal = -np.stack([a, b, centre + offset - a * x - b * y], axis=-1)
+    length = np.linalg.norm(normal, axis=-1)
+    usable = is_sound & np.isfinite(depth_m)
+    return np.where(usable[..., None], normal / np.where(usable, length, 1.0)[..., None], np.nan)
+
+
+def _solved(sums: Float[Array, "9 row column"]) -> tuple[GridFloat, GridFloat, GridFloat, GridBool]:
+    """Slopes and offset of the least-squares planes, and where they are well determined."""
+    n, u, v, uu, uv, vv, q, uq, vq = sums
+    count = np.maximum(n, 1)
+    cuu, cuv, cvv = uu - u * u / count, uv - u * v / count, vv - v * v / count
+    cuq, cvq = uq - u * q / count, vq - v * q / count
+    determinant = cuu * cvv - cuv * cuv
+    is_sound = (n >= _MIN_NORMAL_SUPPORT) & (determinant > 0.05 * np.square(n))
+    safe = np.where(is_sound, determinant, 1.0)
+    slope_u = (cuq * cvv - cvq * cuv) / safe
+    slope_v = (cvq * cuu - cuq * cuv) / safe
+    return slope_u, slope_v, (q - slope_u * u - slope_v * v) / count, is_sound
+
+
+def _shifted(padded: Float[Array, "a b"], rows: int, columns: int, pad: int) -> Float[Array, "c d"]:
+    height, width = padded.shape
+    return padded[pad + rows : height - pad + rows, pad + columns : width - pad + columns]

@@ -1,0 +1,101 @@
+"""What surfaces are made of, guessed from geometry and colour alone; metal and glass are never guessed."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.records import Plane, Seat
+from mmweaver.core.shapes import Array
+from mmweaver.scene.depth_grid import GridVectors
+from mmweaver.scene.surfaces import LevelGrid, Surface
+
+# ITU-R P.2040-3, table 3, and upholstery, which it does not list.
+MATERIAL_NAMES = (
+    "concrete", "brick", "plasterboard", "wood", "glass", "ceiling_board", "chipboard", "plywood", "marble",
+    "floorboard", "metal", "fabric",
+)  # fmt: skip
+
+ASSUMPTION = (
+    "Materials were guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any"
+    " other concrete, seats with a back fabric unless plainly wooden, the rest wood or chipboard by colour."
+)
+
+_SEAT_REACH_M = 0.55
+
+
+def floor_material(colours: Float[Array, "cell 3"]) -> str:
+    """Boards where the floor is warm and saturated, else concrete."""
+    return "floorboard" if _is_wooden(colours) else "concrete"
+
+
+def surface_material(surface: Surface, rgb: GridVectors) -> str:
+    """The material of a flat surface by its kind, then by its colour."""
+    by_kind = {"wall": "plasterboard", "ceiling": "ceiling_board"}
+    return by_kind.get(surface.plane.kind) or _furniture(rgb[surface.cells])
+
+
+def with_material(plane: Plane, name: str) -> Plane:
+    return replace(plane, material=name)
+
+
+def cell_materials(
+    grid: LevelGrid,
+    rgb: GridVectors,
+    surfaces: Sequence[Surface],
+    is_floor: Bool[Array, "row column"],
+    seats: Sequence[Seat],
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Index into MATERIAL_NAMES of every cell, and the name of each surface's material."""
+    wooden = _wooden_cells(rgb)
+    material = np.where(wooden, MATERIAL_NAMES.index("wood"), MATERIAL_NAMES.index("chipboard"))
+    names = [surface_material(surface, rgb) for surface in surfaces]
+    for surface, name in zip(surfaces, names, strict=True):
+        material[surface.cells] = MATERIAL_NAMES.index(name)
+    fixed = is_floor.copy()
+    for surface in surfaces:
+        if surface.plane.kind in ("wall", "ceiling"):
+            fixed |= surface.cells
+    for cells in _upholstered(grid, rgb, ~fixed, seats):
+        material[cells] = MATERIAL_NAMES.index("fabric")
+        for index, surface in enumerate(surfaces):
+            if (cells & surface.cells).sum() > 0.5 * surface.cells.sum():
+                names[index] = "fabric"
+    material[is_floor] = MATERIAL_NAMES.index(floor_material(rgb[is_floor]))
+    return material, tuple(names)
+
+
+def _upholstered(
+    grid: LevelGrid, rgb: GridVectors, open_cells: Bool[Array, "row column"], seats: Sequence[Seat]
+) -> list[Bool[Array, "row column"]]:
+    """The cells around each seat, where they are not plainly wooden: one plain warm colour."""
+    found = []
+    above_floor = grid.points_m[..., 2] - grid.floor_z_m
+    for seat in seats:
+        offset = grid.points_m - seat.position_m
+        cells = open_cells & (np.hypot(offset[..., 0], offset[..., 1]) < _SEAT_REACH_M)
+        cells &= (above_floor > 0.12) & (above_floor < 1.2)
+        if cells.sum() < 20:
+            continue
+        is_patterned = float(rgb[cells].std(axis=0).max()) > 0.17
+        if is_patterned or not _is_wooden(rgb[cells]):
+            found.append(cells)
+    return found
+
+
+def _furniture(colours: Float[Array, "cell 3"]) -> str:
+    return "wood" if _is_wooden(colours) else "chipboard"
+
+
+def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:
+    return bool(len(colours)) and bool(_wooden_cells(np.median(colours, axis=0)))
+
+
+def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"]:
+    """Red over green over blue, in the proportions of yellow to red-brown, and not pale."""
+    red, green, blue = rgb[..., 0], rgb[..., 1], rgb[..., 2]
+    span = np.maximum(red - blue, 1e-6)
+    hue_deg = 60 * (green - blue) / span
+    saturation = (red - blue) / np.maximum(red, 1e-6)
+    return (red >= green) & (green >= blue) & (hue_deg > 8) & (hue_deg < 52) & (saturation > 0.3) & (red > 0.12)

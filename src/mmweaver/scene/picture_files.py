@@ -1,0 +1,161 @@
+"""Pictures from files: colour as 8-bit RGB, depth in metres. What is no such picture is refused in one line."""
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.shapes import DepthPixels, RgbPixels
+
+MAX_PIXELS = 50_000_000
+_MIN_SIDE = 32
+_PLAUSIBLE_MEDIAN_M = (0.2, 20.0)
+_MAX_HOLES = 0.9
+# Units found in the wild: metres, centimetres, millimetres, TUM's 1/5000 m, 1/4000 m, 0.1 mm.
+_KNOWN_UNITS_M = (1.0, 0.01, 0.001, 0.0002, 0.00025, 0.0001)
+_UINT16_SATURATED = 65535
+
+
+def read_rgb(path: Path) -> tuple[RgbPixels, tuple[int, int], bool]:
+    """The upright colour picture, the (width, height) stored in the file, and whether its EXIF tag turned it."""
+    from PIL import ImageOps
+
+    image = _opened(path)
+    stored_size = image.size
+    turned = image.getexif().get(0x0112, 1) not in (0, 1)
+    if turned:
+        image = ImageOps.exif_transpose(image)
+    if image.mode.startswith("I;16") or image.mode == "I":
+        grey = np.clip(np.asarray(image).astype(np.int64) // 256, 0, 255).astype(np.uint8)
+        return np.repeat(grey[:, :, None], 3, axis=2), stored_size, turned
+    if image.mode == "F":
+        raise InputError(f"{path} holds floating-point values, not colours; --rgb takes a photo (PNG or JPEG)")
+    return np.array(_on_white(image)), stored_size, turned
+
+
+def read_depth(path: Path, unit_m: float | None) -> DepthPixels:
+    """Depth in metres, nan where there is no measurement. Whole numbers count in `unit_m` (millimetres if None).
+
+    Raises InputError for what cannot be depth: 8-bit or colour pictures, nothing measured, a wrong unit.
+    """
+    raw = _raw_npy(path) if path.suffix.lower() == ".npy" else _raw_picture(path)
+    if raw.size > MAX_PIXELS or min(raw.shape) < _MIN_SIDE:
+        raise InputError(f"{path} has {raw.shape[1]} x {raw.shape[0]} pixels; make it {_MIN_SIDE} to 8000 on a side")
+    counts = raw.dtype.kind in "ui"
+    used_unit_m = (0.001 if unit_m is None else unit_m) if counts else 1.0
+    depth = raw.astype(np.float64) * used_unit_m
+    measured = np.isfinite(depth) & (depth > 0)
+    if raw.dtype == np.uint16:
+        measured &= raw < _UINT16_SATURATED
+    _check_measured(path, raw, measured)
+    _check_unit(path, float(np.median(depth[measured])), used_unit_m, counts)
+    return np.where(measured, depth, np.nan)
+
+
+def _check_measured(path: Path, raw: np.ndarray, measured: np.ndarray) -> None:
+    share = measured.mean()
+    if share == 0:
+        kinds = (
+            ("zero", raw == 0),
+            ("nan", np.isnan(raw)),
+            ("infinite", np.isinf(raw)),
+            ("negative", raw < 0),
+        )
+        kind = next((name for name, mask in kinds if mask.all()), "zero, negative or not finite")
+        raise InputError(f"{path}: every depth value is {kind}; give a depth picture with measurements")
+    if share < 1 - _MAX_HOLES:
+        raise InputError(
+            f"{path}: only {100 * share:.1f} % of the pixels have a depth; {100 * (1 - _MAX_HOLES):.0f} % are needed"
+        )
+
+
+def _check_unit(path: Path, median_m: float, unit_m: float, counts: bool) -> None:
+    low, high = _PLAUSIBLE_MEDIAN_M
+    if low <= median_m <= high:
+        return
+    ratio = np.array([median_m / unit_m * unit for unit in _KNOWN_UNITS_M])
+    best = int(np.argmin(np.abs(np.log(ratio / 2.5))))
+    hint = ""
+    if low <= ratio[best] <= high:
+        unit = _KNOWN_UNITS_M[best]
+        remedy = f"set depth_unit_m to {unit:g} in camera.json" if counts else f"multiply it by {unit:g}"
+        hint = f"; {remedy} (the median would be {ratio[best]:.2f} m)"
+    raise InputError(
+        f"{path}: the median depth is {median_m:.4g} m, not within {low:g} to {high:g} m: the unit seems wrong{hint}"
+    )
+
+
+def _raw_picture(path: Path) -> np.ndarray:
+    image = _opened(path)
+    if image.mode in ("1", "L", "P"):
+        raise InputError(f"{path} has 8 bits a pixel; depth must be a 16-bit PNG or a .npy in metres")
+    if not (image.mode.startswith("I;16") or image.mode in ("I", "F")):
+        raise InputError(f"{path} is a colour picture ({image.mode}), not depth; give a 16-bit PNG or a .npy in metres")
+    raw = np.array(image)
+    return raw.astype(np.uint16) if image.mode.startswith("I;16") else raw
+
+
+def _raw_npy(path: Path) -> np.ndarray:
+    try:
+        raw: Any = np.load(path, allow_pickle=False, mmap_mode="r")
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
+    except (ValueError, EOFError) as error:
+        raise InputError(f"{path} is not a plain .npy array ({_first_line(error)}); save it with numpy.save") from error
+    if not isinstance(raw, np.ndarray):
+        raise InputError(f"{path} is an archive, not a .npy array; save the depth alone with numpy.save")
+    if raw.dtype.kind not in "fui":
+        raise InputError(f"{path} holds values of type {raw.dtype}; depth must be real numbers")
+    if raw.dtype == np.uint8 or raw.dtype == np.int8:
+        raise InputError(f"{path} has 8 bits a pixel; depth must be float metres or 16-bit counts")
+    if raw.ndim != 2:
+        raise InputError(f"{path} has shape {raw.shape}; depth must be (height, width)")
+    if raw.size > MAX_PIXELS:
+        raise InputError(
+            f"{path} has {raw.size / 1e6:.0f} million pixels; make it smaller than {MAX_PIXELS / 1e6:.0f} million"
+        )
+    return np.array(raw)
+
+
+def _opened(path: Path) -> Any:
+    """The picture, wholly decoded."""
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
+            image = Image.open(path)
+        if image.width * image.height > MAX_PIXELS:
+            raise Image.DecompressionBombError
+        if min(image.size) < _MIN_SIDE:
+            raise InputError(f"{path} has only {image.width} x {image.height} pixels; give a larger picture")
+        image.load()
+    except UnidentifiedImageError as error:
+        raise InputError(f"{path} is not a picture that can be read; give a PNG or JPEG") from error
+    except Image.DecompressionBombError as error:
+        raise InputError(f"{path} is too large; make it smaller than {MAX_PIXELS / 1e6:.0f} million pixels") from error
+    except InputError:
+        raise
+    except OSError as error:
+        reason = error.strerror or _first_line(error)
+        raise InputError(f"cannot read {path}: {reason}; give a whole picture file") from error
+    except (ValueError, SyntaxError, EOFError) as error:
+        raise InputError(f"{path} is damaged ({_first_line(error)}); give a whole picture file") from error
+    return image
+
+
+def _on_white(image: Any) -> Any:
+    """Any colour mode -> RGB; what is transparent shows white."""
+    from PIL import Image
+
+    if "transparency" not in image.info and image.mode not in ("RGBA", "LA", "PA", "La", "RGBa"):
+        return image.convert("RGB")
+    layer = image.convert("RGBA")
+    white = Image.new("RGBA", layer.size, (255, 255, 255, 255))
+    return Image.alpha_composite(white, layer).convert("RGB")
+
+
+def _first_line(error: BaseException) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]

@@ -1,0 +1,113 @@
+"""Photo -> Scene. Read `reconstruct` first: it names the steps in order."""
+
+import numpy as np
+
+from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
+from mmweaver.core.shapes import PerPoint, Rotation
+from mmweaver.geometry.pinhole import unproject
+from mmweaver.geometry.rotations import level_from_camera
+from mmweaver.scene.depth_grid import DepthGrid, GridBool, GridVectors, make_grid
+from mmweaver.scene.free_space import find_free_space
+from mmweaver.scene.gravity import find_gravity
+from mmweaver.scene.height_map import make_height_map
+from mmweaver.scene.materials import ASSUMPTION, MATERIAL_NAMES, cell_materials, with_material
+from mmweaver.scene.mesh import floor_faces, make_mesh
+from mmweaver.scene.seats import find_seats
+from mmweaver.scene.surfaces import LevelGrid, find_surfaces, floor_cells
+
+_FLOOR_MARGIN_M = 0.3
+_MIN_FLOOR_M = 3.0  # length and half width that the floor is given at least
+
+
+def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene:
+    """The room of a photo, in the frame of a level radar that stands at the camera.
+
+    Steps: thin the depth to a grid, find gravity from the floor, turn the room level, find its flat surfaces, look at
+    it from above for free places and seats, guess materials, make the mesh. `assumptions` are put before its own.
+
+    Raises InputError where the depth shows no surfaces.
+    """
+    grid = make_grid(photo)
+    gravity = find_gravity(grid)
+    radar_from_camera = level_from_camera(gravity.up_camera)
+    level = _levelled(grid, radar_from_camera, gravity.floor_z_m)
+    is_floor = floor_cells(level) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
+    surfaces = find_surfaces(level)
+
+    height_map = make_height_map(photo, radar_from_camera, gravity.floor_z_m)
+    free_space = find_free_space(height_map)
+    seats = find_seats(height_map, gravity.floor_z_m)
+
+    material, surface_names = cell_materials(level, grid.rgb, surfaces, is_floor, seats)
+    floor = _floor(level, is_floor, _floor_material(material, is_floor))
+    planes = [with_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True)]
+    rays = _rays(grid.intrinsics, radar_from_camera)
+    vertices_m, faces, face_material = make_mesh(level, rays, surfaces, is_floor, material)
+    corners_m, two_faces = floor_faces(floor)
+    return Scene(
+        photo=photo,
+        radar_from_camera=radar_from_camera,
+        vertices_m=np.concatenate([vertices_m, corners_m]),
+        faces=np.concatenate([faces, two_faces + len(vertices_m)]),
+        face_material=np.append(face_material, [MATERIAL_NAMES.index(floor.material)] * 2),
+        material_names=MATERIAL_NAMES,
+        planes=(floor, *planes),
+        floor_z_m=gravity.floor_z_m,
+        free_space=free_space,
+        seats=seats,
+        assumptions=(*assumptions, *gravity.assumptions, *_own_assumptions(floor)),
+    )
+
+
+def _levelled(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) -> LevelGrid:
+    return LevelGrid(
+        points_m=grid.points_m @ radar_from_camera.T,
+        normals=grid.normals @ radar_from_camera.T,
+        depth_m=grid.depth_m,
+        floor_z_m=floor_z_m,
+    )
+
+
+def _rays(intrinsics: CameraIntrinsics, radar_from_camera: Rotation) -> GridVectors:
+    ones = np.ones((intrinsics.height, intrinsics.width))
+    return unproject(ones, intrinsics) @ radar_from_camera.T
+
+
+def _floor_material(material: np.ndarray, is_floor: GridBool) -> str:
+    return MATERIAL_NAMES[material[is_floor][0]] if is_floor.any() else "concrete"
+
+
+def _floor(grid: LevelGrid, is_floor: GridBool, material: str) -> Plane:
+    """The floor as a rectangle from under the radar to behind the farthest that is seen."""
+    points = grid.points_m[np.isfinite(grid.depth_m)]
+    seen = grid.points_m[is_floor]
+    left, right = _spread([points[:, 0], seen[:, 0]])
+    far = max(_spread([points[:, 1], seen[:, 1]])[1], _MIN_FLOOR_M)
+    left, right = min(left, -_MIN_FLOOR_M / 2), max(right, _MIN_FLOOR_M / 2)
+    near = 0.0
+    left, right, far = left - _FLOOR_MARGIN_M, right + _FLOOR_MARGIN_M, far + _FLOOR_MARGIN_M
+    return Plane(
+        kind="floor",
+        centre_m=np.array([(left + right) / 2, (near + far) / 2, grid.floor_z_m]),
+        normal=np.array([0.0, 0.0, 1.0]),
+        axis_u=np.array([1.0, 0.0, 0.0]),
+        axis_v=np.array([0.0, 1.0, 0.0]),
+        half_size_m=((right - left) / 2, (far - near) / 2),
+        material=material,
+    )
+
+
+def _spread(parts: list[PerPoint]) -> tuple[float, float]:
+    """From the least to the greatest of some sets, each without its outer two hundredths."""
+    ends = [np.percentile(part, [2, 98]) for part in parts if len(part)]
+    return float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
+
+
+def _own_assumptions(floor: Plane) -> tuple[str, ...]:
+    width, length = 2 * floor.half_size_m[0], 2 * floor.half_size_m[1]
+    return (
+        "The radar stands level at the camera and looks where it looks.",
+        f"The floor was completed to a level rectangle of {width:.1f} x {length:.1f} m; walls were taken to reach it.",
+        "Places under the picture's lower edge, before floor that is seen, were taken to be free.",
+        ASSUMPTION,
+    )
