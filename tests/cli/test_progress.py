@@ -5,6 +5,7 @@ import sys
 import time
 
 import pytest
+import tqdm  # noqa: F401  (its first import takes longer than the test waits)
 
 from mmweaver.cli import progress
 from mmweaver.cli.progress import StageBar

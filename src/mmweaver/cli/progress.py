@@ -44,6 +44,8 @@ class StageBar:
         from tqdm import tqdm
 
         with tqdm(
+            desc=self._stage,
+            initial=max(self._done, 0),
             total=self._num_stages,
             file=sys.stderr,
             leave=False,

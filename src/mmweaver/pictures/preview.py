@@ -11,6 +11,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.pictures.skeleton_drawing import SkeletonInPhoto, project
 from mmweaver.pictures.theme import (
     INK,
+    PAPER,
     POWER_MAP,
     SPAN_DB,
     STYLE,
@@ -240,10 +241,11 @@ def _scatter(axes: "Axes", view: View, across_m: np.ndarray, up_m: np.ndarray) -
 
     velocity_mps, snr_db = view.points.radial_velocity_mps, view.points.snr_db
     top_mps = max(float(np.percentile(np.abs(velocity_mps), 95)), 0.1) if len(velocity_mps) else 0.1
+    strength = np.clip((np.sort(snr_db) - 10) / 20, 0.2, 1.0)
     rising = np.argsort(snr_db, kind="stable")
     dots = axes.scatter(
         across_m[rising], up_m[rising], c=velocity_mps[rising], cmap=VELOCITY_MAP, vmin=-top_mps, vmax=top_mps,
-        s=12, linewidths=0.3, edgecolors=INK, alpha=np.clip((snr_db[rising] - 10) / 20, 0.2, 1.0),
+        s=12, linewidths=0.3, edgecolors=INK, alpha=strength if len(strength) else None,
     )  # fmt: skip
     axes.grid(color="#d8dce0", linewidth=0.5)
     axes.set_axisbelow(True)
