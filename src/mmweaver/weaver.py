@@ -114,9 +114,9 @@ class Weaver:
         """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON."""
         stages = Stages(self._listener)
         with stages("read the photo"):
+            photo, assumptions = read_photo(rgb, depth, camera)
             given = {"rgb": rgb, "depth": depth, "camera": camera}
             inputs = {name: file_digest(path) for name, path in given.items() if path is not None}
-            photo, assumptions = read_photo(rgb, depth, camera)
         return self._reconstruct(photo, assumptions, inputs, stages)
 
     def sample_room(self) -> Room:

@@ -16,38 +16,29 @@ class Terminal(io.StringIO):
         return True
 
 
-@pytest.fixture
-def terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
-    stream = Terminal()
-    monkeypatch.setattr(sys, "stderr", stream)
+def shown(monkeypatch: pytest.MonkeyPatch, stream: io.StringIO, *, patience_s: float, quiet: bool = False) -> str:
+    """What half a second of work writes to stderr; patched here, for pytest puts its own stderr back after set-up."""
     monkeypatch.setattr(progress, "REFRESH_S", 0.01)
-    return stream
+    monkeypatch.setattr(progress, "PATIENCE_S", patience_s)
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "stderr", stream)
+        with StageBar(2, quiet=quiet) as bar:
+            bar("first")
+            bar("second")
+            time.sleep(0.5)
+    return stream.getvalue()
 
 
-def work(seconds: float, *, quiet: bool = False) -> None:
-    with StageBar(2, quiet=quiet) as bar:
-        bar("first")
-        bar("second")
-        time.sleep(seconds)
+def test_long_work_on_a_terminal_shows_its_stage(monkeypatch: pytest.MonkeyPatch):
+    text = shown(monkeypatch, Terminal(), patience_s=0.01)
+    assert "second" in text
+    assert "1/2" in text
 
 
-def test_long_work_on_a_terminal_shows_its_stage(terminal: Terminal, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(progress, "PATIENCE_S", 0.01)
-    work(0.3)
-    assert "second" in terminal.getvalue()
-    assert "1/2" in terminal.getvalue()
+def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch):
+    assert shown(monkeypatch, Terminal(), patience_s=progress.PATIENCE_S) == ""
 
 
-def test_short_work_shows_nothing(terminal: Terminal):
-    work(0.05)
-    assert terminal.getvalue() == ""
-
-
-def test_quiet_work_and_pipes_show_nothing(terminal: Terminal, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(progress, "PATIENCE_S", 0.01)
-    work(0.1, quiet=True)
-    assert terminal.getvalue() == ""
-    pipe = io.StringIO()
-    monkeypatch.setattr(sys, "stderr", pipe)
-    work(0.1)
-    assert pipe.getvalue() == ""
+def test_quiet_work_and_pipes_show_nothing(monkeypatch: pytest.MonkeyPatch):
+    assert shown(monkeypatch, Terminal(), patience_s=0.01, quiet=True) == ""
+    assert shown(monkeypatch, io.StringIO(), patience_s=0.01) == ""

@@ -245,7 +245,7 @@ def _scatter(axes: "Axes", view: View, across_m: np.ndarray, up_m: np.ndarray) -
     rising = np.argsort(snr_db, kind="stable")
     dots = axes.scatter(
         across_m[rising], up_m[rising], c=velocity_mps[rising], cmap=VELOCITY_MAP, vmin=-top_mps, vmax=top_mps,
-        s=12, linewidths=0.3, edgecolors=INK, alpha=strength if len(strength) else None,
+        s=12, linewidths=0.3, edgecolors=INK, alpha=strength if len(strength) else None,  # type: ignore[arg-type]
     )  # fmt: skip
     axes.grid(color="#d8dce0", linewidth=0.5)
     axes.set_axisbelow(True)

@@ -1,6 +1,6 @@
 """One look for all pictures: one colour map for power, one for time, one for radial velocity."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -15,7 +15,7 @@ INK = "#22262b"
 PAPER = "#ffffff"
 TRUTH = "#7fe3ff"  # what is known from the skeleton, drawn over what the radar saw
 
-STYLE = {
+STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.titlesize": 10.0,
