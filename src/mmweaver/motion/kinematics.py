@@ -17,8 +17,8 @@ Angles = Float[Array, " n"]
 Frames = Float[Array, "n 3 3"]
 Vectors = Float[Array, "n 3"]
 
-LONGEST_STANCE = 0.9965  # of the leg's length: a knee never locks
-LONGEST_LEG = 0.9985
+LONGEST_STANCE = 0.998  # of the leg's length: a knee never locks
+LONGEST_LEG = 0.9995
 SIDES = ("left", "right")
 
 
@@ -111,8 +111,8 @@ def _pelvis(body: Body, controls: Controls, frame: Frames, ankles: list[Vectors]
         hip = turned(frame, body.offset_m[joint(f"{SIDES[side]}_hip")])
         across = np.sum((pelvis[:, :2] + hip[:, :2] - ankles[side][:, :2]) ** 2, axis=1)
         height = np.sqrt(np.maximum(longest**2 - across, (0.3 * longest) ** 2))
-        limits.append(ankles[side][:, 2] + height - hip[:, 2] + 0.3 * (1 - controls.contact[:, side]))
-    pelvis[:, 2] = softmin(limits, 0.005)
+        limits.append(ankles[side][:, 2] + height - hip[:, 2] + 0.2 * (1 - controls.contact[:, side]))
+    pelvis[:, 2] = softmin(limits, 0.003)
     return pelvis
 
 
@@ -122,7 +122,8 @@ def _place_leg(joints: Joints, body: Body, controls: Controls, frame: Frames, si
     away = ankle - hip
     distance = np.linalg.norm(away, axis=1)
     direction = away / distance[:, None]
-    reach = cap(distance, LONGEST_LEG * body.leg_m, 0.0012 * body.leg_m)
+    loose = 1 - controls.contact[:, side]  # a leg in the air is not stretched, so that the knee does not snap
+    reach = cap(distance, (LONGEST_LEG - 0.016 * loose) * body.leg_m, (0.0012 + 0.012 * loose) * body.leg_m)
     along = (body.thigh_m**2 - body.shank_m**2 + reach**2) / (2 * reach)
     aside = np.sqrt(body.thigh_m**2 - along**2)
     knee = hip + along[:, None] * direction + aside[:, None] * _knee_direction(controls, side, direction)

@@ -24,6 +24,8 @@ class Step:
     count: int = 0  # how often; 0: as time allows
     seat: str = ""  # the word used for it: sofa, chair, ...
     facing: str = ""  # left | right | towards | away | ""
+    seconds: float = 0.0  # how long, where the sentence says so
+    on_feet: bool = False  # the sentence says that the person stands
     clause: str = ""  # the words that said so
     start_s: float = 0.0
     end_s: float = 0.0

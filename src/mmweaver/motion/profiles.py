@@ -47,7 +47,7 @@ def travel(u: Values, ramp_in: float, ramp_out: float) -> Values:
     return start / total
 
 
-def cap(x: Values, limit: float, width: float) -> Values:
+def cap(x: Values, limit: float | Values, width: float | Values) -> Values:
     """x where it is below limit - width, never above limit, smooth between; C3."""
     return x - 2 * width * rise_integral((x - limit + width) / (2 * width))
 

@@ -44,12 +44,14 @@ def walking_style(stage: Stage, speed_mps: float) -> Style:
     share = min(speed_mps / 1.3, 1.4)
     steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (1.75 / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
     vigour = np.exp(rng.normal(0, 0.15))
+    leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
+    drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
     return Style(
-        steps_hz=float(steps_hz), double_support=0.22, half_stance_m=0.034 * height_m,
-        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.045 * share,
-        heel_strike_rad=0.28 * share**0.5, toe_off_rad=0.85 * share**0.5, lift_m=0.035, spot_lift_m=0.0,
+        steps_hz=float(steps_hz), double_support=0.2, half_stance_m=0.034 * height_m,
+        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.055 * share,
+        heel_strike_rad=0.28 * share**0.5, toe_off_rad=1.0 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
         arm_swing_rad=0.36 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
-        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.012 * share, sink=0.985, pelvis_yaw_rad=0.09 * share,
+        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.986, pelvis_yaw_rad=0.09 * share,
         sway_m=0.018,
     )  # fmt: skip
 
@@ -167,7 +169,7 @@ def _write_foot(
         long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
         effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
         u = (t - fall.off_s) / (after.strike_s - fall.off_s)
-        across = travel(np.clip(u, 0, 1), 0.38, 0.38)
+        across = travel(np.clip(u, 0, 1), 0.33, 0.36)
         controls.foot_m[inside, side, :2] = fall.place_m + across[:, None] * gap
         high = style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
         controls.foot_m[inside, side, 2] = high * bump(u)
@@ -176,8 +178,8 @@ def _write_foot(
         if jog:
             pitch = pitch + 0.5 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
         controls.foot_rad[inside, side, 1] = pitch
-        edge = 0.3
-        lifted = np.clip(effort + float(jog), 0, 1) * rise(u / edge) * rise((1 - u) / edge)
+        # The pelvis comes down for the foot that is about to land, well before it does.
+        lifted = np.clip(effort + float(jog), 0, 1) * rise(u / 0.3) * rise((1 - u) / 0.6)
         controls.contact[inside, side] = 1 - lifted
 
 
@@ -188,8 +190,8 @@ def _pitch(
     came, goes = np.clip(np.array([came_m, ahead_m]) / 1.2, -0.35, 1.15)
     stance, swing = fall.off_s - fall.strike_s, after.strike_s - fall.off_s
     down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / (0.22 * stance)))
-    up = style.toe_off_rad * abs(goes) * rise((t - fall.strike_s - 0.5 * stance) / (0.5 * stance + 0.12 * swing))
-    back = rise((t - fall.off_s - 0.12 * swing) / (0.88 * swing))
+    up = style.toe_off_rad * abs(goes) * rise((t - fall.strike_s - 0.42 * stance) / (0.58 * stance + 0.08 * swing))
+    back = rise((t - fall.off_s - 0.08 * swing) / (0.92 * swing))
     return down + up * (1 - back) - back * style.heel_strike_rad * max(goes, 0.0)
 
 
@@ -200,9 +202,9 @@ def _write_trunk_and_arms(
     body, heading = stage.body, controls.heading_rad
     left_ahead = np.cos(np.pi * phase) * moving  # the left leg is in front at its strike
     right_stance = -np.sin(np.pi * (phase - 0.1)) * moving  # +1 over the right foot, -1 over the left one
-    top = 0.61 if style.double_support > 0 else 1 + style.double_support / 2  # over the foot; jogging, in the air
+    top = 0.54 if style.double_support > 0 else 1 + style.double_support / 2  # over the foot; jogging, in the air
     high = np.cos(2 * np.pi * (phase - top)) * moving
-    stand = body.pelvis_height_m(style.sink) - style.bob_m * (1 if style.spot_lift_m else 0)
+    stand = body.pelvis_height_m(style.sink) - style.bob_m
     controls.pelvis_m[:, 2] += moving * (stand - controls.pelvis_m[:, 2]) + style.bob_m * high
     sway = -style.sway_m * right_stance
     controls.pelvis_m[:, 0] -= sway * np.sin(heading)

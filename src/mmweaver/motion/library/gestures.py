@@ -83,7 +83,7 @@ def raising(stage: Stage, controls: Controls) -> Controls:
     time_s, rng = stage.time_s, stage.rng
     count = max(stage.step.count, 1)
     each = float(min(stage.duration_s / count, 6.0 if count == 1 else 3.5))
-    move = float(np.clip(stage.tempo(0.9, 0.62, 0.45) * min(1.0, each / 1.7), 0.36, 1.4))
+    move = float(np.clip(stage.tempo(1.2, 0.85, 0.6) * min(1.0, each / 2.0), 0.42, 1.6))
     up = np.zeros_like(time_s)
     for k in range(count):
         begin = stage.start_s + k * each
@@ -97,7 +97,7 @@ def raising(stage: Stage, controls: Controls) -> Controls:
         arm[:, 3] = rng.uniform(0.12, 0.25)
         arm[:, 2] = 0.0
         _mix(controls, side, arm, up)
-        controls.arm_rad[:, side, 3] += 0.35 * np.sin(np.pi * up) * (not side_way)
+        controls.arm_rad[:, side, 3] += 0.8 * np.sin(np.pi * up) * (not side_way)
         controls.spine_rad[:, 0] += 0.05 * up * (-1 if side == LEFT else 1) * (len(sides(stage)) == 1)
     return controls
 
@@ -157,7 +157,7 @@ def punching(stage: Stage, controls: Controls) -> Controls:
     controls.spine_rad[:, 1] += 0.06
     guard = np.array([rng.uniform(0.15, 0.175), rng.uniform(0.05, 0.065), rng.uniform(0.12, 0.15)])
     for side in (LEFT, RIGHT):
-        aim = np.array([0.36, 0.03, 0.1 + rng.normal(0, 0.01)])
+        aim = np.array([0.285, 0.035, 0.1 + rng.normal(0, 0.01)])
         target = (guard + out[side][:, None] * (aim - guard)) * body.height_m
         arm = reach(body, target, elbow=(-0.15, 0.45, -1.0))
         _mix(controls, side, arm, np.ones_like(time_s))

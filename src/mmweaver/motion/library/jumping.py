@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.standing import STAND_STRETCH, home_feet, upright
-from mmweaver.motion.profiles import bump, plateau, rise, through
+from mmweaver.motion.profiles import plateau, rise, through
 from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
@@ -64,51 +64,59 @@ class Hop:
         return up - half - down
 
 
-def _hop_all(controls: Controls, stage: Stage, hops: list[Hop], dips_m: list[tuple[float, float, float]]) -> None:
-    """Writes pelvis height, soles, heels and contact for hops with dips (time, depth, upward acceleration) between."""
+def _hop_all(
+    controls: Controls,
+    stage: Stage,
+    hops: list[Hop],
+    dips_m: list[tuple[float, float, float]],
+    ready_m: float = 0.025,
+    heels: float = 0.75,
+) -> None:
+    """Writes pelvis height, soles, heels and contact for hops with dips (time, depth, upward acceleration) between.
+
+    Take-off and landing are `ready_m` above the standing height: the heels are up by then.
+    """
     time_s, body = stage.time_s, stage.body
     stand = body.pelvis_height_m(STAND_STRETCH)
-    ready = stand - 0.02  # take-off with the knees not quite straight, heels up
     knots: list[Knot] = [(time, stand - depth, 0.0, push) for time, depth, push in dips_m]
     for hop in hops:
-        knots += hop.knots(ready + 0.045)
+        knots += hop.knots(stand + ready_m)
     knots.sort()
     controls.pelvis_m[:, 2] = through(time_s, knots)
     for hop in hops:
-        pitch = 0.75 * hop.toes_down(time_s, 0.13, 0.12)
+        pitch = heels * hop.toes_down(time_s, 0.13, 0.12)
         controls.foot_rad[:, :, 1] += pitch[:, None]
         controls.foot_m[:, :, 2] += hop.sole_m(time_s)[:, None]
-        controls.contact[:, :] -= hop.air(time_s)[:, None]
+        controls.contact[:] -= hop.air(time_s)[:, None]
 
 
 def jumping(stage: Stage) -> Controls:
-    """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly."""
+    """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    quick = stage.step.speed
-    height_m = float(rng.uniform(0.14, 0.26)) * (0.7, 1.0, 1.1)[quick + 1]
+    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0, 1.1)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
-    crouch_s, push_s, absorb_s, recover_s = 0.34, 0.24, 0.2, 0.3
-    one_s = crouch_s + push_s + flight_s + absorb_s + recover_s
-    count = stage.step.count or max(1, int((stage.duration_s + 0.25) / (one_s + 0.05)))
-    period = float(np.clip(stage.duration_s / count, one_s * 0.9, one_s * 1.5))
-    squeeze = min(1.0, period / one_s)
-    crouch_s, recover_s = crouch_s * squeeze, recover_s * squeeze
-    hops, dips, arms = [], [(stage.start_s, 0.0, 0.0)], np.zeros_like(time_s)
-    trunk = np.zeros_like(time_s)
-    depth = float(rng.uniform(0.2, 0.28))
-    for k in range(count):
-        begin = stage.start_s + k * period
-        off = begin + crouch_s + push_s
-        hop = Hop(off_s=off, rise_m=height_m)
-        hops.append(hop)
-        rest = hop.land_s + absorb_s + recover_s
-        dips += [(begin + crouch_s, depth, 12.0), (hop.land_s + absorb_s, 0.75 * depth, 10.0), (rest, 0.0, 0.0)]
-        trunk += plateau(time_s, begin, off + 0.1, crouch_s, push_s + 0.1)
-        trunk += 0.7 * plateau(time_s, hop.land_s - 0.08, rest, 0.25, recover_s)
-        arms -= 0.7 * plateau(time_s, begin, off - 0.02, crouch_s, push_s)
-        arms += 1.7 * plateau(time_s, off - push_s, rest, push_s + 0.1, flight_s / 2 + absorb_s + recover_s)
-    dips = [dip for i, dip in enumerate(dips) if i == 0 or dip[0] - dips[i - 1][0] > 0.02]
+    crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
+    edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
+    count = stage.step.count or max(1, int((stage.duration_s - edge_s - flight_s) / between_s + 1.25))
+    spare = max(stage.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
+    period = between_s + (min(spare / (count - 1), 0.35) if count > 1 else 0.0)
+    depth = float(rng.uniform(0.19, 0.25))
+    first = stage.start_s + crouch_s + push_s
+    hops = [Hop(off_s=first + k * period, rise_m=height_m) for k in range(count)]
+    rest = hops[-1].land_s + absorb_s + recover_s
+    dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
+    dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
+    dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
     _hop_all(controls, stage, hops, dips)
+    trunk = plateau(time_s, stage.start_s, first + 0.12, crouch_s, push_s + 0.12)
+    arms = -0.5 * plateau(time_s, stage.start_s, first + 0.05, crouch_s, push_s + 0.2)
+    for hop in hops:
+        gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
+        after = recover_s if hop is hops[-1] else gap
+        trunk = trunk + 0.75 * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
+        arms = arms + 1.3 * plateau(
+            time_s, hop.off_s - 0.25, hop.land_s + gap + 0.3, 0.25 + flight_s / 2, flight_s / 2 + gap + 0.2
+        )
     _bend(controls, trunk, 0.45)
     controls.arm_rad[:, :, 0] += arms[:, None]
     controls.arm_rad[:, :, 3] += 0.5 * np.maximum(trunk, 0)[:, None]
@@ -139,16 +147,16 @@ def jumping_jacks(stage: Stage) -> Controls:
     begin = stage.start_s + ground_s * 0.5
     hops = [Hop(off_s=begin + k * half_s, rise_m=height_m) for k in range(hops_wanted)]
     dips = [(stage.start_s - 0.2, 0.0, 0.0)]
-    dips += [(hop.off_s - ground_s / 2, 0.035, 6.0) for hop in hops]
-    dips += [(hops[-1].land_s + ground_s / 2, 0.035, 6.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips)
+    dips += [(hop.off_s - ground_s / 2, 0.085, 5.0) for hop in hops]
+    dips += [(hops[-1].land_s + ground_s / 2, 0.075, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
+    _hop_all(controls, stage, hops, dips, ready_m=-0.03, heels=0.6)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0
         spread += sign * rise((time_s - hop.off_s) / hop.flight_s)
         centre, wide = (hop.off_s + hop.land_s) / 2, 0.92 * half_s
         lift += sign * rise((time_s - centre) / wide + 0.5)
-    _spread_feet(controls, stage, spread, float(rng.uniform(0.17, 0.21)))
+    _spread_feet(controls, stage, spread, float(rng.uniform(0.12, 0.155)))
     top = float(rng.uniform(2.55, 2.85))
     controls.arm_rad[:, :, 1] += (top * lift)[:, None]
     controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
@@ -194,14 +202,3 @@ def squatting(stage: Stage) -> Controls:
     controls.arm_rad[:, :, 0] += (float(rng.uniform(1.5, 1.9)) * down)[:, None]
     controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]
     return controls
-
-
-def settle(stage: Stage) -> float:
-    """When the root has all but stopped turning, in seconds; a seat is taken only then."""
-    late = stage.start_s + np.linspace(0, max(stage.duration_s, 0.1), 60)
-    left = np.abs(stage.path.facing_rad(late) - stage.path.facing_rad(late[-1:])[0])
-    turning = np.flatnonzero(left > 0.6)
-    return float(late[turning[-1]]) if len(turning) else stage.start_s
-
-
-__all__ = ["Hop", "bump", "jumping", "jumping_jacks", "settle", "squatting"]

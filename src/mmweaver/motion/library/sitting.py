@@ -3,9 +3,10 @@
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.motion.arm_reach import reach
 from mmweaver.motion.body import Body
 from mmweaver.motion.controls import Controls
-from mmweaver.motion.library.standing import ANKLE_BEHIND, upright
+from mmweaver.motion.library.standing import ANKLE_BEHIND, ARM_HANGING, upright
 from mmweaver.motion.profiles import bump, rise
 from mmweaver.motion.stage import Stage
 
@@ -26,9 +27,7 @@ def sitting(stage: Stage) -> Controls:
 
 def sitting_down(stage: Stage) -> Controls:
     """Hips back over the seat while the trunk leans forward, then down."""
-    from mmweaver.motion.library.jumping import settle
-
-    begin = settle(stage)
+    begin = _settled_s(stage)
     lasts = float(np.clip(stage.end_s - begin - 0.1, 0.75, 1.3 if stage.step.speed >= 0 else 2.0))
     return _seated(stage, (stage.time_s - begin) / lasts)
 
@@ -54,7 +53,17 @@ def _seated(stage: Stage, u: Float[Array, " n"]) -> Controls:
     controls.spine_rad[:, 1] += 0.35 * lean + 1.3 * slouch * down
     controls.head_rad[:, 0] -= 0.5 * lean
     controls.knee_out_rad[:] += (0.12 * down)[:, None]
-    lap = np.array([0.34, 0.06, -0.25, 0.95])  # hands on the thighs
-    controls.arm_rad[:] += down[:, None, None] * (lap - np.array([-0.02, 0.13, 0.0, 0.22]))
+    target = np.array([0.145, 0.066, -0.13]) * body.height_m  # hands on the thighs, seen from spine3
+    lap = reach(body, np.tile(target, (len(heading), 1)), elbow=(-0.6, 0.45, -1.0))
+    controls.arm_rad[:] += down[:, None, None] * (lap[:, None] - np.array(ARM_HANGING))
     controls.arm_rad[:, :, 0] += (0.35 * lean)[:, None]
     return controls
+
+
+def _settled_s(stage: Stage) -> float:
+    """When the root has all but stopped turning, in seconds; a seat is taken only then."""
+    late = stage.start_s + np.linspace(0, max(stage.duration_s, 0.1), 60)
+    left = np.abs(stage.path.facing_rad(late) - stage.path.facing_rad(late[-1:])[0])
+    turning = np.flatnonzero(left > 0.6)
+    return float(late[turning[-1]]) if len(turning) else stage.start_s
+

@@ -11,7 +11,7 @@ from mmweaver.motion.stage import Stage
 Array = np.ndarray
 SIDE_SIGN = np.array([1.0, -1.0])  # left, right
 
-STAND_STRETCH = 0.992
+STAND_STRETCH = 0.9955
 ANKLE_BEHIND = 0.022  # of the height: the pelvis is a little in front of the ankles
 HALF_STANCE = 0.056
 TOES_OUT_RAD = 0.12
