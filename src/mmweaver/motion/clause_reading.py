@@ -318,6 +318,8 @@ def _going_step(step: Step, words: list[Word], first: bool) -> Step:
         direction = "towards"
     if direction == "around":
         direction = "pacing"
+    if step.seat and direction in ("", "backwards", "forwards"):
+        direction = "seat"
     return replace(step, direction=direction, hand="")
 
 

@@ -11,6 +11,7 @@ from mmweaver.motion.words import words_of
 LONGEST_TEXT = 1000
 MOST_STEPS = 24
 SEATED = ("sit", "sit_down")
+LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop"}
 
 
 def parse(text: str) -> MotionPlan:
@@ -33,6 +34,8 @@ def parse(text: str) -> MotionPlan:
             readings[-1].absorb(reading)
         elif reading.steps:
             readings.append(reading)
+        elif readings and readings[-1].steps[-1].upper == "raise" and LOWERING & set(reading.unknown):
+            continue  # a raised hand comes down by itself
         elif not reading.is_empty:
             raise InputError(f"the clause {clause.text!r} names no activity that is known; known: {KNOWN}")
     if not readings:
