@@ -50,9 +50,7 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
     return Controls(**values)
 
 
-def blended(
-    parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
-) -> Controls:
+def blended(parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]) -> Controls:
     """Parts one after the other: part k takes over around starts_s[k] within blends_s[k].
 
     Where the two stand at different places, the feet step over one after the other, lifted.

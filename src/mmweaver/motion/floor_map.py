@@ -62,9 +62,7 @@ class FloorMap:
         farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
         low, high = self.range_window_m
         dislike = 0.7 * ~self.scene.free_space.is_seen
-        dislike = (
-            dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
-        )
+        dislike = dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
         for height in (0.03, self.height_m):
             dislike = dislike + 0.8 * ~self._in_picture(self.places_m, floor + height, margin=0.01, vertical=True)
         return dislike

@@ -102,25 +102,10 @@ NUMBERS = {
     "another": 1,
 }  # fmt: skip
 TIMES = frozenset({"once", "twice", "thrice"})
-SEATS = frozenset(
-    {"sofa", "couch", "chair", "stool", "bed", "bench", "armchair", "seat", "ottoman", "settee", "recliner"}
-)
+SEATS = frozenset({"sofa", "couch", "chair", "stool", "bed", "bench", "armchair", "seat", "ottoman", "settee", "recliner"})
 ARMS = frozenset({"hand", "hands", "arm", "arms", "fist", "fists", "palm", "palms", "wrist", "wrists"})
 RADAR = frozenset(
-    {
-        "radar",
-        "camera",
-        "sensor",
-        "me",
-        "us",
-        "viewer",
-        "observer",
-        "device",
-        "photographer",
-        "lens",
-        "audience",
-        "awr1843",
-    }
+    {"radar", "camera", "sensor", "me", "us", "viewer", "observer", "device", "photographer", "lens", "audience", "awr1843"}
 )
 BOTH = frozenset({"both", "hands", "arms", "fists"})
 OWN = frozenset({"his", "her", "their", "its", "my", "your", "own"})
@@ -133,22 +118,7 @@ NEGATIONS = frozenset(
 MANY = frozenset({"people", "persons", "men", "women", "boys", "girls", "children", "kids", "couple", "crowd", "humans",
                   "users", "everyone", "family", "pair", "others", "group", "team", "subjects"})  # fmt: skip
 NOT_HUMAN = frozenset(
-    {
-        "dog",
-        "cat",
-        "robot",
-        "horse",
-        "bird",
-        "car",
-        "animal",
-        "monkey",
-        "drone",
-        "cow",
-        "elephant",
-        "fish",
-        "pet",
-        "puppy",
-    }
+    {"dog", "cat", "robot", "horse", "bird", "car", "animal", "monkey", "drone", "cow", "elephant", "fish", "pet", "puppy"}
 )
 # Words that make it another movement than the one known, so that leaving them out would be wrong.
 OTHER_MOVEMENT = frozenset(

@@ -32,9 +32,7 @@ class Placement:
     assumptions: tuple[str, ...]
 
 
-def place(
-    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None
-) -> Placement:
+def place(plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None) -> Placement:
     """Finds a way for the whole plan that is free and in view all along.
 
     `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, or where
@@ -112,9 +110,7 @@ def _start(
     return Way(floor=floor, rng=rng, place=spot, heading_rad=facing), None
 
 
-def _random_start(
-    plan: MotionPlan, floor: FloorMap, rng: np.random.Generator, seats: list[Sitting]
-) -> Float[Array, "2"]:
+def _random_start(plan: MotionPlan, floor: FloorMap, rng: np.random.Generator, seats: list[Sitting]) -> Float[Array, "2"]:
     """A cell at random; where a walk shall end at a seat, often one from which it would."""
     first = plan.steps[0]
     to_seat = first.direction == "seat" or (len(plan.steps) > 1 and plan.steps[1].lower == "sit_down")
@@ -161,11 +157,7 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
         lasts = max(step.end_s - step.start_s - 0.35, 0.1)
         speed = float(np.hypot(*gap)) / lasts
         fits = 0.45 <= speed <= (1.6 if step.lower == "walk" else 2.6)
-        if (
-            fits
-            and (said is None or abs(angle_between(said, towards)) < 0.9)
-            and reachable(way.floor, way.place, sitting)
-        ):
+        if fits and (said is None or abs(angle_between(said, towards)) < 0.9) and reachable(way.floor, way.place, sitting):
             return sitting
     return None
 
@@ -184,9 +176,7 @@ def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last
         walk_circle(way, step, first=first, last=last)
     elif direction is None:
         if step.direction == "seat" and not any("stool" in note or "no seat" in note for note in way.notes):
-            way.notes.append(
-                f"for {step.clause!r} no seat of the photo can be reached; the walk ends where there is room"
-            )
+            way.notes.append(f"for {step.clause!r} no seat of the photo can be reached; the walk ends where there is room")
         walk_anywhere(way, step, first=first, last=last)
     else:
         walk_straight(way, step, direction, first=first, last=last)
@@ -225,9 +215,7 @@ def _lay_turn(way: Way, step: Step, rng: np.random.Generator, *, first: bool) ->
         if first and step.lower != "turn":
             return  # the start faces there already
         if first:
-            way.start_heading_rad = way.heading_rad = way.heading_rad + float(
-                rng.choice([-1.0, 1.0]) * rng.uniform(1.2, 2.2)
-            )
+            way.start_heading_rad = way.heading_rad = way.heading_rad + float(rng.choice([-1.0, 1.0]) * rng.uniform(1.2, 2.2))
         heading = _facing_rad(step.facing, way.place)
     else:
         quarter = float(np.pi / 2 + rng.normal(0, 0.08))

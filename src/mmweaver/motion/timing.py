@@ -69,4 +69,6 @@ def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:
         elastic = [k == len(steps) - 1 for k in range(len(steps))]  # done, then stays as it is
     weight = sum(limit[1] for limit, free in zip(limits, elastic, strict=True) if free)
     extra = duration_s - natural
-    return [high + (extra * high / weight if free else 0.0) for (_, high), free in zip(limits, elastic, strict=True)]
+    return [
+        high + (extra * high / weight if free else 0.0) for (_, high), free in zip(limits, elastic, strict=True)
+    ]

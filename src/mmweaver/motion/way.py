@@ -77,9 +77,7 @@ class Way:
         self.cost += 0.25 * abs(angle)
         return lasts
 
-    def go(
-        self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]
-    ):
+    def go(self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]):
         """A straight move over a time span; the caller has made sure that it is free."""
         move = Move(
             start_s=span[0], end_s=span[1], length_m=length_m, direction_rad=direction_rad,
