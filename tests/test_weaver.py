@@ -141,6 +141,8 @@ def test_another_method_plugs_in(room: Room, tmp_path: Path, monkeypatch: pytest
         ({"text": ""}, "empty"),
         ({"text": " \n"}, "empty"),
         ({"text": "walk " * 2000}, "10000 characters"),
+        ({"text": "a person photosynthesises"}, "walk"),
+        ({"text": "a person walks, then squats five times", "frames": 10}, "need at least"),
         ({"frames": 0}, f"1 to {MAX_FRAMES}"),
         ({"frames": 1_000_000}, f"1 to {MAX_FRAMES}"),
         ({"fps": 0.0}, "fps"),

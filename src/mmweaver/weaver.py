@@ -27,6 +27,8 @@ from mmweaver.formats.radar_file import load_radar
 from mmweaver.methods import METHODS
 from mmweaver.motion.compose import compose
 from mmweaver.motion.resample import resample
+from mmweaver.motion.sentence import parse
+from mmweaver.motion.timing import schedule
 from mmweaver.pictures.view import View
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.photo import read_photo
@@ -36,7 +38,6 @@ from mmweaver.scene.sample import sample_photo
 MAX_FRAMES = 2000
 FPS_LIMITS = (0.1, 1000.0)
 MAX_SECONDS = 600.0
-MAX_TEXT = 1000
 MAX_BYTES = 2_000_000_000  # of the largest array
 
 
@@ -205,13 +206,9 @@ def check_request(
 ) -> RadarConfig:
     """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
 
-    Raises InputError for an empty or endless text, for frames, fps or a place out of their limits, for a frame rate
-    that the chirps do not fit into, and for more samples than memory holds.
+    Raises InputError for frames, fps or a place out of their limits, for a frame rate that the chirps do not fit into,
+    for more samples than memory holds, and for a text that is not understood or does not fit the time.
     """
-    if not text.strip():
-        raise InputError("the text is empty; say what the person does, for example 'a person walks'")
-    if len(text) > MAX_TEXT:
-        raise InputError(f"the text has {len(text)} characters; at most {MAX_TEXT} are read")
     if not 1 <= frames <= MAX_FRAMES:
         raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
     if fps is not None and not FPS_LIMITS[0] <= fps <= FPS_LIMITS[1]:
@@ -232,4 +229,5 @@ def check_request(
             f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
             f" {most} are made at a time"
         )
+    schedule(parse(text), frames * config.frame_period_s)
     return config

@@ -42,7 +42,7 @@ def test_the_demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
     assert read_radar_npz(tmp_path / "demo" / "radar.npz").values.shape == (20, 64, 32, 12)
     assert main(["generate", "--demo"]) == 2
     assert "--overwrite" in capsys.readouterr().err
-    assert main(["generate", "--demo", "--overwrite", "--frames", "2", "--quiet"]) == 0
+    assert main(["generate", "--demo", "--overwrite", "--frames", "2", "--text", WALK, "--quiet"]) == 0
     assert capsys.readouterr().out == ""
 
 
@@ -70,7 +70,7 @@ def test_without_a_camera_file_the_output_says_what_was_taken(
 
 def test_a_bin_goes_back_through_process(tmp_path: Path):
     walk, again = tmp_path / "walk", tmp_path / "again"
-    argv = ["generate", "--demo", "--out", str(walk), "--frames", "3", "--bin", "--quiet"]
+    argv = ["generate", "--demo", "--out", str(walk), "--frames", "3", "--text", WALK, "--bin", "--quiet"]
     assert main([*argv, "--iq-order", "qi", "--tx-order", "0,1,2"]) == 0
     meta = json.loads((walk / "meta.json").read_text())["adc_data_bin"]
     assert (meta["iq_order"], meta["tx_order"]) == ("qi", [0, 1, 2])
@@ -184,7 +184,7 @@ def test_what_stops_it_halfway_leaves_nothing(
         raise raised
 
     monkeypatch.setattr(result_folder, "draw_animation", stop)
-    assert main(["generate", "--demo", "--frames", "1", "--out", str(tmp_path / "out")]) == status
+    assert main(["generate", "--demo", "--frames", "1", "--text", WALK, "--out", str(tmp_path / "out")]) == status
     captured = capsys.readouterr()
     assert word in captured.err
     assert captured.err.count("\n") == 1
@@ -195,7 +195,8 @@ def test_a_disk_that_takes_no_more(tmp_path: Path):
     """A limit on the size of files makes a write fail for real, within the cube."""
     code = "import sys; from mmweaver.cli.main import main; sys.exit(main(sys.argv[1:]))"
     done = subprocess.run(
-        [sys.executable, "-c", code, "generate", "--demo", "--frames", "3", "--out", str(tmp_path / "out")],
+        [sys.executable, "-c", code, "generate", "--demo", "--frames", "3", "--text", WALK,
+         "--out", str(tmp_path / "out")],
         capture_output=True, text=True, check=False,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000)),
     )  # fmt: skip

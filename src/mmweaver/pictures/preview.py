@@ -279,8 +279,8 @@ def _note(axes: "Axes", text: str, *, corner: str = "lower right") -> None:
     """What a line or dot means: bright on the picture's lower right, dark in a corner that a fan leaves white."""
     vertical, horizontal = corner.split()
     x, y = {"left": 0.02, "right": 0.98}[horizontal], {"lower": 0.02, "upper": 0.97}[vertical]
+    colour, ground = (TRUTH, "black") if corner == "lower right" else (INK, PAPER)
     axes.text(
         x, y, text, transform=axes.transAxes, ha=horizontal, va={"lower": "bottom", "upper": "top"}[vertical],
-        fontsize=7.5, color=TRUTH if corner == "lower right" else INK,
-        bbox=None if corner == "lower right" else {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 1.0},
+        fontsize=7.5, color=colour, bbox={"facecolor": ground, "edgecolor": "none", "alpha": 0.6, "pad": 1.0},
     )  # fmt: skip
