@@ -56,13 +56,15 @@ class FloorMap:
 
     @cached_property
     def dislike(self) -> Float[Array, "y x"]:
-        """Soft reasons against a cell: assumed rather than seen, feet or head out of the window or the picture."""
+        """Soft reasons against a cell: assumed rather than seen, aside, feet or head out of the window or the picture."""
         ground = np.hypot(self.places_m[..., 0], self.places_m[..., 1])
         floor = self.scene.floor_z_m
         farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
         low, high = self.range_window_m
         dislike = 0.7 * ~self.scene.free_space.is_seen
         dislike = dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
+        azimuth = np.degrees(np.abs(np.arctan2(self.places_m[..., 0], self.places_m[..., 1])))
+        dislike = dislike + np.clip((azimuth - 12) / 20, 0, 1.4)  # the antennas look straight ahead
         for height in (0.03, self.height_m):
             dislike = dislike + 0.8 * ~self._in_picture(self.places_m, floor + height, margin=0.01, vertical=True)
         return dislike
@@ -108,11 +110,17 @@ class FloorMap:
         row, column, inside = self._cells(places)
         return np.where(inside, self.dislike[row, column], 3.0)
 
-    def free_length_m(self, place: Float[Array, "2"], direction_rad: float, wanted_m: float) -> float:
-        """How far a body can go straight from a place, at most `wanted_m`."""
+    def free_length_m(
+        self, place: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
+    ) -> float:
+        """How far a body can go straight from a place, at most `wanted_m`.
+
+        Within `excused_m` of the place it may be closer to things than a body's radius (a seat just left).
+        """
         steps = np.append(np.arange(0.0, wanted_m, 0.04), wanted_m)
         way = place + steps[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
-        blocked = np.flatnonzero(~self.can_stand(way))
+        excused = (steps < excused_m) & (self.clearance_at(way) > 0.0)
+        blocked = np.flatnonzero(~(self.can_stand(way) | excused))
         if not len(blocked):
             return float(wanted_m)
         return float(steps[blocked[0] - 1]) if blocked[0] else 0.0

@@ -123,7 +123,7 @@ def _place_leg(joints: Joints, body: Body, controls: Controls, frame: Frames, si
     distance = np.linalg.norm(away, axis=1)
     direction = away / distance[:, None]
     loose = 1 - controls.contact[:, side]  # a leg in the air is not stretched, so that the knee does not snap
-    reach = cap(distance, (LONGEST_LEG - 0.016 * loose) * body.leg_m, (0.0012 + 0.012 * loose) * body.leg_m)
+    reach = cap(distance, (LONGEST_LEG - 0.0145 * loose) * body.leg_m, (0.0012 + 0.034 * loose) * body.leg_m)
     along = (body.thigh_m**2 - body.shank_m**2 + reach**2) / (2 * reach)
     aside = np.sqrt(body.thigh_m**2 - along**2)
     knee = hip + along[:, None] * direction + aside[:, None] * _knee_direction(controls, side, direction)

@@ -53,8 +53,15 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\bback and forth\b|\bto and fro\b|\bback and forwards?\b|\bup and down the room\b", " pacing_to_and_fro "),
     (r"\baround (?:the|in the) (?:room|place)\b", " pacing_to_and_fro "),
     (r"\bup and down\b|\b(?:from )?side to side\b", " "),
-    (r"\b(?:half|quarter|semi)[- ]?(?:a )?circles?\b", " semicircle "),
-    (r"\b(?:in|on|along|around)(?: an?| the)?(?: small| large| big| wide| full)? circles?\b|\ba circle\b", " in_circle "),
+    (r"\b(?:starting|beginning|starts?|begins?) (?:with|by|on) (?:the |his |her |their )?(?:left|right)(?: (?:leg|foot))?\b",
+     " leading-foot "),
+    (r"\b(?:half|quarter|quater|semi|third|thirds|fourth|fourths)[- ]?(?:of )?(?:an? |the )?(?:in )?circles?\b",
+     " semicircle "),
+    (r"\b(?:in|on|along|around)(?: an?| the)?(?: [a-z-]+){0,2} circles?\b|\ba (?:full |whole |complete |big |small )?circle\b",
+     " in_circle "),
+    (r"\b(?:figure|number)[ -](?:of )?(?:an? )?(?:8|eight)\b|\b\d+ ?degrees? of an? circle\b", " semicircle "),
+    (r"\bto (?:the|his|her|one|their|its) side\b|\bside[- ]?steps?\b", " sideways "),
+    (r"\b360 ?(?:degrees?|°)?|\bfull turn\b", " fullturn "),
     (r"\b(?:on|in) (?:the |one |a )?(?:same )?(?:spot|place)\b|\bin-place\b", " on_spot "),
     (r"\b180 ?(?:degrees?|°)|\bhalf turn\b|\babout[- ]face\b|\b(?:all the way )?around\b(?= *(?:$|[,.;]|and|then))",
      " around "),
@@ -81,7 +88,7 @@ DIRECTIONS = {
     **dict.fromkeys(("towards", "toward", "approach", "closer", "nearer", "approaches", "approaching"), "towards"),
     **dict.fromkeys(("away", "retreat", "retreats", "retreating"), "away"),
     **dict.fromkeys(("forward", "forwards", "ahead", "straight", "onward", "advance", "advances"), "forwards"),
-    **dict.fromkeys(("backward", "backwards", "back"), "backwards"),
+    **dict.fromkeys(("backward", "backwards", "back", "rear", "reverse"), "backwards"),
     "in_circle": "circle",
     "on_spot": "spot",
     "around": "around",
@@ -130,7 +137,9 @@ OTHER_MOVEMENT = frozenset(
      "somersault", "asleep", "drunken", "drunk", "limp", "crossed", "spiral", "eight", "triangle", "rectangle",
      "swings", "phone", "head", "shoulder", "shoulders", "elbow", "elbows", "hips", "hip", "thigh", "sit-ups", "push-ups",
      "lunge", "lunges", "plank", "violin", "guitar", "golf", "tennis", "racket", "upward", "downward", "box_object",
-     "scooter", "skateboard", "grapevine", "waltz", "steps_up", "step_stool"}
+     "platform", "edge", "curb", "log", "bridge", "bent", "hunched", "crouched", "bending", "kneeling", "circle", "circles",
+     "circular", "fullturn", "quarter", "against", "reacts", "push", "pushes", "perturbation", "balance", "trips",
+     "stumbles", "shuffle", "scooter", "skateboard", "grapevine", "waltz", "steps_up", "step_stool"}
 )  # fmt: skip
 # Words that may stand anywhere and change nothing that can be acted out.
 FILLERS = frozenset(
@@ -155,5 +164,6 @@ FILLERS = frozenset(
     stationary motionless motionlessly immobile perfectly completely idle_ moment while_ second seconds minute
     exercise exercises workout gym set sets repetitions reps fitness jacks
     steps pairs large-ish meters metres meter metre m cm feet_ width apart shirt jacket hat red blue black white green
+    him them something anything first about whole complete successive consecutive row quite close
     someone's person's man's user's woman's arm's side_ onto_ around_""".split()
 )

@@ -12,7 +12,16 @@ from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
 from mmweaver.motion.seating import STOOL_HEIGHT_M, Sitting, reachable, seats_of, stool_at, stool_fits, stool_note
-from mmweaver.motion.way import NoWay, Way, _ramps, angle_between, face_along, walk_anywhere, walk_circle, walk_straight
+from mmweaver.motion.way import (
+    NoWay,
+    Way,
+    angle_between,
+    face_along,
+    ramps_of,
+    walk_anywhere,
+    walk_circle,
+    walk_straight,
+)
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
@@ -81,6 +90,7 @@ def _try(
             sitting = target if following is not None and following.lower == "sit_down" else None
         elif step.lower == "turn" or step.facing:
             _lay_turn(way, step, rng, first=k == 0)
+        way.from_seat = way.from_seat or step.lower == "stand_up"
         if step.lower == "sit_down" and k:
             sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
             way.turn_to(sitting.facing_rad, step.start_s - 0.3)
@@ -135,6 +145,8 @@ def _start_seated(
         cost += float(floor.dislike_at(sitting.seat_m)) + (0.0 if floor.clearance_at(sitting.feet_m) > 0 else 2.0)
     else:
         cells = floor.places_m[floor.walkable]
+        if not len(cells):
+            raise NoWay("no free floor")
         spot = np.array(start_m, dtype=float) if start_m else cells[int(rng.integers(len(cells)))]
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.3), -0.6, 0.6))
         sitting = stool_at(spot, facing, body)
@@ -167,7 +179,7 @@ def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last
         gap = target.feet_m - way.place
         direction = float(np.arctan2(gap[1], gap[0]))
         begin = face_along(way, step, direction, step.start_s, first=first)
-        ramps = (_ramps(step.end_s - begin, first=first, last=False)[0], 0.45)
+        ramps = (ramps_of(step.end_s - begin, first=first, last=False)[0], 0.45)
         way.go(step, direction, float(np.hypot(*gap)), (begin, step.end_s), ramps)
         return
     way.cost += 3.0 * (step.direction == "seat")
@@ -264,8 +276,13 @@ def _no_room(plan: MotionPlan, floor: FloorMap, start_m: tuple[float, float] | N
     from_there = f" from {start_m[0]:g},{start_m[1]:g}" if start_m else ""
     going = [step.clause for step in plan.steps if step.moves]
     what = f" for {going[0]!r}" if going else ""
-    area = float(floor.walkable.sum()) * floor.cell_m**2
+    cells = floor.places_m[floor.walkable]
+    some = cells[:: max(1, len(cells) // 40)]
+    longest = max(
+        (floor.free_length_m(place, float(angle), 4.0) for place in some for angle in np.arange(8) * np.pi / 4), default=0.0
+    )
     return (
-        f"there is no room{what}{from_there}: {area:.1f} m2 of floor are free and in the radar's window, and no way of a"
-        " metre and of the time asked for fits; try fewer frames, 'slowly', another direction or another --at"
+        f"there is no room{what}{from_there}: in the picture and the radar's window {len(cells) * floor.cell_m**2:.1f} m2"
+        f" of floor are free, the longest straight way is about {longest:.1f} m; try fewer frames, 'slowly', another"
+        " direction or another start (--at)"
     )

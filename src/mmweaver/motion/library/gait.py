@@ -47,8 +47,8 @@ def walking_style(stage: Stage, speed_mps: float) -> Style:
     leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
     drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
     return Style(
-        steps_hz=float(steps_hz), double_support=0.2, half_stance_m=0.034 * height_m,
-        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.055 * share,
+        steps_hz=float(steps_hz), double_support=0.15, half_stance_m=0.034 * height_m,
+        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.02 * share,
         heel_strike_rad=0.28 * share**0.5, toe_off_rad=1.0 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
         arm_swing_rad=0.36 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
         lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.986, pelvis_yaw_rad=0.09 * share,
@@ -67,7 +67,7 @@ def jogging_style(stage: Stage, speed_mps: float) -> Style:
         ahead_m=0.05 * share, heel_strike_rad=0.1 * share, toe_off_rad=0.55 + 0.25 * share, lift_m=0.09 + 0.06 * share,
         spot_lift_m=0.13 * vigour, arm_swing_rad=(0.42 + 0.15 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
         elbow_swing_rad=0.22, lean_rad=0.05 + 0.07 * share, bob_m=GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
-        sink=0.955, pelvis_yaw_rad=0.08, sway_m=0.01,
+        sink=0.945, pelvis_yaw_rad=0.08, sway_m=0.01,
     )  # fmt: skip
 
 

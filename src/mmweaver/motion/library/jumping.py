@@ -69,12 +69,13 @@ def _hop_all(
     stage: Stage,
     hops: list[Hop],
     dips_m: list[tuple[float, float, float]],
-    ready_m: float = 0.025,
-    heels: float = 0.75,
+    ready_m: float = -0.02,
+    heels: float = 0.95,
 ) -> None:
     """Writes pelvis height, soles, heels and contact for hops with dips (time, depth, upward acceleration) between.
 
-    Take-off and landing are `ready_m` above the standing height: the heels are up by then.
+    Take-off and landing are `ready_m` above the standing height: heels up, knees not quite straight, so that the
+    soles can pick up the pelvis's speed within some hundredths of a second.
     """
     time_s, body = stage.time_s, stage.body
     stand = body.pelvis_height_m(STAND_STRETCH)
@@ -147,9 +148,9 @@ def jumping_jacks(stage: Stage) -> Controls:
     begin = stage.start_s + ground_s * 0.5
     hops = [Hop(off_s=begin + k * half_s, rise_m=height_m) for k in range(hops_wanted)]
     dips = [(stage.start_s - 0.2, 0.0, 0.0)]
-    dips += [(hop.off_s - ground_s / 2, 0.085, 5.0) for hop in hops]
-    dips += [(hops[-1].land_s + ground_s / 2, 0.075, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips, ready_m=-0.03, heels=0.6)
+    dips += [(hop.off_s - ground_s / 2, 0.075, 5.0) for hop in hops]
+    dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
+    _hop_all(controls, stage, hops, dips, ready_m=-0.035, heels=0.95)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0
