@@ -93,7 +93,7 @@ def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:
     return bool(len(colours)) and bool(_wooden_cells(np.median(colours, axis=0)))
 
 
-def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"]:
+def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"] | np.bool_:
     """Red over green over blue, in the proportions of yellow to red-brown, and not pale."""
     red, green, blue = rgb[..., 0], rgb[..., 1], rgb[..., 2]
     span = np.maximum(red - blue, 1e-6)
