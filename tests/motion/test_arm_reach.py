@@ -17,14 +17,14 @@ def upright(n: int, arm: np.ndarray) -> Controls:
         pelvis_m=np.tile([0.0, 0.0, 0.95], (n, 1)), heading_rad=np.zeros(n), pelvis_rad=zeros, spine_rad=zeros,
         head_rad=np.zeros((n, 2)), arm_rad=np.stack([arm, arm], axis=1),
         foot_m=np.tile([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]], (n, 1, 1)), foot_rad=np.zeros((n, 2, 2)),
-        knee_out_rad=np.zeros((n, 2)), contact=np.ones((n, 2)),
+        knee_out_rad=np.zeros((n, 2)), knee_room=np.zeros(n), contact=np.ones((n, 2)),
     )  # fmt: skip
 
 
 @pytest.mark.parametrize("height", [1.63, 1.96])
 def test_reach_is_the_inverse_of_the_arm(height: float):
     body, rng = Body(height), stream(0, "reach")
-    target = rng.uniform([0.12, 0.0, -0.15], [0.25, 0.2, 0.15], (50, 3)) * height
+    target = rng.uniform([0.12, 0.02, -0.08], [0.2, 0.18, 0.12], (50, 3)) * height
     joints = solve(body, upright(50, reach(body, target)))
     chest = joints[:, joint("spine3")]
     for side, name in ((LEFT, "left"), (RIGHT, "right")):

@@ -33,7 +33,8 @@ def test_travel_arrives_and_goes_on_where_it_has_no_ramp():
 def test_softmin_is_just_below_the_minimum():
     low = softmin([U, 1 - U], 0.01)
     true = np.minimum(U, 1 - U)
-    assert np.all(low <= true) and np.all(low > true - 0.01 * np.log(2) - 1e-12)
+    assert np.all(low <= true)
+    assert np.all(low > true - 0.01 * np.log(2) - 1e-12)
 
 
 def test_wander_has_unit_spread():

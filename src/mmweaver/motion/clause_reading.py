@@ -105,8 +105,6 @@ def _refuse(clause: Clause) -> None:
 
 def _harmless(word: Word, texts: set[str]) -> bool:
     """Words that mean another movement only beside some verbs."""
-    if word.text == "eight":
-        return "figure" not in texts
     if word.text in ("over", "legs", "leg", "foot", "knees", "knee", "head", "shoulder", "shoulders"):
         lifted = texts & {"raise", "raises", "raising", "raised", "lift", "lifts", "lifting", "lifted"}
         jumped = texts & {"jump", "jumps", "jumping", "hop", "hops", "leaps"}
@@ -127,13 +125,11 @@ def _verbs(words: list[Word]) -> list[int]:
     for i, word in enumerate(words):
         if word.lemma == "move" and texts & ARMS:
             continue  # it is the arm that moves, and how is not known
-        if word.is_going and (texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS):
+        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS)
+        if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):
             found.append(i)
-        elif word.is_activity and not _is_noun(words, i, found):
-            found.append(i)
-    if len(found) > 1 and words[found[0]].lemma in ("stop", "halt", "stand", "stay", "remain", "wait", "pause"):
-        if words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
-            return found[:1]  # "stops walking" is standing still
+    if len(found) > 1 and words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
+        return found[:1]  # "stops walking" is standing still
     return found
 
 
@@ -237,7 +233,7 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
         return replace(about, count=int(value))
     if any(word in ("second", "seconds", "sec", "secs", "s") for word in following[:2]):
         return replace(about, seconds=value)
-    if following[:1] and following[0] in ARMS or following[:1] == ["of"]:
+    if (following[:1] and following[0] in ARMS) or following[:1] == ["of"]:
         return about
     counted = any(word == "times" or word == "time" for word in following[:2]) or any(
         word.is_activity or word.text in ("steps", "repetitions", "reps") for word in words[i + 1 : i + 4]
@@ -260,8 +256,21 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
         raise InputError(f"the clause {clause.text!r} names no activity that is known; known: {KNOWN}")
     for text in unknown:
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
-        if doing and text not in ("ceiling", "evening", "morning", "bed", "red", "building", "wing", "king", "tired", "something",
-            "anything", "everything", "during"):
+        if doing and text not in (
+            "ceiling",
+            "evening",
+            "morning",
+            "bed",
+            "red",
+            "building",
+            "wing",
+            "king",
+            "tired",
+            "something",
+            "anything",
+            "everything",
+            "during",
+        ):
             raise InputError(
                 f"the clause {clause.text!r} names an activity that is not known ({text!r}); known: {KNOWN}"
             )

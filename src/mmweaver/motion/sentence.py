@@ -152,8 +152,7 @@ def _merged(steps: list[Step]) -> list[Step]:
     result: list[Step] = []
     for step in steps:
         plain = step.lower in ("sit", "stand") and not step.upper and not step.seconds and not step.facing
-        if result and plain and result[-1].lower in (step.lower, "sit_down" if step.lower == "sit" else step.lower):
-            if not result[-1].upper:
-                continue
-        result.append(step)
+        same = (step.lower, "sit_down") if step.lower == "sit" else (step.lower,)
+        if not (plain and result and result[-1].lower in same and not result[-1].upper):
+            result.append(step)
     return result

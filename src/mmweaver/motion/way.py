@@ -50,7 +50,7 @@ class Way:
     seat_height_m: list[float] = field(default_factory=list)  # by step
     cost: float = 0.0
     last_direction_rad: float | None = None
-    from_seat: bool = False  # has just stood up: the seat's own edge does not block the first half metre
+    from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
 
     def __post_init__(self) -> None:
         self.start_m = (float(self.place[0]), float(self.place[1]))
@@ -65,7 +65,7 @@ class Way:
         )
 
     def free_length_m(self, direction_rad: float, wanted_m: float) -> float:
-        return self.floor.free_length_m(self.place, direction_rad, wanted_m, excused_m=0.5 if self.from_seat else 0.0)
+        return self.floor.free_length_m(self.place, direction_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0)
 
     def turn_to(self, heading_rad: float, start_s: float) -> float:
         """Turns on the spot the shorter way, returns how long it takes."""
@@ -81,7 +81,9 @@ class Way:
         self.cost += 0.25 * abs(angle)
         return lasts
 
-    def go(self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]):
+    def go(
+        self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]
+    ):
         """A straight move over a time span; the caller has made sure that it is free."""
         move = Move(
             start_s=span[0], end_s=span[1], length_m=length_m, direction_rad=direction_rad,

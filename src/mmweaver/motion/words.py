@@ -33,7 +33,7 @@ class Word:
 
 def words_of(text: str) -> list[Word]:
     """The words and punctuation marks of a sentence in lower case, known phrases folded."""
-    folded = text.lower().replace("’", "'").replace("n't", " not")
+    folded = text.lower().replace("\u2019", "'").replace("n't", " not")
     for pattern, replacement in PHRASES:
         folded = re.sub(pattern, replacement, folded)
     return [word_of(token) for token in _TOKEN.findall(folded)]

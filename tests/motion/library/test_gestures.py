@@ -46,7 +46,17 @@ def test_the_cup_reaches_the_mouth(seed: int):
 @pytest.mark.parametrize("seed", range(5))
 def test_hands_stay_out_of_the_trunk(seed: int):
     """A trunk of 9 cm about the spine (11 cm about the pelvis is where hanging hands come closest)."""
-    for text in ("waves", "claps", "drinks", "punches", "raises both hands", "walks", "jumping jacks", "squats", "jumps"):
+    for text in (
+        "waves",
+        "claps",
+        "drinks",
+        "punches",
+        "raises both hands",
+        "walks",
+        "jumping jacks",
+        "squats",
+        "jumps",
+    ):
         pose = joints(text, seed)
         for wrist in (LEFT_WRIST, RIGHT_WRIST):
             for middle in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"):
