@@ -217,6 +217,8 @@ def test_no_room_is_an_error_that_says_so():
 def test_a_walk_longer_than_the_room_ends_early_and_says_so_or_goes_to_and_fro():
     made = motion("walks to the left", duration_s=8.0)
     assert any("stands still" in sentence for sentence in made.assumptions)
+    still = made.pose.time_s > 7.0
+    assert speeds(made)[still].max() < 0.15, "standing, not stepping on the spot"
     pelvis = motion("walks", duration_s=12.0).pose.joints_m[:, 0, :2]
     assert np.linalg.norm(np.diff(pelvis, axis=0), axis=1).sum() > 7.0
 
