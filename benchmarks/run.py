@@ -44,8 +44,8 @@ def simulation_costs() -> dict[str, float]:
     from mmweaver.simulation.simulator import Simulator
 
     weaver = Weaver(method="physics", radar="awr1843")
-    scene = weaver.sample_room()
-    config = weaver.config
+    scene = weaver.sample_room().scene
+    config = weaver.radar
     window = (float(config.range_m[0]), float(config.range_m[-1]))
     pose = compose(SENTENCE, scene, duration_s=2.0, seed=0, range_window_m=window).pose
     room_s = cpu_seconds(lambda: Simulator(scene, config), 1)
