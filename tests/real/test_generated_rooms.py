@@ -16,7 +16,7 @@ SENTENCES = ("someone does jumping jacks", "the user is sitting on a chair and d
 ROOMS = {
     "kinect2_living_room": (WALK, *SENTENCES),
     "kinect_dining_room": (WALK, *SENTENCES),
-    "redwood_chair_corner": ("a woman waves with the right hand", *SENTENCES),
+    "redwood_chair_corner": ("a woman squats quickly", *SENTENCES),
     "tum_office_desk": (WALK, *SENTENCES),
 }
 SKIN_M = 0.2  # joints lie inside the body
