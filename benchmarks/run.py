@@ -34,10 +34,9 @@ def cpu_seconds(function, repeats: int = 3) -> float:
 
 
 def simulation_costs() -> dict[str, float]:
-    from mmweaver.motion.compose import compose
-
     from mmweaver import Weaver
     from mmweaver.dsp.cube import radar_cube
+    from mmweaver.motion.compose import compose
     from mmweaver.simulation.body import body_of
     from mmweaver.simulation.echoes import BodyEchoes
     from mmweaver.simulation.exact import exact_frame

@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from rooms import FLOOR_Z_M, WINDOW_M, furnished, room, seat, sofa_room
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
@@ -12,6 +11,7 @@ from mmweaver.core.skeleton import BONES, joint
 from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.floor_map import FloorMap
+from rooms import FLOOR_Z_M, WINDOW_M, furnished, room, seat, sofa_room
 
 ACTIVITIES = (
     "walks", "walks slowly", "jogs", "waves", "claps", "does jumping jacks", "jumps", "raises the left hand",
