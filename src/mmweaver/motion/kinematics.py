@@ -112,7 +112,7 @@ def _pelvis(body: Body, controls: Controls, frame: Frames, ankles: list[Vectors]
         across = np.sum((pelvis[:, :2] + hip[:, :2] - ankles[side][:, :2]) ** 2, axis=1)
         height = np.sqrt(np.maximum(longest**2 - across, (0.3 * longest) ** 2))
         limits.append(ankles[side][:, 2] + height - hip[:, 2] + 0.2 * (1 - controls.contact[:, side]))
-    pelvis[:, 2] = softmin(limits, 0.003)
+    pelvis[:, 2] = softmin(limits, 0.003 + 0.01 * controls.knee_room)
     return pelvis
 
 

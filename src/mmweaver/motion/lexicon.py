@@ -182,7 +182,8 @@ OTHER_MOVEMENT = _words(
     tiptoes handstand cartwheel floor ground wheelchair swimming dance kick kicks flip somersault asleep drunken
     drunk limp crossed spiral triangle rectangle swings phone head shoulder shoulders elbow elbows hips hip thigh
     sit-ups push-ups lunge lunges plank violin guitar golf tennis racket upward downward platform edge curb log
-    bridge bent hunched crouched bending kneeling circle circles circular fullturn quarterturn quarter against reacts push
+    bridge bent hunched crouched bending kneeling circle circles circular fullturn quarterturn quarter against
+    reacts push
     pushes perturbation balance trips stumbles shuffle scooter skateboard grapevine waltz
     """
 )

@@ -154,7 +154,7 @@ def _moving(stage: Stage, time_s: Float[Array, " n"], jog: bool) -> Float[Array,
         end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
         return np.asarray(start * end)
     turning = np.abs(stage.path.facing_rad(time_s + 1e-3) - stage.path.facing_rad(time_s - 1e-3)) / 2e-3
-    going = stage.path.speed_mps(time_s) / max(0.8 * _cruise_mps(stage), 0.1)
+    going = stage.path.speed_mps(time_s) / max(0.8 * _cruise_mps(stage), 0.7)
     return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
 
 
