@@ -20,7 +20,7 @@ ROOMS = {
     "tum_office_desk": (WALK, *SENTENCES),
 }
 SKIN_M = 0.2  # joints lie inside the body
-SPEED_MPS = 0.5  # a frame has motion where some joint is so fast towards or from the radar
+SPEED_MPS = 0.3  # a frame has motion where some joint is so fast towards or from the radar
 
 
 def share_inside(result: Generation) -> float:
