@@ -54,8 +54,8 @@ def _points(cloud: PointCloud, frame: int) -> Points:
 
 
 def _nearest(one: Points, other: Points) -> tuple[Float[np.ndarray, "_"], Float[np.ndarray, "_"]]:
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
-    there, _ = cKDTree(other).query(one)
-    back, _ = cKDTree(one).query(other)
+    there, _ = KDTree(other).query(one)
+    back, _ = KDTree(one).query(other)
     return np.asarray(there), np.asarray(back)
