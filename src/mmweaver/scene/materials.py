@@ -19,10 +19,11 @@ MATERIAL_NAMES = (
 
 ASSUMPTION = (
     "Materials were guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any"
-    " other concrete, seats with a back fabric unless plainly wooden, the rest wood or chipboard by colour."
+    " other concrete, seats fabric if wide or of no wooden colour, the rest wood or chipboard by colour."
 )
 
 _SEAT_REACH_M = 0.55
+_SOFA_M = 0.8  # a seat as wide as this is upholstered, whatever its colour
 
 
 def floor_material(colours: Float[Array, "cell 3"]) -> str:
@@ -60,8 +61,9 @@ def cell_materials(
     for cells in _upholstered(grid, rgb, ~fixed, seats):
         material[cells] = MATERIAL_NAMES.index("fabric")
         for index, surface in enumerate(surfaces):
-            if (cells & surface.cells).sum() > 0.5 * surface.cells.sum():
+            if (cells & surface.cells).sum() > 0.3 * min(cells.sum(), surface.cells.sum()):
                 names[index] = "fabric"
+                material[surface.cells] = MATERIAL_NAMES.index("fabric")
     material[is_floor] = MATERIAL_NAMES.index(floor_material(rgb[is_floor]))
     return material, tuple(names)
 
@@ -69,7 +71,7 @@ def cell_materials(
 def _upholstered(
     grid: LevelGrid, rgb: GridVectors, open_cells: Bool[Array, "row column"], seats: Sequence[Seat]
 ) -> list[Bool[Array, "row column"]]:
-    """The cells around each seat, where they are not plainly wooden: one plain warm colour."""
+    """The cells around each seat that is as wide as a sofa, or of no wooden colour."""
     found = []
     above_floor = grid.points_m[..., 2] - grid.floor_z_m
     for seat in seats:
@@ -78,8 +80,7 @@ def _upholstered(
         cells &= (above_floor > 0.12) & (above_floor < 1.2)
         if cells.sum() < 20:
             continue
-        is_patterned = float(rgb[cells].std(axis=0).max()) > 0.17
-        if is_patterned or not _is_wooden(rgb[cells]):
+        if max(seat.size_m) >= _SOFA_M or not _is_wooden(rgb[cells]):
             found.append(cells)
     return found
 

@@ -1,0 +1,14 @@
+"""The bundled sample room: a photo to begin with, made by tools/make_sample_room.py."""
+
+from pathlib import Path
+
+import mmweaver
+from mmweaver.core.records import RgbdPhoto
+from mmweaver.scene.photo import read_photo
+
+SAMPLE_FOLDER = Path(mmweaver.__file__).parent / "sample"
+
+
+def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:
+    """The sample room's photo, and what `read_photo` assumed of it."""
+    return read_photo(SAMPLE_FOLDER / "rgb.png", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")
