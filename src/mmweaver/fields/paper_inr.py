@@ -23,7 +23,14 @@ from mmweaver.core.records import CubeGrid
 from mmweaver.core.shapes import CubeValues
 from mmweaver.fields.field import CHUNK_POINTS, SignalField
 from mmweaver.fields.phase_centring import centring_turn, centring_turn_at
-from mmweaver.fields.positional_encoding import encode_axis, encoded_size, normalised, positional_encoding
+from mmweaver.fields.positional_encoding import (
+    OCTAVES,
+    Frequencies,
+    encode_axis,
+    encoded_size,
+    normalised,
+    positional_encoding,
+)
 from mmweaver.fields.sampling import Coordinates, coordinates_on
 
 HIDDEN_WIDTH = 32
@@ -37,19 +44,22 @@ Layer = tuple[torch.Tensor, torch.Tensor]  # weight (out, in), bias (out,)
 IqPoints = Float[torch.Tensor, "point 2"]
 
 
+GAUSS_WIDTH = 0.3  # fresh layers give z of this size; 1 learns several times slower
+
+
 class _Gauss(torch.autograd.Function):
-    """exp(-z^2 / 2), with one intermediate instead of three."""
+    """exp(-z^2 / 2 GAUSS_WIDTH^2), with one intermediate instead of three."""
 
     @staticmethod
     def forward(ctx, z: torch.Tensor) -> torch.Tensor:  # pyright: ignore[reportIncompatibleMethodOverride]
-        y = (z * z).mul_(-0.5).exp_()
+        y = (z * z).mul_(-0.5 / GAUSS_WIDTH**2).exp_()
         ctx.save_for_backward(z, y)
         return y
 
     @staticmethod
     def backward(ctx, slope: torch.Tensor) -> torch.Tensor:  # pyright: ignore[reportIncompatibleMethodOverride]
         z, y = ctx.saved_tensors
-        return (slope * z).mul_(y).neg_()
+        return (slope * z).mul_(y).mul_(-1 / GAUSS_WIDTH**2)
 
 
 def _gauss(z: torch.Tensor) -> torch.Tensor:
@@ -65,6 +75,11 @@ class InrShape:
 
     num_axes: int = 3
     activation: str = "relu"
+    frequencies: tuple[Frequencies, ...] = (OCTAVES,) * 4  # of the last axes; the paper's
+
+    @property
+    def axis_frequencies(self) -> tuple[Frequencies, ...]:
+        return self.frequencies[-self.num_axes :]
 
     @property
     def sizes(self) -> tuple[int, ...]:
@@ -112,7 +127,7 @@ def evaluate(
     """The INR at points, as the paper writes it; gamma and beta are those of each point's time, None = identity."""
     act = ACTIVATIONS[shape.activation]
     *hidden, (last_weight, last_bias) = shape.layers(theta)
-    h = positional_encoding(x_norm)
+    h = positional_encoding(x_norm, shape.axis_frequencies)
     for at, (weight, bias) in enumerate(hidden):
         z = torch.addmm(bias, h, weight.T)
         if gamma is not None:
@@ -127,7 +142,8 @@ def first_layer_terms(shape: InrShape, theta: Weights, axes_norm: list[torch.Ten
     """The first layer without its bias as one term an axis, each (cell, 32); their sum over a grid is the layer."""
     weight, _ = shape.layers(theta)[0]
     parts = weight.split(encoded_size(1), dim=1)
-    return [encode_axis(axis) @ part.T for axis, part in zip(axes_norm, parts, strict=True)]
+    each = zip(axes_norm, shape.axis_frequencies, parts, strict=True)
+    return [encode_axis(axis, frequencies) @ part.T for axis, frequencies, part in each]
 
 
 def evaluate_on_axes(

@@ -11,6 +11,18 @@ import torch
 from jaxtyping import Float
 
 NUM_FREQUENCIES = 8
+Frequencies = tuple[float, ...]  # of one axis, in radians a unit of its coordinate
+OCTAVES: Frequencies = tuple(2.0**i for i in range(NUM_FREQUENCIES))  # the paper's
+
+
+def harmonics(num_cells: int, highest: float = 1.0) -> Frequencies:
+    """As many evenly spaced frequencies, the last at `highest` of what an axis of so many cells can tell apart.
+
+    The octaves go to 128 radians whatever the axis: 12 antennas hold 17, 32 Doppler bins 49, 64 range bins 99. What
+    lies above fits the cells as well, but rings between them.
+    """
+    nyquist = np.pi * max(num_cells - 1, 1) / 2
+    return tuple(float(highest * nyquist * (i + 1) / NUM_FREQUENCIES) for i in range(NUM_FREQUENCIES))
 
 
 def encoded_size(num_axes: int) -> int:
@@ -22,15 +34,20 @@ def encoded_size(num_axes: int) -> int:
     return num_axes * (1 + 2 * NUM_FREQUENCIES)
 
 
-def encode_axis(x_norm: Float[torch.Tensor, " point"]) -> Float[torch.Tensor, "point 17"]:
-    """One coordinate: [x, cos(2^i x) for i = 0..7, sin(2^i x) for i = 0..7]."""
-    turns = x_norm[:, None] * 2.0 ** torch.arange(NUM_FREQUENCIES, dtype=x_norm.dtype, device=x_norm.device)
+def encode_axis(
+    x_norm: Float[torch.Tensor, " point"], frequencies: Frequencies = OCTAVES
+) -> Float[torch.Tensor, "point 17"]:
+    """One coordinate: [x, cos(w x) for each frequency w, sin(w x) for each]."""
+    turns = x_norm[:, None] * torch.tensor(frequencies, dtype=x_norm.dtype, device=x_norm.device)
     return torch.cat([x_norm[:, None], torch.cos(turns), torch.sin(turns)], dim=1)
 
 
-def positional_encoding(x_norm: Float[torch.Tensor, "point axis"]) -> Float[torch.Tensor, "point encoded"]:
+def positional_encoding(
+    x_norm: Float[torch.Tensor, "point axis"], frequencies: tuple[Frequencies, ...] | None = None
+) -> Float[torch.Tensor, "point encoded"]:
     """All coordinates, axis after axis, so that a linear layer upon it is a sum of one term an axis."""
-    return torch.cat([encode_axis(x_norm[:, axis]) for axis in range(x_norm.shape[1])], dim=1)
+    frequencies = frequencies or (OCTAVES,) * x_norm.shape[1]
+    return torch.cat([encode_axis(x_norm[:, axis], each) for axis, each in enumerate(frequencies)], dim=1)
 
 
 def normalised(cell: Float[np.ndarray, "_"], num_cells: int) -> Float[np.ndarray, "_"]:

@@ -23,7 +23,7 @@ from mmweaver.fields.paper_inr import (
     fresh_modulation,
 )
 from mmweaver.fields.phase_centring import centred
-from mmweaver.fields.positional_encoding import normalised
+from mmweaver.fields.positional_encoding import OCTAVES, harmonics, normalised
 from mmweaver.metrics.cells import Cells, cells_of
 
 
@@ -43,6 +43,7 @@ class FitRecipe:
     favour: str = "active_ranges"
     is_centred: bool = False
     activation: str = "relu"
+    encoding: str = "octaves"  # or "harmonics", up to what each axis can tell apart
     is_cosine: bool = False
     peak_is_one: bool = True
     has_time_axis: bool = False  # the base INR over (t, r, d, a)
@@ -165,7 +166,7 @@ class _Network:
 
     def __init__(self, cube: RadarCube, recipe: FitRecipe, seed: int, device: str):
         self.recipe, self.device, self.grid_shape = recipe, device, cube.grid.shape
-        self.shape = InrShape(num_axes=4 if recipe.has_time_axis else 3, activation=recipe.activation)
+        self.shape = inr_shape(recipe, cube.grid.shape)
         self.theta = self.shape.fresh(stream(seed, "single signal", "weights")).to(device).requires_grad_()
         gamma, beta = fresh_modulation(cube.grid.shape[0])
         self.gamma, self.beta = (part.to(device).requires_grad_() for part in (gamma, beta))
@@ -227,6 +228,18 @@ class _Network:
         if self.recipe.has_time_axis:
             return BaseInrField(**about)
         return InrField(**about, gamma=self.gamma, beta=self.beta)
+
+
+def inr_shape(recipe: FitRecipe, grid_shape: tuple[int, ...]) -> InrShape:
+    """The network that a recipe asks for. Raises InputError for an encoding that is not known."""
+    if recipe.encoding not in ("octaves", "harmonics"):
+        raise InputError(f"unknown encoding {recipe.encoding!r}; known: octaves, harmonics")
+    octaves = recipe.encoding == "octaves"
+    return InrShape(
+        num_axes=4 if recipe.has_time_axis else 3,
+        activation=recipe.activation,
+        frequencies=tuple(OCTAVES if octaves else harmonics(num) for num in grid_shape),
+    )
 
 
 def _unravelled(flat: torch.Tensor, shape: tuple[int, ...]) -> list[torch.Tensor]:
