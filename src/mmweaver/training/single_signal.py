@@ -43,7 +43,7 @@ class FitRecipe:
     favour: str = "active_ranges"
     is_centred: bool = False
     activation: str = "relu"
-    encoding: str = "octaves"  # or "harmonics", up to what each axis can tell apart
+    highest_harmonic: float | None = None  # None: the paper's octaves; else evenly spaced up to this share of Nyquist
     is_cosine: bool = False
     peak_is_one: bool = True
     has_time_axis: bool = False  # the base INR over (t, r, d, a)
@@ -57,7 +57,7 @@ PAPER_CENTRED = replace(PAPER_FULL_PASSES, name="paper_full_passes_centred", is_
 TUNED = FitRecipe(
     name="tuned",
     steps=15_000,
-    learning_rate=2e-3,
+    learning_rate=1e-2,
     favour="active_cells",
     is_centred=True,
     activation="gauss",
@@ -65,15 +65,18 @@ TUNED = FitRecipe(
     peak_is_one=False,
 )
 TUNED_SHORT = replace(TUNED, name="tuned_short", steps=2_000)
-TUNED_RELU = replace(TUNED, name="tuned_relu", activation="relu", learning_rate=1e-3)
-TUNED_RAW = replace(TUNED_RELU, name="tuned_raw", is_centred=False)
+# Frequencies no higher than half of what the cells tell apart: nearly as good at the cells, and smooth between them.
+SMOOTH_SHORT = replace(TUNED_SHORT, name="smooth_short", highest_harmonic=0.5)
+RELU_SHORT = replace(TUNED_SHORT, name="relu_short", activation="relu", learning_rate=2e-3)
+RAW_SHORT = replace(RELU_SHORT, name="raw_short", is_centred=False)
 
 RECIPES: Registry[FitRecipe] = Registry(
     "fit recipe",
     [
         (recipe.name, recipe)
         for recipe in (
-            PAPER, PAPER_BASE, PAPER_FULL_PASSES, PAPER_CENTRED, TUNED, TUNED_SHORT, TUNED_RELU, TUNED_RAW,
+            PAPER, PAPER_BASE, PAPER_FULL_PASSES, PAPER_CENTRED, TUNED, TUNED_SHORT, SMOOTH_SHORT, RELU_SHORT,
+            RAW_SHORT,
         )
     ],
 )  # fmt: skip
@@ -231,14 +234,12 @@ class _Network:
 
 
 def inr_shape(recipe: FitRecipe, grid_shape: tuple[int, ...]) -> InrShape:
-    """The network that a recipe asks for. Raises InputError for an encoding that is not known."""
-    if recipe.encoding not in ("octaves", "harmonics"):
-        raise InputError(f"unknown encoding {recipe.encoding!r}; known: octaves, harmonics")
-    octaves = recipe.encoding == "octaves"
+    """The network that a recipe asks for, on a grid of (frame, range, doppler, antenna) cells."""
+    highest = recipe.highest_harmonic
     return InrShape(
         num_axes=4 if recipe.has_time_axis else 3,
         activation=recipe.activation,
-        frequencies=tuple(OCTAVES if octaves else harmonics(num) for num in grid_shape),
+        frequencies=tuple(OCTAVES if highest is None else harmonics(num, highest) for num in grid_shape),
     )
 
 
