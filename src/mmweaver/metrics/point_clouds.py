@@ -4,10 +4,12 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import PointCloud
-from mmweaver.core.shapes import Points
+
+One = Float[np.ndarray, "one 3"]
+Other = Float[np.ndarray, "other 3"]
 
 
-def hausdorff_m(one: Points, other: Points) -> float:
+def hausdorff_m(one: One, other: Other) -> float:
     """The farthest that a point of either set lies from the nearest of the other. Both sets must have points.
 
     >>> hausdorff_m(np.zeros((1, 3)), np.array([[0.0, 0, 0], [0, 3.0, 4.0]]))
@@ -17,7 +19,7 @@ def hausdorff_m(one: Points, other: Points) -> float:
     return float(max(there.max(), back.max()))
 
 
-def chamfer_m(one: Points, other: Points) -> float:
+def chamfer_m(one: One, other: Other) -> float:
     """Half of (mean distance of one set's points to the nearest of the other + the same the other way round).
 
     Distances themselves, not their squares. Both sets must have points.
@@ -48,12 +50,12 @@ def cloud_distances_m(
     return float(hausdorff), float(chamfer)
 
 
-def _points(cloud: PointCloud, frame: int) -> Points:
+def _points(cloud: PointCloud, frame: int) -> One:
     chosen = cloud.frame == frame
     return np.stack([cloud.x_m[chosen], cloud.y_m[chosen], cloud.z_m[chosen]], axis=1)
 
 
-def _nearest(one: Points, other: Points) -> tuple[Float[np.ndarray, "_"], Float[np.ndarray, "_"]]:
+def _nearest(one: One, other: Other) -> tuple[Float[np.ndarray, " one"], Float[np.ndarray, " other"]]:
     from scipy.spatial import KDTree
 
     there, _ = KDTree(other).query(one)

