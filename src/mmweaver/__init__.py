@@ -6,6 +6,8 @@ Start at `Weaver`. Names are loaded when first used, so `import mmweaver` costs 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.core.version import __version__
+
 if TYPE_CHECKING:
     from mmweaver.core.errors import InputError
     from mmweaver.core.presets import PRESETS
@@ -15,8 +17,6 @@ if TYPE_CHECKING:
     from mmweaver.formats.radar_file import load_radar
     from mmweaver.recording import Recording, process_recording
     from mmweaver.weaver import Generation, Weaver
-
-__version__ = "0.1.0"
 
 _HOME = {
     "AdcCube": "core.records",
@@ -47,6 +47,7 @@ __all__ = [
     "Recording",
     "Scene",
     "Weaver",
+    "__version__",
     "load_radar",
     "process_recording",
     "read_radar_npz",
@@ -61,4 +62,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return [*__all__, "__version__"]
+    return __all__

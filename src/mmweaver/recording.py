@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from mmweaver import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.stages import Stages
+from mmweaver.core.version import __version__
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.points import point_cloud
 from mmweaver.formats.dca1000 import read_bin

@@ -16,12 +16,12 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver import __version__
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
+from mmweaver.core.version import __version__
 from mmweaver.dsp.points import point_cloud
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.methods import METHODS

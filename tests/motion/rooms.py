@@ -44,7 +44,9 @@ def room(
 
 def seat(x_m: float = 0.0, y_m: float = 2.6, facing_deg: float = -90.0, height_m: float = 0.45) -> Seat:
     return Seat(
-        position_m=np.array([x_m, y_m, FLOOR_Z_M + height_m]), facing_rad=float(np.radians(facing_deg)), size_m=(0.6, 0.5)
+        position_m=np.array([x_m, y_m, FLOOR_Z_M + height_m]),
+        facing_rad=float(np.radians(facing_deg)),
+        size_m=(0.6, 0.5),
     )
 
 

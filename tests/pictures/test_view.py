@@ -45,6 +45,9 @@ def test_long_sequences_are_thinned_out(view: View):
     assert len(long.frames) == MAX_FRAMES
     assert (long.frames[0], long.frames[-1]) == (0, count - 1)
     assert long.range_doppler.shape == (MAX_FRAMES, 64, 32)
+    assert f"{MAX_FRAMES} of {count} frames" in long.heading
+    assert set(long.shown_points.frame) == set(long.points.frame) & set(long.frames.tolist())
+    assert view.heading == view.title
 
 
 def test_the_moving_maps_see_the_walker_and_the_full_maps_the_standing_target(view: View):

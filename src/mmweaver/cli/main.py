@@ -4,10 +4,10 @@ import os
 import sys
 from collections.abc import Sequence
 
-from mmweaver import __version__
 from mmweaver.cli import generate, process, radar
 from mmweaver.cli.arguments import Parser, glued
 from mmweaver.core.errors import InputError
+from mmweaver.core.version import __version__
 
 DESCRIPTION = "A photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out."
 EXAMPLES = """examples:

@@ -1,5 +1,6 @@
 """A progress bar for people: only on a terminal, only for what takes over two seconds."""
 
+import shutil
 import sys
 import threading
 import time
@@ -43,12 +44,15 @@ class StageBar:
             return
         from tqdm import tqdm
 
+        size = shutil.get_terminal_size()  # tqdm shows nothing on a terminal that does not know its size
         with tqdm(
             desc=self._stage,
             initial=max(self._done, 0),
             total=self._num_stages,
             file=sys.stderr,
             leave=False,
+            ncols=size.columns,
+            nrows=size.lines,
             bar_format="{desc:<28} {bar:24} {n_fmt}/{total_fmt}{postfix}",
         ) as bar:
             while not self._over.wait(REFRESH_S):

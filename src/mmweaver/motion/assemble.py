@@ -17,7 +17,7 @@ from mmweaver.motion.stage import Stage
 
 RATE_HZ = 120.0
 MARGIN_SAMPLES = 2
-LONGEST_BLEND_S = 0.4
+LONGEST_BLEND_S = 0.45
 
 
 def dense_times(duration_s: float) -> Float[np.ndarray, " n"]:

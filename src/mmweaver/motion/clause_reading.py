@@ -11,6 +11,7 @@ from mmweaver.motion.lexicon import (
     BOTH,
     DIRECTIONS,
     FILLERS,
+    GOING,
     MANY,
     NEGATIONS,
     NOT_HUMAN,
@@ -27,6 +28,8 @@ from mmweaver.motion.words import Word
 
 OPPOSITE = {"left": "right", "right": "left"}
 MOST_TIMES = 60
+STEPPING = GOING | {"walk", "jog", "run", "jump", "hop", "turn", "advance", "march", "retreat"}
+DISTANCES = {"meters", "metres", "meter", "metre", "m", "cm", "centimeters", "feet", "yards"}
 
 
 @dataclass
@@ -48,11 +51,15 @@ class Reading:
 
     @property
     def is_empty(self) -> bool:
-        return self.adds_nothing and self.about == Step()
+        return self.adds_nothing and replace(self.about, clause="") == Step()
 
     def absorb(self, more: "Reading") -> None:
         """Takes over what a clause without an activity says about the last step."""
         last, about = self.steps[-1], more.about
+        if last.direction and about.direction and last.direction != about.direction:
+            raise InputError(
+                f"{self.text!r} and {more.text!r} name two directions; say which movement goes where, with 'then'"
+            )
         self.steps[-1] = replace(
             last,
             hand="both" if {last.hand, about.hand} == {"left", "right"} else last.hand or about.hand,
@@ -87,7 +94,7 @@ def _refuse(clause: Clause) -> None:
     still = texts & {"moving", "movement", "motion"} and texts & {"without", "not", "no"}
     if texts & NEGATIONS and not still:
         raise InputError(f"{clause.text!r} says what is not done; say what the person does instead")
-    if texts & MANY or (texts & {"two", "three", "four", "both"} and texts & {"of", "them", "guys"}):
+    if texts & MANY or {"of", "them"} <= texts or "guys" in texts:
         raise InputError(f"{clause.text!r} speaks of several people; only one person can be shown")
     if texts & NOT_HUMAN:
         raise InputError(f"{clause.text!r} is not about a person alone; only one person can be shown")
@@ -98,8 +105,6 @@ def _refuse(clause: Clause) -> None:
 
 def _harmless(word: Word, texts: set[str]) -> bool:
     """Words that mean another movement only beside some verbs."""
-    if word.text == "eight":
-        return "figure" not in texts
     if word.text in ("over", "legs", "leg", "foot", "knees", "knee", "head", "shoulder", "shoulders"):
         lifted = texts & {"raise", "raises", "raising", "raised", "lift", "lifts", "lifting", "lifted"}
         jumped = texts & {"jump", "jumps", "jumping", "hop", "hops", "leaps"}
@@ -118,30 +123,30 @@ def _verbs(words: list[Word]) -> list[int]:
     found: list[int] = []
     texts = {word.text for word in words}
     for i, word in enumerate(words):
-        if word.is_going and (texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS):
+        if word.lemma == "move" and texts & ARMS:
+            continue  # it is the arm that moves, and how is not known
+        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS)
+        if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):
             found.append(i)
-        elif word.is_activity and not _is_noun(words, i, found):
-            found.append(i)
-    if len(found) > 1 and words[found[0]].lemma in ("stop", "halt", "stand", "stay", "remain", "wait", "pause"):
-        if words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
-            return found[:1]  # "stops walking" is standing still
+    if len(found) > 1 and words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
+        return found[:1]  # "stops walking" is standing still
     return found
 
 
 def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
     """'drinks a drink', 'box' as a thing, 'the hand wave': a noun after another verb of the clause."""
     word, before = words[i], words[i - 1].text if i else ""
-    if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
-        return False
     if word.lemma == "face":
         return bool(found) or before in OWN or before in ("the", "a")
+    if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
+        return False
     if word.lemma == "box" and word.form == "base":
         return before in ("a", "the", "this", "that")
     if word.lemma == "seat" and word.form != "past":
         return True
-    if word.lemma in ("drink", "turn", "stop") and before in ("a", "the", "his", "her", "their"):
+    if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
-    if word.lemma == "step" and found and words[found[-1]].lemma in ("walk", "jog", "run", "jump", "hop", "turn"):
+    if word.lemma == "step" and found and words[found[-1]].lemma in STEPPING:
         return True
     same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)
     return same
@@ -177,6 +182,9 @@ def _left_or_right(
     about: Step, text: str, before: str, after: str, words: list[Word], i: int, reading: Reading
 ) -> Step:
     """Before an arm it names the arm; else it is a direction, the viewer's unless said to be the person's own."""
+    if about.direction == "circle":
+        reading.notes.append("which way round a circle goes is left to chance")
+        return about
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
     if before in OWN and not any(word.lemma in ("turn", "rotate", "pivot") for word in words):
@@ -197,9 +205,9 @@ def _arm_soon(words: list[Word], i: int) -> bool:
 def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
     direction = DIRECTIONS[text]
     following = {word.text for word in words[i + 1 : i + 4]}
-    if text == "back" and following & {"to", "towards", "toward", "at"}:
+    if text == "back" and not any(word.lemma in ("step", "lean") for word in words):
         direction = "back"
-    if text == "straight" and any(word.lemma in ("stand", "sit", "raise") for word in words):
+    if text == "straight" and any(word.lemma in ("stand", "sit", "raise", "jump", "punch") for word in words):
         return about
     if text == "towards" or text == "toward":
         if following & SEATS:
@@ -209,6 +217,8 @@ def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
     if text == "away" and following & {"left", "right"}:
         return about
     if direction == "forwards" and about.direction:
+        return about
+    if about.direction in ("left", "right") and direction == "spot":
         return about
     if about.direction in ("left", "right") and direction in ("around", "backwards"):
         return replace(about, direction=about.direction if direction == "around" else direction)
@@ -223,7 +233,7 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
         return replace(about, count=int(value))
     if any(word in ("second", "seconds", "sec", "secs", "s") for word in following[:2]):
         return replace(about, seconds=value)
-    if following[:1] and following[0] in ARMS or following[:1] == ["of"]:
+    if (following[:1] and following[0] in ARMS) or following[:1] == ["of"]:
         return about
     counted = any(word == "times" or word == "time" for word in following[:2]) or any(
         word.is_activity or word.text in ("steps", "repetitions", "reps") for word in words[i + 1 : i + 4]
@@ -241,14 +251,33 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
     if not has_verb:
         reading.unknown = unknown + [word.text for word in words if word.is_verb]
         return
+    moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
+    if moved is not None and any(not _is_known(word) for word in words[moved + 1 : moved + 3]):
+        raise InputError(f"the clause {clause.text!r} names no activity that is known; known: {KNOWN}")
     for text in unknown:
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
-        if doing and text not in ("ceiling", "evening", "morning", "bed", "red", "building", "wing", "king", "tired"):
+        if doing and text not in (
+            "ceiling",
+            "evening",
+            "morning",
+            "bed",
+            "red",
+            "building",
+            "wing",
+            "king",
+            "tired",
+            "something",
+            "anything",
+            "everything",
+            "during",
+        ):
             raise InputError(
                 f"the clause {clause.text!r} names an activity that is not known ({text!r}); known: {KNOWN}"
             )
+    if {word.text for word in words} & DISTANCES:
+        reading.notes.append(f"the distance in {clause.text!r} is not kept: time and speed give it")
     if unknown:
-        listed = ", ".join(repr(text) for text in unknown)
+        listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
         reading.notes.append(f"of the text, {listed} says nothing that can be acted out and was left aside")
 
 
@@ -291,6 +320,8 @@ def _step(words: list[Word], at: int, about: Step, clause: Clause, *, first: boo
         step = _going_step(step, words, first)
     elif lower == "turn":
         step = _turning_step(step, word, texts)
+    elif lower in ("jump", "squat", "jumping_jacks") and step.direction not in ("", "spot", "around"):
+        raise InputError(f"{clause.text!r}: {step.name} is done on the spot only; leave the direction out")
     elif lower in ("stand", "sit", "squat", "jump", "jumping_jacks") or upper:
         step = replace(step, direction="", facing=_facing(words))
     return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
@@ -330,7 +361,7 @@ def _turning_step(step: Step, word: Word, texts: set[str]) -> Step:
         return replace(step, facing=facing, direction="")
     if facing:
         return replace(step, facing=facing, direction="")
-    direction = step.direction if step.direction in ("left", "right", "around") else "around"
+    direction = step.direction if step.direction in ("left", "right") and "around" not in texts else "around"
     return replace(step, direction=direction, count=0)
 
 

@@ -61,7 +61,14 @@ def _link(words: list[Word], i: int) -> str:
         return "after" if text in ("once", "when") else "until"
     if text == "as" and (following in PRONOUNS or following in ("the", "a")):
         return "while"
-    if text == "to" and i and words[i + 1 : i + 2] and words[i + 1].form == "base" and words[i + 1].is_activity:
+    if (
+        text == "to"
+        and i
+        and words[i + 1 : i + 2]
+        and words[i + 1].form == "base"
+        and words[i + 1].is_activity
+        and words[i + 1].lemma != "face"
+    ):
         return "" if any(word.lemma in _AUXILIARY for word in words[max(i - 2, 0) : i]) else "then"
     return ""
 

@@ -30,6 +30,7 @@ class Controls:
     foot_m: Float[Array, "n 2 3"]
     foot_rad: Float[Array, "n 2 2"]
     knee_out_rad: Float[Array, "n 2"]  # how far the knees point outward of the feet
+    knee_room: Float[Array, " n"]  # 0: legs may be straight as in standing, 1: knees stay soft as in stepping
     contact: Float[Array, "n 2"]  # 1: the foot carries weight, 0: it is in the air
 
     def copy(self) -> "Controls":
@@ -50,7 +51,9 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
     return Controls(**values)
 
 
-def blended(parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]) -> Controls:
+def blended(
+    parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
+) -> Controls:
     """Parts one after the other: part k takes over around starts_s[k] within blends_s[k].
 
     Where the two stand at different places, the feet step over one after the other, lifted.

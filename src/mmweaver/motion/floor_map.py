@@ -56,13 +56,17 @@ class FloorMap:
 
     @cached_property
     def dislike(self) -> Float[Array, "y x"]:
-        """Soft reasons against a cell: assumed rather than seen, feet or head out of the window or the picture."""
+        """Soft reasons against a cell: assumed not seen, aside, feet or head out of the window or the picture."""
         ground = np.hypot(self.places_m[..., 0], self.places_m[..., 1])
         floor = self.scene.floor_z_m
         farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
         low, high = self.range_window_m
         dislike = 0.7 * ~self.scene.free_space.is_seen
-        dislike = dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
+        dislike = (
+            dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
+        )
+        azimuth = np.degrees(np.abs(np.arctan2(self.places_m[..., 0], self.places_m[..., 1])))
+        dislike = dislike + np.clip((azimuth - 12) / 20, 0, 1.4)  # the antennas look straight ahead
         for height in (0.03, self.height_m):
             dislike = dislike + 0.8 * ~self._in_picture(self.places_m, floor + height, margin=0.01, vertical=True)
         return dislike
@@ -74,7 +78,7 @@ class FloorMap:
         low, high = self.range_window_m
         inside = (distance - TORSO_HALF_DEPTH_M >= low) & (distance + TORSO_HALF_DEPTH_M <= high)
         ahead = np.abs(np.arctan2(places[..., 0], places[..., 1])) <= AZIMUTH_LIMIT_RAD
-        return inside & ahead & self._in_picture(places, z, margin=0.06, vertical=False)
+        return np.asarray(inside & ahead & self._in_picture(places, z, margin=0.06, vertical=False))
 
     def _in_picture(self, places: Places, z: float, *, margin: float, vertical: bool) -> Bool[Array, "*shape"]:
         lens = self.scene.photo.intrinsics
@@ -86,19 +90,19 @@ class FloorMap:
         if vertical:
             v = (lens.fy * camera[..., 1] / depth + lens.cy) / lens.height
             inside &= (v >= margin) & (v <= 1 - margin)
-        return inside
+        return np.asarray(inside)
 
     def _cells(self, places: Places) -> tuple[Array, Array, Array]:
         """Row and column of each place, and whether it is on the grid."""
         free = self.scene.free_space
-        column = np.round((places[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
-        row = np.round((places[..., 1] - free.y_m[0]) / self.cell_m).astype(int)
+        column = np.rint((places[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
+        row = np.rint((places[..., 1] - free.y_m[0]) / self.cell_m).astype(int)
         inside = (column >= 0) & (column < len(free.x_m)) & (row >= 0) & (row < len(free.y_m))
-        return np.where(inside, row, 0), np.where(inside, column, 0), inside
+        return np.where(inside, row, 0), np.where(inside, column, 0), np.asarray(inside)
 
     def can_stand(self, places: Places) -> Bool[Array, "*shape"]:
         row, column, inside = self._cells(places)
-        return inside & self.walkable[row, column]
+        return np.asarray(inside & self.walkable[row, column])
 
     def clearance_at(self, places: Places) -> Float[Array, "*shape"]:
         row, column, inside = self._cells(places)
@@ -108,11 +112,17 @@ class FloorMap:
         row, column, inside = self._cells(places)
         return np.where(inside, self.dislike[row, column], 3.0)
 
-    def free_length_m(self, place: Float[Array, "2"], direction_rad: float, wanted_m: float) -> float:
-        """How far a body can go straight from a place, at most `wanted_m`."""
+    def free_length_m(
+        self, place: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
+    ) -> float:
+        """How far a body can go straight from a place, at most `wanted_m`.
+
+        Within `excused_m` of the place it may be closer to things than a body's radius (a seat just left).
+        """
         steps = np.append(np.arange(0.0, wanted_m, 0.04), wanted_m)
         way = place + steps[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
-        blocked = np.flatnonzero(~self.can_stand(way))
+        excused = (steps < excused_m) & (self.clearance_at(way) > 0.05)
+        blocked = np.flatnonzero(~(self.can_stand(way) | excused))
         if not len(blocked):
             return float(wanted_m)
         return float(steps[blocked[0] - 1]) if blocked[0] else 0.0

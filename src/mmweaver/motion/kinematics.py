@@ -92,7 +92,7 @@ def _ankle(body: Body, controls: Controls, side: int) -> Vectors:
     """Where the foot's place and pitch put the ankle: it turns about the ball or, toes up, about the heel."""
     yaw, pitch = controls.foot_rad[:, side, 0], controls.foot_rad[:, side, 1]
     height, ball, heel = body.ankle_height_m, body.ball_m, body.heel_m
-    on_ball = rise((pitch + 0.05) / 0.10)
+    on_ball = rise((pitch + 0.2) / 0.4)
     forward = on_ball * ball * (1 - np.cos(pitch)) - (1 - on_ball) * heel * (1 - np.cos(pitch)) + height * np.sin(pitch)
     up = on_ball * ball * np.sin(pitch) - (1 - on_ball) * heel * np.sin(pitch) + height * np.cos(pitch)
     ankle = controls.foot_m[:, side].copy()
@@ -106,7 +106,7 @@ def _pelvis(body: Body, controls: Controls, frame: Frames, ankles: list[Vectors]
     """The pelvis as asked, lowered where a foot that carries weight would be out of reach."""
     pelvis = controls.pelvis_m.copy()
     limits = [pelvis[:, 2]]
-    longest = LONGEST_STANCE * body.leg_m
+    longest = (LONGEST_STANCE - 0.012 * controls.knee_room) * body.leg_m
     for side in (LEFT, RIGHT):
         hip = turned(frame, body.offset_m[joint(f"{SIDES[side]}_hip")])
         across = np.sum((pelvis[:, :2] + hip[:, :2] - ankles[side][:, :2]) ** 2, axis=1)
@@ -122,8 +122,9 @@ def _place_leg(joints: Joints, body: Body, controls: Controls, frame: Frames, si
     away = ankle - hip
     distance = np.linalg.norm(away, axis=1)
     direction = away / distance[:, None]
-    loose = 1 - controls.contact[:, side]  # a leg in the air is not stretched, so that the knee does not snap
-    reach = cap(distance, (LONGEST_LEG - 0.016 * loose) * body.leg_m, (0.0012 + 0.012 * loose) * body.leg_m)
+    # A leg in the air or stepping is not stretched fully, so that the knee does not snap.
+    loose = 1 - controls.contact[:, side] * (1 - controls.knee_room)
+    reach = cap(distance, (LONGEST_LEG - 0.0145 * loose) * body.leg_m, (0.0012 + 0.034 * loose) * body.leg_m)
     along = (body.thigh_m**2 - body.shank_m**2 + reach**2) / (2 * reach)
     aside = np.sqrt(body.thigh_m**2 - along**2)
     knee = hip + along[:, None] * direction + aside[:, None] * _knee_direction(controls, side, direction)

@@ -1,5 +1,10 @@
 """The words that a sentence may be made of, and what each says."""
 
+
+def _words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
 # Verbs (and the nouns made of them, as in "takes a walk"): lemma -> (lower, upper) of a Step. Empty lower: arms only.
 ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     **dict.fromkeys(("walk", "stroll", "pace", "stride", "amble", "wander", "saunter", "step", "march"), ("walk", "")),
@@ -21,14 +26,16 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
 # Moving somewhere: walking, if the clause says where to (or that it is for a walk).
 GOING = frozenset({"go", "move", "head", "come", "return"})
 # Verbs that say nothing by themselves: "does squats", "starts walking", "keeps waving".
-LIGHT = frozenset(
-    {"do", "perform", "make", "take", "give", "start", "begin", "continue", "keep", "proceed", "execute", "practice",
-     "practise", "have", "throw", "land", "decide"}
-)  # fmt: skip
+LIGHT = _words(
+    """
+    do perform make take give start begin continue keep proceed execute practice practise have throw land decide
+    """
+)
 IRREGULAR = {
     "sat": "sit", "stood": "stand", "drank": "drink", "drunk": "drink", "ran": "run", "strode": "stride",
     "went": "go", "gone": "go", "came": "come", "made": "make", "did": "do", "does": "do", "done": "do", "took": "take",
-    "gave": "give", "began": "begin", "kept": "keep", "leapt": "leap", "threw": "throw", "goes": "go", "froze": "freeze",
+    "gave": "give", "began": "begin", "kept": "keep", "leapt": "leap", "threw": "throw", "goes": "go",
+    "froze": "freeze",
     "seated": "seated", "has": "have", "had": "have",
 }  # fmt: skip
 BASE_VERB_SPEED = {"stroll": -1, "amble": -1, "saunter": -1, "sprint": 1, "march": 0}
@@ -53,8 +60,17 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\bback and forth\b|\bto and fro\b|\bback and forwards?\b|\bup and down the room\b", " pacing_to_and_fro "),
     (r"\baround (?:the|in the) (?:room|place)\b", " pacing_to_and_fro "),
     (r"\bup and down\b|\b(?:from )?side to side\b", " "),
-    (r"\b(?:half|quarter|semi)[- ]?(?:a )?circles?\b", " semicircle "),
-    (r"\b(?:in|on|along|around)(?: an?| the)?(?: small| large| big| wide| full)? circles?\b|\ba circle\b", " in_circle "),
+    (r"\b(?:starting|beginning|starts?|begins?) (?:with|by|on) (?:the |his |her |their )?(?:left|right)"
+     r"(?: (?:leg|foot))?\b",
+     " leading-foot "),
+    (r"\b(?:half|quarter|quater|semi|third|thirds|fourth|fourths)[- ]?(?:of )?(?:an? |the )?(?:in )?circles?\b",
+     " semicircle "),
+    (r"\b(?:in|on|along|around)(?: an?| the)?(?: [a-z-]+){0,2} circles?\b"
+     r"|\ba (?:full |whole |complete |big |small )?circle\b",
+     " in_circle "),
+    (r"\b(?:figure|number)[ -](?:of )?(?:an? )?(?:8|eight)\b|\b\d+ ?degrees? of an? circle\b", " semicircle "),
+    (r"\bto (?:the|his|her|one|their|its) side\b|\bside[- ]?steps?\b", " sideways "),
+    (r"\b360 ?(?:degrees?|°)?|\bfull turn\b", " fullturn "),
     (r"\b(?:on|in) (?:the |one |a )?(?:same )?(?:spot|place)\b|\bin-place\b", " on_spot "),
     (r"\b180 ?(?:degrees?|°)|\bhalf turn\b|\babout[- ]face\b|\b(?:all the way )?around\b(?= *(?:$|[,.;]|and|then))",
      " around "),
@@ -81,7 +97,7 @@ DIRECTIONS = {
     **dict.fromkeys(("towards", "toward", "approach", "closer", "nearer", "approaches", "approaching"), "towards"),
     **dict.fromkeys(("away", "retreat", "retreats", "retreating"), "away"),
     **dict.fromkeys(("forward", "forwards", "ahead", "straight", "onward", "advance", "advances"), "forwards"),
-    **dict.fromkeys(("backward", "backwards", "back"), "backwards"),
+    **dict.fromkeys(("backward", "backwards", "back", "rear", "reverse"), "backwards"),
     "in_circle": "circle",
     "on_spot": "spot",
     "around": "around",
@@ -89,10 +105,12 @@ DIRECTIONS = {
 }
 SPEEDS = {
     **dict.fromkeys(
-        ("slow", "slowly", "leisurely", "lazily", "carefully", "cautiously", "gently", "calmly", "softly", "gradually"), -1
+        ("slow", "slowly", "leisurely", "lazily", "carefully", "cautiously", "gently", "calmly", "softly",
+         "gradually"), -1
     ),
     **dict.fromkeys(
-        ("fast", "quick", "quickly", "briskly", "brisk", "rapidly", "rapid", "hurriedly", "swiftly", "swift", "energetically",
+        ("fast", "quick", "quickly", "briskly", "brisk", "rapidly", "rapid", "hurriedly", "swiftly", "swift",
+         "energetically",
          "vigorously", "hastily", "faster", "enthusiastically", "hurries"), 1
     ),
 }  # fmt: skip
@@ -102,58 +120,92 @@ NUMBERS = {
     "another": 1,
 }  # fmt: skip
 TIMES = frozenset({"once", "twice", "thrice"})
-SEATS = frozenset({"sofa", "couch", "chair", "stool", "bed", "bench", "armchair", "seat", "ottoman", "settee", "recliner"})
-ARMS = frozenset({"hand", "hands", "arm", "arms", "fist", "fists", "palm", "palms", "wrist", "wrists"})
-RADAR = frozenset(
-    {"radar", "camera", "sensor", "me", "us", "viewer", "observer", "device", "photographer", "lens", "audience", "awr1843"}
+SEATS = _words(
+    """
+    sofa couch chair stool bed bench armchair seat ottoman settee recliner
+    """
 )
-BOTH = frozenset({"both", "hands", "arms", "fists"})
-OWN = frozenset({"his", "her", "their", "its", "my", "your", "own"})
-PRONOUNS = frozenset({"he", "she", "it", "they", "i", "we", "you", "who", "someone", "somebody"})
+ARMS = _words(
+    """
+    hand hands arm arms fist fists palm palms wrist wrists
+    """
+)
+RADAR = _words(
+    """
+    radar camera sensor me us viewer observer device photographer lens audience awr1843
+    """
+)
+BOTH = _words(
+    """
+    both hands arms fists
+    """
+)
+OWN = _words(
+    """
+    his her their its my your own
+    """
+)
+PRONOUNS = _words(
+    """
+    he she it they i we you who someone somebody
+    """
+)
 
-NEGATIONS = frozenset(
-    {"not", "never", "no", "without", "cannot", "cant", "dont", "doesnt", "didnt", "isnt", "wont", "wasnt", "nor",
-     "neither", "instead", "except", "refuses", "refuse", "avoids", "hardly", "barely", "nobody", "none", "rather"}
-)  # fmt: skip
-MANY = frozenset({"people", "persons", "men", "women", "boys", "girls", "children", "kids", "couple", "crowd", "humans",
-                  "users", "everyone", "family", "pair", "others", "group", "team", "subjects"})  # fmt: skip
-NOT_HUMAN = frozenset(
-    {"dog", "cat", "robot", "horse", "bird", "car", "animal", "monkey", "drone", "cow", "elephant", "fish", "pet", "puppy"}
+NEGATIONS = _words(
+    """
+    not never no without cannot cant dont doesnt didnt isnt wont wasnt nor neither instead except refuses refuse
+    avoids hardly barely nobody none rather
+    """
+)
+MANY = _words(
+    """
+    people persons men women boys girls children kids couple crowd humans users everyone family pair others group
+    team subjects
+    """
+)
+NOT_HUMAN = _words(
+    """
+    dog cat robot horse bird car animal monkey drone cow elephant fish pet puppy
+    """
 )
 # Words that make it another movement than the one known, so that leaving them out would be wrong.
-OTHER_MOVEMENT = frozenset(
-    {"stairs", "stair", "staircase", "stairway", "upstairs", "downstairs", "ladder", "ramp", "slope", "hill", "uphill",
-     "downhill", "beam", "rail", "handrail", "railing", "rope", "trampoline", "treadmill", "bike", "bicycle", "ball", "like",
-     "semicircle", "allfours", "oneleg", "sideways", "sidewards", "sideway", "laterally", "diagonally", "zigzag", "slalom",
-     "curve", "curved", "arc", "bend", "obstacle", "hurdle", "over", "knees", "knee", "leg", "legs", "foot", "tiptoe",
-     "tiptoes", "handstand", "cartwheel", "floor", "ground", "wheelchair", "swimming", "dance", "kick", "kicks", "flip",
-     "somersault", "asleep", "drunken", "drunk", "limp", "crossed", "spiral", "eight", "triangle", "rectangle",
-     "swings", "phone", "head", "shoulder", "shoulders", "elbow", "elbows", "hips", "hip", "thigh", "sit-ups", "push-ups",
-     "lunge", "lunges", "plank", "violin", "guitar", "golf", "tennis", "racket", "upward", "downward", "box_object",
-     "scooter", "skateboard", "grapevine", "waltz", "steps_up", "step_stool"}
-)  # fmt: skip
+OTHER_MOVEMENT = _words(
+    """
+    stairs stair staircase stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail
+    railing rope trampoline treadmill bike bicycle ball like semicircle allfours oneleg sideways sidewards sideway
+    laterally diagonally zigzag slalom curve curved arc bend obstacle hurdle over knees knee leg legs foot tiptoe
+    tiptoes handstand cartwheel floor ground wheelchair swimming dance kick kicks flip somersault asleep drunken
+    drunk limp crossed spiral triangle rectangle swings phone head shoulder shoulders elbow elbows hips hip thigh
+    sit-ups push-ups lunge lunges plank violin guitar golf tennis racket upward downward platform edge curb log
+    bridge bent hunched crouched bending kneeling circle circles circular fullturn quarter against reacts push
+    pushes perturbation balance trips stumbles shuffle scooter skateboard grapevine waltz
+    """
+)
 # Words that may stand anywhere and change nothing that can be acted out.
-FILLERS = frozenset(
-    """a an the this that these there his her their its my your own one's is are was were be been being am has have had
-    will would can could should may might shall and or with in on at to for from of by into onto over_to up down off out
-    near next beside behind between through across along until till during so very really quite fairly rather just only
-    then now still while bit little some any each every per all again together himself herself themselves itself myself
-    person man woman human guy lady boy girl user subject child kid adult someone somebody he she it they i you who which
-    figure individual participant patient gentleman male female actor player student tenant resident speaker character
-    young old elderly tall short big small large long wide medium normal normally regular average casual casually
-    comfortably comfortable relaxed happily happy sad sadly nervously angrily politely friendly confidently quietly silently
-    steadily steady natural naturally simply repeatedly continuously constantly several few many multiple times time
-    speed pace fashion manner way style motion movement movements moderate moderately usual usually
-    side direction line room place position spot area middle centre center front end start beginning point distance wall
-    window door table desk kitchen living office bedroom corridor hallway lab tv television plant shelf sofa_ hello goodbye
-    bye hi greeting someone_ friend attention audience help air high higher overhead above head_ chest mouth lips face_
-    water coffee tea juice beer wine milk soda drink_ cup glass mug bottle can_ straw sip_ refreshing hot cold warm glass_of
-    stick_ body upright straight_up position_ place_ feet deep deeply low fully halfway half full once more step_ round
-    applause_ rhythm rhythmically beat loudly loud enthusiastic excited excitedly proudly cheerfully joyfully smoothly
-    punching_ bag combo combination hooks hook uppercut uppercuts jabs straight_punch opponent invisible imaginary shadow
-    where when as if_ because order what how here clearly visibly slightly somewhat lightly hard strongly strong firmly
-    stationary motionless motionlessly immobile perfectly completely idle_ moment while_ second seconds minute
-    exercise exercises workout gym set sets repetitions reps fitness jacks
-    steps pairs large-ish meters metres meter metre m cm feet_ width apart shirt jacket hat red blue black white green
-    someone's person's man's user's woman's arm's side_ onto_ around_""".split()
+FILLERS = _words(
+    """
+    a an the this that these there his her their its my your own one's is are was were be been being am has have
+    had will would can could should may might shall and or with in on at to for from of by into onto over_to up
+    down off out near next beside behind between through across along until till during so very really quite
+    fairly rather just only then now still while bit little some any each every per all again together himself
+    herself themselves itself myself person man woman human guy lady boy girl user subject child kid adult someone
+    somebody he she it they i you who which figure individual participant patient gentleman male female actor
+    player student tenant resident speaker character young old elderly tall short big small large long wide medium
+    normal normally regular average casual casually comfortably comfortable relaxed happily happy sad sadly
+    nervously angrily politely friendly confidently quietly silently steadily steady natural naturally simply
+    repeatedly continuously constantly several few many multiple times time speed pace fashion manner way style
+    motion movement movements moderate moderately usual usually side direction line room place position spot area
+    middle centre center front end start beginning point distance wall window door table desk kitchen living
+    office bedroom corridor hallway lab tv television plant shelf hello goodbye bye hi greeting friend attention
+    audience help air high higher overhead above chest mouth lips water coffee tea juice beer wine milk soda cup
+    glass mug bottle straw refreshing hot cold warm glass_of body upright straight_up feet deep deeply low fully
+    halfway half full once more round rhythm rhythmically beat loudly loud enthusiastic excited excitedly proudly
+    cheerfully joyfully smoothly bag combo combination hooks hook uppercut uppercuts jabs straight_punch opponent
+    invisible imaginary shadow where when as because order what how here clearly visibly slightly somewhat lightly
+    hard strongly strong firmly stationary motionless motionlessly immobile perfectly completely moment second
+    seconds minute exercise exercises workout gym set sets repetitions reps fitness jacks steps pairs large-ish
+    meters metres meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them
+    something anything first about whole complete successive consecutive row close someone's person's man's user's
+    woman's arm's
+    """
 )

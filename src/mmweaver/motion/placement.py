@@ -12,7 +12,16 @@ from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
 from mmweaver.motion.seating import STOOL_HEIGHT_M, Sitting, reachable, seats_of, stool_at, stool_fits, stool_note
-from mmweaver.motion.way import NoWay, Way, _ramps, angle_between, face_along, walk_anywhere, walk_circle, walk_straight
+from mmweaver.motion.way import (
+    NoWay,
+    Way,
+    angle_between,
+    face_along,
+    ramps_of,
+    walk_anywhere,
+    walk_circle,
+    walk_straight,
+)
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
@@ -32,7 +41,9 @@ class Placement:
     assumptions: tuple[str, ...]
 
 
-def place(plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None) -> Placement:
+def place(
+    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None
+) -> Placement:
     """Finds a way for the whole plan that is free and in view all along.
 
     `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, or where
@@ -81,6 +92,7 @@ def _try(
             sitting = target if following is not None and following.lower == "sit_down" else None
         elif step.lower == "turn" or step.facing:
             _lay_turn(way, step, rng, first=k == 0)
+        way.from_seat = way.from_seat or step.lower == "stand_up"
         if step.lower == "sit_down" and k:
             sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
             way.turn_to(sitting.facing_rad, step.start_s - 0.3)
@@ -100,17 +112,16 @@ def _start(
     first = plan.steps[0]
     if _starts_seated(plan):
         return _start_seated(floor, body, rng, start_m, seats)
-    if start_m is not None:
-        spot = np.array(start_m, dtype=float)
-    else:
-        spot = _random_start(plan, floor, rng, seats)
+    spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
     if first.facing:
         facing = _facing_rad(first.facing, spot) + float(rng.normal(0, 0.05))
     return Way(floor=floor, rng=rng, place=spot, heading_rad=facing), None
 
 
-def _random_start(plan: MotionPlan, floor: FloorMap, rng: np.random.Generator, seats: list[Sitting]) -> Float[Array, "2"]:
+def _random_start(
+    plan: MotionPlan, floor: FloorMap, rng: np.random.Generator, seats: list[Sitting]
+) -> Float[Array, "2"]:
     """A cell at random; where a walk shall end at a seat, often one from which it would."""
     first = plan.steps[0]
     to_seat = first.direction == "seat" or (len(plan.steps) > 1 and plan.steps[1].lower == "sit_down")
@@ -135,6 +146,8 @@ def _start_seated(
         cost += float(floor.dislike_at(sitting.seat_m)) + (0.0 if floor.clearance_at(sitting.feet_m) > 0 else 2.0)
     else:
         cells = floor.places_m[floor.walkable]
+        if not len(cells):
+            raise NoWay("no free floor")
         spot = np.array(start_m, dtype=float) if start_m else cells[int(rng.integers(len(cells)))]
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.3), -0.6, 0.6))
         sitting = stool_at(spot, facing, body)
@@ -157,7 +170,11 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
         lasts = max(step.end_s - step.start_s - 0.35, 0.1)
         speed = float(np.hypot(*gap)) / lasts
         fits = 0.45 <= speed <= (1.6 if step.lower == "walk" else 2.6)
-        if fits and (said is None or abs(angle_between(said, towards)) < 0.9) and reachable(way.floor, way.place, sitting):
+        if (
+            fits
+            and (said is None or abs(angle_between(said, towards)) < 0.9)
+            and reachable(way.floor, way.place, sitting)
+        ):
             return sitting
     return None
 
@@ -167,7 +184,7 @@ def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last
         gap = target.feet_m - way.place
         direction = float(np.arctan2(gap[1], gap[0]))
         begin = face_along(way, step, direction, step.start_s, first=first)
-        ramps = (_ramps(step.end_s - begin, first=first, last=False)[0], 0.45)
+        ramps = (ramps_of(step.end_s - begin, first=first, last=False)[0], 0.45)
         way.go(step, direction, float(np.hypot(*gap)), (begin, step.end_s), ramps)
         return
     way.cost += 3.0 * (step.direction == "seat")
@@ -176,7 +193,9 @@ def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last
         walk_circle(way, step, first=first, last=last)
     elif direction is None:
         if step.direction == "seat" and not any("stool" in note or "no seat" in note for note in way.notes):
-            way.notes.append(f"for {step.clause!r} no seat of the photo can be reached; the walk ends where there is room")
+            way.notes.append(
+                f"for {step.clause!r} no seat of the photo can be reached; the walk ends where there is room"
+            )
         walk_anywhere(way, step, first=first, last=last)
     else:
         walk_straight(way, step, direction, first=first, last=last)
@@ -215,7 +234,9 @@ def _lay_turn(way: Way, step: Step, rng: np.random.Generator, *, first: bool) ->
         if first and step.lower != "turn":
             return  # the start faces there already
         if first:
-            way.start_heading_rad = way.heading_rad = way.heading_rad + float(rng.choice([-1.0, 1.0]) * rng.uniform(1.2, 2.2))
+            way.start_heading_rad = way.heading_rad = way.heading_rad + float(
+                rng.choice([-1.0, 1.0]) * rng.uniform(1.2, 2.2)
+            )
         heading = _facing_rad(step.facing, way.place)
     else:
         quarter = float(np.pi / 2 + rng.normal(0, 0.08))
@@ -255,8 +276,8 @@ def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
 def _no_floor(floor: FloorMap) -> str:
     low, high = floor.range_window_m
     return (
-        f"there is no room for a person: no free floor is in the picture between {low:.2f} and {high:.2f} m from the radar;"
-        " take a radar with a longer range window (--radar) or a photo with more floor"
+        f"there is no room for a person: no free floor is in the picture between {low:.2f} and {high:.2f} m from the"
+        " radar; take a radar with a longer range window (--radar) or a photo with more floor"
     )
 
 
@@ -264,8 +285,14 @@ def _no_room(plan: MotionPlan, floor: FloorMap, start_m: tuple[float, float] | N
     from_there = f" from {start_m[0]:g},{start_m[1]:g}" if start_m else ""
     going = [step.clause for step in plan.steps if step.moves]
     what = f" for {going[0]!r}" if going else ""
-    area = float(floor.walkable.sum()) * floor.cell_m**2
+    cells = floor.places_m[floor.walkable]
+    some = cells[:: max(1, len(cells) // 40)]
+    longest = max(
+        (floor.free_length_m(place, float(angle), 4.0) for place in some for angle in np.arange(8) * np.pi / 4),
+        default=0.0,
+    )
     return (
-        f"there is no room{what}{from_there}: {area:.1f} m2 of floor are free and in the radar's window, and no way of a"
-        " metre and of the time asked for fits; try fewer frames, 'slowly', another direction or another --at"
+        f"there is no room{what}{from_there}: in the picture and the radar's window {len(cells) * floor.cell_m**2:.1f}"
+        f" m2 of floor are free, the longest straight way is about {longest:.1f} m; try fewer frames, 'slowly', another"
+        " direction or another start (--at)"
     )

@@ -19,7 +19,9 @@ class Step:
     lower: str = "stand"  # one of LOWER
     upper: str = ""  # one of UPPER, laid over the lower one
     hand: str = ""  # left | right | both | "" (as the seed has it)
-    direction: str = ""  # left | right | towards | away | forwards | backwards | back | pacing | circle | seat | spot | around
+    direction: str = (
+        ""  # left | right | towards | away | forwards | backwards | back | pacing | circle | seat | spot | around
+    )
     speed: int = 0  # -1 slowly, 0, 1 quickly
     count: int = 0  # how often; 0: as time allows
     seat: str = ""  # the word used for it: sofa, chair, ...

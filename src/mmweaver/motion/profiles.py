@@ -15,24 +15,24 @@ def rise(u: Values) -> Values:
     [0.0, 0.5, 1.0]
     """
     u = np.clip(u, 0.0, 1.0)
-    return u**3 * (10 - 15 * u + 6 * u**2)
+    return np.asarray(u**3 * (10 - 15 * u + 6 * u**2))
 
 
 def rise_integral(u: Values) -> Values:
     """Integral of `rise` from 0 to u: 0 below 0, u - 1/2 above 1; C3."""
     inside = np.clip(u, 0.0, 1.0)
-    return inside**4 * (2.5 - 3 * inside + inside**2) + np.maximum(u - 1.0, 0.0)
+    return np.asarray(inside**4 * (2.5 - 3 * inside + inside**2) + np.maximum(u - 1.0, 0.0))
 
 
 def bump(u: Values) -> Values:
     """0 outside (0, 1), 1 at 1/2; C2."""
     u = np.clip(u, 0.0, 1.0)
-    return 64 * (u * (1 - u)) ** 3
+    return np.asarray(64 * (u * (1 - u)) ** 3)
 
 
 def plateau(time_s: Values, start_s: float, end_s: float, up_s: float, down_s: float) -> Values:
     """0 before start, up to 1 within `up_s`, down to 0 within `down_s` before the end; C2."""
-    return rise((time_s - start_s) / up_s) * rise((end_s - time_s) / down_s)
+    return np.asarray(rise((time_s - start_s) / up_s) * rise((end_s - time_s) / down_s))
 
 
 def travel(u: Values, ramp_in: float, ramp_out: float) -> Values:
@@ -41,15 +41,15 @@ def travel(u: Values, ramp_in: float, ramp_out: float) -> Values:
     Without a ramp the progress goes on at its speed outside [0, 1] (the motion was under way, or goes on).
     """
     total = 1 - ramp_in / 2 - ramp_out / 2
-    start = ramp_in * rise_integral(u / ramp_in) if ramp_in > 0 else u
+    start = ramp_in * rise_integral(np.asarray(u / ramp_in)) if ramp_in > 0 else u
     if ramp_out > 0:
-        start = start - ramp_out * rise_integral((u - 1 + ramp_out) / ramp_out)
-    return start / total
+        start = start - ramp_out * rise_integral(np.asarray((u - 1 + ramp_out) / ramp_out))
+    return np.asarray(start / total)
 
 
-def cap(x: Values, limit: float | Values, width: float | Values) -> Values:
+def cap(x: Values, limit: Values | float, width: Values | float) -> Values:
     """x where it is below limit - width, never above limit, smooth between; C3."""
-    return x - 2 * width * rise_integral((x - limit + width) / (2 * width))
+    return x - 2 * width * rise_integral(np.asarray((x - limit + width) / (2 * width)))
 
 
 def softmin(values: Sequence[Values], width: float) -> Values:

@@ -28,8 +28,8 @@ class Move:
 
     def gone_m(self, time_s: Times) -> Times:
         span_s = self.end_s - self.start_s
-        u = (time_s - self.start_s) / span_s
-        return self.length_m * travel(u, self.ramp_in_s / span_s, self.ramp_out_s / span_s)
+        u = np.asarray((time_s - self.start_s) / span_s)
+        return np.asarray(self.length_m * travel(u, self.ramp_in_s / span_s, self.ramp_out_s / span_s))
 
     @property
     def speed_mps(self) -> float:
@@ -46,7 +46,7 @@ class Move:
 
     @property
     def end_shift_m(self) -> Float[Array, "2"]:
-        return self.shift_m(np.array(self.end_s))
+        return self.shift_m(np.array([self.end_s]))[0]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ def parse(text: str) -> MotionPlan:
             raise InputError(f"the clause {clause.text!r} names no activity that is known; known: {KNOWN}")
     if not readings:
         raise InputError(f"no activity is named in {text.strip()!r}; known: {KNOWN}")
-    steps = _postures(_in_sequence(readings))
+    steps = _ways_back(_postures(_in_sequence(readings)))
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     return MotionPlan(text=text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
@@ -137,13 +137,22 @@ def _postures(steps: list[Step]) -> list[Step]:
     return _merged(result)
 
 
+def _ways_back(steps: list[Step]) -> list[Step]:
+    """'Walks back' is the way back where there was a way, else it is backwards."""
+    gone = False
+    for k, step in enumerate(steps):
+        if step.direction == "back" and not gone:
+            steps[k] = replace(step, direction="backwards")
+        gone = gone or step.moves
+    return steps
+
+
 def _merged(steps: list[Step]) -> list[Step]:
     """Two equal still postures in a row are one."""
     result: list[Step] = []
     for step in steps:
         plain = step.lower in ("sit", "stand") and not step.upper and not step.seconds and not step.facing
-        if result and plain and result[-1].lower in (step.lower, "sit_down" if step.lower == "sit" else step.lower):
-            if not result[-1].upper:
-                continue
-        result.append(step)
+        same = (step.lower, "sit_down") if step.lower == "sit" else (step.lower,)
+        if not (plain and result and result[-1].lower in same and not result[-1].upper):
+            result.append(step)
     return result

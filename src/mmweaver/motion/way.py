@@ -28,9 +28,9 @@ def angle_between(one: float, other: float) -> float:
 
 def wished_speed(step: Step, rng: np.random.Generator) -> float:
     if step.lower == "jog":
-        low, high = ((1.4, 1.7), (1.7, 2.2), (2.2, 2.7))[step.speed + 1]
+        low, high = ((1.3, 1.5), (1.5, 1.9), (1.9, 2.2))[step.speed + 1]
     else:
-        low, high = ((0.6, 0.8), (1.0, 1.3), (1.45, 1.75))[step.speed + 1]
+        low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
     return float(rng.uniform(low, high))
 
 
@@ -50,6 +50,7 @@ class Way:
     seat_height_m: list[float] = field(default_factory=list)  # by step
     cost: float = 0.0
     last_direction_rad: float | None = None
+    from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
 
     def __post_init__(self) -> None:
         self.start_m = (float(self.place[0]), float(self.place[1]))
@@ -62,6 +63,9 @@ class Way:
             moves=tuple(move for moves in self.moves for move in moves),
             turns=tuple(self.turns),
         )
+
+    def free_length_m(self, direction_rad: float, wanted_m: float) -> float:
+        return self.floor.free_length_m(self.place, direction_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0)
 
     def turn_to(self, heading_rad: float, start_s: float) -> float:
         """Turns on the spot the shorter way, returns how long it takes."""
@@ -77,7 +81,9 @@ class Way:
         self.cost += 0.25 * abs(angle)
         return lasts
 
-    def go(self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]):
+    def go(
+        self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]
+    ):
         """A straight move over a time span; the caller has made sure that it is free."""
         move = Move(
             start_s=span[0], end_s=span[1], length_m=length_m, direction_rad=direction_rad,
@@ -90,6 +96,7 @@ class Way:
         self.cost += float(self.floor.dislike_at(samples).mean())
         self.place = self.place + move.end_shift_m
         self.last_direction_rad = direction_rad
+        self.from_seat = False
 
 
 def face_along(way: Way, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
@@ -108,11 +115,11 @@ def walk_straight(way: Way, step: Step, direction_rad: float, *, first: bool, la
     """
     begin = face_along(way, step, direction_rad, step.start_s, first=first)
     end = _stop_s(step, begin)
-    ramps = _ramps(end - begin, first=first, last=last and end >= step.end_s - 1e-9)
+    ramps = ramps_of(end - begin, first=first, last=last and end >= step.end_s - 1e-9)
     effective = end - begin - sum(ramps) / 2
     speed = wished_speed(step, way.rng)
     wanted = speed * effective
-    free = way.floor.free_length_m(way.place, direction_rad, wanted)
+    free = way.free_length_m(direction_rad, wanted)
     if free >= max(SLOWEST_MPS[step.lower], 0.6 * speed) * effective:
         way.cost += 2.0 * (1 - free / wanted)
         way.go(step, direction_rad, free, (begin, end), ramps)
@@ -122,7 +129,7 @@ def walk_straight(way: Way, step: Step, direction_rad: float, *, first: bool, la
     stop_ramps = (ramps[0], RAMP_S)
     speed = max(0.85 * speed, SLOWEST_MPS[step.lower])
     lasts = free / speed + sum(stop_ramps) / 2
-    way.cost += 1.5 + 2.0 * max(0.0, 1.6 - free)
+    way.cost += 1.5 + 2.0 * (1 - free / wanted)
     way.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
     way.notes.append(
         f"there is room to go {free:.1f} m for {step.clause!r}; after that the person stands still until"
@@ -138,7 +145,7 @@ def _stop_s(step: Step, begin: float) -> float:
     return min(step.end_s, begin + each * step.count + 0.3)
 
 
-def _ramps(span_s: float, *, first: bool, last: bool) -> tuple[float, float]:
+def ramps_of(span_s: float, *, first: bool, last: bool) -> tuple[float, float]:
     if span_s < 0.45:
         raise NoWay("no time left to walk after turning")
     ramp = min(RAMP_S, 0.42 * span_s)
@@ -156,7 +163,7 @@ def walk_anywhere(way: Way, step: Step, *, first: bool, last: bool) -> None:
         left = step.end_s - begin
         final = free >= 0.75 * speed * (left - RAMP_S / 2)
         if final:
-            ramps = _ramps(left, first=begun, last=last)
+            ramps = ramps_of(left, first=begun, last=last)
             length = min(free, speed * (left - sum(ramps) / 2))
             if length < SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2):
                 raise NoWay(f"only {free:.1f} m")
@@ -183,11 +190,11 @@ def _open_direction(way: Way, wanted_m: float, *, keep_heading: bool) -> tuple[f
     """A direction with room, at random among the better ones; after another step rather straight on."""
     wanted_m = min(wanted_m, 5.0)
     if keep_heading:
-        free = way.floor.free_length_m(way.place, way.heading_rad, wanted_m)
+        free = way.free_length_m(way.heading_rad, wanted_m)
         if free >= 0.8 * wanted_m:
             return way.heading_rad, free
     directions = way.rng.uniform(0, 2 * np.pi) + np.arange(12) * np.pi / 6
-    free = np.array([way.floor.free_length_m(way.place, float(angle), wanted_m) for angle in directions])
+    free = np.array([way.free_length_m(float(angle), wanted_m) for angle in directions])
     pick = int(np.argmax(free * way.rng.uniform(0.6, 1.0, len(free))))
     return float(directions[pick]), float(free[pick])
 
@@ -197,7 +204,7 @@ def walk_circle(way: Way, step: Step, *, first: bool, last: bool) -> None:
     rng, side = way.rng, (1.0 if way.rng.random() < 0.5 else -1.0)
     direction = way.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
     begin = face_along(way, step, direction, step.start_s, first=first)
-    ramps = _ramps(step.end_s - begin, first=first, last=last)
+    ramps = ramps_of(step.end_s - begin, first=first, last=last)
     speed = min(wished_speed(step, rng), 1.1 if step.lower == "walk" else 1.6)
     for radius in (0.9, 0.75, 0.6, 0.5, 0.4):
         move = Move(

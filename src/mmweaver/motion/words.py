@@ -33,7 +33,7 @@ class Word:
 
 def words_of(text: str) -> list[Word]:
     """The words and punctuation marks of a sentence in lower case, known phrases folded."""
-    folded = text.lower().replace("’", "'").replace("n't", " not")
+    folded = text.lower().replace("\u2019", "'").replace("n't", " not")
     for pattern, replacement in PHRASES:
         folded = re.sub(pattern, replacement, folded)
     return [word_of(token) for token in _TOKEN.findall(folded)]
@@ -58,11 +58,13 @@ def word_of(token: str) -> Word:
 def _candidates(token: str) -> list[tuple[str, str]]:
     found = [(token, "base")]
     if token.endswith("s"):
+        if len(token) > 4 and token[-2] == token[-3]:
+            found.append((token[:-2], "s"))
         found += [(token[:-1], "s"), (token[:-2] if token.endswith("es") else token, "s")]
         if token.endswith("ies"):
             found.append((token[:-3] + "y", "s"))
     for ending, form in (("ing", "ing"), ("ed", "past")):
-        if token.endswith(ending) and len(token) > len(ending) + 2:
+        if token.endswith(ending) and len(token) >= len(ending) + 2:
             stem = token[: -len(ending)]
             found += [(stem, form), (stem + "e", form)]
             if len(stem) > 2 and stem[-1] == stem[-2]:

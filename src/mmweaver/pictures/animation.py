@@ -66,7 +66,7 @@ def _lay_out(figure: "Figure", view: View) -> "list[tuple[Axes | None, Callable[
         photo, doppler, azimuth = (figure.add_subplot(place) for place in places)
         photo_movers = [(photo, _photo_mover(photo, view))]
     clock = figure.text(0.985, 0.955, "", ha="right", va="top", fontsize=10, animated=True)
-    figure.text(0.012, 0.965, shortened(view.title, 105), ha="left", va="top", fontsize=10, fontweight="bold")
+    figure.text(0.012, 0.965, shortened(view.heading, 105), ha="left", va="top", fontsize=10, fontweight="bold")
 
     def tell_time(index: int) -> "list[Artist]":
         clock.set_text(f"{view.time_s[index]:.1f} s")
@@ -82,7 +82,7 @@ def _lay_out(figure: "Figure", view: View) -> "list[tuple[Axes | None, Callable[
 
 def _photo_mover(axes: "Axes", view: View) -> "Callable[[int], list[Artist]]":
     assert view.photo is not None
-    assert view.pose is not None
+    assert view.shown_pose is not None
     assert view.radar_from_camera is not None
     height, width = view.photo.rgb.shape[:2]
     axes.imshow(view.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
@@ -90,7 +90,7 @@ def _photo_mover(axes: "Axes", view: View) -> "Callable[[int], list[Artist]]":
     skeleton = SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=2.2)
     for artist in skeleton.artists:
         artist.set_animated(True)
-    joints_m = view.pose.joints_m[view.frames]
+    joints_m = view.shown_pose.joints_m
 
     def update(index: int) -> "list[Artist]":
         skeleton.show(joints_m[index], SKELETON_COLOUR)
@@ -125,7 +125,7 @@ def _azimuth_mover(axes: "Axes", view: View) -> "Callable[[int], list[Artist]]":
     image.set_animated(True)
     axes.set(xlim=fan.extent[:2], ylim=fan.extent[2:])
     label_axes(axes, "From above, what moves", "right (m)", "ahead (m)")
-    joints_m = None if view.pose is None else view.pose.joints_m[view.frames]
+    joints_m = None if view.shown_pose is None else view.shown_pose.joints_m
     (dots,) = axes.plot([], [], ".", color=TRUTH, markersize=2.5, animated=True)
 
     def update(index: int) -> "list[Artist]":

@@ -44,7 +44,9 @@ def draw_preview(view: View, path: Path) -> None:
         photo = view.photo is not None
         figure = Figure(figsize=(16.0, 10.0 if photo else 7.0), dpi=DPI, facecolor="white")
         canvas = FigureCanvasAgg(figure)
-        figure.suptitle(shortened(view.title, 150), x=0.04, y=0.98, ha="left", va="top", fontsize=13, fontweight="bold")
+        figure.suptitle(
+            shortened(view.heading, 150), x=0.04, y=0.98, ha="left", va="top", fontsize=13, fontweight="bold"
+        )
         for drawer, axes in _layout(figure, photo):
             drawer(axes, view)
         canvas.print_png(path, metadata={"Software": "mmWeaver"})
@@ -83,7 +85,7 @@ def draw_photo(axes: "Axes", view: View) -> None:
     from matplotlib.colors import Normalize
 
     assert view.photo is not None
-    assert view.pose is not None
+    assert view.shown_pose is not None
     assert view.radar_from_camera is not None
     height, width = view.photo.rgb.shape[:2]
     axes.imshow(view.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
@@ -91,15 +93,15 @@ def draw_photo(axes: "Axes", view: View) -> None:
     axes.set_anchor("NW")
     axes.set_title("The room, and the person at several times (faint: hidden behind something)")
     colours = matplotlib.colormaps[TIME_MAP]
-    count = len(view.pose.time_s)
+    count = len(view.shown_pose.time_s)
     chosen = np.unique(np.linspace(0, count - 1, min(count, GHOST_POSES)).round().astype(int))
     for step, index in enumerate(chosen):
         share = step / max(len(chosen) - 1, 1)
         skeleton = SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=1.6 + 1.4 * share)
-        skeleton.show(view.pose.joints_m[index], _time_colour(colours, share), alpha=0.45 + 0.55 * share)
-    pelvis = project(view.pose.joints_m[:, joint("pelvis")], view.photo, view.radar_from_camera)
+        skeleton.show(view.shown_pose.joints_m[index], _time_colour(colours, share), alpha=0.45 + 0.55 * share)
+    pelvis = project(view.shown_pose.joints_m[:, joint("pelvis")], view.photo, view.radar_from_camera)
     axes.plot(pelvis[:, 0], pelvis[:, 1], color="white", linewidth=0.8, alpha=0.8)
-    low_s, high_s = float(view.pose.time_s[0]), float(view.pose.time_s[-1])
+    low_s, high_s = float(view.shown_pose.time_s[0]), float(view.shown_pose.time_s[-1])
     span = Normalize(low_s, high_s if high_s > low_s else low_s + 1)
     colour_bar(axes, ScalarMappable(norm=span, cmap=_time_map()), "time (s)")
 
@@ -121,9 +123,9 @@ def draw_range_time(axes: "Axes", view: View) -> None:
     """Moving power over time and range, with the true extent of the joints."""
     strip = decibels(view.range_doppler_moving.max(axis=2))
     image = _power(axes, strip.T, (*view.time_edges_s, *view.range_edges_m))
-    if view.pose is not None:
-        distance_m = np.linalg.norm(view.pose.joints_m, axis=2)
-        middle_s = view.pose.time_s + view.cube.config.frame_period_s / 2
+    if view.shown_pose is not None:
+        distance_m = np.linalg.norm(view.shown_pose.joints_m, axis=2)
+        middle_s = view.time_s + view.frame_step_s / 2
         for edge in (distance_m.min(axis=1), distance_m.max(axis=1)):
             axes.plot(middle_s, edge, color=TRUTH, linewidth=0.9)
         _within(axes, view.time_edges_s, view.range_edges_m)
@@ -139,8 +141,8 @@ def draw_doppler_time(axes: "Axes", view: View) -> None:
     if view.motion is not None:
         distance_m = np.linalg.norm(view.motion.joints_m[:, joint("pelvis")], axis=1)
         if len(distance_m) > 1:
-            velocity_mps = np.gradient(distance_m, view.motion.time_s)
-            axes.plot(view.motion.time_s, velocity_mps, color=TRUTH, linewidth=0.9)
+            velocity_mps = np.interp(view.time_s, view.motion.time_s, np.gradient(distance_m, view.motion.time_s))
+            axes.plot(view.time_s + view.frame_step_s / 2, velocity_mps, color=TRUTH, linewidth=0.9)
         _within(axes, view.time_edges_s, view.velocity_edges_mps)
         _note(axes, "line: pelvis")
     label_axes(axes, "Doppler over time, what moves", "time (s)", "radial velocity (m/s), away +")
@@ -172,8 +174,8 @@ def draw_range_elevation(axes: "Axes", view: View) -> None:
     low, high, near, far = fan.extent
     image = _power(axes, fan.lay(decibels(power)).T, (near, far, low, high))
     axes.set_aspect("equal", anchor="N")
-    if view.pose is not None:
-        joints_m = view.pose.joints_m[:: max(len(view.pose.time_s) // GHOST_POSES, 1)].reshape(-1, 3)
+    if view.shown_pose is not None:
+        joints_m = view.shown_pose.joints_m[:: max(len(view.shown_pose.time_s) // GHOST_POSES, 1)].reshape(-1, 3)
         axes.plot(np.hypot(joints_m[:, 0], joints_m[:, 1]), joints_m[:, 2], ".", color=TRUTH, markersize=1.2)
         _note(axes, "dots: joints", corner="upper left")
     axes.set(xlim=(0, far), ylim=(low, high))
@@ -195,8 +197,8 @@ def _draw_azimuth(axes: "Axes", view: View, power: np.ndarray, title: str) -> No
     fan = Fan.over(view.cube.grid.range_m, view.azimuth_rad)
     image = _power(axes, fan.lay(decibels(power.mean(axis=0))), fan.extent)
     axes.set_aspect("equal", anchor="N")
-    if view.pose is not None:
-        path_m = view.pose.joints_m[:, joint("pelvis")]
+    if view.shown_pose is not None:
+        path_m = view.shown_pose.joints_m[:, joint("pelvis")]
         axes.plot(path_m[:, 0], path_m[:, 1], color=TRUTH, linewidth=1.0)
         axes.plot(*path_m[-1, :2], ">", color=TRUTH, markersize=4)
         _note(axes, "line: pelvis", corner="upper right")
@@ -209,26 +211,26 @@ def _draw_azimuth(axes: "Axes", view: View, power: np.ndarray, title: str) -> No
 def draw_points_top(axes: "Axes", view: View) -> None:
     """All detections from above, coloured by radial velocity."""
     reach_m = view.range_edges_m[1]
-    _scatter(axes, view, view.points.x_m, view.points.y_m)
-    if view.pose is not None:
-        path_m = view.pose.joints_m[:, joint("pelvis")]
+    _scatter(axes, view, view.shown_points.x_m, view.shown_points.y_m)
+    if view.shown_pose is not None:
+        path_m = view.shown_pose.joints_m[:, joint("pelvis")]
         axes.plot(path_m[:, 0], path_m[:, 1], color=INK, linewidth=1.0)
         _note(axes, "line: pelvis", corner="upper right")
     axes.set(xlim=(-0.9 * reach_m, 0.9 * reach_m), ylim=(0, reach_m))
     axes.set_aspect("equal", anchor="N")
-    label_axes(axes, f"Points from above ({len(view.points.frame)})", "right (m)", "ahead (m)")
+    label_axes(axes, f"Points from above ({len(view.shown_points.frame)})", "right (m)", "ahead (m)")
 
 
 def draw_points_side(axes: "Axes", view: View) -> None:
     """All detections from the side, coloured by radial velocity."""
     reach_m = view.range_edges_m[1]
-    _scatter(axes, view, view.points.y_m, view.points.z_m)
-    if view.pose is not None:
+    _scatter(axes, view, view.shown_points.y_m, view.shown_points.z_m)
+    if view.shown_pose is not None:
         for name in ("head", "left_foot"):
-            trace_m = view.pose.joints_m[:, joint(name)]
+            trace_m = view.shown_pose.joints_m[:, joint(name)]
             axes.plot(trace_m[:, 1], trace_m[:, 2], color=INK, linewidth=0.8)
         _note(axes, "lines: head, left foot", corner="upper right")
-    highest_m = float(np.max(np.abs(view.points.z_m), initial=0.0))
+    highest_m = float(np.max(np.abs(view.shown_points.z_m), initial=0.0))
     half_m = float(np.clip(1.1 * highest_m, 0.32 * reach_m, 0.45 * reach_m))
     axes.set(xlim=(0, reach_m), ylim=(-half_m, half_m))
     axes.set_aspect("equal", anchor="N")
@@ -239,7 +241,7 @@ def _scatter(axes: "Axes", view: View, across_m: np.ndarray, up_m: np.ndarray) -
     """Weak detections are pale; the colours span all but the fastest few, which are mostly noise."""
     from matplotlib.cm import ScalarMappable
 
-    velocity_mps, snr_db = view.points.radial_velocity_mps, view.points.snr_db
+    velocity_mps, snr_db = view.shown_points.radial_velocity_mps, view.shown_points.snr_db
     top_mps = max(float(np.percentile(np.abs(velocity_mps), 95)), 0.1) if len(velocity_mps) else 0.1
     strength = np.clip((np.sort(snr_db) - 10) / 20, 0.2, 1.0)
     rising = np.argsort(snr_db, kind="stable")

@@ -1,6 +1,6 @@
 """View: all that the pictures show, and the power maps that are made of it once."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -49,6 +49,26 @@ class View:
     @cached_property
     def time_s(self) -> PerFrame:
         return self.cube.grid.frame_time_s[self.frames]
+
+    @property
+    def heading(self) -> str:
+        """The title, and how many of the frames are shown where it is not all."""
+        count = len(self.cube.grid.frame_time_s)
+        return self.title if count == len(self.frames) else f"{self.title}   {len(self.frames)} of {count} frames shown"
+
+    @cached_property
+    def shown_points(self) -> PointCloud:
+        """The points of the frames that are shown."""
+        kept = np.isin(self.points.frame, self.frames)
+        columns = {field.name: getattr(self.points, field.name)[kept] for field in fields(PointCloud)}
+        return PointCloud(**columns)
+
+    @cached_property
+    def shown_pose(self) -> PoseSequence | None:
+        """The pose at the frames that are shown."""
+        if self.pose is None:
+            return None
+        return replace(self.pose, time_s=self.pose.time_s[self.frames], joints_m=self.pose.joints_m[self.frames])
 
     @cached_property
     def _shown(self) -> RadarCube:
@@ -117,10 +137,14 @@ class View:
         return float(velocity_mps[0]) - half, float(velocity_mps[-1]) + half
 
     @property
+    def frame_step_s(self) -> float:
+        """Time from one shown frame to the next."""
+        return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else self.cube.config.frame_period_s
+
+    @property
     def time_edges_s(self) -> tuple[float, float]:
         """First frame's start and the last one's end."""
-        step = float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else self.cube.config.frame_period_s
-        return float(self.time_s[0]), float(self.time_s[-1]) + step
+        return float(self.time_s[0]), float(self.time_s[-1]) + self.frame_step_s
 
 
 def decibels(power: Array) -> Array:

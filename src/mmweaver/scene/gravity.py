@@ -10,6 +10,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import Array, PerPoint, Points, Vec3
 from mmweaver.scene.depth_grid import DepthGrid, GridBool, depth_tolerance_m
 
+Normals = Float[Array, "normal 3"]
+
 _MAX_TILT_RAD = np.deg2rad(55)
 _FLAT = np.cos(np.deg2rad(12))  # a normal this near to up belongs to something horizontal
 _UPRIGHT = np.sin(np.deg2rad(8))  # one this near to level belongs to something vertical
@@ -93,7 +95,7 @@ def _vertical(normals: Points) -> Vec3 | None:
     return best
 
 
-def _most_upright(level: Points, upright: Points, near: Vec3) -> Vec3:
+def _most_upright(level: Normals, upright: Float[Array, "other 3"], near: Vec3) -> Vec3:
     """The unit vector along the level surfaces' normals and across the upright ones', in least squares."""
     _, vectors = np.linalg.eigh(upright.T @ upright - level.T @ level)
     up = vectors[:, 0]
@@ -151,6 +153,8 @@ def _fitted(points: Points, chosen: np.ndarray, up: Vec3) -> tuple[Vec3, float] 
 def _without_floor(points: Points, normals: Points, up: Vec3 | None) -> Gravity:
     """Up from what is level or upright, else from a level camera; the floor just below everything seen."""
     sentences = ["No floor is in sight."]
+    if up is None:
+        up = _vertical(-normals)  # a ceiling is as level as a floor
     if up is None:
         up = np.array([0.0, -1.0, 0.0])
         walls = normals[np.abs(normals @ up) < np.sin(np.deg2rad(25))]

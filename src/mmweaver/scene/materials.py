@@ -55,8 +55,10 @@ def cell_materials(
     for surface, name in zip(surfaces, names, strict=True):
         material[surface.cells] = MATERIAL_NAMES.index(name)
     fixed = is_floor.copy()
+    highest_seat_m = max((float(seat.position_m[2]) for seat in seats), default=0.0)
     for surface in surfaces:
-        if surface.plane.kind in ("wall", "ceiling"):
+        is_table = surface.plane.kind == "top" and surface.plane.centre_m[2] > highest_seat_m + 0.1
+        if is_table or surface.plane.kind in ("wall", "ceiling"):
             fixed |= surface.cells
     for cells in _upholstered(grid, rgb, ~fixed, seats):
         material[cells] = MATERIAL_NAMES.index("fabric")
@@ -93,7 +95,7 @@ def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:
     return bool(len(colours)) and bool(_wooden_cells(np.median(colours, axis=0)))
 
 
-def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"]:
+def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"] | np.bool_:
     """Red over green over blue, in the proportions of yellow to red-brown, and not pale."""
     red, green, blue = rgb[..., 0], rgb[..., 1], rgb[..., 2]
     span = np.maximum(red - blue, 1e-6)

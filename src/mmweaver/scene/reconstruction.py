@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
-from mmweaver.core.shapes import PerPoint, Rotation
+from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.depth_grid import DepthGrid, GridBool, GridVectors, make_grid
@@ -103,7 +103,7 @@ def _floor(grid: LevelGrid, is_floor: GridBool, material: str) -> Plane:
     )
 
 
-def _spread(parts: list[PerPoint]) -> tuple[float, float]:
+def _spread(parts: list[np.ndarray]) -> tuple[float, float]:
     """From the least to the greatest of some sets, each without its outer two hundredths."""
     ends = [np.percentile(part, [2, 98]) for part in parts if len(part)]
     return float(min(end[0] for end in ends)), float(max(end[1] for end in ends))

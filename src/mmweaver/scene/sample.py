@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-import mmweaver
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.scene.photo import read_photo
 
-SAMPLE_FOLDER = Path(mmweaver.__file__).parent / "sample"
+SAMPLE_FOLDER = Path(__file__).resolve().parents[1] / "sample"
 
 
 def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:

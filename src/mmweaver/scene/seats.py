@@ -102,11 +102,11 @@ def find_seats(height_map: HeightMap, floor_z_m: float) -> tuple[Seat, ...]:
     back = _back_share(height_map, candidates)
     front = candidates.tops(height_map, _IN_FRONT)
     # Legs need room: nothing above the seat, save a table top high enough for the thighs to go under.
-    obstructed = ((front > 0.08) & (front < _THIGH_M)).mean(axis=(1, 2)) + 0.3 * (front >= _THIGH_M).mean(axis=(1, 2))
+    obstructed = ((front > 0.08) & (front < _THIGH_M)).mean(axis=(1, 2))
     drop = (front < -0.12) | (np.isnan(front) & candidates.at(height_map, _is_open(height_map), _IN_FRONT))
     drop, under_table = drop.mean(axis=(1, 2)), (front >= _THIGH_M).mean(axis=(1, 2))
     score = 2 * back + 0.5 * fit + drop + 0.7 * under_table - 2 * obstructed
-    is_backed = (back >= _MIN_BACK) & (obstructed < 0.45) & (drop + under_table > 0.4)
+    is_backed = (back >= _MIN_BACK) & (obstructed < 0.35) & (drop + under_table > 0.4)
     is_stool = _on_stool(height_map, level, candidates) & (obstructed < 0.1)
     score = np.where(is_backed, score + 2, score)
     return _spread_out(height_map, candidates, np.where(is_backed | is_stool, score, -np.inf), floor_z_m)

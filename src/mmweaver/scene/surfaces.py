@@ -65,7 +65,9 @@ def floor_cells(grid: LevelGrid) -> GridBool:
 
 def find_surfaces(grid: LevelGrid) -> tuple[Surface, ...]:
     """All flat surfaces but the floor, larger ones first within a kind."""
-    open_cells = np.isfinite(grid.normals).all(axis=2) & ~floor_cells(grid)
+    # What seems to lie below the floor is a mirror image in it, or light that came round about.
+    is_above = grid.points_m[..., 2] > grid.floor_z_m - grid.tolerance_m
+    open_cells = np.isfinite(grid.normals).all(axis=2) & ~floor_cells(grid) & is_above
     tops = _level_surfaces(grid, open_cells)
     for surface in tops:
         open_cells = open_cells & ~surface.cells

@@ -1,5 +1,6 @@
 """Walking, jogging and turning: feet planted along the root's path, the rest following the phase of the steps."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,7 +8,7 @@ from jaxtyping import Float
 
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.standing import ANKLE_BEHIND, HALF_STANCE, SIDE_SIGN, TOES_OUT_RAD, upright
-from mmweaver.motion.profiles import bump, rise, travel
+from mmweaver.motion.profiles import bump, plateau, rise, travel
 from mmweaver.motion.root_path import RootPath
 from mmweaver.motion.stage import Stage
 
@@ -47,11 +48,11 @@ def walking_style(stage: Stage, speed_mps: float) -> Style:
     leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
     drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
     return Style(
-        steps_hz=float(steps_hz), double_support=0.2, half_stance_m=0.034 * height_m,
-        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.055 * share,
+        steps_hz=float(steps_hz), double_support=0.15, half_stance_m=0.034 * height_m,
+        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.02 * share,
         heel_strike_rad=0.28 * share**0.5, toe_off_rad=1.0 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
         arm_swing_rad=0.36 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
-        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.986, pelvis_yaw_rad=0.09 * share,
+        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.981, pelvis_yaw_rad=0.09 * share,
         sway_m=0.018,
     )  # fmt: skip
 
@@ -67,7 +68,7 @@ def jogging_style(stage: Stage, speed_mps: float) -> Style:
         ahead_m=0.05 * share, heel_strike_rad=0.1 * share, toe_off_rad=0.55 + 0.25 * share, lift_m=0.09 + 0.06 * share,
         spot_lift_m=0.13 * vigour, arm_swing_rad=(0.42 + 0.15 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
         elbow_swing_rad=0.22, lean_rad=0.05 + 0.07 * share, bob_m=GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
-        sink=0.955, pelvis_yaw_rad=0.08, sway_m=0.01,
+        sink=0.945, pelvis_yaw_rad=0.08, sway_m=0.01,
     )  # fmt: skip
 
 
@@ -158,13 +159,11 @@ def _write_foot(
 ) -> None:
     """Stance, then swing to the next place, for every footfall of one foot."""
     before = 0.0
-    for fall, after in zip(falls[:-1], falls[1:], strict=True):
+    for fall, after in itertools.pairwise(falls):
         gap = after.place_m - fall.place_m
         ahead = float(gap @ np.array([np.cos(fall.yaw_rad), np.sin(fall.yaw_rad)]))
         came, before = before, ahead
         inside = (time_s >= fall.strike_s) & (time_s < after.strike_s)
-        if not inside.any():
-            continue
         t = time_s[inside]
         long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
         effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
@@ -178,15 +177,17 @@ def _write_foot(
         if jog:
             pitch = pitch + 0.5 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
         controls.foot_rad[inside, side, 1] = pitch
-        # The pelvis comes down for the foot that is about to land, well before it does.
-        lifted = np.clip(effort + float(jog), 0, 1) * rise(u / 0.3) * rise((1 - u) / 0.6)
-        controls.contact[inside, side] = 1 - lifted
+        # Weight leaves the foot before its toes do, and comes fully onto it only after the heel has struck: so the
+        # knee is never stretched at speed, and the pelvis comes down in time for the foot that is about to land.
+        swing = after.strike_s - fall.off_s
+        air = plateau(time_s, fall.off_s - 0.3 * swing, after.strike_s + 0.15 * swing, 0.55 * swing, 0.75 * swing)
+        controls.contact[:, side] -= air * min(effort + float(jog), 1.0)
 
 
 def _pitch(
     t: Float[Array, " n"], fall: Footfall, after: Footfall, style: Style, came_m: float, ahead_m: float
 ) -> Float[Array, " n"]:
-    """Heel strike, flat, heel rise, toe off, and back in the swing; scaled by how far the foot came and goes forward."""
+    """Heel strike, flat, heel rise, toe off, back in the swing; scaled by how far the foot came and goes."""
     came, goes = np.clip(np.array([came_m, ahead_m]) / 1.2, -0.35, 1.15)
     stance, swing = fall.off_s - fall.strike_s, after.strike_s - fall.off_s
     down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / (0.22 * stance)))
@@ -205,6 +206,7 @@ def _write_trunk_and_arms(
     top = 0.54 if style.double_support > 0 else 1 + style.double_support / 2  # over the foot; jogging, in the air
     high = np.cos(2 * np.pi * (phase - top)) * moving
     stand = body.pelvis_height_m(style.sink) - style.bob_m
+    controls.knee_room[:] = moving
     controls.pelvis_m[:, 2] += moving * (stand - controls.pelvis_m[:, 2]) + style.bob_m * high
     sway = -style.sway_m * right_stance
     controls.pelvis_m[:, 0] -= sway * np.sin(heading)

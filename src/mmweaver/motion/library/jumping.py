@@ -69,12 +69,13 @@ def _hop_all(
     stage: Stage,
     hops: list[Hop],
     dips_m: list[tuple[float, float, float]],
-    ready_m: float = 0.025,
-    heels: float = 0.75,
+    ready_m: float = -0.02,
+    heels: float = 0.95,
 ) -> None:
     """Writes pelvis height, soles, heels and contact for hops with dips (time, depth, upward acceleration) between.
 
-    Take-off and landing are `ready_m` above the standing height: the heels are up by then.
+    Take-off and landing are `ready_m` above the standing height: heels up, knees not quite straight, so that the
+    soles can pick up the pelvis's speed within some hundredths of a second.
     """
     time_s, body = stage.time_s, stage.body
     stand = body.pelvis_height_m(STAND_STRETCH)
@@ -83,6 +84,7 @@ def _hop_all(
         knots += hop.knots(stand + ready_m)
     knots.sort()
     controls.pelvis_m[:, 2] = through(time_s, knots)
+    controls.knee_room[:] = plateau(time_s, hops[0].off_s - 0.4, hops[-1].land_s + 0.5, 0.35, 0.4)
     for hop in hops:
         pitch = heels * hop.toes_down(time_s, 0.13, 0.12)
         controls.foot_rad[:, :, 1] += pitch[:, None]
@@ -136,25 +138,26 @@ def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> N
 def jumping_jacks(stage: Stage) -> Controls:
     """Legs apart with the arms overhead, and back, a small hop for each."""
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    half_s = 0.5 / stage.tempo(0.8, 0.95, 1.1)
+    half_s = 0.5 / stage.tempo(0.78, 0.92, 1.05)
     count = stage.step.count
     if count:
-        half_s = float(np.clip(stage.duration_s / (2 * count), 0.42, 0.7))
+        lead = 0.0 if stage.first else 0.35
+        half_s = float(np.clip((stage.duration_s - lead) / (2 * count), 0.46, 0.7))
     height_m = float(rng.uniform(0.03, 0.045))
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     hops_wanted = 2 * count if count else 2 * max(1, int(np.ceil(stage.duration_s / (2 * half_s) - 0.35)))
     ground_s = half_s - flight_s
-    begin = stage.start_s + ground_s * 0.5
+    begin = stage.start_s + ground_s * 0.5 + (0.0 if stage.first else 0.35)  # arms of what was before come down first
     hops = [Hop(off_s=begin + k * half_s, rise_m=height_m) for k in range(hops_wanted)]
     dips = [(stage.start_s - 0.2, 0.0, 0.0)]
-    dips += [(hop.off_s - ground_s / 2, 0.085, 5.0) for hop in hops]
-    dips += [(hops[-1].land_s + ground_s / 2, 0.075, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips, ready_m=-0.03, heels=0.6)
+    dips += [(hop.off_s - ground_s / 2, 0.06, 5.0) for hop in hops]
+    dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
+    _hop_all(controls, stage, hops, dips, ready_m=-0.025, heels=0.95)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0
         spread += sign * rise((time_s - hop.off_s) / hop.flight_s)
-        centre, wide = (hop.off_s + hop.land_s) / 2, 0.92 * half_s
+        centre, wide = (hop.off_s + hop.land_s) / 2, half_s
         lift += sign * rise((time_s - centre) / wide + 0.5)
     _spread_feet(controls, stage, spread, float(rng.uniform(0.12, 0.155)))
     top = float(rng.uniform(2.55, 2.85))

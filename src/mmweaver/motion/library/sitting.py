@@ -66,4 +66,3 @@ def _settled_s(stage: Stage) -> float:
     left = np.abs(stage.path.facing_rad(late) - stage.path.facing_rad(late[-1:])[0])
     turning = np.flatnonzero(left > 0.6)
     return float(late[turning[-1]]) if len(turning) else stage.start_s
-
