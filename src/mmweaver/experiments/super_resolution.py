@@ -1,9 +1,10 @@
 """Is a field sampled more finely any finer? Judged against the radar's own spectrum, and against finer radars.
 
-Two questions that "super-resolution" mixes:
+Questions that "super-resolution" mixes:
 
 - between_bins: does the field give what the same radar's spectrum shows between its bins? Truth: the transform of the
   noise-free samples at the finer places; scored on the new places alone.
+- drawn_places: the same for places drawn from [j, j + radius / 8] in range and Doppler (the paper's augmentation).
 - more_bandwidth, more_loops, more_antennas: does it give what a physically finer radar would record? Truth: the
   simulator with that radar, frames about the same instant, both cubes phase-centred (they then agree in phase).
 
@@ -40,7 +41,7 @@ from mmweaver.experiments.results import write_result
 from mmweaver.experiments.signals import pose_of, sample_scene, without_room
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.phase_centring import centred, centring_turn
-from mmweaver.fields.sampling import finer_grid
+from mmweaver.fields.sampling import drawn_grid, finer_grid
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.metrics.signal import nmse_db
@@ -49,6 +50,7 @@ from mmweaver.simulation.simulator import Simulator
 from mmweaver.training.single_signal import RECIPES, fit
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
+RADII = (1, 2, 3, 7)
 FINER_FACTORS = (2.0, 4.0)
 FINER_RADARS: dict[str, Callable[[RadarConfig, float], RadarConfig]] = {
     "more_bandwidth": more_bandwidth,
@@ -119,6 +121,13 @@ def between_bins(sampler: Sampler, cube: RadarCube, adc: AdcCube, factor: float)
     return _row("between_bins", factor, scores)
 
 
+def drawn_places(sampler: Sampler, cube: RadarCube, adc: AdcCube, radius: int) -> Row:
+    """Errors at ranges and velocities drawn within the paper's sampling radius, against the spectrum there."""
+    grid = replace(drawn_grid(cube.grid, radius, seed=0), antenna_position_m=cube.grid.antenna_position_m)
+    error = nmse_db(sampler(grid), spectrum_on(adc, grid))
+    return _row("drawn_places", float(radius), {"nmse_db": _entry("nmse_db", error, "drawn places")})
+
+
 def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig) -> dict[str, Any]:
     """The scorecard of a coarse cube's sampler on the grid of a finer radar's cube, both phase-centred."""
     values = sampler(truth.grid) * centring_turn(coarse, truth.grid)[None, :, :, None]
@@ -153,6 +162,7 @@ def _run_method(
     at_cells = nmse_db(sampler(cube.grid), cube.values)
     rows: list[Row] = [_row("own_cells", 1.0, {"nmse_db": _entry("nmse_db", at_cells, "the cube's own cells")})]
     rows += [between_bins(sampler, cube, coarse, factor) for factor in factors]
+    rows += [drawn_places(sampler, cube, coarse, radius) for radius in RADII]
     for (kind, factor), truth in truths.items():
         rows.append(_row(kind, factor, against_finer_radar(sampler, truth, coarse.config)))
     for row in rows:
