@@ -106,6 +106,15 @@ def test_half_precision_errs_by_about_a_percent():
     assert 0 < np.sqrt(np.mean(error**2) / np.mean(np.abs(exact) ** 2)) < 0.03
 
 
+def test_threads_change_no_bit():
+    field = random_field()
+    alone = field.cube().values
+    before = torch.get_num_threads()
+    field.decode_threads = 3
+    assert field.cube().values.tobytes() == alone.tobytes()
+    assert torch.get_num_threads() == before
+
+
 def test_finer_grids_contain_the_native_samples():
     field = random_field()
     native = field.cube().values

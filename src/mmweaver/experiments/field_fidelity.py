@@ -83,7 +83,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=Path("results"))
     parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
-    parser.add_argument("--recipes", nargs="*", default=["paper", "paper_base", "tuned_short", "smooth_short"])
+    parser.add_argument("--recipes", nargs="*", default=["paper", "smooth_short"])
     parser.add_argument("--signals", nargs="*", default=None)
     arguments = parser.parse_args()
     every = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]

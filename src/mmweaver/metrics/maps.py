@@ -34,14 +34,16 @@ def log_map_ssim(prediction: PowerMaps, truth: PowerMaps) -> float:
 
 
 def log_map_difference_db(prediction: PowerMaps, truth: PowerMaps) -> float:
-    """Mean absolute difference of the same pictures over the same cells, in dB; 0 is perfect.
+    """Absolute difference of the same pictures, summed over all cells, per cell that the truth shows, in dB.
+
+    0 is perfect. Divided by the cells that either shows, a faint glow all over the map would look better than nothing.
 
     >>> truth = np.array([[[1.0, 1e-3, 1e-9]]])
     >>> log_map_difference_db(truth / 10, truth), log_map_difference_db(truth * 0, truth)
     (10.0, 35.0)
     """
-    p, t, drawn = _pictures(prediction, truth)
-    return float(np.abs(p - t)[drawn].mean())
+    p, t, _ = _pictures(prediction, truth)
+    return float(np.abs(p - t).sum() / np.count_nonzero(t > 0))
 
 
 def _pictures(prediction: PowerMaps, truth: PowerMaps) -> tuple[PowerMaps, PowerMaps, np.ndarray]:

@@ -125,7 +125,7 @@ METRICS: Mapping[str, Metric] = {
     ),
     "rd_difference_db": Metric(
         unit="dB",
-        definition="mean absolute difference of the same pictures over the same cells",
+        definition="absolute difference of the same pictures, all cells, per cell that the truth shows",
         perfect=0.0,
         is_headline=True,
         score=lambda p, t: log_map_difference_db(p.range_doppler, t.range_doppler),
