@@ -34,18 +34,17 @@ def cpu_seconds(function, repeats: int = 3) -> float:
 
 
 def simulation_costs() -> dict[str, float]:
-    from mmweaver.motion.compose import compose
-
     from mmweaver import Weaver
     from mmweaver.dsp.cube import radar_cube
+    from mmweaver.motion.compose import compose
     from mmweaver.simulation.body import body_of
     from mmweaver.simulation.echoes import BodyEchoes
     from mmweaver.simulation.exact import exact_frame
     from mmweaver.simulation.simulator import Simulator
 
     weaver = Weaver(method="physics", radar="awr1843")
-    scene = weaver.sample_room()
-    config = weaver.config
+    scene = weaver.sample_room().scene
+    config = weaver.radar
     window = (float(config.range_m[0]), float(config.range_m[-1]))
     pose = compose(SENTENCE, scene, duration_s=2.0, seed=0, range_window_m=window).pose
     room_s = cpu_seconds(lambda: Simulator(scene, config), 1)

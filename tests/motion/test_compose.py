@@ -4,7 +4,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from rooms import FLOOR_Z_M, WINDOW_M, furnished, room, seat, sofa_room
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
@@ -12,6 +11,7 @@ from mmweaver.core.skeleton import BONES, joint
 from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.floor_map import FloorMap
+from rooms import FLOOR_Z_M, WINDOW_M, furnished, room, seat, sofa_room
 
 ACTIVITIES = (
     "walks", "walks slowly", "jogs", "waves", "claps", "does jumping jacks", "jumps", "raises the left hand",
@@ -217,6 +217,8 @@ def test_no_room_is_an_error_that_says_so():
 def test_a_walk_longer_than_the_room_ends_early_and_says_so_or_goes_to_and_fro():
     made = motion("walks to the left", duration_s=8.0)
     assert any("stands still" in sentence for sentence in made.assumptions)
+    still = made.pose.time_s > 7.0
+    assert speeds(made)[still].max() < 0.15, "standing, not stepping on the spot"
     pelvis = motion("walks", duration_s=12.0).pose.joints_m[:, 0, :2]
     assert np.linalg.norm(np.diff(pelvis, axis=0), axis=1).sum() > 7.0
 

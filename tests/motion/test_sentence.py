@@ -93,6 +93,10 @@ UNDERSTOOD = {
     "walks to the sofa to sit down": "walking seat | sitting down",
     "starts to walk and then stops": "walking | standing",
     "stops walking": "standing",
+    "takes a step to the left": "walking left x1",
+    "a man lifts his hands": "raising both hands",
+    "turns 90 degrees to the right": "turning right",
+    "raises the left arm, then waves": "left-hand raise | waving left-hand",
     "walks left, then walks back": "walking left | walking back",
     # at once
     "drinks while sitting": "sitting and drinking",
@@ -147,6 +151,8 @@ REFUSED = {
     "claps 1000 times": "times",
     "walks in a half circle": "semicircle",
     "moves objects around": "moves",
+    "goes up the steps": "stairs",
+    "walks 90 degrees to the right": "quarterturn",
 }
 
 

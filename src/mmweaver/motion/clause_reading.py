@@ -113,6 +113,8 @@ def _harmless(word: Word, texts: set[str]) -> bool:
         if word.text == "over":
             return not jumped and "chair" not in texts
         return not lifted and word.text not in ("leg", "foot", "knee") and "on" not in texts
+    if word.text == "quarterturn":
+        return bool(texts & {"turn", "turns", "turning", "turned", "rotates", "rotate", "rotating", "pivots"})
     if word.text in ("floor", "ground"):
         return not texts & {"sit", "sits", "sitting", "seated", "sit_down", "sat"}
     return False
@@ -330,8 +332,6 @@ def _step(words: list[Word], at: int, about: Step, clause: Clause, *, first: boo
 def _arms_step(step: Step, upper: str, texts: set[str]) -> Step:
     """A hand for each: raising without a side is the seed's choice, punching alternates."""
     if upper == "drink" and step.hand == "both":
-        return replace(step, hand="")
-    if upper == "raise" and step.hand == "both" and texts & {"a", "one"} and "both" not in texts:
         return replace(step, hand="")
     return step
 

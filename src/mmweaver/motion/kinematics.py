@@ -112,7 +112,7 @@ def _pelvis(body: Body, controls: Controls, frame: Frames, ankles: list[Vectors]
         across = np.sum((pelvis[:, :2] + hip[:, :2] - ankles[side][:, :2]) ** 2, axis=1)
         height = np.sqrt(np.maximum(longest**2 - across, (0.3 * longest) ** 2))
         limits.append(ankles[side][:, 2] + height - hip[:, 2] + 0.2 * (1 - controls.contact[:, side]))
-    pelvis[:, 2] = softmin(limits, 0.003)
+    pelvis[:, 2] = softmin(limits, 0.003 + 0.01 * controls.knee_room)
     return pelvis
 
 
@@ -124,7 +124,7 @@ def _place_leg(joints: Joints, body: Body, controls: Controls, frame: Frames, si
     direction = away / distance[:, None]
     # A leg in the air or stepping is not stretched fully, so that the knee does not snap.
     loose = 1 - controls.contact[:, side] * (1 - controls.knee_room)
-    reach = cap(distance, (LONGEST_LEG - 0.0145 * loose) * body.leg_m, (0.0012 + 0.034 * loose) * body.leg_m)
+    reach = cap(distance, (LONGEST_LEG - 0.0015 * loose) * body.leg_m, (0.0012 + 0.034 * loose) * body.leg_m)
     along = (body.thigh_m**2 - body.shank_m**2 + reach**2) / (2 * reach)
     aside = np.sqrt(body.thigh_m**2 - along**2)
     knee = hip + along[:, None] * direction + aside[:, None] * _knee_direction(controls, side, direction)

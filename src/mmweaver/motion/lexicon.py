@@ -59,10 +59,13 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\b(?:one after the other|alternat\w+)\b", " both "),
     (r"\bback and forth\b|\bto and fro\b|\bback and forwards?\b|\bup and down the room\b", " pacing_to_and_fro "),
     (r"\baround (?:the|in the) (?:room|place)\b", " pacing_to_and_fro "),
+    (r"\bup and down (?:the |some )?(?:steps|stairs)\b", " stairs "),
     (r"\bup and down\b|\b(?:from )?side to side\b", " "),
     (r"\b(?:starting|beginning|starts?|begins?) (?:with|by|on) (?:the |his |her |their )?(?:left|right)"
      r"(?: (?:leg|foot))?\b",
      " leading-foot "),
+    (r"\ban? ((?:small |big |large |quick |slow |short |long |little |single |fast )?step)\b", r" one \1 "),
+    (r"\b((?:(?:counter|anti)[- ]?)?clockwise) ((?:small |big |large |wide )?circles?)\b", r"\2 \1"),
     (r"\b(?:half|quarter|quater|semi|third|thirds|fourth|fourths)[- ]?(?:of )?(?:an? |the )?(?:in )?circles?\b",
      " semicircle "),
     (r"\b(?:in|on|along|around)(?: an?| the)?(?: [a-z-]+){0,2} circles?\b"
@@ -74,7 +77,9 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\b(?:on|in) (?:the |one |a )?(?:same )?(?:spot|place)\b|\bin-place\b", " on_spot "),
     (r"\b180 ?(?:degrees?|°)|\bhalf turn\b|\babout[- ]face\b|\b(?:all the way )?around\b(?= *(?:$|[,.;]|and|then))",
      " around "),
-    (r"\b90 ?(?:degrees?|°)", " "),
+    (r"\b90 ?(?:degrees?|°)", " quarterturn "),
+    (r"\bhand stand\b", " handstand "),
+    (r"\b(?:up|down|up and down) (?:the |some |a few )?steps\b", " stairs "),
     (r"\b(?:at the same time|simultaneously|meanwhile)\b", " at_once "),
     (r"\bfollowed by\b|\bafter (?:that|this|which)\b|\bafterwards?\b|\bsubsequently\b|\bafter a (?:while|moment)\b",
      " then "),
@@ -177,7 +182,8 @@ OTHER_MOVEMENT = _words(
     tiptoes handstand cartwheel floor ground wheelchair swimming dance kick kicks flip somersault asleep drunken
     drunk limp crossed spiral triangle rectangle swings phone head shoulder shoulders elbow elbows hips hip thigh
     sit-ups push-ups lunge lunges plank violin guitar golf tennis racket upward downward platform edge curb log
-    bridge bent hunched crouched bending kneeling circle circles circular fullturn quarter against reacts push
+    bridge bent hunched crouched bending kneeling circle circles circular fullturn quarterturn quarter against
+    reacts push
     pushes perturbation balance trips stumbles shuffle scooter skateboard grapevine waltz
     """
 )

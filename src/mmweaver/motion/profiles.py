@@ -52,7 +52,7 @@ def cap(x: Values, limit: Values | float, width: Values | float) -> Values:
     return x - 2 * width * rise_integral(np.asarray((x - limit + width) / (2 * width)))
 
 
-def softmin(values: Sequence[Values], width: float) -> Values:
+def softmin(values: Sequence[Values], width: Values | float) -> Values:
     """A smooth minimum of several functions, at most width * ln(count) below the true one."""
     stack = np.stack(values)
     low = stack.min(axis=0)

@@ -40,7 +40,7 @@ def parse(text: str) -> MotionPlan:
             raise InputError(f"the clause {clause.text!r} names no activity that is known; known: {KNOWN}")
     if not readings:
         raise InputError(f"no activity is named in {text.strip()!r}; known: {KNOWN}")
-    steps = _ways_back(_postures(_in_sequence(readings)))
+    steps = _carried_over(_postures(_in_sequence(readings)))
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     return MotionPlan(text=text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
@@ -137,13 +137,16 @@ def _postures(steps: list[Step]) -> list[Step]:
     return _merged(result)
 
 
-def _ways_back(steps: list[Step]) -> list[Step]:
-    """'Walks back' is the way back where there was a way, else it is backwards."""
+def _carried_over(steps: list[Step]) -> list[Step]:
+    """'Walks back' is the way back where there was a way, else backwards; who raised a hand waves with that one."""
     gone = False
     for k, step in enumerate(steps):
         if step.direction == "back" and not gone:
             steps[k] = replace(step, direction="backwards")
         gone = gone or step.moves
+        before = steps[k - 1]
+        if k and step.upper == "wave" and not step.hand and before.upper == "raise":
+            steps[k] = replace(step, hand=before.hand)
     return steps
 
 

@@ -31,7 +31,7 @@ def wished_speed(step: Step, rng: np.random.Generator) -> float:
         low, high = ((1.3, 1.5), (1.5, 1.9), (1.9, 2.2))[step.speed + 1]
     else:
         low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
-    return float(rng.uniform(low, high))
+    return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0)
 
 
 @dataclass

@@ -35,14 +35,14 @@ DB_LABEL = "dB relative to peak"
 
 
 def draw_preview(view: View, path: Path) -> None:
-    """Writes the page as a PNG, 1600 pixels wide; with a photo 1000 high, without one 700."""
+    """Writes the page as a PNG, 1600 pixels wide; with a photo 900 high, without one 700."""
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
         photo = view.photo is not None
-        figure = Figure(figsize=(16.0, 10.0 if photo else 7.0), dpi=DPI, facecolor="white")
+        figure = Figure(figsize=(16.0, 9.0 if photo else 7.0), dpi=DPI, facecolor="white")
         canvas = FigureCanvasAgg(figure)
         figure.suptitle(
             shortened(view.heading, 150), x=0.04, y=0.98, ha="left", va="top", fontsize=13, fontweight="bold"
@@ -56,7 +56,7 @@ def _layout(figure: "Figure", photo: bool) -> "list[tuple[Callable[[Axes, View],
     rows = 3 if photo else 2
     heights = (1.0, 1.0, 0.78) if photo else (1.0, 0.78)
     places = figure.add_gridspec(
-        rows, 4, left=0.04, right=0.955, bottom=0.05, top=0.905 if photo else 0.87, wspace=0.5, hspace=0.34,
+        rows, 4, left=0.04, right=0.955, bottom=0.05, top=0.895 if photo else 0.87, wspace=0.5, hspace=0.38,
         height_ratios=heights,
     )  # fmt: skip
     last = rows - 1

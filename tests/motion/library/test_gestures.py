@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from rooms import WINDOW_M, room
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
+from rooms import WINDOW_M, room
 
 LEFT_WRIST, RIGHT_WRIST = joint("left_wrist"), joint("right_wrist")
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from rooms import FLOOR_Z_M, WINDOW_M, room
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
+from rooms import FLOOR_Z_M, WINDOW_M, room
 
 
 def made(text: str, seed: int, duration_s: float):

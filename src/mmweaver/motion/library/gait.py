@@ -50,9 +50,9 @@ def walking_style(stage: Stage, speed_mps: float) -> Style:
     return Style(
         steps_hz=float(steps_hz), double_support=0.15, half_stance_m=0.034 * height_m,
         toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.02 * share,
-        heel_strike_rad=0.28 * share**0.5, toe_off_rad=1.0 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
-        arm_swing_rad=0.36 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
-        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.981, pelvis_yaw_rad=0.09 * share,
+        heel_strike_rad=0.28 * share**0.5, toe_off_rad=0.95 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
+        arm_swing_rad=0.28 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
+        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.985, pelvis_yaw_rad=0.09 * share,
         sway_m=0.018,
     )  # fmt: skip
 
@@ -148,10 +148,14 @@ def _footfall(stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, s
 
 
 def _moving(stage: Stage, time_s: Float[Array, " n"], jog: bool) -> Float[Array, " n"]:
-    """1 while the steps are those of the gait, 0 while standing before or after it; C2."""
-    start = np.ones_like(time_s) if stage.first else rise((time_s - stage.start_s) / 0.35)
-    end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
-    return start * end
+    """1 while the root goes or turns, 0 while it stands, before and after and where the room ends early; C2."""
+    if jog and stage.step.direction == "spot":
+        start = np.ones_like(time_s) if stage.first else rise((time_s - stage.start_s) / 0.35)
+        end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
+        return np.asarray(start * end)
+    turning = np.abs(stage.path.facing_rad(time_s + 1e-3) - stage.path.facing_rad(time_s - 1e-3)) / 2e-3
+    going = stage.path.speed_mps(time_s) / max(0.8 * _cruise_mps(stage), 0.7)
+    return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
 
 
 def _write_foot(

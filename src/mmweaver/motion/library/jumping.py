@@ -150,16 +150,16 @@ def jumping_jacks(stage: Stage) -> Controls:
     begin = stage.start_s + ground_s * 0.5 + (0.0 if stage.first else 0.35)  # arms of what was before come down first
     hops = [Hop(off_s=begin + k * half_s, rise_m=height_m) for k in range(hops_wanted)]
     dips = [(stage.start_s - 0.2, 0.0, 0.0)]
-    dips += [(hop.off_s - ground_s / 2, 0.06, 5.0) for hop in hops]
+    dips += [(hop.off_s - ground_s / 2, 0.08, 5.0) for hop in hops]
     dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips, ready_m=-0.025, heels=0.95)
+    _hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0
         spread += sign * rise((time_s - hop.off_s) / hop.flight_s)
         centre, wide = (hop.off_s + hop.land_s) / 2, half_s
         lift += sign * rise((time_s - centre) / wide + 0.5)
-    _spread_feet(controls, stage, spread, float(rng.uniform(0.12, 0.155)))
+    _spread_feet(controls, stage, spread, float(rng.uniform(0.115, 0.145)))
     top = float(rng.uniform(2.55, 2.85))
     controls.arm_rad[:, :, 1] += (top * lift)[:, None]
     controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
