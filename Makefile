@@ -27,6 +27,7 @@ unit: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/inr_decode.py
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

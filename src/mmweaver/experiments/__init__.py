@@ -1,0 +1,1 @@
+"""One file for each claim; every run writes results/<experiment>/<method>.json."""

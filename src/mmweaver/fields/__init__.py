@@ -1,0 +1,1 @@
+"""A radar cube as a continuous function, in few numbers."""

@@ -1,0 +1,60 @@
+"""What every field is: a radar sequence as a function of continuous coordinates."""
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+from jaxtyping import Complex
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid, RadarCube
+from mmweaver.core.shapes import CubeValues
+from mmweaver.fields.sampling import Coordinates, coordinates_on, finer_grid
+
+CHUNK_POINTS = 1 << 18
+
+
+class SignalField(ABC):
+    """One radar sequence, f(frame, range, doppler, antenna) -> I + jQ, in the phase and scale of a RadarCube.
+
+    Coordinates count cells of the field's own grid (`grid`) and may lie between them: (frame, range bin, Doppler
+    bin, antenna), the first cell of each axis at 0. `grid`, `config` and `scale` are those of the cube that the field
+    stands for. Between the bins it gives what the same radar's Fourier transforms would show there (windows, TDM
+    compensation and all); phase-centring is an inner matter of a field and never seen from outside.
+    """
+
+    config: RadarConfig
+    grid: CubeGrid
+    scale: float
+
+    @property
+    @abstractmethod
+    def num_values(self) -> int:
+        """How many real numbers the field stores for this sequence (a complex number counts twice)."""
+
+    @abstractmethod
+    def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
+        """Values at any coordinates (point, 4), complex64."""
+
+    def on_grid(self, grid: CubeGrid) -> CubeValues:
+        """Values at the cells of any grid, complex64 (frame, range, doppler, antenna).
+
+        Raises InputError where an antenna of the grid lies off the line that joins the field's antennas. Fields
+        that can do better than point by point override this.
+        """
+        axes = coordinates_on(self.grid, grid)
+        values = np.empty(grid.shape, np.complex64)
+        flat = values.reshape(-1)
+        for first in range(0, flat.size, CHUNK_POINTS):
+            index = np.unravel_index(np.arange(first, min(first + CHUNK_POINTS, flat.size)), grid.shape)
+            points = np.stack([axis[at] for axis, at in zip(axes, index, strict=True)], axis=1)
+            flat[first : first + CHUNK_POINTS] = self.sample(points)
+        return values
+
+    def cube(self, grid: CubeGrid | None = None) -> RadarCube:
+        """The field as a record, on its own grid or on another."""
+        grid = self.grid if grid is None else grid
+        return RadarCube(values=self.on_grid(grid), grid=grid, config=self.config, scale=self.scale)
+
+    def finer(self, n_r: float = 1.0, n_d: float = 1.0, n_a: float = 1.0) -> RadarCube:
+        """The field sampled n_r, n_d, n_a times finer along range, Doppler and antennas; see `finer_grid`."""
+        return self.cube(finer_grid(self.grid, n_r=n_r, n_d=n_d, n_a=n_a))

@@ -1,0 +1,1 @@
+"""Scores of a radar cube against the truth, each beside its floor."""
