@@ -3,6 +3,7 @@
 import dataclasses
 import hashlib
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +57,9 @@ def save_results(
             if view.pose is not None:
                 write_pose_npz(stage / "pose.npz", view.pose)
             if adc is not None:
-                counts = write_bin(stage / "adc_data.bin", adc, iq_order=iq_order)
+                # Simulated samples are whole counts of the radar's own converter: written so, nothing is lost.
+                own = None if math.isnan(adc.scale) else adc.scale / adc.config.adc_count_sqrt_mw
+                counts = write_bin(stage / "adc_data.bin", adc, iq_order=iq_order, counts_per_unit=own)
                 meta["adc_data_bin"] = {
                     "iq_order": iq_order,
                     "tx_order": adc.config.tx_order,

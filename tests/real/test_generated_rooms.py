@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.dsp.cube import remove_static
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.weaver import Generation, Weaver
+from mmweaver.experiments.real_rooms import agreement
+from mmweaver.weaver import Weaver
 
 WALK = "a person walks towards the radar, then waves with the left hand"
 SENTENCES = ("someone does jumping jacks", "the user is sitting on a chair and drinks water", "a man boxes quickly")
@@ -19,22 +18,6 @@ ROOMS = {
     "redwood_chair_corner": ("a woman squats quickly", *SENTENCES),
     "tum_office_desk": (WALK, *SENTENCES),
 }
-SKIN_M = 0.2  # joints lie inside the body
-SPEED_MPS = 0.3  # a frame has motion where some joint is so fast towards or from the radar
-
-
-def share_inside(result: Generation) -> float:
-    """Share of the frames with motion whose strongest moving range bin lies within the body's extent."""
-    cube = remove_static(result.cube)
-    power = range_doppler_power(cube)[:, :, moving_doppler(cube)].sum(axis=2)
-    strongest_m = cube.grid.range_m[np.argmax(power, axis=1)]
-    distance_m = np.linalg.norm(result.motion.joints_m, axis=-1)
-    speed = np.abs(np.gradient(distance_m, result.motion.time_s, axis=0)).max(axis=1)
-    moving = np.interp(cube.grid.frame_time_s, result.motion.time_s, speed) > SPEED_MPS
-    near = np.linalg.norm(result.pose.joints_m, axis=-1)
-    inside = (strongest_m > near.min(axis=1) - SKIN_M) & (strongest_m < near.max(axis=1) + SKIN_M)
-    assert moving.any(), "the sentence moves nobody"
-    return float(inside[moving].mean())
 
 
 @pytest.mark.parametrize("room", list(ROOMS))
@@ -47,7 +30,9 @@ def test_the_person_is_where_the_skeleton_is(real_data: Path, room: str):
         assert result.cube.values.shape == (20, 64, 32, 12)
         feet_m = result.pose.joints_m[..., 2].min(axis=1)
         assert np.all(feet_m > place.scene.floor_z_m - 0.02)
-        assert share_inside(result) >= 0.9, text
+        track = agreement(result)
+        assert track.moving > 0
+        assert track.right / track.moving >= 0.9, text
 
 
 def test_a_corner_too_small_for_a_walk_is_said(real_data: Path):
