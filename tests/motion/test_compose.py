@@ -141,7 +141,7 @@ def test_feet_do_not_slide(seed: int):
 
 
 def test_collision_free_over_many_seeds():
-    """A body of 0.3 m never overlaps a box, whatever the seed; nor leaves the radar's window."""
+    """A body never overlaps a box, whatever the seed; nor leaves the radar's window."""
     scene = furnished()
     texts = (
         "walks",

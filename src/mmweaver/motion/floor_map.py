@@ -11,7 +11,7 @@ from mmweaver.core.records import Scene
 Array = np.ndarray
 Places = Float[Array, "*shape 2"]
 
-BODY_RADIUS_M = 0.3
+BODY_RADIUS_M = 0.25  # half the width of the shoulders
 AZIMUTH_LIMIT_RAD = np.radians(40.0)
 TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2

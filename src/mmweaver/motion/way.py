@@ -14,6 +14,7 @@ SLOWEST_MPS = {"walk": 0.5, "jog": 1.2}
 RAMP_S = 0.45
 TURN_RATE = 3.6  # rad/s
 SHORTEST_LEG_M = 0.5
+SHORTEST_WALK_M = 0.6  # a step
 PACING_LEG_M = 0.8
 
 
@@ -111,7 +112,7 @@ def face_along(way: Way, step: Step, direction_rad: float, start_s: float, *, fi
 def walk_straight(way: Way, step: Step, direction_rad: float, *, first: bool, last: bool) -> None:
     """Goes in a given direction for the step's time, slower where the room is short; then stands still.
 
-    Raises NoWay where even half a metre per second is too fast and there is less than a metre to go.
+    Raises NoWay where even half a metre per second is too fast and there is hardly a step to go.
     """
     begin = face_along(way, step, direction_rad, step.start_s, first=first)
     end = _stop_s(step, begin)
@@ -124,7 +125,7 @@ def walk_straight(way: Way, step: Step, direction_rad: float, *, first: bool, la
         way.cost += 2.0 * (1 - free / wanted)
         way.go(step, direction_rad, free, (begin, end), ramps)
         return
-    if free < 1.0 or free < SLOWEST_MPS[step.lower] * 0.8:
+    if free < SHORTEST_WALK_M * SLOWEST_MPS[step.lower] / SLOWEST_MPS["walk"]:
         raise NoWay(f"only {free:.1f} m")
     stop_ramps = (ramps[0], RAMP_S)
     speed = max(0.85 * speed, SLOWEST_MPS[step.lower])
