@@ -57,7 +57,7 @@ def draw_fields(path: Path, truth: RadarCube, fields: dict[str, RadarCube], fram
     axes[0, 0].set_ylabel("range (m)")
     figure.supxlabel("radial velocity (m/s), positive = moving away", fontsize=8)
     assert image is not None
-    figure.colorbar(image, ax=axes, label="dB, 0 = the original's peak", shrink=0.8)
+    figure.colorbar(image, ax=axes, label="dB below the original's peak", shrink=0.8)
     with atomic_file(path) as temporary:
         figure.savefig(temporary, format="png", dpi=100)
 
