@@ -1,6 +1,6 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m mmweaver.experiments.tables results docs/fields.md
+python -m mmweaver.experiments.tables results README.md docs/fields.md
 """
 
 import json
@@ -16,6 +16,24 @@ QUESTIONS = (
     ("own_cells", 1.0), ("between_bins", 2.0), ("between_bins", 4.0), ("drawn_places", 2.0),
     ("more_bandwidth", 2.0), ("more_bandwidth", 4.0), ("more_loops", 2.0), ("more_loops", 4.0), ("more_antennas", 2.0),
 )  # fmt: skip
+PHYSICS = (
+    ("command_wall_s", "`mmweaver generate --demo`, imports and pictures included, wall", "{:.1f} s"),
+    ("command_peak_memory_gb", "its peak memory", "{:.2f} GB"),
+    (
+        "sequence_cpu_s",
+        "20 frames of a person of 800 points in the furnished sample room, room loaded, CPU",
+        "{:.2f} s",
+    ),
+    ("room_cpu_s", "loading the room, CPU", "{:.2f} s"),
+    (
+        "times_cheaper_than_exact",
+        "the exact sum of the same echoes costs (extrapolated from one frame)",
+        "{:.0f} times that",
+    ),
+    ("synthesis_error_at_rest_db", "error of the range-Doppler cube against the exact sum, at rest", "{:.1f} dB"),
+    ("synthesis_error_at_0.5_mps_db", "up to 0.5 m/s and 5 m/s2 on each axis", "{:.1f} dB"),
+    ("synthesis_error_at_3_mps_db", "up to 3 m/s and 30 m/s2 on each axis", "{:.1f} dB"),
+)
 BEGIN, END = "<!-- table: {} -->", "<!-- end -->"
 
 
@@ -54,7 +72,30 @@ def super_resolution_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
-TABLES = {"field_fidelity": fidelity_table, "super_resolution": super_resolution_table}
+def physics_table(folder: Path) -> str:
+    """What the physics costs and how far it is from the exact sum; one benchmark run."""
+    record = json.loads((folder / "benchmark" / "physics.json").read_text(encoding="utf-8"))
+    values = {name: metric["value"] for name, metric in record["rows"][0]["metrics"].items()}
+    lines = [_line("what", "measured"), _line("---", "---")]
+    lines += [_line(text, form.format(values[name])) for name, text, form in PHYSICS]
+    return "\n".join(lines)
+
+
+def rooms_table(folder: Path) -> str:
+    """Frames with motion whose strongest moving range bin lies within the person, beside chance."""
+    (record,) = _records(folder / "real_rooms")
+    lines = [_line("room", "frames", "person in place", "a random bin"), _line(*["---"] * 4)]
+    for row in record["rows"]:
+        metric = row["metrics"]["frames_with_person_in_place"]
+        shares = (metric["value"], metric["floor"]["random_bin"])
+        lines.append(_line(row["dataset"]["name"], str(row["n"]), *(f"{100 * share:.0f} %" for share in shares)))
+    return "\n".join(lines)
+
+
+TABLES = {
+    "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
+    "real_rooms": rooms_table,
+}  # fmt: skip
 
 
 def with_tables(text: str, folder: Path) -> str:
@@ -90,10 +131,11 @@ def _number(value: float | None) -> str:
 
 
 def main() -> None:
-    folder, document = Path(sys.argv[1]), Path(sys.argv[2])
-    text = with_tables(document.read_text(encoding="utf-8"), folder)
-    with atomic_file(document) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+    folder = Path(sys.argv[1])
+    for document in map(Path, sys.argv[2:]):
+        text = with_tables(document.read_text(encoding="utf-8"), folder)
+        with atomic_file(document) as temporary:
+            temporary.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
