@@ -22,7 +22,9 @@ def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
 def summary_lines(out: str | Path, meta: dict[str, Any]) -> list[str]:
     """A line each for the files, then for the radar, the person and every assumption."""
     lines = [f"wrote {Path(out)} in {sum(meta['seconds'].values()):.1f} s"]
-    lines += [f"  {name:<13} {text}" for name, text in meta["files"].items()]
+    paths = {name: str(Path(out) / name) for name in meta["files"]}
+    width = max(map(len, paths.values()))
+    lines += [f"  {paths[name]:<{width}}  {text}" for name, text in meta["files"].items()]
     lines.append(_radar_line(meta))
     if "person" in meta:
         lines.append(_person_line(meta["person"]))
