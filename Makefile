@@ -26,7 +26,8 @@ unit: $(STAMP)
 	$(BIN)/pytest -n auto -q
 
 bench: $(STAMP)
-	$(BIN)/python benchmarks/run.py
+	$(BIN)/python benchmarks/physics.py
+	$(BIN)/python benchmarks/inr_decode.py
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -1,3 +1,65 @@
-"""mmWeaver: a photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out."""
+"""mmWeaver: a photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out.
 
-__version__ = "0.1.0"
+Start at `Weaver`. Names are loaded when first used, so `import mmweaver` costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from mmweaver.core.version import __version__
+
+if TYPE_CHECKING:
+    from mmweaver.core.errors import InputError
+    from mmweaver.core.presets import PRESETS
+    from mmweaver.core.radar_config import RadarConfig
+    from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
+    from mmweaver.formats.npz_files import read_radar_npz
+    from mmweaver.formats.radar_file import load_radar
+    from mmweaver.recording import Recording, process_recording
+    from mmweaver.weaver import Generation, Weaver
+
+_HOME = {
+    "AdcCube": "core.records",
+    "Generation": "weaver",
+    "InputError": "core.errors",
+    "PRESETS": "core.presets",
+    "PointCloud": "core.records",
+    "PoseSequence": "core.records",
+    "RadarConfig": "core.radar_config",
+    "RadarCube": "core.records",
+    "Recording": "recording",
+    "Scene": "core.records",
+    "Weaver": "weaver",
+    "load_radar": "formats.radar_file",
+    "process_recording": "recording",
+    "read_radar_npz": "formats.npz_files",
+}
+
+__all__ = [
+    "PRESETS",
+    "AdcCube",
+    "Generation",
+    "InputError",
+    "PointCloud",
+    "PoseSequence",
+    "RadarConfig",
+    "RadarCube",
+    "Recording",
+    "Scene",
+    "Weaver",
+    "__version__",
+    "load_radar",
+    "process_recording",
+    "read_radar_npz",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Imports a public name from the module that defines it, at its first use."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'mmweaver' has no attribute {name!r}")
+    return getattr(import_module(f"mmweaver.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -160,3 +160,23 @@ def test_two_people_in_one_range_doppler_cell_are_two_points():
     strongest = np.argsort(-points.snr_db)[:2]
     azimuth_deg = np.degrees(np.arctan2(points.x_m, points.y_m))[strongest]
     assert sorted(azimuth_deg) == pytest.approx([-30.0, 30.0], abs=2.0)
+
+
+def test_a_body_gives_tens_of_points_that_lie_on_it():
+    """120 scatterers with the extent of a walking person, 40 dB over the noise of a cell."""
+    draw = stream(0, "test body")
+    middle, half = np.array([0.3, 2.0, -0.1]), np.array([0.25, 0.12, 0.8])
+    samples = np.zeros((1, 32, 3, 4, 256), complex)
+    for _ in range(120):
+        part = draw.uniform(-1, 1, 3)
+        speed = np.array([0.0, -1.0 + 1.5 * draw.uniform(-1, 1) * abs(part[2]), 0.0])
+        phase = np.exp(2j * np.pi * draw.random())
+        samples += phase * exact_adc(AWR1843, middle + part * half, speed).samples
+    samples += 10 * (draw.standard_normal(samples.shape) + 1j * draw.standard_normal(samples.shape))
+    cube = radar_cube(AdcCube(samples=samples, config=AWR1843, scale=1.0))
+    for method in ("ca", "os"):
+        points = point_cloud(cube, method=method)
+        assert 15 <= len(points.frame) <= 128
+        place_m = np.stack([points.x_m, points.y_m, points.z_m], axis=1)
+        near = np.abs(place_m - middle) < half + np.array([0.35, 0.15, 0.6])  # plus the beam's width
+        assert near.all(axis=1).mean() > 0.8

@@ -62,6 +62,11 @@ def check_output_folder(out: Path, *, overwrite: bool) -> None:
         raise InputError(f"{out} is a file, not a folder; choose another --out")
     if out.is_dir() and any(out.iterdir()) and not overwrite:
         raise InputError(f"{out} exists and is not empty; choose another --out or allow it with --overwrite")
+    nearest = next(folder for folder in (out.absolute(), *out.absolute().parents) if folder.exists())
+    if not nearest.is_dir():
+        raise InputError(f"{out} cannot be a folder, for {nearest} is a file; choose another --out")
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise InputError(f"{out} cannot be written: no permission in {nearest}; choose another --out")
 
 
 def _move_into_place(stage: Path, out: Path) -> None:

@@ -1,5 +1,6 @@
 """Radars by name. Chirps from the sources named; antenna places from the boards' data sheets."""
 
+from dataclasses import replace
 from typing import Any
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
@@ -70,6 +71,8 @@ MMMESH = ti_1843(
     num_range_bins=101,
 )
 
+RF_GENESIS = replace(MMMESH, name="rf_genesis")
+
 # HuPR publishes 256 samples, 64 loops, 10 fps, bins 31 to 94 and transmitters in the order 0, 1, 2; its slope and
 # sample rate are not published, TI's best-range-resolution profile is assumed.
 HUPR = ti_1843(
@@ -129,5 +132,5 @@ BGT60 = RadarConfig(
 )
 
 PRESETS: Registry[RadarConfig] = Registry(
-    "radar preset", [(config.name, config) for config in (AWR1843, MMMESH, HUPR, IWR6843, BGT60)]
+    "radar preset", [(config.name, config) for config in (AWR1843, MMMESH, RF_GENESIS, HUPR, IWR6843, BGT60)]
 )

@@ -62,7 +62,7 @@ def _rows(position_m: AntennaPositions, wavelength_m: float) -> list[PerIndex]:
     return np.split(order, np.flatnonzero(np.diff(height_m) > same_m) + 1)
 
 
-def _pair(position_m: AntennaPositions, wavelength_m: float, low: PerIndex, high: PerIndex) -> RowPair | None:
+def _pair(position_m: AntennaPositions, wavelength_m: float, low: np.ndarray, high: np.ndarray) -> RowPair | None:
     same_m = SAME_PLACE_WAVELENGTHS * wavelength_m
     near = np.abs(position_m[low, 0][:, None] - position_m[high, 0][None, :]) < same_m
     columns = [(int(low[at]), int(high[np.argmax(line)])) for at, line in enumerate(near) if line.any()]

@@ -23,10 +23,13 @@ OS_QUANTILE = 0.75
 
 @dataclass(frozen=True, kw_only=True)
 class CfarCells:
-    """Half extents (range, doppler) of the guard area around the cell under test and of the training ring around it."""
+    """Half extents (range, doppler) of the guard area around the cell under test and of the training ring around it.
 
-    guard: tuple[int, int] = (2, 2)
-    training: tuple[int, int] = (8, 4)
+    By default wide enough for a body, which fills some 8 by 8 cells of 4.4 cm and 0.27 m/s, not to hide itself.
+    """
+
+    guard: tuple[int, int] = (4, 4)
+    training: tuple[int, int] = (12, 8)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,6 +12,7 @@ from mmweaver.dsp.windows import hann
 
 # Singular values below this share of the largest carry nothing but rounding.
 SMALLEST_SINGULAR_VALUE = 1e-9
+FRAMES_A_BLOCK = 20
 STATIC_REMOVALS = ("mean_chirp", "none")
 
 
@@ -26,21 +27,26 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
     Reference: docs/radar_primer.md; Bechter et al., "Compensation of motion-induced phase errors in TDM MIMO radars".
     """
     config = adc.config
-    first, last = config.first_range_bin, config.first_range_bin + config.num_range_bins
-    window = hann(config.num_samples)
-    weight = (window / window.sum()).astype(np.float32)
-    if config.complex_samples:
-        spectrum = _fft(adc.samples * weight, -1)[..., first:last]
-    else:
-        spectrum = _fft(np.real(adc.samples) * (2 * weight), -1)[..., first:last]
-    frames, loops = spectrum.shape[:2]
-    slow = spectrum.reshape(frames, loops, config.num_antennas, config.num_range_bins).transpose(0, 3, 1, 2)
-    values = _fft(slow * _doppler_weight(loops)[:, None], 2)
+    values = np.empty((len(adc.samples), config.num_range_bins, config.num_loops, config.num_antennas), np.complex64)
+    # in blocks, so that a long recording needs little more memory than its samples and its cube
+    for start in range(0, len(values), FRAMES_A_BLOCK):
+        block = slice(start, start + FRAMES_A_BLOCK)
+        values[block] = _spectra(adc.samples[block], config)
     if compensate_tdm:
         values *= tdm_compensation(config)
-    return RadarCube(
-        values=values.astype(np.complex64, copy=False), grid=CubeGrid.of(config, frames), config=config, scale=adc.scale
-    )
+    return RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=adc.scale)
+
+
+def _spectra(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Windowed FFTs over samples and loops, (frame, range, doppler, antenna)."""
+    window = hann(config.num_samples)
+    weight = (window / window.sum()).astype(np.float32)
+    weighted = samples * weight if config.complex_samples else np.real(samples) * (2 * weight)
+    spectrum = _fft(weighted, -1)
+    kept = spectrum[..., config.first_range_bin : config.first_range_bin + config.num_range_bins]
+    frames, loops = kept.shape[:2]
+    slow = kept.reshape(frames, loops, config.num_antennas, config.num_range_bins).transpose(0, 3, 1, 2)
+    return _fft(slow * _doppler_weight(loops)[:, None], 2)
 
 
 def adc_from_cube(cube: RadarCube) -> AdcCube:

@@ -114,11 +114,13 @@ def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
 
 
 def _parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Where the top of a parabola through three levels in dB lies, in bins from the middle; 0 where it is no peak."""
+    """Where the top of a parabola through three levels in dB lies, in bins from the middle, at most half a bin away.
+
+    A cell on a slope is drawn towards the top beside it; 0 in a hollow.
+    """
     low, middle, high = (np.log(np.maximum(level, 1e-300)) for level in (before, at, after))
     bend = low - 2 * middle + high
-    is_peak = (middle >= low) & (middle >= high) & (bend < 0)
-    return np.where(is_peak, 0.5 * (low - high) / np.where(bend < 0, bend, -1), 0.0)
+    return np.where(bend < 0, np.clip(0.5 * (low - high) / np.where(bend < 0, bend, -1), -0.5, 0.5), 0.0)
 
 
 def _azimuth_peaks(

@@ -17,6 +17,7 @@ from jaxtyping import Complex
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
+from mmweaver.fields.sampling import Coordinates
 
 
 def centring_turn(config: RadarConfig, grid: CubeGrid) -> Complex[np.ndarray, "range doppler"]:
@@ -24,6 +25,13 @@ def centring_turn(config: RadarConfig, grid: CubeGrid) -> Complex[np.ndarray, "r
     range_bin = grid.range_m / config.range_resolution_m
     doppler_bin = grid.radial_velocity_mps / config.velocity_resolution_mps
     return np.exp(1j * np.pi * (range_bin[:, None] + doppler_bin[None, :])).astype(np.complex64)
+
+
+def centring_turn_at(config: RadarConfig, grid: CubeGrid, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
+    """The same at coordinates that count cells of `grid`, the radar's own."""
+    range_bin = grid.range_m[0] / config.range_resolution_m + coordinates[:, 1]
+    doppler_bin = grid.radial_velocity_mps[0] / config.velocity_resolution_mps + coordinates[:, 2]
+    return np.exp(1j * np.pi * (range_bin + doppler_bin)).astype(np.complex64)
 
 
 def centred(cube: RadarCube) -> RadarCube:

@@ -16,6 +16,7 @@ from mmweaver.core.shapes import AntennaPositions
 Axis = Float[np.ndarray, "_"]
 Axes = tuple[Axis, Axis, Axis, Axis]
 Coordinates = Float[np.ndarray, "point 4"]
+Places = Float[np.ndarray, "place 3"]
 
 RADIUS_PARTS = 8  # the paper divides the step between two indices into eighths
 OFF_THE_LINE = 1e-3  # of a wavelength
@@ -81,13 +82,13 @@ def coordinates_on(native: CubeGrid, grid: CubeGrid) -> Axes:
     )
 
 
-def antenna_at(position_m: AntennaPositions, antenna: Axis) -> AntennaPositions:
+def antenna_at(position_m: AntennaPositions, antenna: Axis) -> Places:
     """Places at fractional antenna numbers: straight lines from each antenna to the next."""
     index = np.arange(len(position_m))
     return np.stack([np.interp(antenna, index, position_m[:, axis]) for axis in range(3)], axis=1)
 
 
-def antenna_coordinate(native_m: AntennaPositions, wanted_m: AntennaPositions, wavelength_m: float) -> Axis:
+def antenna_coordinate(native_m: AntennaPositions, wanted_m: Places, wavelength_m: float) -> Axis:
     """The fractional antenna number of each wanted place, the inverse of `antenna_at`.
 
     A place that is an antenna gets that antenna's whole number. Raises InputError for a place off the line.

@@ -35,6 +35,8 @@ def read_bin(
     """
     config = _checked(config, iq_order, tx_order)
     path = Path(path)
+    if path.is_dir():
+        raise InputError(f"cannot read {path}: it is a folder; name the adc_data.bin in it")
     try:
         size = path.stat().st_size
         num_frames = _num_frames(path, size, config)

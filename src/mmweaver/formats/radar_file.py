@@ -94,11 +94,9 @@ def _limit_rows(config: RadarConfig) -> list[tuple[str, str]]:
 def _data_rows(config: RadarConfig) -> list[tuple[str, str]]:
     cube = (config.num_range_bins, config.num_loops, config.num_antennas)
     words = 2 if config.complex_samples else 1
-    adc_bytes = 2 * words * config.num_loops * config.num_antennas * config.num_samples
+    adc_kb = 2 * words * config.num_loops * config.num_antennas * config.num_samples / 1e3
+    shape = f"{cube[0]} range x {cube[1]} Doppler x {cube[2]} antennas"
     return [
-        (
-            "cube a frame",
-            f"{cube[0]} range x {cube[1]} Doppler x {cube[2]} antennas, {8 * math.prod(cube) / 1e6:.2f} MB",
-        ),
-        ("ADC data a frame", f"{adc_bytes / 1e6:.2f} MB ({adc_bytes / config.frame_period_s / 1e6:.1f} MB a second)"),
+        ("cube a frame", f"{shape}, {8 * math.prod(cube) / 1e3:.1f} kB"),
+        ("ADC data a frame", f"{adc_kb:.1f} kB ({adc_kb / config.frame_period_s / 1e3:.2f} MB a second)"),
     ]

@@ -1,17 +1,21 @@
 """Which way is up, and how far below the camera the floor lies."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import Array, PerPoint, Points, Vec3
-from mmweaver.scene.depth_grid import DepthGrid, depth_tolerance_m
+from mmweaver.scene.depth_grid import DepthGrid, GridBool, depth_tolerance_m
+
+Normals = Float[Array, "normal 3"]
 
 _MAX_TILT_RAD = np.deg2rad(55)
 _FLAT = np.cos(np.deg2rad(12))  # a normal this near to up belongs to something horizontal
 _UPRIGHT = np.sin(np.deg2rad(8))  # one this near to level belongs to something vertical
+_MAX_LEAN = np.sin(np.deg2rad(9))  # of a wall, before it is no witness
 _NEAREST_FLOOR_M = 0.25  # a camera closer to the floor than this is not expected
 _GUESSED_HEIGHT_M = 1.2
 _MIN_FLOOR_CELLS = 60
@@ -46,6 +50,34 @@ def find_gravity(grid: DepthGrid) -> Gravity:
     return _without_floor(points, normals, up)
 
 
+def corrected_by_walls(gravity: Gravity, grid: DepthGrid, floor: GridBool, walls: Sequence[GridBool]) -> Gravity:
+    """Weighs the floor's own slope against the walls', which must be upright.
+
+    Each is trusted by its length over the sensor's error: that error is one of the whole surface (a dark or shiny
+    floor seems deeper to a time-of-flight camera), so the number of cells does not count.
+    """
+    if not gravity.has_floor or floor.sum() < _MIN_FLOOR_CELLS:
+        return gravity
+    squares = np.zeros((3, 3))
+    for cells in walls:
+        points = grid.points_m[cells]
+        _, vectors = np.linalg.eigh(np.cov(points.T))
+        normal = vectors[:, 0]
+        if abs(normal @ gravity.up_camera) < _MAX_LEAN:
+            squares += np.outer(normal, normal) * np.square(np.std(points @ gravity.up_camera) / _error_m(points))
+    points = grid.points_m[floor]
+    values, vectors = np.linalg.eigh(np.cov(points.T))
+    for value, along in zip(values[1:], vectors.T[1:], strict=True):
+        squares += np.outer(along, along) * value / np.square(_error_m(points))
+    _, vectors = np.linalg.eigh(squares)
+    up = vectors[:, 0] * np.sign(vectors[:, 0] @ gravity.up_camera)
+    return replace(gravity, up_camera=up, floor_z_m=float(np.median(points @ up)))
+
+
+def _error_m(points: Points) -> float:
+    return float(np.median(depth_tolerance_m(points[:, 2])))
+
+
 def _vertical(normals: Points) -> Vec3 | None:
     """The direction near the camera's up that most surfaces are level or upright to; None if none are level."""
     tilt_cosine = -normals[:, 1]
@@ -63,7 +95,7 @@ def _vertical(normals: Points) -> Vec3 | None:
     return best
 
 
-def _most_upright(level: Points, upright: Points, near: Vec3) -> Vec3:
+def _most_upright(level: Normals, upright: Float[Array, "other 3"], near: Vec3) -> Vec3:
     """The unit vector along the level surfaces' normals and across the upright ones', in least squares."""
     _, vectors = np.linalg.eigh(upright.T @ upright - level.T @ level)
     up = vectors[:, 0]
@@ -121,6 +153,8 @@ def _fitted(points: Points, chosen: np.ndarray, up: Vec3) -> tuple[Vec3, float] 
 def _without_floor(points: Points, normals: Points, up: Vec3 | None) -> Gravity:
     """Up from what is level or upright, else from a level camera; the floor just below everything seen."""
     sentences = ["No floor is in sight."]
+    if up is None:
+        up = _vertical(-normals)  # a ceiling is as level as a floor
     if up is None:
         up = np.array([0.0, -1.0, 0.0])
         walls = normals[np.abs(normals @ up) < np.sin(np.deg2rad(25))]

@@ -19,10 +19,11 @@ MATERIAL_NAMES = (
 
 ASSUMPTION = (
     "Materials were guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any"
-    " other concrete, seats with a back fabric unless plainly wooden, the rest wood or chipboard by colour."
+    " other concrete, seats fabric if wide or of no wooden colour, the rest wood or chipboard by colour."
 )
 
 _SEAT_REACH_M = 0.55
+_SOFA_M = 0.8  # a seat as wide as this is upholstered, whatever its colour
 
 
 def floor_material(colours: Float[Array, "cell 3"]) -> str:
@@ -54,14 +55,17 @@ def cell_materials(
     for surface, name in zip(surfaces, names, strict=True):
         material[surface.cells] = MATERIAL_NAMES.index(name)
     fixed = is_floor.copy()
+    highest_seat_m = max((float(seat.position_m[2]) for seat in seats), default=0.0)
     for surface in surfaces:
-        if surface.plane.kind in ("wall", "ceiling"):
+        is_table = surface.plane.kind == "top" and surface.plane.centre_m[2] > highest_seat_m + 0.1
+        if is_table or surface.plane.kind in ("wall", "ceiling"):
             fixed |= surface.cells
     for cells in _upholstered(grid, rgb, ~fixed, seats):
         material[cells] = MATERIAL_NAMES.index("fabric")
         for index, surface in enumerate(surfaces):
-            if (cells & surface.cells).sum() > 0.5 * surface.cells.sum():
+            if (cells & surface.cells).sum() > 0.3 * min(cells.sum(), surface.cells.sum()):
                 names[index] = "fabric"
+                material[surface.cells] = MATERIAL_NAMES.index("fabric")
     material[is_floor] = MATERIAL_NAMES.index(floor_material(rgb[is_floor]))
     return material, tuple(names)
 
@@ -69,7 +73,7 @@ def cell_materials(
 def _upholstered(
     grid: LevelGrid, rgb: GridVectors, open_cells: Bool[Array, "row column"], seats: Sequence[Seat]
 ) -> list[Bool[Array, "row column"]]:
-    """The cells around each seat, where they are not plainly wooden: one plain warm colour."""
+    """The cells around each seat that is as wide as a sofa, or of no wooden colour."""
     found = []
     above_floor = grid.points_m[..., 2] - grid.floor_z_m
     for seat in seats:
@@ -78,8 +82,7 @@ def _upholstered(
         cells &= (above_floor > 0.12) & (above_floor < 1.2)
         if cells.sum() < 20:
             continue
-        is_patterned = float(rgb[cells].std(axis=0).max()) > 0.17
-        if is_patterned or not _is_wooden(rgb[cells]):
+        if max(seat.size_m) >= _SOFA_M or not _is_wooden(rgb[cells]):
             found.append(cells)
     return found
 
@@ -92,7 +95,7 @@ def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:
     return bool(len(colours)) and bool(_wooden_cells(np.median(colours, axis=0)))
 
 
-def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"]:
+def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"] | np.bool_:
     """Red over green over blue, in the proportions of yellow to red-brown, and not pale."""
     red, green, blue = rgb[..., 0], rgb[..., 1], rgb[..., 2]
     span = np.maximum(red - blue, 1e-6)

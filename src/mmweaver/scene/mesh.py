@@ -12,7 +12,7 @@ from mmweaver.scene.patches import grown, labelled, places
 from mmweaver.scene.surfaces import LevelGrid, Surface
 
 _MAX_HOLE = 0.04  # share of the grid: larger holes stay open
-_MIN_RIM = 0.6  # share of a hole's rim on one surface
+_MIN_RIM = 0.5  # share of a hole's rim on one surface
 _GRAZING = np.sin(np.deg2rad(4))
 
 GridInt = Int[Array, "row column"]

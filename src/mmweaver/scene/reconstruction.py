@@ -3,12 +3,12 @@
 import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
-from mmweaver.core.shapes import PerPoint, Rotation
+from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.depth_grid import DepthGrid, GridBool, GridVectors, make_grid
 from mmweaver.scene.free_space import find_free_space
-from mmweaver.scene.gravity import find_gravity
+from mmweaver.scene.gravity import corrected_by_walls, find_gravity
 from mmweaver.scene.height_map import make_height_map
 from mmweaver.scene.materials import ASSUMPTION, MATERIAL_NAMES, cell_materials, with_material
 from mmweaver.scene.mesh import floor_faces, make_mesh
@@ -22,8 +22,9 @@ _MIN_FLOOR_M = 3.0  # length and half width that the floor is given at least
 def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene:
     """The room of a photo, in the frame of a level radar that stands at the camera.
 
-    Steps: thin the depth to a grid, find gravity from the floor, turn the room level, find its flat surfaces, look at
-    it from above for free places and seats, guess materials, make the mesh. `assumptions` are put before its own.
+    Steps: thin the depth to a grid, find gravity from the floor and then from the walls too, turn the room level, find
+    its flat surfaces, look at it from above for free places and seats, guess materials, make the mesh. `assumptions`
+    are put before its own.
 
     Raises InputError where the depth shows no surfaces.
     """
@@ -31,8 +32,12 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     gravity = find_gravity(grid)
     radar_from_camera = level_from_camera(gravity.up_camera)
     level = _levelled(grid, radar_from_camera, gravity.floor_z_m)
-    is_floor = floor_cells(level) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
+    walls = [surface.cells for surface in find_surfaces(level) if surface.plane.kind == "wall"]
+    gravity = corrected_by_walls(gravity, grid, floor_cells(level), walls)
+    radar_from_camera = level_from_camera(gravity.up_camera)
+    level = _levelled(grid, radar_from_camera, gravity.floor_z_m)
     surfaces = find_surfaces(level)
+    is_floor = floor_cells(level) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
 
     height_map = make_height_map(photo, radar_from_camera, gravity.floor_z_m)
     free_space = find_free_space(height_map)
@@ -65,6 +70,7 @@ def _levelled(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) ->
         normals=grid.normals @ radar_from_camera.T,
         depth_m=grid.depth_m,
         floor_z_m=floor_z_m,
+        focal_cells=grid.intrinsics.fx,
     )
 
 
@@ -97,7 +103,7 @@ def _floor(grid: LevelGrid, is_floor: GridBool, material: str) -> Plane:
     )
 
 
-def _spread(parts: list[PerPoint]) -> tuple[float, float]:
+def _spread(parts: list[np.ndarray]) -> tuple[float, float]:
     """From the least to the greatest of some sets, each without its outer two hundredths."""
     ends = [np.percentile(part, [2, 98]) for part in parts if len(part)]
     return float(min(end[0] for end in ends)), float(max(end[1] for end in ends))

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Seat
 from mmweaver.core.shapes import Array
-from mmweaver.scene.height_map import CELL_M, HeightMap
+from mmweaver.scene.height_map import CELL_M, SEAT_LEVELS_M, HeightMap
 from mmweaver.scene.patches import labelled, places
 
 _LOWEST_M, _HIGHEST_M = 0.33, 0.60
@@ -15,9 +15,13 @@ _FLAT_M = 0.055
 _DIRECTIONS = 24
 _MAX_SEATS = 8
 _APART_M = 0.55
-_MIN_ON_SEAT, _MAX_CONTRARY = 0.55, 0.15
+_MIN_ON_SEAT, _MAX_CONTRARY = 0.22, 0.15
 _MIN_BACK = 0.5
-_BACK_M = (0.13, 0.85)  # a backrest reaches this far above the seat; a wall reaches farther
+_BACK_M = (0.22, 0.85)  # a backrest reaches this far above the seat; a wall reaches farther
+_FULL_BACK_M = 0.30
+_THIGH_M = 0.16
+_SAG_M = 0.06  # a seat's middle lies this much below its rim
+_SMALLEST_M = 0.25  # of what is seen of a seat
 _STOOL_M = (0.30, 0.60)
 _STOOL_HIGHEST_M = 0.52
 
@@ -39,6 +43,26 @@ class _Candidates:
 
     def tops(self, height_map: HeightMap, offsets: Float[Array, "a b 2"]) -> Float[Array, "candidate a b"]:
         """What stands at the offsets (forward, leftward) from each place, above its seat; nan where nothing does."""
+        inside, row, column = self._squares(height_map, offsets)
+        return np.where(inside, height_map.top_m[row, column], np.nan) - self.height_m[:, None, None]
+
+    def at(
+        self, height_map: HeightMap, mask: Bool[Array, "y x"], offsets: Float[Array, "a b 2"]
+    ) -> Bool[Array, "candidate a b"]:
+        """The mask at the offsets from each place; False outside the map."""
+        inside, row, column = self._squares(height_map, offsets)
+        return inside & mask[row, column]
+
+    def bare(self, height_map: HeightMap, offsets: Float[Array, "a b 2"]) -> Bool[Array, "candidate a b"]:
+        """True where lines of sight pass even below the seat's height: no surface lies there."""
+        inside, row, column = self._squares(height_map, offsets)
+        level = np.argmin(np.abs(SEAT_LEVELS_M - (self.height_m[:, None] - _SAG_M)), axis=1)[:, None, None]
+        return inside & height_map.is_bare[level, row, column]
+
+    def _squares(
+        self, height_map: HeightMap, offsets: Float[Array, "a b 2"]
+    ) -> tuple[Bool[Array, "candidate a b"], Int[Array, "candidate a b"], Int[Array, "candidate a b"]]:
+        """Whether the offset places lie on the map, and their rows and columns (0 where not)."""
         forward, left = offsets[..., 0], offsets[..., 1]
         cosine, sine = np.cos(self.facing_rad)[:, None, None], np.sin(self.facing_rad)[:, None, None]
         x = self.x_m[:, None, None] + cosine * forward - sine * left
@@ -47,8 +71,7 @@ class _Candidates:
         row = np.floor((y - height_map.y_m[0]) / CELL_M + 0.5).astype(int)
         rows, columns = height_map.top_m.shape
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
-        top = height_map.top_m[np.where(inside, row, 0), np.where(inside, column, 0)]
-        return np.where(inside, top, np.nan) - self.height_m[:, None, None]
+        return inside, np.where(inside, row, 0), np.where(inside, column, 0)
 
     def only(self, chosen: Bool[Array, " candidate"]) -> "_Candidates":
         return _Candidates(
@@ -70,7 +93,8 @@ def find_seats(height_map: HeightMap, floor_z_m: float) -> tuple[Seat, ...]:
         return ()
     on_seat = candidates.tops(height_map, _ON_SEAT)
     fits = np.abs(on_seat) < _FLAT_M
-    contrary = np.isfinite(on_seat) & ~fits | _floor_at(height_map, candidates, _ON_SEAT)
+    # What is lower speaks against a seat only where the seat would have been seen: not under a chair seen edge-on.
+    contrary = (on_seat >= _FLAT_M) | (~fits & candidates.bare(height_map, _ON_SEAT))
     suits = (fits.mean(axis=(1, 2)) > _MIN_ON_SEAT) & (contrary.mean(axis=(1, 2)) < _MAX_CONTRARY)
     candidates, fit = candidates.only(suits), fits[suits].mean(axis=(1, 2))
     if len(candidates.x_m) == 0:
@@ -78,10 +102,11 @@ def find_seats(height_map: HeightMap, floor_z_m: float) -> tuple[Seat, ...]:
     back = _back_share(height_map, candidates)
     front = candidates.tops(height_map, _IN_FRONT)
     # Legs need room: nothing above the seat, save a table top high enough for the thighs to go under.
-    obstructed = ((front > 0.08) & (front < 0.22)).mean(axis=(1, 2)) + 0.3 * (front >= 0.22).mean(axis=(1, 2))
-    drop = (np.isnan(front) | (front < -0.12)).mean(axis=(1, 2))
-    score = back + 0.5 * fit + drop - 2 * obstructed
-    is_backed = (back >= _MIN_BACK) & (obstructed < 0.35) & (drop > 0.4)
+    obstructed = ((front > 0.08) & (front < _THIGH_M)).mean(axis=(1, 2))
+    drop = (front < -0.12) | (np.isnan(front) & candidates.at(height_map, _is_open(height_map), _IN_FRONT))
+    drop, under_table = drop.mean(axis=(1, 2)), (front >= _THIGH_M).mean(axis=(1, 2))
+    score = 2 * back + 0.5 * fit + drop + 0.7 * under_table - 2 * obstructed
+    is_backed = (back >= _MIN_BACK) & (obstructed < 0.35) & (drop + under_table > 0.4)
     is_stool = _on_stool(height_map, level, candidates) & (obstructed < 0.1)
     score = np.where(is_backed, score + 2, score)
     return _spread_out(height_map, candidates, np.where(is_backed | is_stool, score, -np.inf), floor_z_m)
@@ -98,6 +123,10 @@ def _level_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
     return (centre > _LOWEST_M) & (centre < _HIGHEST_M) & (neighbours >= 2)
 
 
+def _is_open(height_map: HeightMap) -> Bool[Array, "y x"]:
+    return height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
+
+
 def _candidates(height_map: HeightMap, level: Bool[Array, "y x"]) -> _Candidates:
     row, column = np.nonzero(level)
     facing = 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
@@ -109,19 +138,18 @@ def _candidates(height_map: HeightMap, level: Bool[Array, "y x"]) -> _Candidates
     )
 
 
-def _floor_at(
-    height_map: HeightMap, candidates: _Candidates, offsets: Float[Array, "a b 2"]
-) -> Bool[Array, "candidate a b"]:
-    """True where the floor is seen: there is no seat there."""
-    bare = np.where(height_map.is_floor_seen & ~height_map.is_blocked, 0.0, np.nan)
-    floor_map = HeightMap(**{**vars(height_map), "top_m": bare})
-    return np.isfinite(candidates.tops(floor_map, offsets))
-
-
 def _back_share(height_map: HeightMap, candidates: _Candidates) -> Float[Array, " candidate"]:
     """Share of the width behind the sitter at which a backrest stands."""
     behind = candidates.tops(height_map, _BEHIND)
-    return ((behind > _BACK_M[0]) & (behind < _BACK_M[1])).any(axis=1).mean(axis=1)
+    stands = (behind > _BACK_M[0]) & (behind < _BACK_M[1])
+    # An armrest is lower than a back and counts for less.
+    highest = np.where(stands, behind, 0.0).max(axis=1)
+    share = np.minimum(highest / _FULL_BACK_M, 1.0).mean(axis=1)
+    # A table top is as high as a low back, but level: a back is thin, or slopes.
+    height = np.where(stands, behind, -1.0)
+    middle = np.partition(height.reshape(len(height), -1), -(height[0].size // 4), axis=1)[:, -(height[0].size // 4)]
+    is_table = (np.abs(behind - middle[:, None, None]) < 0.025).mean(axis=(1, 2)) > 0.4
+    return np.where(is_table, 0.0, share)
 
 
 def _on_stool(height_map: HeightMap, level: Bool[Array, "y x"], candidates: _Candidates) -> Bool[Array, " candidate"]:
@@ -149,13 +177,16 @@ def _spread_out(
         if any(np.hypot(seat.position_m[0] - x, seat.position_m[1] - y) < _APART_M for seat in seats):
             continue
         one = candidates.only(np.arange(len(score)) == index)
+        size_m = _size_m(height_map, one)
+        if min(size_m) < _SMALLEST_M:
+            continue
         tops = one.tops(height_map, _ON_SEAT)[0]
         height = one.height_m[0] + float(np.median(tops[np.abs(tops) < _FLAT_M]))
         seats.append(
             Seat(
                 position_m=np.array([x, y, floor_z_m + height]),
                 facing_rad=float(np.angle(np.exp(1j * one.facing_rad[0]))),
-                size_m=_size_m(height_map, one),
+                size_m=size_m,
             )
         )
     return tuple(seats)

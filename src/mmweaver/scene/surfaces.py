@@ -8,7 +8,7 @@ from jaxtyping import Float
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Points, Vec3
 from mmweaver.scene.depth_grid import GridBool, GridFloat, GridVectors, depth_tolerance_m
-from mmweaver.scene.patches import grown, labelled
+from mmweaver.scene.patches import grown, labelled, linked
 
 UP = np.array([0.0, 0.0, 1.0])
 _MIN_SIZE_M = 0.3
@@ -21,7 +21,9 @@ _MIN_TOP_M = 0.25  # above the floor
 _WALL_TOP_M = 1.75  # above the floor: a wall reaches higher than most furniture
 _CEILING_M = 1.9  # above the floor
 _MAX_UPRIGHT, _MAX_TOPS = 16, 12
+_WIDER = 2.0  # a wall bends by more than its noise in a real sensor's picture
 _HOUGH_M = 0.05
+_STEEPER = np.array([1.0, 1.0, 5.0])
 _HOUGH_ANGLES = 120
 
 
@@ -33,11 +35,18 @@ class LevelGrid:
     normals: GridVectors  # towards the radar
     depth_m: GridFloat  # along the optical axis
     floor_z_m: float
+    focal_cells: float
 
     @property
     def tolerance_m(self) -> GridFloat:
         """How far a cell may lie from the plane it belongs to."""
         return 0.01 + depth_tolerance_m(self.depth_m)
+
+    def spacing_m(self, normal: Vec3) -> GridFloat:
+        """Somewhat more than the step from cell to cell on a surface of that normal: far, seen obliquely."""
+        distance = np.linalg.norm(self.points_m, axis=-1)
+        across = np.maximum(np.abs(self.points_m @ normal), 0.05)
+        return 0.02 + 1.4 * np.square(distance) / (across * self.focal_cells)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +65,9 @@ def floor_cells(grid: LevelGrid) -> GridBool:
 
 def find_surfaces(grid: LevelGrid) -> tuple[Surface, ...]:
     """All flat surfaces but the floor, larger ones first within a kind."""
-    open_cells = np.isfinite(grid.normals).all(axis=2) & ~floor_cells(grid)
+    # What seems to lie below the floor is a mirror image in it, or light that came round about.
+    is_above = grid.points_m[..., 2] > grid.floor_z_m - grid.tolerance_m
+    open_cells = np.isfinite(grid.normals).all(axis=2) & ~floor_cells(grid) & is_above
     tops = _level_surfaces(grid, open_cells)
     for surface in tops:
         open_cells = open_cells & ~surface.cells
@@ -72,7 +83,7 @@ def _upright_surfaces(grid: LevelGrid, open_cells: GridBool) -> tuple[Surface, .
         if plane is None:
             break
         normal, offset = _refined_upright(grid, open_cells, *plane)
-        on_plane = open_cells & _is_on(grid, normal, offset)
+        on_plane = open_cells & _is_on(grid, normal, offset, _WIDER)
         if on_plane.sum() < _MIN_CELLS:
             # The peak of the vote was a chance meeting of many small things: leave them out of the next vote.
             open_cells = open_cells & ~_is_on(grid, *plane)
@@ -196,9 +207,11 @@ def _peeled_levels(grid: LevelGrid, facing: GridBool, sign: float) -> list[Surfa
         level_m = (int(np.argmax(votes)) + bins.min() + 0.5) * 0.02
         on_level = facing & (np.abs(grid.points_m[..., 2] - level_m) < 0.5 * grid.tolerance_m + 0.02)
         facing = facing & ~on_level
-        labels, count = labelled(grown(on_level))
-        for label in range(1, count + 1):
-            surface = _level_surface(grid, on_level & (labels == label), sign)
+        # A step in height parts a table from the sofa behind it sooner than a gap does.
+        labels, _ = linked(on_level, grid.points_m * _STEEPER, grid.spacing_m(UP))
+        sizes = np.bincount(labels.ravel())
+        for label in np.flatnonzero(sizes >= _MIN_CELLS)[1:]:
+            surface = _level_surface(grid, labels == label, sign)
             if surface is not None:
                 surfaces.append(surface)
     return surfaces

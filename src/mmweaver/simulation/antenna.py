@@ -8,7 +8,7 @@ from mmweaver.core.shapes import PerPoint, Points
 # Between -3 dB at half the beamwidth and -6 dB where TI's plots of the xWR1843 have it (50 and 20 degrees).
 AZIMUTH_ROLL_OFF = 1.2
 ELEVATION_ROLL_OFF = 1.94
-FLOOR_DB = -25.0
+FLOOR_DB = -25.0  # side lobes
 
 
 def pattern(direction: Points, config: RadarConfig) -> PerPoint:
@@ -17,7 +17,9 @@ def pattern(direction: Points, config: RadarConfig) -> PerPoint:
     elevation_deg = np.degrees(np.arcsin(np.clip(direction[:, 2], -1, 1)))
     loss_db = 3 * (np.abs(azimuth_deg) / (config.azimuth_beamwidth_deg / 2)) ** AZIMUTH_ROLL_OFF
     loss_db += 3 * (np.abs(elevation_deg) / (config.elevation_beamwidth_deg / 2)) ** ELEVATION_ROLL_OFF
-    return 10 ** (np.maximum(-loss_db, FLOOR_DB) / 20)
+    # Side lobes of a vertically polarised antenna vanish straight up and down: no wave has its field along its way.
+    side_lobes = 10 ** (FLOOR_DB / 20) * np.sqrt(np.clip(1 - direction[:, 2] ** 2, 0, 1))
+    return np.maximum(10 ** (-loss_db / 20), side_lobes)
 
 
 def scatterer_gain(config: RadarConfig) -> float:

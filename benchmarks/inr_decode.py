@@ -1,0 +1,86 @@
+"""What sampling the paper's INR on a whole 20-frame cube costs, as ratios measured in one run.
+
+Writes results/benchmark/inr_decode.json in the project's results schema and prints the same as a table.
+"""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.records import CubeGrid
+from mmweaver.core.seeding import stream
+from mmweaver.experiments.results import write_result
+from mmweaver.fields.paper_inr import InrField, InrShape, fresh_modulation
+
+NUM_FRAMES = 20
+RESULTS = Path(__file__).resolve().parents[1] / "results"
+
+
+def least_seconds(function, repeats: int = 5) -> float:
+    """The least of some runs of wall time; the first, which warms up, does not count."""
+    function()
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def decode_costs() -> dict[str, float]:
+    grid = CubeGrid.of(AWR1843, NUM_FRAMES)
+    shape = InrShape()
+    gamma, beta = fresh_modulation(NUM_FRAMES)
+    field = InrField(
+        config=AWR1843, grid=grid, scale=1.0, shape=shape, theta=shape.fresh(stream(0, "benchmark")),
+        gamma=gamma, beta=beta, amplitude=1.0, is_centred=True,
+    )  # fmt: skip
+    every = np.indices(grid.shape).reshape(4, -1).T.astype(np.float64)
+    exact = field.sample(every).reshape(grid.shape)
+    fast = field.on_grid(grid)
+    seconds = {
+        "point_by_point_s": least_seconds(lambda: field.sample(every), 1),
+        "separable_float32_s": least_seconds(lambda: field.on_grid(grid)),
+    }
+    field.decode_dtype = torch.bfloat16
+    seconds["separable_bfloat16_s"] = least_seconds(lambda: field.on_grid(grid))
+    field.decode_threads = 4
+    seconds["separable_bfloat16_4_threads_s"] = least_seconds(lambda: field.on_grid(grid))
+    a = torch.ones(2048, 2048)
+    gemm_flop_per_s = 2 * 2048**3 / least_seconds(lambda: a @ a, 2)
+    cells = every.shape[0]
+    flop = 2 * cells * (3 * 32 * 32 + 32 * 2)
+    return {
+        **seconds,
+        "gemm_gflop_per_s": gemm_flop_per_s / 1e9,
+        "times_gemm_limit_float32": seconds["separable_float32_s"] / (flop / gemm_flop_per_s),
+        "times_faster_than_point_by_point": seconds["point_by_point_s"] / seconds["separable_float32_s"],
+        "float32_error": float(np.abs(fast - exact).max() / np.abs(exact).max()),
+        "bfloat16_error": float(np.abs(field.on_grid(grid) - exact).max() / np.abs(exact).max()),
+    }
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=RESULTS)
+    arguments = parser.parse_args()
+    torch.set_num_threads(1)
+    values = decode_costs()
+    row = {
+        "dataset": {"name": "20 frames of the awr1843 cube, 64 x 32 x 12", "points": NUM_FRAMES * 64 * 32 * 12},
+        "metrics": {name: {"value": float(f"{value:.4g}")} for name, value in values.items()},
+    }
+    config = {"threads": "1, but where the name says 4"}
+    write_result(arguments.out, experiment="benchmark", method="inr_decode", config=config, rows=[row])
+    for name, value in values.items():
+        print(f"{name:34} {value:12.4g}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,126 @@
+"""mmweaver generate: photo and sentence in, radar signal out."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mmweaver.cli.arguments import add_layout_options, add_output_options, number, place, whole
+from mmweaver.core.errors import InputError
+
+if TYPE_CHECKING:
+    from mmweaver.weaver import Room, Weaver
+
+DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
+DEMO_OUT = "demo"
+NUM_STAGES = 9
+EXAMPLES = """examples:
+  mmweaver generate --demo
+  mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json \\
+      --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
+  mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
+      --frames 40 --radar mmmesh --out drink/ --bin
+"""
+
+
+def add_verb(verbs: Any) -> None:
+    """Declares the verb and its options."""
+    parser = verbs.add_parser(
+        "generate",
+        help="make the signal of a person in the room of a photo",
+        epilog=EXAMPLES,
+        description="Makes the signal that a radar at the camera would have recorded of a person doing what the text "
+        "says, in the room that the photo shows.",
+    )
+    room = parser.add_argument_group("the room")
+    room.add_argument("--rgb", type=Path, metavar="PNG", help="colour picture")
+    room.add_argument(
+        "--depth", type=Path, metavar="FILE", help="its depth: 16-bit PNG (mm, or camera.json's unit) or .npy in metres"
+    )
+    room.add_argument(
+        "--camera",
+        type=Path,
+        metavar="JSON",
+        help="fx, fy, cx, cy in pixels (default: a RealSense D455's field of view)",
+    )
+    room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
+    person = parser.add_argument_group("the person")
+    person.add_argument("--text", help=f"what the person does (with --demo: {DEMO_TEXT!r})")
+    person.add_argument(
+        "--at",
+        type=place,
+        metavar="X,Y",
+        help="where the person starts: metres right of and ahead of the radar (default: chosen)",
+    )
+    radar = parser.add_argument_group("the radar")
+    radar.add_argument(
+        "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
+    )
+    radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
+    radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
+    radar.add_argument("--method", default="physics", help="how the signal is made (default physics)")
+    radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
+    output = parser.add_argument_group("output")
+    output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
+    output.add_argument("--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would")
+    add_layout_options(output)
+    add_output_options(output)
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Checks all that is cheap, then makes the signal and writes it. Raises InputError."""
+    text, out = _check_inputs(arguments)
+
+    from mmweaver.cli.progress import StageBar
+    from mmweaver.cli.summary import print_summary
+    from mmweaver.core.atomic_files import check_output_folder
+
+    check_output_folder(out, overwrite=arguments.overwrite)
+    with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
+        from mmweaver.formats.radar_file import load_radar
+        from mmweaver.weaver import Weaver, check_request
+
+        radar = load_radar(arguments.radar)
+        if arguments.tx_order is not None:
+            radar = replace(radar, tx_order=arguments.tx_order)
+        weaver = Weaver(method=arguments.method, radar=radar, listener=bar)
+        request = {
+            "frames": arguments.frames,
+            "fps": arguments.fps,
+            "seed": arguments.seed,
+            "at": arguments.at,
+            "keep_adc": arguments.bin,
+        }
+        check_request(weaver.radar, text=text, **request)
+        result = weaver.generate(_read_room(weaver, arguments), text, **request)
+        meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order)
+    print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet)
+    return 0
+
+
+def _check_inputs(arguments: argparse.Namespace) -> tuple[str, Path]:
+    """The text and the output folder, once it is clear which room is meant."""
+    pictures = (arguments.rgb, arguments.depth, arguments.camera)
+    if arguments.demo:
+        if any(picture is not None for picture in pictures):
+            raise InputError("--demo brings its own room; leave out --rgb, --depth and --camera, or leave out --demo")
+        text = DEMO_TEXT if arguments.text is None else arguments.text
+        return text, arguments.out or Path(DEMO_OUT)
+    if arguments.rgb is None and arguments.depth is None:
+        raise InputError("which room? give --rgb and --depth, or try --demo")
+    if arguments.depth is None:
+        raise InputError("--rgb needs --depth too: the room is built from the distance of each pixel")
+    if arguments.rgb is None:
+        raise InputError("--depth needs --rgb too: the colour picture of the same view")
+    if arguments.text is None:
+        raise InputError("what does the person do? give --text, for example --text 'a person walks to the left'")
+    if arguments.out is None:
+        raise InputError("where to? give --out, a folder for the results")
+    return arguments.text, arguments.out
+
+
+def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
+    if arguments.demo:
+        return weaver.sample_room()
+    return weaver.read_room(arguments.rgb, arguments.depth, arguments.camera)

@@ -1,0 +1,76 @@
+"""The mmweaver command: one line for what went wrong, status 2 for bad input, and never a traceback for it."""
+
+import os
+import sys
+from collections.abc import Sequence
+
+from mmweaver.cli import generate, process, radar
+from mmweaver.cli.arguments import Parser, glued
+from mmweaver.core.errors import InputError
+from mmweaver.core.version import __version__
+
+DESCRIPTION = "A photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out."
+EXAMPLES = """examples:
+  mmweaver generate --demo
+  mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json \\
+      --text "a person walks towards the radar, then waves with the left hand" --out walk/
+  mmweaver process adc_data.bin --radar radar.json --iq-order iq --tx-order 0,2,1 --out capture/
+  mmweaver radar awr1843
+"""
+BAD_INPUT, INTERRUPTED, READER_GONE = 2, 130, 141
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs the command and gives its exit status: 0, 2 for bad input, 130 when interrupted, 141 for a closed pipe."""
+    try:
+        status = _run(sys.argv[1:] if argv is None else list(argv))
+        sys.stdout.flush()
+        return status
+    except InputError as error:
+        return _fail(str(error))
+    except KeyboardInterrupt:
+        _fail("interrupted; nothing was written")
+        return INTERRUPTED
+    except BrokenPipeError:
+        _close_stdout()
+        return READER_GONE
+    except MemoryError:
+        return _fail("out of memory; ask for fewer --frames or close other programs")
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename else ""
+        return _fail(f"{place}{error.strerror or error}")
+
+
+def build_parser() -> Parser:
+    """The whole command line."""
+    parser = Parser(prog="mmweaver", description=DESCRIPTION, epilog=EXAMPLES)
+    parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", title="verbs")
+    for module in (generate, process, radar):
+        module.add_verb(verbs)
+    return parser
+
+
+def _run(argv: list[str]) -> int:
+    parser = build_parser()
+    arguments = parser.parse_args(glued(argv))
+    if arguments.verb is None:
+        parser.print_help()
+        return BAD_INPUT
+    return arguments.run(arguments)
+
+
+def _fail(message: str) -> int:
+    print(f"mmweaver: error: {' '.join(message.split())}", file=sys.stderr)
+    return BAD_INPUT
+
+
+def _close_stdout() -> None:
+    """Nobody reads on: what is still buffered goes nowhere, quietly."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, sys.stdout.fileno())
+    except (OSError, ValueError):
+        sys.stdout = None  # type: ignore[assignment]
+    finally:
+        os.close(nowhere)

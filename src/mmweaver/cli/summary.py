@@ -1,0 +1,50 @@
+"""What a person, or a machine, is told at the end."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+
+def print_summary(out: str | Path, meta: dict[str, Any], *, as_json: bool, quiet: bool) -> None:
+    """Where the files are, what was assumed and how long it took, on stdout."""
+    if as_json:
+        print(json.dumps(machine_summary(out, meta), indent=2, ensure_ascii=False))
+    elif not quiet:
+        print("\n".join(summary_lines(out, meta)))
+
+
+def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
+    """The same for machines: paths of the files, assumptions, seconds of each stage."""
+    files = {name: str(Path(out) / name) for name in meta["files"]}
+    return {"out": str(out), "files": files, "assumed": meta["assumed"], "seconds": meta["seconds"]}
+
+
+def summary_lines(out: str | Path, meta: dict[str, Any]) -> list[str]:
+    """A line each for the files, then for the radar, the person and every assumption."""
+    lines = [f"wrote {Path(out)} in {sum(meta['seconds'].values()):.1f} s"]
+    paths = {name: str(Path(out) / name) for name in meta["files"]}
+    width = max(map(len, paths.values()))
+    lines += [f"  {paths[name]:<{width}}  {text}" for name, text in meta["files"].items()]
+    lines.append(_radar_line(meta))
+    if "person" in meta:
+        lines.append(_person_line(meta["person"]))
+    lines += [f"assumed: {sentence}" for sentence in meta["assumed"]]
+    return lines
+
+
+def _radar_line(meta: dict[str, Any]) -> str:
+    fine = meta["resolution"]
+    near_m, far_m = fine["range_window_m"]
+    return (
+        f"radar:   {meta['radar']['name']}, {meta['frames']} frames, {fine['range_m'] * 100:.2f} cm bins from"
+        f" {near_m:.2f} to {far_m:.2f} m, {fine['radial_velocity_mps']:.3f} m/s bins to"
+        f" {fine['max_velocity_mps']:.2f} m/s"
+    )
+
+
+def _person_line(person: dict[str, Any]) -> str:
+    start, end = (f"({x:.2f}, {y:.2f})" for x, y in (person["starts_at_m"], person["ends_at_m"]))
+    return (
+        f"person:  {person['height_m']:.2f} m tall, from {start} to {end} m (right, ahead),"
+        f" {person['path_length_m']:.2f} m along its way"
+    )

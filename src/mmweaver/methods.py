@@ -1,0 +1,92 @@
+"""The ways from a scene and a moving person to the radar signal, by name."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
+from mmweaver.core.registry import Registry
+from mmweaver.core.stages import Stages
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.simulation.simulator import ASSUMPTIONS, Simulator
+
+
+@dataclass(frozen=True, kw_only=True)
+class Signal:
+    """What a method gives: the cube, the ADC samples where it has any, and what it assumed."""
+
+    cube: RadarCube
+    adc: AdcCube | None
+    assumptions: tuple[str, ...]
+
+
+class Method(Protocol):
+    """A way from a scene and a moving person to the signal; physics now, a network later.
+
+    ADC samples are given where the method has them and `keep_adc` asks for them.
+    """
+
+    def __call__(
+        self,
+        scene: Scene,
+        pose: PoseSequence,
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
+    ) -> Signal: ...
+
+
+class Physics:
+    """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
+
+    def __init__(self) -> None:
+        self._ready: tuple[Scene, RadarConfig, Simulator] | None = None
+
+    def __call__(
+        self,
+        scene: Scene,
+        pose: PoseSequence,
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
+    ) -> Signal:
+        with stages("prepare the room"):
+            simulator = self._simulator(scene, config)
+        grid = CubeGrid.of(config, num_frames)
+        values = np.empty(grid.shape, np.complex64)
+        samples = np.empty(_adc_shape(config, num_frames if keep_adc else 0), np.complex64)
+        scale, done = math.nan, 0
+        with stages("simulate"):
+            for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed):
+                part = slice(done, done + len(chunk.samples))
+                values[part] = radar_cube(chunk).values
+                if keep_adc:
+                    samples[part] = chunk.samples
+                scale, done = chunk.scale, part.stop
+        return Signal(
+            cube=RadarCube(values=values, grid=grid, config=config, scale=scale),
+            adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
+            assumptions=ASSUMPTIONS,
+        )
+
+    def _simulator(self, scene: Scene, config: RadarConfig) -> Simulator:
+        if self._ready is None or self._ready[0] is not scene or self._ready[1] != config:
+            self._ready = (scene, config, Simulator(scene, config))
+        return self._ready[2]
+
+
+def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
+    return num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples
+
+
+METHODS: Registry[Callable[[], Method]] = Registry("method", [("physics", Physics)])

@@ -1,0 +1,247 @@
+"""Every score of a cube against the truth, each beside its floors: the one way to report a comparison."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud, RadarCube
+from mmweaver.core.shapes import RangeAngleMap, RangeDopplerMap, RangeDopplerMask
+from mmweaver.dsp.cfar import ca_cfar
+from mmweaver.dsp.points import point_cloud
+from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
+from mmweaver.metrics.antennas import antenna_phase_error_rad
+from mmweaver.metrics.cells import Cells, cells_of
+from mmweaver.metrics.floors import FLOORS
+from mmweaver.metrics.maps import log_map_difference_db, log_map_ssim
+from mmweaver.metrics.point_clouds import cloud_distances_m
+from mmweaver.metrics.signal import complex_ssim, nmse_db, peak_of, psnr_db, span_of
+
+
+class Views:
+    """What the metrics look at in a cube, each made once."""
+
+    def __init__(self, cube: RadarCube):
+        self.cube = cube
+        self.values = cube.values
+
+    @cached_property
+    def range_doppler(self) -> RangeDopplerMap:
+        return range_doppler_power(self.cube)
+
+    @cached_property
+    def range_azimuth(self) -> RangeAngleMap:
+        return range_azimuth_power(self.cube, azimuth_axis_rad())
+
+    @cached_property
+    def cells(self) -> Cells:
+        return cells_of(self.cube)
+
+    @cached_property
+    def is_detected(self) -> RangeDopplerMask:
+        return ca_cfar(self.range_doppler, num_looks=self.values.shape[-1]).is_detected
+
+    @cached_property
+    def points(self) -> PointCloud:
+        return point_cloud(self.cube)
+
+    @cached_property
+    def peak(self) -> float:
+        return peak_of(self.values)
+
+    @cached_property
+    def span(self) -> float:
+        return span_of(self.values)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Metric:
+    """One score: what it means, its perfect value, and whether a model may be praised for it.
+
+    `is_headline` is False where all zeros come near a good score on the sparse cubes that radars give.
+    """
+
+    unit: str
+    definition: str
+    perfect: float
+    is_headline: bool
+    score: Callable[[Views, Views], float]
+    version: int = 1
+
+
+def _cloud(which: int) -> Callable[[Views, Views], float]:
+    def score(prediction: Views, truth: Views) -> float:
+        num_frames, missing_m = len(truth.values), float(truth.cube.grid.range_m[-1])
+        return cloud_distances_m(prediction.points, truth.points, num_frames=num_frames, missing_m=missing_m)[which]
+
+    return score
+
+
+METRICS: Mapping[str, Metric] = {
+    "nmse_db": Metric(
+        unit="dB",
+        definition="energy of the error over energy of the truth, all cells",
+        perfect=-math.inf,
+        is_headline=True,
+        score=lambda p, t: nmse_db(p.values, t.values),
+    ),
+    "nmse_active_db": Metric(
+        unit="dB",
+        definition="the same over active cells: truth more than 12 dB above its median power",
+        perfect=-math.inf,
+        is_headline=True,
+        score=lambda p, t: nmse_db(p.values, t.values, t.cells.is_active),
+    ),
+    "nmse_moving_db": Metric(
+        unit="dB",
+        definition="the same over moving cells: active ones outside zero Doppler and its two neighbours",
+        perfect=-math.inf,
+        is_headline=True,
+        score=lambda p, t: nmse_db(p.values, t.values, t.cells.is_moving),
+    ),
+    "psnr_db": Metric(
+        unit="dB",
+        definition="mean squared error of I and Q against the square of the truth's largest |I| or |Q|",
+        perfect=math.inf,
+        is_headline=False,
+        score=lambda p, t: psnr_db(p.values, t.values, peak=t.peak),
+    ),
+    "cssim": Metric(
+        unit="1",
+        definition="mean SSIM of I and Q range-Doppler maps, 11x11 Gaussian, data range = span of the truth's I and Q",
+        perfect=1.0,
+        is_headline=False,
+        score=lambda p, t: complex_ssim(p.values, t.values, data_range=t.span),
+    ),
+    "rd_ssim": Metric(
+        unit="1",
+        definition="SSIM of 50 dB range-Doppler pictures over the cells where either shows something",
+        perfect=1.0,
+        is_headline=True,
+        score=lambda p, t: log_map_ssim(p.range_doppler, t.range_doppler),
+    ),
+    "rd_difference_db": Metric(
+        unit="dB",
+        definition="absolute difference of the same pictures, all cells, per cell that the truth shows",
+        perfect=0.0,
+        is_headline=True,
+        score=lambda p, t: log_map_difference_db(p.range_doppler, t.range_doppler),
+    ),
+    "ra_ssim": Metric(
+        unit="1",
+        definition="as rd_ssim, of range-azimuth pictures",
+        perfect=1.0,
+        is_headline=True,
+        score=lambda p, t: log_map_ssim(p.range_azimuth, t.range_azimuth),
+    ),
+    "ra_difference_db": Metric(
+        unit="dB",
+        definition="as rd_difference_db, of range-azimuth pictures",
+        perfect=0.0,
+        is_headline=True,
+        score=lambda p, t: log_map_difference_db(p.range_azimuth, t.range_azimuth),
+    ),
+    "antenna_phase_error_rad": Metric(
+        unit="rad",
+        definition="mean absolute error of the phase step between neighbouring antennas at cells detected in the truth"
+        " (CA-CFAR, 1e-4)",
+        perfect=0.0,
+        is_headline=True,
+        score=lambda p, t: antenna_phase_error_rad(p.values, t.values, t.is_detected),
+    ),
+    "hausdorff_m": Metric(
+        unit="m",
+        definition="Hausdorff distance of the point clouds, mean over frames; an empty cloud counts the far range",
+        perfect=0.0,
+        is_headline=True,
+        score=_cloud(0),
+    ),
+    "chamfer_m": Metric(
+        unit="m",
+        definition="Chamfer distance (mean of both directions, unsquared) of the point clouds, mean over frames",
+        perfect=0.0,
+        is_headline=True,
+        score=_cloud(1),
+    ),
+}
+
+Scores = dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scorecard:
+    """All metrics of a prediction and of each floor; `data_range` holds the peak and the span that PSNR and cSSIM use.
+
+    `twin` is the score of another draw of the same pose and room with other surface micro-phases: the best that
+    anyone who does not know those can do.
+    """
+
+    prediction: Scores
+    floors: dict[str, Scores]
+    twin: Scores | None
+    data_range: dict[str, float]
+
+    def as_json(self) -> dict:
+        """{metric: {value, unit, definition, version, is_headline, floor: {zeros, static_mean}, twin}}.
+
+        A value that is no finite number (a perfect score in dB, or one that does not exist) is None.
+        """
+        rows = {}
+        for name, metric in METRICS.items():
+            rows[name] = {
+                "value": _finite(self.prediction[name]),
+                "unit": metric.unit,
+                "definition": metric.definition,
+                "version": metric.version,
+                "is_headline": metric.is_headline,
+                "floor": {floor: _finite(scores[name]) for floor, scores in self.floors.items()},
+            }
+            if self.twin is not None:
+                rows[name]["twin"] = _finite(self.twin[name])
+        rows["psnr_db"]["peak"] = self.data_range["peak"]
+        rows["cssim"]["data_range"] = self.data_range["span"]
+        return rows
+
+    def table(self) -> str:
+        """A text table, one metric a line, the floors beside each score."""
+        columns = [("score", self.prediction), *self.floors.items()]
+        if self.twin is not None:
+            columns.append(("twin", self.twin))
+        lines = [f"{'':26}" + "".join(f"{name:>13}" for name, _ in columns)]
+        lines += [f"{name:26}" + "".join(f"{scores[name]:13.3f}" for _, scores in columns) for name in METRICS]
+        return "\n".join(lines)
+
+
+def scorecard(prediction: RadarCube, truth: RadarCube, *, twin: RadarCube | None = None) -> Scorecard:
+    """Scores a cube against the truth; the floors come with it, always.
+
+    Raises InputError where the cubes are not on the same cells, the truth is empty or the prediction is not finite.
+    """
+    for cube, name in ((prediction, "prediction"), (truth, "truth"), *([(twin, "twin")] if twin else [])):
+        if cube.values.shape != truth.values.shape:
+            raise InputError(
+                f"the {name} has shape {cube.values.shape}, the truth {truth.values.shape}; sample both alike"
+            )
+        if not np.isfinite(cube.values).all():
+            raise InputError(f"the {name} holds values that are not finite")
+    if not truth.values.any():
+        raise InputError("the truth is all zeros; there is nothing to score against")
+    seen = Views(truth)
+    return Scorecard(
+        prediction=_scores(prediction, seen),
+        floors={name: _scores(floor(truth), seen) for name, floor in FLOORS.items()},
+        twin=None if twin is None else _scores(twin, seen),
+        data_range={"peak": seen.peak, "span": seen.span},
+    )
+
+
+def _scores(prediction: RadarCube, truth: Views) -> Scores:
+    seen = Views(prediction)
+    return {name: metric.score(seen, truth) for name, metric in METRICS.items()}
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,1 @@
+"""A sentence becomes the motion of 22 joints, placed in a Scene."""

@@ -1,0 +1,64 @@
+"""Timed steps and a root path -> one dense, smooth PoseSequence."""
+
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.records import PoseSequence
+from mmweaver.core.seeding import stream
+from mmweaver.motion.body import Body
+from mmweaver.motion.controls import blended
+from mmweaver.motion.kinematics import solve
+from mmweaver.motion.library.registry import perform
+from mmweaver.motion.plan import Step
+from mmweaver.motion.root_path import Move, RootPath
+from mmweaver.motion.stage import Stage
+
+RATE_HZ = 120.0
+MARGIN_SAMPLES = 2
+LONGEST_BLEND_S = 0.45
+
+
+def dense_times(duration_s: float) -> Float[np.ndarray, " n"]:
+    """120 Hz from two samples before 0 to at least two samples after the end."""
+    count = int(np.ceil(duration_s * RATE_HZ - 1e-9))
+    return np.arange(-MARGIN_SAMPLES, count + MARGIN_SAMPLES + 1) / RATE_HZ
+
+
+def assemble(
+    steps: tuple[Step, ...],
+    path: RootPath,
+    moves: tuple[tuple[Move, ...], ...],
+    seat_height_m: tuple[float, ...],
+    body: Body,
+    *,
+    seed: int,
+    duration_s: float,
+    floor_z_m: float,
+) -> PoseSequence:
+    """Acts out every step along the path, blends neighbours, solves the joints. `moves` and seats are by step."""
+    time_s = dense_times(duration_s)
+    parts, starts, blends = [], [], []
+    for k, step in enumerate(steps):
+        stage = Stage(
+            time_s=time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
+            moves=moves[k], seat_height_m=seat_height_m[k], first=k == 0, last=k == len(steps) - 1,
+        )  # fmt: skip
+        parts.append(perform(stage))
+        before = steps[k - 1].end_s - steps[k - 1].start_s if k else step.end_s
+        blends.append(float(min(LONGEST_BLEND_S, 0.6 * min(stage.duration_s, before))))
+        starts.append(step.start_s + 0.5 * blends[-1] if k else step.start_s)
+    controls = blended(parts, starts, blends, time_s)
+    joints_m = solve(body, controls)
+    joints_m[..., 2] += floor_z_m
+    return PoseSequence(time_s=time_s, joints_m=joints_m, height_m=body.height_m)
+
+
+def with_times(steps: tuple[Step, ...], spans_s: list[float]) -> tuple[Step, ...]:
+    """The steps one after the other, each lasting its span."""
+    ends = np.cumsum(spans_s)
+    return tuple(
+        replace(step, start_s=float(end - span), end_s=float(end))
+        for step, span, end in zip(steps, spans_s, ends, strict=True)
+    )

@@ -1,0 +1,70 @@
+"""The room's door: a sentence and a Scene -> the motion of a body in it. Read this file first."""
+
+import math
+from dataclasses import dataclass
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.motion.assemble import assemble
+from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
+from mmweaver.motion.floor_map import FloorMap
+from mmweaver.motion.placement import place
+from mmweaver.motion.plan import MotionPlan
+from mmweaver.motion.sentence import parse
+from mmweaver.motion.timing import schedule
+
+LONGEST_S = 600.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """A body's motion in a scene: dense and smooth poses, the steps with their times, and what was assumed."""
+
+    pose: PoseSequence  # 120 Hz, from two samples before 0 to two after the end, in the radar's frame
+    plan: MotionPlan
+    assumptions: tuple[str, ...]  # plain sentences
+
+
+def compose(
+    text: str,
+    scene: Scene,
+    *,
+    duration_s: float,
+    seed: int,
+    range_window_m: tuple[float, float],
+    start_m: tuple[float, float] | None = None,
+    height_m: float | None = None,
+) -> Motion:
+    """Reads the sentence, shares out the time, finds room on the scene's floor, and moves the body.
+
+    `range_window_m`: the slant ranges that the radar keeps; the body stays inside. `start_m`: where the person starts,
+    (x, y). `height_m`: the body's height, else drawn from the seed between 1.63 and 1.96 m. Raises InputError where the
+    sentence is not understood, its steps do not fit the time, or the room has no place for it.
+    """
+    if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
+        raise InputError(f"a duration of {duration_s:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
+    plan = schedule(parse(text), duration_s)
+    if height_m is None:
+        height_m = float(stream(seed, "motion", "height").uniform(SHORTEST_M, TALLEST_M))
+    body = Body(height_m)
+    floor = FloorMap(scene, range_window_m, height_m)
+    plan, spot_notes = _jogging_without_a_way(plan)
+    placement = place(plan, floor, body, seed=seed, start_m=start_m)
+    pose = assemble(
+        plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
+        seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
+    )  # fmt: skip
+    return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions)
+
+
+def _jogging_without_a_way(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
+    """Jogging needs metres a second that a room seldom has: without a direction it is on the spot, and said so."""
+    from dataclasses import replace
+
+    aimless = [step.lower == "jog" and step.direction == "" for step in plan.steps]
+    steps = tuple(
+        replace(step, direction="spot") if free else step for step, free in zip(plan.steps, aimless, strict=True)
+    )
+    note = ("no direction is said for jogging: the person jogs on the spot",) if any(aimless) else ()
+    return replace(plan, steps=steps), note

@@ -1,0 +1,135 @@
+"""The floor of a scene as a person can use it: where there is room, inside the radar's window and the picture."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.records import Scene
+
+Array = np.ndarray
+Places = Float[Array, "*shape 2"]
+
+BODY_RADIUS_M = 0.25  # half the width of the shoulders
+AZIMUTH_LIMIT_RAD = np.radians(40.0)
+TORSO_HEIGHT = 0.68  # of the body's height
+TORSO_HALF_DEPTH_M = 0.2
+
+
+@dataclass(frozen=True)
+class FloorMap:
+    """Answers for places (x, y) in the radar's frame, from the cells of the scene's free space."""
+
+    scene: Scene
+    range_window_m: tuple[float, float]
+    height_m: float
+
+    @cached_property
+    def cell_m(self) -> float:
+        x = self.scene.free_space.x_m
+        return float(x[1] - x[0]) if len(x) > 1 else 0.1
+
+    @cached_property
+    def places_m(self) -> Float[Array, "y x 2"]:
+        """Centres of the cells."""
+        free = self.scene.free_space
+        return np.stack(np.meshgrid(free.x_m, free.y_m), axis=-1).astype(float)
+
+    @cached_property
+    def clearance_m(self) -> Float[Array, "y x"]:
+        """Distance to the nearest cell where nobody can stand; the rim of the grid counts as such."""
+        from scipy.ndimage import distance_transform_edt
+
+        padded = np.pad(self.scene.free_space.is_free, 1)
+        cells = np.asarray(distance_transform_edt(padded), dtype=float)[1:-1, 1:-1]
+        return np.maximum(cells - 0.5, 0.0) * self.cell_m
+
+    @cached_property
+    def in_view(self) -> Bool[Array, "y x"]:
+        """Cells where a standing body is seen by the radar and the camera."""
+        return self.sees(self.places_m)
+
+    @cached_property
+    def walkable(self) -> Bool[Array, "y x"]:
+        return (self.clearance_m >= BODY_RADIUS_M) & self.in_view
+
+    @cached_property
+    def dislike(self) -> Float[Array, "y x"]:
+        """Soft reasons against a cell: assumed not seen, aside, feet or head out of the window or the picture."""
+        ground = np.hypot(self.places_m[..., 0], self.places_m[..., 1])
+        floor = self.scene.floor_z_m
+        farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
+        low, high = self.range_window_m
+        dislike = 0.7 * ~self.scene.free_space.is_seen
+        dislike = (
+            dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
+        )
+        azimuth = np.degrees(np.abs(np.arctan2(self.places_m[..., 0], self.places_m[..., 1])))
+        dislike = dislike + np.clip((azimuth - 12) / 20, 0, 1.4)  # the antennas look straight ahead
+        for height in (0.03, self.height_m):
+            dislike = dislike + 0.8 * ~self._in_picture(self.places_m, floor + height, margin=0.01, vertical=True)
+        return dislike
+
+    def sees(self, places: Places) -> Bool[Array, "*shape"]:
+        """The torso is inside the range window, within 40 degrees of the axis and the picture's width."""
+        z = self.scene.floor_z_m + TORSO_HEIGHT * self.height_m
+        distance = np.sqrt(places[..., 0] ** 2 + places[..., 1] ** 2 + z**2)
+        low, high = self.range_window_m
+        inside = (distance - TORSO_HALF_DEPTH_M >= low) & (distance + TORSO_HALF_DEPTH_M <= high)
+        ahead = np.abs(np.arctan2(places[..., 0], places[..., 1])) <= AZIMUTH_LIMIT_RAD
+        return np.asarray(inside & ahead & self._in_picture(places, z, margin=0.06, vertical=False))
+
+    def _in_picture(self, places: Places, z: float, *, margin: float, vertical: bool) -> Bool[Array, "*shape"]:
+        lens = self.scene.photo.intrinsics
+        points = np.concatenate([places, np.full((*places.shape[:-1], 1), z)], axis=-1)
+        camera = points @ self.scene.radar_from_camera  # its rows are the camera's axes: the inverse rotation
+        depth = np.maximum(camera[..., 2], 1e-3)
+        u = (lens.fx * camera[..., 0] / depth + lens.cx) / lens.width
+        inside = (camera[..., 2] > 0.1) & (u >= margin) & (u <= 1 - margin)
+        if vertical:
+            v = (lens.fy * camera[..., 1] / depth + lens.cy) / lens.height
+            inside &= (v >= margin) & (v <= 1 - margin)
+        return np.asarray(inside)
+
+    def _cells(self, places: Places) -> tuple[Array, Array, Array]:
+        """Row and column of each place, and whether it is on the grid."""
+        free = self.scene.free_space
+        column = np.rint((places[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
+        row = np.rint((places[..., 1] - free.y_m[0]) / self.cell_m).astype(int)
+        inside = (column >= 0) & (column < len(free.x_m)) & (row >= 0) & (row < len(free.y_m))
+        return np.where(inside, row, 0), np.where(inside, column, 0), np.asarray(inside)
+
+    def can_stand(self, places: Places) -> Bool[Array, "*shape"]:
+        row, column, inside = self._cells(places)
+        return np.asarray(inside & self.walkable[row, column])
+
+    def clearance_at(self, places: Places) -> Float[Array, "*shape"]:
+        row, column, inside = self._cells(places)
+        return np.where(inside, self.clearance_m[row, column], 0.0)
+
+    def dislike_at(self, places: Places) -> Float[Array, "*shape"]:
+        row, column, inside = self._cells(places)
+        return np.where(inside, self.dislike[row, column], 3.0)
+
+    def free_length_m(
+        self, place: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
+    ) -> float:
+        """How far a body can go straight from a place, at most `wanted_m`.
+
+        Within `excused_m` of the place it may be closer to things than a body's radius (a seat just left).
+        """
+        steps = np.append(np.arange(0.0, wanted_m, 0.04), wanted_m)
+        way = place + steps[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
+        excused = (steps < excused_m) & (self.clearance_at(way) > 0.05)
+        blocked = np.flatnonzero(~(self.can_stand(way) | excused))
+        if not len(blocked):
+            return float(wanted_m)
+        return float(steps[blocked[0] - 1]) if blocked[0] else 0.0
+
+    def nearest_place(self, place: Float[Array, "2"]) -> Float[Array, "2"] | None:
+        """The walkable cell nearest to a place."""
+        if not self.walkable.any():
+            return None
+        places = self.places_m[self.walkable]
+        return places[np.argmin(np.hypot(*(places - place).T))]

@@ -1,0 +1,231 @@
+"""Walking, jogging and turning: feet planted along the root's path, the rest following the phase of the steps."""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.library.standing import ANKLE_BEHIND, HALF_STANCE, SIDE_SIGN, TOES_OUT_RAD, upright
+from mmweaver.motion.profiles import bump, plateau, rise, travel
+from mmweaver.motion.root_path import RootPath
+from mmweaver.motion.stage import Stage
+
+Array = np.ndarray
+GRAVITY_MPS2 = 9.81
+
+
+@dataclass(frozen=True)
+class Style:
+    """How one person moves: lengths in metres, angles in radians, times in steps (half a gait cycle)."""
+
+    steps_hz: float
+    double_support: float  # share of a step with both feet down; negative: in the air
+    half_stance_m: float
+    toes_out_rad: float
+    ahead_m: float  # how much further back a foot is planted than the middle of its stance would have it
+    heel_strike_rad: float
+    toe_off_rad: float
+    lift_m: float  # of the swinging sole, whole steps
+    spot_lift_m: float  # of the sole when the step leads nowhere (jogging on the spot)
+    arm_swing_rad: float
+    elbow_rad: float
+    elbow_swing_rad: float
+    lean_rad: float
+    bob_m: float
+    sink: float  # stretch of the legs that the pelvis is carried at
+    pelvis_yaw_rad: float
+    sway_m: float
+
+
+def walking_style(stage: Stage, speed_mps: float) -> Style:
+    """Step rate from speed (walk ratio about 0.42 m s, longer legs step slower), the rest from the rate."""
+    rng, height_m = stage.rng, stage.body.height_m
+    share = min(speed_mps / 1.3, 1.4)
+    steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (1.75 / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
+    vigour = np.exp(rng.normal(0, 0.15))
+    leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
+    drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
+    return Style(
+        steps_hz=float(steps_hz), double_support=0.15, half_stance_m=0.034 * height_m,
+        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.02 * share,
+        heel_strike_rad=0.28 * share**0.5, toe_off_rad=0.95 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
+        arm_swing_rad=0.28 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
+        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.985, pelvis_yaw_rad=0.09 * share,
+        sway_m=0.018,
+    )  # fmt: skip
+
+
+def jogging_style(stage: Stage, speed_mps: float) -> Style:
+    """Short contacts with flight between them; the pelvis bobs so that in flight it falls freely."""
+    rng, height_m = stage.rng, stage.body.height_m
+    steps_hz = stage.tempo(2.35, 2.6, 2.9, 0.08)
+    share = min(speed_mps / 2.0, 1.2)
+    vigour = np.exp(rng.normal(0, 0.12))
+    return Style(
+        steps_hz=steps_hz, double_support=-0.3, half_stance_m=0.036 * height_m, toes_out_rad=0.08,
+        ahead_m=0.05 * share, heel_strike_rad=0.1 * share, toe_off_rad=0.55 + 0.25 * share, lift_m=0.09 + 0.06 * share,
+        spot_lift_m=0.13 * vigour, arm_swing_rad=(0.42 + 0.15 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
+        elbow_swing_rad=0.22, lean_rad=0.05 + 0.07 * share, bob_m=GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
+        sink=0.945, pelvis_yaw_rad=0.08, sway_m=0.01,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Footfall:
+    """One foot's stay on the floor."""
+
+    strike_s: float
+    off_s: float
+    place_m: Float[Array, "2"]
+    yaw_rad: float
+
+
+def walking(stage: Stage) -> Controls:
+    return stepping(stage, walking_style(stage, _cruise_mps(stage)), jog=False)
+
+
+def jogging(stage: Stage) -> Controls:
+    return stepping(stage, jogging_style(stage, _cruise_mps(stage)), jog=True)
+
+
+def turning(stage: Stage) -> Controls:
+    """Small steps on the spot; as in a slow walk."""
+    return stepping(stage, walking_style(stage, 0.9), jog=False)
+
+
+def _cruise_mps(stage: Stage) -> float:
+    return max((move.speed_mps for move in stage.moves), default=0.0)
+
+
+def stepping(stage: Stage, style: Style, *, jog: bool) -> Controls:
+    """Steps along the root's path. A foot whose next place is its old one stays where it is, unless jogging."""
+    controls = upright(stage)
+    time_s = stage.time_s
+    strikes = _clock(stage, style)
+    first_side = int(stage.rng.integers(2))
+    moving = _moving(stage, time_s, jog)
+    for side in (LEFT, RIGHT):
+        own = [k for k in range(len(strikes) - 2) if (k + first_side) % 2 == side]
+        falls = [_footfall(stage, style, strikes, k, side) for k in own]
+        _write_foot(controls, time_s, falls, side, style, jog)
+    from scipy.interpolate import CubicSpline
+
+    phase = np.asarray(CubicSpline(strikes, np.arange(len(strikes)) + first_side)(time_s))
+    _write_trunk_and_arms(controls, stage, style, phase, moving)
+    return controls
+
+
+def _clock(stage: Stage, style: Style) -> Float[Array, " k"]:
+    """Times of the foot strikes, alternating feet, from well before the stage to well after it."""
+    period = 1 / style.steps_hz
+    # After standing, the first foot leaves the floor at once; under way already, any phase will do.
+    lead = stage.rng.uniform(0, period) if stage.first else period * (1 - style.double_support) - 0.02
+    begin, end = float(stage.time_s[0]), float(stage.time_s[-1])
+    anchor = stage.start_s + lead
+    low = int(np.floor((begin - anchor) / period)) - 4
+    high = int(np.ceil((end - anchor) / period)) + 5
+    return anchor + np.arange(low, high) * period
+
+
+def _footfall(stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, side: int) -> Footfall:
+    period = float(strikes[k + 1] - strikes[k])
+    stance = (1 + style.double_support) * period
+    middle = np.array([strikes[k] + stance / 2])
+    path: RootPath = stage.path
+    root, heading = path.position_m(middle)[0], float(path.facing_rad(middle)[0])
+    share = float(rise(path.speed_mps(middle) / 0.6)[0])
+    height_m = stage.body.height_m
+    aside = SIDE_SIGN[side] * (HALF_STANCE * height_m * (1 - share) + style.half_stance_m * share)
+    velocity = path.position_m(middle + 0.01)[0] - path.position_m(middle - 0.01)[0]
+    back = np.sign(velocity @ np.array([np.cos(heading), np.sin(heading)])) if share > 0 else 1.0
+    behind = -ANKLE_BEHIND * height_m - style.ahead_m * share * back
+    cos, sin = np.cos(heading), np.sin(heading)
+    place = root + np.array([behind * cos - aside * sin, behind * sin + aside * cos])
+    yaw = heading + SIDE_SIGN[side] * (TOES_OUT_RAD * (1 - share) + style.toes_out_rad * share)
+    return Footfall(strike_s=float(strikes[k]), off_s=float(strikes[k]) + stance, place_m=place, yaw_rad=yaw)
+
+
+def _moving(stage: Stage, time_s: Float[Array, " n"], jog: bool) -> Float[Array, " n"]:
+    """1 while the root goes or turns, 0 while it stands, before and after and where the room ends early; C2."""
+    if jog and stage.step.direction == "spot":
+        start = np.ones_like(time_s) if stage.first else rise((time_s - stage.start_s) / 0.35)
+        end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
+        return np.asarray(start * end)
+    turning = np.abs(stage.path.facing_rad(time_s + 1e-3) - stage.path.facing_rad(time_s - 1e-3)) / 2e-3
+    going = stage.path.speed_mps(time_s) / max(0.8 * _cruise_mps(stage), 0.7)
+    return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
+
+
+def _write_foot(
+    controls: Controls, time_s: Float[Array, " n"], falls: list[Footfall], side: int, style: Style, jog: bool
+) -> None:
+    """Stance, then swing to the next place, for every footfall of one foot."""
+    before = 0.0
+    for fall, after in itertools.pairwise(falls):
+        gap = after.place_m - fall.place_m
+        ahead = float(gap @ np.array([np.cos(fall.yaw_rad), np.sin(fall.yaw_rad)]))
+        came, before = before, ahead
+        inside = (time_s >= fall.strike_s) & (time_s < after.strike_s)
+        t = time_s[inside]
+        long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
+        effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
+        u = (t - fall.off_s) / (after.strike_s - fall.off_s)
+        across = travel(np.clip(u, 0, 1), 0.33, 0.36)
+        controls.foot_m[inside, side, :2] = fall.place_m + across[:, None] * gap
+        high = style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
+        controls.foot_m[inside, side, 2] = high * bump(u)
+        controls.foot_rad[inside, side, 0] = fall.yaw_rad + rise(u) * (after.yaw_rad - fall.yaw_rad)
+        pitch = _pitch(t, fall, after, style, came, ahead)
+        if jog:
+            pitch = pitch + 0.5 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
+        controls.foot_rad[inside, side, 1] = pitch
+        # Weight leaves the foot before its toes do, and comes fully onto it only after the heel has struck: so the
+        # knee is never stretched at speed, and the pelvis comes down in time for the foot that is about to land.
+        swing = after.strike_s - fall.off_s
+        air = plateau(time_s, fall.off_s - 0.3 * swing, after.strike_s + 0.15 * swing, 0.55 * swing, 0.75 * swing)
+        controls.contact[:, side] -= air * min(effort + float(jog), 1.0)
+
+
+def _pitch(
+    t: Float[Array, " n"], fall: Footfall, after: Footfall, style: Style, came_m: float, ahead_m: float
+) -> Float[Array, " n"]:
+    """Heel strike, flat, heel rise, toe off, back in the swing; scaled by how far the foot came and goes."""
+    came, goes = np.clip(np.array([came_m, ahead_m]) / 1.2, -0.35, 1.15)
+    stance, swing = fall.off_s - fall.strike_s, after.strike_s - fall.off_s
+    down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / (0.22 * stance)))
+    up = style.toe_off_rad * abs(goes) * rise((t - fall.strike_s - 0.42 * stance) / (0.58 * stance + 0.08 * swing))
+    back = rise((t - fall.off_s - 0.08 * swing) / (0.92 * swing))
+    return down + up * (1 - back) - back * style.heel_strike_rad * max(goes, 0.0)
+
+
+def _write_trunk_and_arms(
+    controls: Controls, stage: Stage, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
+) -> None:
+    """Phase counts steps: even at the left foot's strike, odd at the right one's."""
+    body, heading = stage.body, controls.heading_rad
+    left_ahead = np.cos(np.pi * phase) * moving  # the left leg is in front at its strike
+    right_stance = -np.sin(np.pi * (phase - 0.1)) * moving  # +1 over the right foot, -1 over the left one
+    top = 0.54 if style.double_support > 0 else 1 + style.double_support / 2  # over the foot; jogging, in the air
+    high = np.cos(2 * np.pi * (phase - top)) * moving
+    stand = body.pelvis_height_m(style.sink) - style.bob_m
+    controls.knee_room[:] = moving
+    controls.pelvis_m[:, 2] += moving * (stand - controls.pelvis_m[:, 2]) + style.bob_m * high
+    sway = -style.sway_m * right_stance
+    controls.pelvis_m[:, 0] -= sway * np.sin(heading)
+    controls.pelvis_m[:, 1] += sway * np.cos(heading)
+    controls.pelvis_rad[:, 0] -= 0.05 * right_stance
+    controls.pelvis_rad[:, 1] += 0.4 * style.lean_rad * moving
+    controls.pelvis_rad[:, 2] -= style.pelvis_yaw_rad * left_ahead
+    controls.spine_rad[:, 0] += 0.05 * right_stance
+    controls.spine_rad[:, 1] += 0.6 * style.lean_rad * moving
+    controls.spine_rad[:, 2] += 1.9 * style.pelvis_yaw_rad * left_ahead
+    controls.head_rad[:, 1] -= 0.9 * style.pelvis_yaw_rad * left_ahead
+    controls.head_rad[:, 0] -= 0.8 * style.lean_rad * moving
+    for side in (LEFT, RIGHT):
+        forward = -SIDE_SIGN[side] * left_ahead  # the arm goes with the other leg
+        arm = controls.arm_rad[:, side]
+        arm[:, 0] += style.arm_swing_rad * (forward + 0.12 * moving) - 0.25 * moving * max(style.elbow_rad - 1, 0)
+        arm[:, 3] += moving * (style.elbow_rad - 0.22) + style.elbow_swing_rad * forward
+        arm[:, 2] -= 0.35 * moving * np.clip(style.elbow_rad, 0, 1)

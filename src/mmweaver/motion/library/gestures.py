@@ -1,0 +1,164 @@
+"""What the arms do over any posture: waving, clapping, raising a hand, drinking, punching.
+
+Each takes the Controls of the posture and returns them with arms, trunk and head changed; legs are left alone.
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.arm_reach import reach
+from mmweaver.motion.body import Body
+from mmweaver.motion.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.profiles import plateau, rise
+from mmweaver.motion.stage import Stage
+
+Array = np.ndarray
+PerTime = Float[Array, " n"]
+
+
+def sides(stage: Stage) -> tuple[int, ...]:
+    """Which arms act: as the sentence says, else as the seed has it (five of six people are right-handed)."""
+    chosen = stage.step.hand or ("right" if stage.rng.random() < 5 / 6 else "left")
+    return {"left": (LEFT,), "right": (RIGHT,), "both": (LEFT, RIGHT)}[chosen]
+
+
+def _mix(controls: Controls, side: int, arm: Float[Array, "n 4"], weight: PerTime) -> None:
+    controls.arm_rad[:, side] += weight[:, None] * (arm - controls.arm_rad[:, side])
+
+
+def _cycles(stage: Stage, rate_hz: float, low_hz: float, high_hz: float) -> tuple[float, float]:
+    """Rate and end of a repeated movement: a count asked for fixes the rate as far as nature allows."""
+    if not stage.step.count:
+        return rate_hz, stage.end_s
+    rate = float(np.clip(stage.step.count / max(stage.duration_s - 0.2, 0.1), low_hz, high_hz))
+    return rate, stage.start_s + stage.step.count / rate
+
+
+def waving(stage: Stage, controls: Controls) -> Controls:
+    """Upper arm out, forearm up, the forearm swinging from side to side."""
+    time_s, rng = stage.time_s, stage.rng
+    rate, end = _cycles(stage, stage.tempo(0.9, 1.4, 2.0), 0.8, 2.5)
+    swing = float(rng.uniform(0.35, 0.5)) * min(1.0, 1.5 / rate)
+    on = rise((end + 0.25 - time_s) / 0.5) if stage.step.count else np.ones_like(time_s)
+    begin = stage.start_s
+    for side in sides(stage):
+        phase = 2 * np.pi * rate * (time_s - begin) + (rng.uniform(0, 0.6) if side else 0.0)
+        abduction, flexion = rng.uniform(0.95, 1.25), rng.uniform(0.1, 0.35)
+        arm = np.stack(
+            [
+                flexion + 0.05 * np.sin(phase + 0.5),
+                abduction + 0.08 * np.sin(phase + 0.3),
+                np.full_like(time_s, rng.uniform(1.35, 1.6)),
+                rng.uniform(1.55, 1.75) - swing * np.sin(phase),
+            ],
+            axis=1,
+        )
+        _mix(controls, side, arm, on)
+        controls.spine_rad[:, 0] += 0.03 * (1 if side == LEFT else -1) * on
+    return controls
+
+
+def clapping(stage: Stage, controls: Controls) -> Controls:
+    """Palms meet in front of the chest, never crossing: each wrist keeps to its own side of the middle."""
+    time_s, rng, body = stage.time_s, stage.rng, stage.body
+    rate, end = _cycles(stage, stage.tempo(1.2, 2.0, 2.8), 0.9, 3.5)
+    on = rise((end + 0.2 - time_s) / 0.5) if stage.step.count else np.ones_like(time_s)
+    phase = 2 * np.pi * rate * (time_s - stage.start_s)
+    apart = (0.5 + 0.5 * np.cos(phase)) ** 1.0  # 0 when the palms meet
+    open_m = float(rng.uniform(0.08, 0.13)) * min(1.0, 2.0 / rate) * body.height_m
+    ahead, up = rng.uniform(0.16, 0.19), rng.uniform(0.02, 0.07)
+    target = np.zeros((len(time_s), 3))
+    target[:, 0] = (ahead - 0.015 * apart) * body.height_m
+    target[:, 1] = 0.024 * body.height_m + open_m * apart
+    target[:, 2] = (up + 0.01 * apart) * body.height_m
+    arm = reach(body, target, elbow=(-0.1, 0.8, -1.0))
+    for side in (LEFT, RIGHT):
+        _mix(controls, side, arm, on)
+    return controls
+
+
+def raising(stage: Stage, controls: Controls) -> Controls:
+    """The arm goes up straight in front or at the side, stays, and comes down at the end of the step."""
+    time_s, rng = stage.time_s, stage.rng
+    count = max(stage.step.count, 1)
+    each = float(min(stage.duration_s / count, 6.0 if count == 1 else 3.5))
+    move = float(np.clip(stage.tempo(1.2, 0.85, 0.6) * min(1.0, each / 2.0), 0.42, 1.6))
+    up = np.zeros_like(time_s)
+    for k in range(count):
+        begin = stage.start_s + k * each
+        up += plateau(time_s, begin, max(begin + each - 0.02, begin + 2 * move), move, move)
+    side_way = rng.random() < 0.3
+    top = float(rng.uniform(2.75, 2.98))
+    for side in sides(stage):
+        arm = controls.arm_rad[:, side].copy()
+        arm[:, 1 if side_way else 0] = top
+        arm[:, 0 if side_way else 1] = 0.12 if side_way else 0.08
+        arm[:, 3] = rng.uniform(0.12, 0.25)
+        arm[:, 2] = 0.0
+        _mix(controls, side, arm, up)
+        controls.arm_rad[:, side, 3] += 0.8 * np.sin(np.pi * up) * (not side_way)
+        controls.spine_rad[:, 0] += 0.05 * up * (-1 if side == LEFT else 1) * (len(sides(stage)) == 1)
+    return controls
+
+
+def _mouth_in_chest_m(body: Body, controls: Controls) -> Float[Array, "n 3"]:
+    from mmweaver.motion.kinematics import about_y, about_z, turned
+
+    half = about_z(controls.head_rad[:, 1] / 2) @ about_y(controls.head_rad[:, 0] / 2)
+    head = body.offset_m[joint("neck")] + turned(half, body.offset_m[joint("head")])
+    return head + turned(half @ half, body.mouth_m)
+
+
+def drinking(stage: Stage, controls: Controls) -> Controls:
+    """A cup held before the belly goes to the mouth, the head tilts back for the sip, and the cup comes down."""
+    time_s, rng, body = stage.time_s, stage.rng, stage.body
+    side = sides(stage)[0]
+    sip_s = stage.tempo(3.4, 2.6, 1.9)
+    count = stage.step.count or max(1, int(stage.duration_s / sip_s + 0.3))
+    sip_s = float(np.clip(stage.duration_s / count, 1.3, 4.5))
+    lift = np.zeros_like(time_s)
+    tilt = np.zeros_like(time_s)
+    for k in range(count):
+        begin = stage.start_s + (k + 0.04) * sip_s
+        end = stage.start_s + (k + 0.96) * sip_s
+        lift += plateau(time_s, begin, end, 0.36 * sip_s, 0.36 * sip_s)
+        tilt += plateau(time_s, begin + 0.28 * sip_s, end - 0.28 * sip_s, 0.2 * sip_s, 0.2 * sip_s)
+    sign = 1.0 if side == LEFT else -1.0
+    controls.head_rad[:, 0] -= rng.uniform(0.2, 0.32) * tilt
+    mouth = _mouth_in_chest_m(body, controls)
+    mouth[:, 1] *= sign  # seen from the acting arm's side
+    cup = mouth + np.array([0.032, 0.022, -0.036]) * body.height_m
+    rest = np.array([rng.uniform(0.15, 0.18), rng.uniform(0.05, 0.08), rng.uniform(-0.08, -0.04)]) * body.height_m
+    bow = np.array([0.03, 0.0, 0.0]) * body.height_m  # the way up goes a little outside the straight line
+    target = rest + lift[:, None] * (cup - rest) + (4 * lift * (1 - lift))[:, None] * bow
+    arm = reach(body, target, elbow=(-0.25, 0.75, -1.0))
+    _mix(controls, side, arm, np.ones_like(time_s))
+    return controls
+
+
+def punching(stage: Stage, controls: Controls) -> Controls:
+    """Fists before the face; one after the other shoots forward at shoulder height and comes back."""
+    time_s, rng, body = stage.time_s, stage.rng, stage.body
+    rate, _ = _cycles(stage, stage.tempo(1.1, 1.7, 2.3), 0.9, 2.6)
+    period = 1 / rate
+    count = stage.step.count or int(np.ceil(stage.duration_s / period - 0.2))
+    arms = sides(stage) if stage.step.hand in ("left", "right") else (LEFT, RIGHT)
+    first = int(rng.integers(2))
+    out = [np.zeros_like(time_s), np.zeros_like(time_s)]
+    strike = float(np.clip(0.75 * period, 0.42, 0.62))
+    for k in range(max(count, 1)):
+        begin = stage.start_s + 0.06 + k * period
+        side = arms[(k + first) % len(arms)]
+        out[side] += plateau(time_s, begin, begin + strike, 0.48 * strike, 0.52 * strike)
+    twist = 0.38 * (out[RIGHT] - out[LEFT])
+    controls.spine_rad[:, 2] += twist
+    controls.head_rad[:, 1] -= 0.8 * twist
+    controls.spine_rad[:, 1] += 0.06
+    guard = np.array([rng.uniform(0.15, 0.175), rng.uniform(0.05, 0.065), rng.uniform(0.12, 0.15)])
+    for side in (LEFT, RIGHT):
+        aim = np.array([0.285, 0.035, 0.1 + rng.normal(0, 0.01)])
+        target = (guard + out[side][:, None] * (aim - guard)) * body.height_m
+        arm = reach(body, target, elbow=(-0.15, 0.45, -1.0))
+        _mix(controls, side, arm, np.ones_like(time_s))
+    return controls

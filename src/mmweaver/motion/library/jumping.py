@@ -1,0 +1,207 @@
+"""Jumping, jumping jacks and squats: the legs drive the pelvis up and down, in flight it falls freely."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.library.standing import STAND_STRETCH, home_feet, upright
+from mmweaver.motion.profiles import plateau, rise, through
+from mmweaver.motion.stage import Stage
+
+Array = np.ndarray
+GRAVITY_MPS2 = 9.81
+Knot = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hop:
+    """One flight: takes off and lands with the pelvis at the same height, rising by `rise_m` between."""
+
+    off_s: float
+    rise_m: float
+
+    @property
+    def speed_mps(self) -> float:
+        return float(np.sqrt(2 * GRAVITY_MPS2 * self.rise_m))
+
+    @property
+    def flight_s(self) -> float:
+        return 2 * self.speed_mps / GRAVITY_MPS2
+
+    @property
+    def land_s(self) -> float:
+        return self.off_s + self.flight_s
+
+    def knots(self, height_m: float) -> list[Knot]:
+        """Take-off and landing of the pelvis; the quintic between them is the parabola of free fall."""
+        return [
+            (self.off_s, height_m, self.speed_mps, -GRAVITY_MPS2),
+            (self.land_s, height_m, -self.speed_mps, -GRAVITY_MPS2),
+        ]
+
+    def sole_m(self, time_s: Float[Array, " n"]) -> Float[Array, " n"]:
+        """How high the soles are: they follow the pelvis, taking up and giving back its speed within `ramp`."""
+        ramp = min(0.07, 0.3 * self.flight_s)
+        fine = np.linspace(self.off_s, self.land_s, 400)
+        speed = -GRAVITY_MPS2 * (fine - (self.off_s + self.land_s) / 2)
+        speed = speed * rise((fine - self.off_s) / ramp) * rise((self.land_s - fine) / ramp)
+        from scipy.interpolate import CubicSpline
+
+        height = CubicSpline(fine, speed).antiderivative()
+        return np.where((time_s > self.off_s) & (time_s < self.land_s), height(np.clip(time_s, fine[0], fine[-1])), 0.0)
+
+    def air(self, time_s: Float[Array, " n"]) -> Float[Array, " n"]:
+        """1 in flight, 0 on the floor."""
+        return plateau(time_s, self.off_s, self.land_s, 0.3 * self.flight_s, 0.3 * self.flight_s)
+
+    def toes_down(self, time_s: Float[Array, " n"], before_s: float, after_s: float) -> Float[Array, " n"]:
+        """Heels rise before take-off, come down after landing; greatest early in the flight."""
+        up = rise((time_s - self.off_s + before_s) / (before_s + 0.35 * self.flight_s))
+        half = 0.5 * rise((time_s - self.off_s - 0.35 * self.flight_s) / (0.6 * self.flight_s))
+        down = 0.5 * rise((time_s - self.land_s + 0.03) / (after_s + 0.03))
+        return up - half - down
+
+
+def _hop_all(
+    controls: Controls,
+    stage: Stage,
+    hops: list[Hop],
+    dips_m: list[tuple[float, float, float]],
+    ready_m: float = -0.02,
+    heels: float = 0.95,
+) -> None:
+    """Writes pelvis height, soles, heels and contact for hops with dips (time, depth, upward acceleration) between.
+
+    Take-off and landing are `ready_m` above the standing height: heels up, knees not quite straight, so that the
+    soles can pick up the pelvis's speed within some hundredths of a second.
+    """
+    time_s, body = stage.time_s, stage.body
+    stand = body.pelvis_height_m(STAND_STRETCH)
+    knots: list[Knot] = [(time, stand - depth, 0.0, push) for time, depth, push in dips_m]
+    for hop in hops:
+        knots += hop.knots(stand + ready_m)
+    knots.sort()
+    controls.pelvis_m[:, 2] = through(time_s, knots)
+    controls.knee_room[:] = plateau(time_s, hops[0].off_s - 0.4, hops[-1].land_s + 0.5, 0.35, 0.4)
+    for hop in hops:
+        pitch = heels * hop.toes_down(time_s, 0.13, 0.12)
+        controls.foot_rad[:, :, 1] += pitch[:, None]
+        controls.foot_m[:, :, 2] += hop.sole_m(time_s)[:, None]
+        controls.contact[:] -= hop.air(time_s)[:, None]
+
+
+def jumping(stage: Stage) -> Controls:
+    """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
+    controls, time_s, rng = upright(stage), stage.time_s, stage.rng
+    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0, 1.1)[stage.step.speed + 1]
+    flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
+    crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
+    edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
+    count = stage.step.count or max(1, int((stage.duration_s - edge_s - flight_s) / between_s + 1.25))
+    spare = max(stage.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
+    period = between_s + (min(spare / (count - 1), 0.35) if count > 1 else 0.0)
+    depth = float(rng.uniform(0.19, 0.25))
+    first = stage.start_s + crouch_s + push_s
+    hops = [Hop(off_s=first + k * period, rise_m=height_m) for k in range(count)]
+    rest = hops[-1].land_s + absorb_s + recover_s
+    dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
+    dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
+    dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
+    _hop_all(controls, stage, hops, dips)
+    trunk = plateau(time_s, stage.start_s, first + 0.12, crouch_s, push_s + 0.12)
+    arms = -0.5 * plateau(time_s, stage.start_s, first + 0.05, crouch_s, push_s + 0.2)
+    for hop in hops:
+        gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
+        after = recover_s if hop is hops[-1] else gap
+        trunk = trunk + 0.75 * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
+        arms = arms + 1.3 * plateau(
+            time_s, hop.off_s - 0.25, hop.land_s + gap + 0.3, 0.25 + flight_s / 2, flight_s / 2 + gap + 0.2
+        )
+    _bend(controls, trunk, 0.45)
+    controls.arm_rad[:, :, 0] += arms[:, None]
+    controls.arm_rad[:, :, 3] += 0.5 * np.maximum(trunk, 0)[:, None]
+    return controls
+
+
+def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> None:
+    """Hips go back and the trunk leans forward over them."""
+    heading = controls.heading_rad
+    for axis, part in ((0, np.cos(heading)), (1, np.sin(heading))):
+        controls.pelvis_m[:, axis] -= 0.14 * amount * part
+    controls.pelvis_rad[:, 1] += 0.6 * pitch_rad * amount
+    controls.spine_rad[:, 1] += 0.5 * pitch_rad * amount
+    controls.head_rad[:, 0] -= 0.7 * pitch_rad * amount
+
+
+def jumping_jacks(stage: Stage) -> Controls:
+    """Legs apart with the arms overhead, and back, a small hop for each."""
+    controls, time_s, rng = upright(stage), stage.time_s, stage.rng
+    half_s = 0.5 / stage.tempo(0.78, 0.92, 1.05)
+    count = stage.step.count
+    if count:
+        lead = 0.0 if stage.first else 0.35
+        half_s = float(np.clip((stage.duration_s - lead) / (2 * count), 0.46, 0.7))
+    height_m = float(rng.uniform(0.03, 0.045))
+    flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
+    hops_wanted = 2 * count if count else 2 * max(1, int(np.ceil(stage.duration_s / (2 * half_s) - 0.35)))
+    ground_s = half_s - flight_s
+    begin = stage.start_s + ground_s * 0.5 + (0.0 if stage.first else 0.35)  # arms of what was before come down first
+    hops = [Hop(off_s=begin + k * half_s, rise_m=height_m) for k in range(hops_wanted)]
+    dips = [(stage.start_s - 0.2, 0.0, 0.0)]
+    dips += [(hop.off_s - ground_s / 2, 0.08, 5.0) for hop in hops]
+    dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
+    _hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
+    spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
+    for k, hop in enumerate(hops):
+        sign = 1.0 if k % 2 == 0 else -1.0
+        spread += sign * rise((time_s - hop.off_s) / hop.flight_s)
+        centre, wide = (hop.off_s + hop.land_s) / 2, half_s
+        lift += sign * rise((time_s - centre) / wide + 0.5)
+    _spread_feet(controls, stage, spread, float(rng.uniform(0.115, 0.145)))
+    top = float(rng.uniform(2.55, 2.85))
+    controls.arm_rad[:, :, 1] += (top * lift)[:, None]
+    controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
+    controls.arm_rad[:, :, 0] += 0.12
+    return controls
+
+
+def _spread_feet(controls: Controls, stage: Stage, spread: Float[Array, " n"], half: float) -> None:
+    """Half the distance between the feet grows by `half` (a share of the height) as `spread` goes to 1."""
+    position, heading = stage.path.position_m(stage.time_s), stage.path.facing_rad(stage.time_s)
+    near = home_feet(stage.body, position, heading)
+    wide = home_feet(stage.body, position, heading, 0.056 + half)
+    controls.foot_m[:, :, :2] += (spread[:, None, None] * (wide - near))[:, :, :2]
+    for side, sign in ((LEFT, 1.0), (RIGHT, -1.0)):
+        controls.foot_rad[:, side, 0] += sign * 0.25 * spread
+    controls.knee_out_rad[:] += 0.2 * spread[:, None]
+
+
+def squatting(stage: Stage) -> Controls:
+    """Down until the knees are bent about 100 degrees, the arms forward for balance, and up again."""
+    controls, time_s, rng, body = upright(stage), stage.time_s, stage.rng, stage.body
+    period = 1 / stage.tempo(0.36, 0.5, 0.65)
+    count = stage.step.count or max(1, round(stage.duration_s / period))
+    period = float(np.clip(stage.duration_s / count, 1.05, 3.2))
+    down = np.zeros_like(time_s)
+    for k in range(count):
+        begin = stage.start_s + k * period
+        down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
+    knee = np.radians(rng.uniform(98, 112))
+    back = 0.125 * body.height_m
+    leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
+    low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + body.hip_below_pelvis_m * 0.95
+    stand = body.pelvis_height_m(STAND_STRETCH)
+    controls.pelvis_m[:, 2] -= down * (stand - low)
+    heading = controls.heading_rad
+    shift = (back + 0.022 * body.height_m) * down
+    controls.pelvis_m[:, 0] -= shift * np.cos(heading)
+    controls.pelvis_m[:, 1] -= shift * np.sin(heading)
+    controls.pelvis_rad[:, 1] += 0.42 * down
+    controls.spine_rad[:, 1] += 0.3 * down
+    controls.head_rad[:, 0] -= 0.45 * down
+    controls.knee_out_rad[:] += (0.2 * down)[:, None]
+    controls.arm_rad[:, :, 0] += (float(rng.uniform(1.5, 1.9)) * down)[:, None]
+    controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]
+    return controls

@@ -1,0 +1,24 @@
+"""A motion at other times: cubic splines through the joints."""
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
+from mmweaver.core.shapes import PerFrame
+
+
+def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
+    """The same motion at `time_s`, (frame,), by cubic interpolation; for radar frames and for slow time.
+
+    Raises InputError where a time is outside the motion: it is never extrapolated.
+    """
+    from scipy.interpolate import CubicSpline
+
+    first, last = float(pose.time_s[0]), float(pose.time_s[-1])
+    if len(time_s) and (time_s.min() < first - 1e-9 or time_s.max() > last + 1e-9):
+        raise InputError(
+            f"the motion lasts from {first:.3f} to {last:.3f} s, times from {time_s.min():.3f} to {time_s.max():.3f} s"
+            " were asked for; make the motion longer"
+        )
+    joints = np.asarray(CubicSpline(pose.time_s, pose.joints_m, axis=0)(time_s), dtype=float)
+    return PoseSequence(time_s=time_s, joints_m=joints, height_m=pose.height_m, subject=pose.subject)

@@ -1,0 +1,71 @@
+"""Where a person sits: a seat of the scene, or a stool that is assumed and said so."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.records import Seat
+from mmweaver.motion.body import Body
+from mmweaver.motion.floor_map import FloorMap
+from mmweaver.motion.library.sitting import pelvis_behind_feet_m
+
+Array = np.ndarray
+STOOL_HEIGHT_M = 0.45
+LOWEST_M, HIGHEST_M = 0.3, 0.65
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sitting:
+    """A place to sit: where the feet stand before it, the way the sitter looks, the height of the surface."""
+
+    feet_m: Float[Array, "2"]
+    facing_rad: float
+    height_m: float
+    seat_m: Float[Array, "2"]
+
+
+def seats_of(floor: FloorMap, body: Body) -> list[Sitting]:
+    """The scene's seats that a person can use inside the radar's window."""
+    found = []
+    for seat in floor.scene.seats:
+        sitting = _sitting(seat, floor, body)
+        usable = LOWEST_M <= sitting.height_m <= HIGHEST_M
+        if usable and bool(floor.sees(sitting.seat_m)):
+            found.append(sitting)
+    return found
+
+
+def _sitting(seat: Seat, floor: FloorMap, body: Body) -> Sitting:
+    height = float(seat.position_m[2]) - floor.scene.floor_z_m
+    ahead = np.array([np.cos(seat.facing_rad), np.sin(seat.facing_rad)])
+    place = np.asarray(seat.position_m[:2], dtype=float)
+    return Sitting(
+        feet_m=place + pelvis_behind_feet_m(body, height) * ahead,
+        facing_rad=float(seat.facing_rad),
+        height_m=height,
+        seat_m=place,
+    )
+
+
+def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: Body) -> Sitting:
+    """A stool behind somebody who stands at a place."""
+    behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * np.array([np.cos(facing_rad), np.sin(facing_rad)])
+    return Sitting(feet_m=feet_m, facing_rad=facing_rad, height_m=STOOL_HEIGHT_M, seat_m=feet_m - behind)
+
+
+def stool_fits(stool: Sitting, floor: FloorMap) -> bool:
+    return bool(floor.clearance_at(stool.seat_m) >= 0.2) and bool(floor.sees(stool.seat_m))
+
+
+def stool_note(stool: Sitting, *, none_at_all: bool) -> str:
+    why = "no seat was found in the photo" if none_at_all else "no seat of the photo can be reached"
+    x, y = stool.seat_m
+    return f"{why}, a stool {stool.height_m:.2f} m high is assumed at x {x:.2f} m, y {y:.2f} m"
+
+
+def reachable(floor: FloorMap, place: Float[Array, "2"], sitting: Sitting) -> bool:
+    """Whether one can go straight to a seat; close to it, being free is enough: its own edge is near."""
+    way = place + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - place)
+    near = np.hypot(*(way - sitting.feet_m).T) < 0.6
+    return bool((floor.can_stand(way) | (near & (floor.clearance_at(way) > 0.0))).all())

@@ -1,0 +1,99 @@
+"""A skeleton drawn into a photo, at the place where the camera would see it."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.records import RgbdPhoto
+from mmweaver.core.shapes import Array, Points, Rotation
+from mmweaver.core.skeleton import BONES, joint
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import LineCollection
+
+HIDDEN_BEYOND_M = 0.25  # a joint so far behind the measured surface is hidden; a body is thicker than its joints
+NEAREST_M = 0.05
+HEAD_RADIUS_M = 0.09
+PER_BONE = 6  # pieces a bone is drawn in, so that it can vanish behind an edge
+
+
+def project(points_m: Points, photo: RgbdPhoto, radar_from_camera: Rotation) -> Float[Array, "point 3"]:
+    """Radar frame -> (column, row, depth in metres) in the photo; nan for what is not before the camera.
+
+    Reference: docs/conventions.md, "Camera".
+    """
+    camera_m = points_m @ radar_from_camera  # rotating back: R^T p, for rows
+    depth_m = camera_m[:, 2]
+    ahead = depth_m > NEAREST_M
+    z = np.where(ahead, depth_m, 1.0)
+    lens = photo.intrinsics
+    column, row = lens.fx * camera_m[:, 0] / z + lens.cx, lens.fy * camera_m[:, 1] / z + lens.cy
+    return np.where(ahead[:, None], np.stack([column, row, depth_m], axis=1), np.nan)
+
+
+def is_hidden(pixels: Float[Array, "point 3"], photo: RgbdPhoto) -> Bool[Array, " point"]:
+    """Whether the depth picture has something clearly nearer where a projected point falls; False where unknown."""
+    height, width = photo.depth_m.shape
+    seen = np.isfinite(pixels).all(axis=1)
+    column = np.round(np.where(seen, pixels[:, 0], -1)).astype(int)
+    row = np.round(np.where(seen, pixels[:, 1], -1)).astype(int)
+    seen &= (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    surface_m = photo.depth_m[np.where(seen, row, 0), np.where(seen, column, 0)]
+    return seen & np.isfinite(surface_m) & (surface_m < np.where(seen, pixels[:, 2], 0.0) - HIDDEN_BEYOND_M)
+
+
+class SkeletonInPhoto:
+    """The bones of one person as lines in a photo's axes: full where seen, faint where furniture hides them."""
+
+    def __init__(self, axes: "Axes", photo: RgbdPhoto, radar_from_camera: Rotation, width: float = 2.0):
+        from matplotlib.collections import LineCollection
+
+        self._photo, self._rotation = photo, radar_from_camera
+        self._back = LineCollection([], linewidths=width + 1.4, colors=[(0, 0, 0, 0.5)], capstyle="round")
+        self._seen = LineCollection([], linewidths=width, capstyle="round")
+        self._hidden = LineCollection([], linewidths=width * 0.6, capstyle="round")
+        for lines in self.artists:
+            axes.add_collection(lines, autolim=False)
+
+    @property
+    def artists(self) -> "tuple[LineCollection, ...]":
+        return self._back, self._hidden, self._seen
+
+    def show(self, joints_m: Float[Array, "22 3"], colour: tuple[float, float, float], alpha: float = 1.0) -> None:
+        """Moves the lines to a pose; joints in metres in the radar's frame."""
+        pieces, hidden = bone_pieces(joints_m, self._photo, self._rotation)
+        self._back.set_segments(list(pieces[~hidden]))
+        self._back.set_alpha(0.5 * alpha)
+        self._seen.set_segments(list(pieces[~hidden]))
+        self._seen.set_color([(*colour, alpha)])
+        self._hidden.set_segments(list(pieces[hidden]))
+        self._hidden.set_color([(*colour, 0.35 * alpha)])
+
+
+def bone_pieces(
+    joints_m: Float[Array, "22 3"], photo: RgbdPhoto, radar_from_camera: Rotation
+) -> tuple[Float[Array, "piece 2 2"], Bool[Array, " piece"]]:
+    """Bones and the outline of the head in short pieces, (piece, end, column/row) in pixels; and which are hidden."""
+    start, end = (joints_m[np.array([bone[side] for bone in BONES])] for side in (0, 1))
+    share = np.linspace(0.0, 1.0, PER_BONE + 1)[:, None, None]
+    bones_m = start + share * (end - start)  # (knot, bone, 3)
+    pieces_m = np.stack([bones_m[:-1], bones_m[1:]], axis=2).reshape(-1, 2, 3)
+    pieces_m = np.concatenate([pieces_m, _head_pieces(joints_m)])
+    pieces = project(pieces_m.reshape(-1, 3), photo, radar_from_camera).reshape(-1, 2, 3)
+    hidden = is_hidden(pieces.mean(axis=1), photo)
+    ahead = np.isfinite(pieces).all(axis=(1, 2))
+    return pieces[ahead][:, :, :2], hidden[ahead]
+
+
+def _head_pieces(joints_m: Float[Array, "22 3"]) -> Float[Array, "piece 2 3"]:
+    """A ring around the head that faces the radar: the skeleton itself ends at the base of the skull."""
+    head_m, neck_m = joints_m[joint("head")], joints_m[joint("neck")]
+    up = head_m - neck_m
+    up = up / max(float(np.linalg.norm(up)), 1e-6)
+    aside = np.cross(head_m, up)
+    aside = aside / max(float(np.linalg.norm(aside)), 1e-6)
+    turn = np.linspace(0.0, 2 * np.pi, 17)[:, None]
+    ring_m = head_m + HEAD_RADIUS_M * (up + np.cos(turn) * up + 0.75 * np.sin(turn) * aside)
+    return np.stack([ring_m[:-1], ring_m[1:]], axis=1)

@@ -1,0 +1,63 @@
+"""One look for all pictures: one colour map for power, one for time, one for radial velocity."""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+
+POWER_MAP = "inferno"
+TIME_MAP = "viridis"
+VELOCITY_MAP = "coolwarm"
+SPAN_DB = 50.0  # what a power picture shows below its peak
+
+INK = "#22262b"
+PAPER = "#ffffff"
+TRUTH = "#7fe3ff"  # what is known from the skeleton, drawn over what the radar saw
+
+STYLE: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.titlelocation": "left",
+    "axes.titlepad": 6.0,
+    "axes.labelsize": 9.0,
+    "axes.labelpad": 2.0,
+    "axes.edgecolor": INK,
+    "axes.linewidth": 0.7,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+}
+
+
+def label_axes(axes: "Axes", title: str, x_label: str, y_label: str) -> None:
+    """Title above on the left, a label on either axis."""
+    axes.set_title(title)
+    axes.set_xlabel(x_label)
+    axes.set_ylabel(y_label)
+
+
+def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
+    """A thin bar at the right of the axes, without taking room from them."""
+    place = axes.inset_axes((1.02, 0.0, 0.035, 1.0))
+    bar = axes.figure.colorbar(mappable, cax=place)
+    bar.set_label(label, fontsize=8, labelpad=3)
+    bar.outline.set_linewidth(0.5)  # type: ignore[operator]
+    place.tick_params(labelsize=7, width=0.5, length=2)
+
+
+def shortened(text: str, most: int) -> str:
+    """At most so many characters.
+
+    >>> shortened("a person walks", 10)
+    'a perso...'
+    """
+    return text if len(text) <= most else text[: most - 3] + "..."

@@ -1,0 +1,120 @@
+"""The folder of results: the same files and pictures whether a signal was made or recorded."""
+
+import dataclasses
+import hashlib
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.atomic_files import staged_folder
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube
+from mmweaver.core.stages import Stages
+from mmweaver.formats.dca1000 import write_bin
+from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
+from mmweaver.pictures.animation import draw_animation
+from mmweaver.pictures.preview import draw_preview
+from mmweaver.pictures.view import View
+
+META_VERSION = 1
+FILES = {
+    "radar.npz": "the cube, complex64 (frame, range, doppler, antenna), and its axes in m, m/s and s",
+    "pose.npz": "22 joints of the person at each frame, in metres, in the radar's frame",
+    "points.npz": "CFAR point cloud: frame, x, y, z in metres, radial velocity in m/s, SNR in dB",
+    "adc_data.bin": "raw ADC samples as a DCA1000 writes them, int16",
+    "radar.json": "the radar: chirp, array and frame; --radar reads it",
+    "meta.json": "all that is needed to make this again, and what was assumed",
+    "preview.png": "one page of pictures",
+    "preview.gif": "the same over time",
+}
+
+
+def save_results(
+    out: str | Path,
+    view: View,
+    meta: dict[str, Any],
+    *,
+    adc: AdcCube | None = None,
+    iq_order: str = "iq",
+    overwrite: bool = False,
+    stages: Stages | None = None,
+) -> dict[str, Any]:
+    """Writes all files into the folder `out`, or none; returns what meta.json holds.
+
+    Where `adc` is given it is written as `adc_data.bin`, I or Q first as `iq_order` says. Raises InputError where
+    `out` holds other files and `overwrite` is not set, or where it cannot be written.
+    """
+    stages = stages or Stages()
+    with staged_folder(Path(out), overwrite=overwrite) as stage:
+        meta = dict(meta)
+        with stages("write files"):
+            write_radar_npz(stage / "radar.npz", view.cube)
+            write_points_npz(stage / "points.npz", view.points)
+            if view.pose is not None:
+                write_pose_npz(stage / "pose.npz", view.pose)
+            if adc is not None:
+                # Simulated samples are whole counts of the radar's own converter: written so, nothing is lost.
+                own = None if math.isnan(adc.scale) else adc.scale / adc.config.adc_count_sqrt_mw
+                counts = write_bin(stage / "adc_data.bin", adc, iq_order=iq_order, counts_per_unit=own)
+                meta["adc_data_bin"] = {
+                    "iq_order": iq_order,
+                    "tx_order": adc.config.tx_order,
+                    "counts_per_unit": counts,
+                }
+            (stage / "radar.json").write_text(view.cube.config.to_json())
+        with stages("draw preview.png"):
+            draw_preview(view, stage / "preview.png")
+        with stages("draw preview.gif"):
+            draw_animation(view, stage / "preview.gif")
+        names = {file.name for file in stage.iterdir()} | {"meta.json"}
+        meta["files"] = {name: text for name, text in FILES.items() if name in names}
+        meta["seconds"] = {name: round(seconds, 3) for name, seconds in stages.seconds.items()}
+        (stage / "meta.json").write_text(json.dumps(plain(meta), indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+    return plain(meta)
+
+
+def radar_meta(config: RadarConfig) -> dict[str, Any]:
+    """The radar and what follows from it, for meta.json."""
+    return {
+        "radar": json.loads(config.to_json()),
+        "resolution": {
+            "range_m": config.range_resolution_m,
+            "radial_velocity_mps": config.velocity_resolution_mps,
+            "range_window_m": [float(config.range_m[0]), float(config.range_m[-1])],
+            "max_velocity_mps": config.max_velocity_mps,
+        },
+    }
+
+
+def plain(value: Any) -> Any:
+    """Records, arrays and tuples as JSON knows them; nan and infinity, which JSON lacks, as None.
+
+    >>> plain({"at": (1, np.float32(0.5)), "noise": float("nan")})
+    {'at': [1, 0.5], 'noise': None}
+    """
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {field.name: plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple | set | frozenset):
+        return [plain(item) for item in value]
+    if isinstance(value, float):
+        return value if np.isfinite(value) else None
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    return str(value)
+
+
+def file_digest(path: str | Path) -> dict[str, str]:
+    """Path and sha256 of an input file, for meta.json. Raises InputError where it cannot be read."""
+    try:
+        with Path(path).open("rb") as stream:
+            return {"path": str(path), "sha256": hashlib.file_digest(stream, "sha256").hexdigest()}
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None

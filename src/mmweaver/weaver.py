@@ -1,0 +1,233 @@
+"""The front door: photo and sentence in, radar signal out. Read this file first.
+
+    photo + depth --scene--> Scene --------------------+
+                               |                       +--method--> RadarCube --dsp--> PointCloud
+    sentence ------motion--> PoseSequence, placed -----+
+
+Only this file knows the order of the rooms; they exchange the records of `core/records.py` and nothing else.
+"""
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
+from mmweaver.core.skeleton import joint
+from mmweaver.core.stages import Stages
+from mmweaver.core.version import __version__
+from mmweaver.dsp.points import point_cloud
+from mmweaver.formats.radar_file import load_radar
+from mmweaver.methods import METHODS
+from mmweaver.motion.compose import compose
+from mmweaver.motion.resample import resample
+from mmweaver.motion.sentence import parse
+from mmweaver.motion.timing import schedule
+from mmweaver.pictures.view import View
+from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
+from mmweaver.scene.photo import read_photo
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.scene.sample import sample_photo
+
+MAX_FRAMES = 2000
+FPS_LIMITS = (0.1, 1000.0)
+MAX_SECONDS = 600.0
+MAX_BYTES = 2_000_000_000  # of the largest array
+
+
+# rooms and results --------------------------------------------------------------------------------------------------
+@dataclass(frozen=True, kw_only=True)
+class Room:
+    """A photo, read and reconstructed; reused for as many sentences as wanted."""
+
+    scene: Scene
+    inputs: dict[str, Any]
+    seconds: dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Generation:
+    """One generated sequence. `pose` holds the joints at the radar's frames, `motion` the same densely in time."""
+
+    cube: RadarCube
+    points: PointCloud
+    adc: AdcCube | None
+    pose: PoseSequence
+    motion: PoseSequence
+    scene: Scene
+    meta: dict[str, Any]
+    stages: Stages = field(repr=False)
+
+    @property
+    def photo(self) -> RgbdPhoto:
+        return self.scene.photo
+
+    def save(
+        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: bool = False, iq_order: str = "iq"
+    ) -> dict[str, Any]:
+        """Writes all files and pictures into a folder, or none of them; returns what meta.json holds.
+
+        `adc_data_bin` asks for the raw samples too, as a DCA1000 writes them, I or Q first. Raises InputError where
+        the folder cannot be written, or holds other files and `overwrite` is not set.
+        """
+        if adc_data_bin and self.adc is None:
+            raise InputError(
+                "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
+            )
+        view = View(
+            title=f"{self.meta['text']}   ({self.cube.config.name}, seed {self.meta['seed']})",
+            cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
+            pose=self.pose, motion=self.motion,
+        )  # fmt: skip
+        return save_results(
+            out, view, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order, overwrite=overwrite,
+            stages=self.stages,
+        )  # fmt: skip
+
+
+# the door -----------------------------------------------------------------------------------------------------------
+class Weaver:
+    """Generates radar signals with one method and one radar.
+
+    `method` is a name in METHODS, `radar` a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
+    hears the name of each stage as it begins. Raises InputError for what is not known.
+    """
+
+    def __init__(
+        self,
+        method: str = "physics",
+        radar: str | Path | RadarConfig = "awr1843",
+        *,
+        listener: Callable[[str], object] | None = None,
+    ):
+        self.method_name = method
+        self.method = METHODS[method]()
+        self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
+        self._listener = listener
+
+    def read_room(self, rgb: str | Path, depth: str | Path, camera: str | Path | None = None) -> Room:
+        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON."""
+        stages = Stages(self._listener)
+        with stages("read the photo"):
+            photo, assumptions = read_photo(rgb, depth, camera)
+            given = {"rgb": rgb, "depth": depth, "camera": camera}
+            inputs = {name: file_digest(path) for name, path in given.items() if path is not None}
+        return self._reconstruct(photo, assumptions, inputs, stages)
+
+    def sample_room(self) -> Room:
+        """The room that comes with the project."""
+        stages = Stages(self._listener)
+        with stages("read the photo"):
+            photo, assumptions = sample_photo()
+        return self._reconstruct(photo, assumptions, {"sample": "the bundled room"}, stages)
+
+    @staticmethod
+    def _reconstruct(photo: RgbdPhoto, assumptions: tuple[str, ...], inputs: dict[str, Any], stages: Stages) -> Room:
+        with stages("reconstruct the room"):
+            scene = reconstruct(photo, assumptions=assumptions)
+        return Room(scene=scene, inputs=inputs, seconds=stages.seconds)
+
+    def generate(
+        self,
+        room: Room,
+        text: str,
+        *,
+        frames: int = 20,
+        fps: float | None = None,
+        seed: int = 0,
+        at: tuple[float, float] | None = None,
+        keep_adc: bool = True,
+    ) -> Generation:
+        """The signal of one person who does in the room what the text says.
+
+        `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
+        y away from the radar) in metres, chosen if not given. Without `keep_adc` the raw samples are
+        dropped as soon as they are processed, for long sequences. The same seed gives the same bits. Raises
+        InputError for a request that cannot be met.
+        """
+        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at, keep_adc=keep_adc)
+        stages = Stages(self._listener)
+        stages.seconds.update(room.seconds)
+        with stages("compose the motion"):
+            motion = compose(
+                text, room.scene, duration_s=frames * config.frame_period_s, seed=seed,
+                range_window_m=(float(config.range_m[0]), float(config.range_m[-1])), start_m=at,
+            )  # fmt: skip
+        signal = self.method(
+            room.scene, motion.pose, config, num_frames=frames, seed=seed, keep_adc=keep_adc, stages=stages
+        )
+        with stages("point cloud"):
+            points = point_cloud(signal.cube)
+        pose = resample(motion.pose, signal.cube.grid.frame_time_s)
+        meta = {
+            "schema_version": META_VERSION,
+            "made_by": "mmweaver generate",
+            "version": __version__,
+            "text": text, "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
+            "method": self.method_name,
+            **radar_meta(config),
+            "inputs": room.inputs,
+            "camera": room.scene.photo.intrinsics,
+            "assumed": list(dict.fromkeys((*room.scene.assumptions, *motion.assumptions, *signal.assumptions))),
+            "person": _person(pose),
+            "plan": motion.plan,
+        }  # fmt: skip
+        return Generation(
+            cube=signal.cube, points=points, adc=signal.adc, pose=pose, motion=motion.pose, scene=room.scene,
+            meta=meta, stages=stages,
+        )  # fmt: skip
+
+
+def _person(pose: PoseSequence) -> dict[str, Any]:
+    path_m = np.round(pose.joints_m[:, joint("pelvis"), :2], 3)
+    return {
+        "height_m": pose.height_m,
+        "starts_at_m": path_m[0],
+        "ends_at_m": path_m[-1],
+        "path_length_m": round(float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum()), 3),
+    }
+
+
+def check_request(
+    radar: RadarConfig,
+    *,
+    text: str,
+    frames: int = 20,
+    fps: float | None = None,
+    seed: int = 0,
+    at: tuple[float, float] | None = None,
+    keep_adc: bool = True,
+) -> RadarConfig:
+    """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
+
+    Raises InputError for frames, fps or a place out of their limits, for a frame rate that the chirps do not fit into,
+    for more samples than memory holds, and for a text that is not understood or does not fit the time.
+    """
+    if not 1 <= frames <= MAX_FRAMES:
+        raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
+    if fps is not None and not FPS_LIMITS[0] <= fps <= FPS_LIMITS[1]:
+        raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {fps:g}")
+    if seed < 0:
+        raise InputError(f"the seed must be 0 or above, not {seed}")
+    if at is not None and not (len(at) == 2 and all(math.isfinite(value) for value in at)):
+        raise InputError(f"the place to start must be two numbers, x and y in metres, not {at}")
+    config = radar if fps is None else dataclasses.replace(radar, frame_period_s=1 / fps)
+    if frames * config.frame_period_s > MAX_SECONDS:
+        raise InputError(
+            f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"
+        )
+    numbers = config.num_loops * config.num_antennas * (config.num_samples if keep_adc else config.num_range_bins)
+    most = MAX_BYTES // (8 * numbers)
+    if frames > most:
+        raise InputError(
+            f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
+            f" {most} are made at a time"
+        )
+    schedule(parse(text), frames * config.frame_period_s)
+    return config

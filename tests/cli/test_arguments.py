@@ -1,0 +1,34 @@
+"""Words of the command line become values, or an error that says how to write them."""
+
+import argparse
+
+import pytest
+
+from mmweaver.cli.arguments import Parser, glued, number, place, turns, whole
+from mmweaver.core.errors import InputError
+
+
+def test_values():
+    assert place("-0.5,2") == (-0.5, 2.0)
+    assert turns("0,2,1") == (0, 2, 1)
+    assert (whole("7"), number("2.5")) == (7, 2.5)
+
+
+@pytest.mark.parametrize(
+    ("kind", "word"),
+    [(place, "1"), (place, "1,2,3"), (place, "a,b"), (turns, "0;2"), (whole, "1.5"), (number, "x")],
+)
+def test_a_bad_word_is_named(kind, word: str):
+    with pytest.raises(argparse.ArgumentTypeError, match=word):
+        kind(word)
+
+
+def test_a_place_may_begin_with_a_minus():
+    assert glued(["--at", "-.5,2", "--seed", "-1"]) == ["--at=-.5,2", "--seed", "-1"]
+    assert glued(["--at", "--frames"]) == ["--at", "--frames"]
+    assert glued(["--at"]) == ["--at"]
+
+
+def test_the_parser_raises_rather_than_exits():
+    with pytest.raises(InputError, match="--help"):
+        Parser(prog="x").parse_args(["--nope"])

@@ -1,0 +1,206 @@
+"""mmweaver generate: the demo, a person's own pictures, and every bad input in one line that leaves nothing behind."""
+
+import json
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mmweaver import result_folder
+from mmweaver.cli.main import main
+from mmweaver.formats.npz_files import read_radar_npz
+from mmweaver.scene.sample import sample_photo
+
+WALK = "a person walks towards the radar"
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The sample room as a person would have it: rgb.png, depth.png in millimetres, camera.json."""
+    folder = tmp_path_factory.mktemp("pictures")
+    photo, _ = sample_photo()
+    Image.fromarray(photo.rgb).save(folder / "rgb.png")
+    depth_mm = np.nan_to_num(photo.depth_m * 1000).round().astype(np.uint16)
+    Image.fromarray(depth_mm).save(folder / "depth.png")
+    np.save(folder / "depth.npy", photo.depth_m.astype(np.float32))
+    lens = photo.intrinsics
+    (folder / "camera.json").write_text(json.dumps({"fx": lens.fx, "fy": lens.fy, "cx": lens.cx, "cy": lens.cy}))
+    return folder
+
+
+def test_the_demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    monkeypatch.chdir(tmp_path)
+    assert main(["generate", "--demo"]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    for word in ("wrote demo", "preview.png", "assumed: ", "person: ", "4.40 cm"):
+        assert word in captured.out
+    assert read_radar_npz(tmp_path / "demo" / "radar.npz").values.shape == (20, 64, 32, 12)
+    assert main(["generate", "--demo"]) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert main(["generate", "--demo", "--overwrite", "--frames", "2", "--text", WALK, "--quiet"]) == 0
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize("depth", ["depth.png", "depth.npy"])
+def test_own_pictures(pictures: Path, depth: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    out = tmp_path / "walk"
+    argv = ["generate", "--rgb", str(pictures / "rgb.png"), "--depth", str(pictures / depth)]
+    argv += ["--camera", str(pictures / "camera.json"), "--text", WALK, "--out", str(out), "--frames", "3", "--json"]
+    assert main(argv) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["out"] == str(out)
+    meta = json.loads((out / "meta.json").read_text())
+    assert set(meta["inputs"]) == {"rgb", "depth", "camera"}
+    assert all(len(entry["sha256"]) == 64 for entry in meta["inputs"].values())
+    assert summary["assumed"] == meta["assumed"]
+
+
+def test_without_a_camera_file_the_output_says_what_was_taken(
+    pictures: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    argv = ["generate", "--rgb", str(pictures / "rgb.png"), "--depth", str(pictures / "depth.png"), "--text", WALK]
+    assert main([*argv, "--out", str(tmp_path / "walk"), "--frames", "2"]) == 0
+    assert "D455" in capsys.readouterr().out
+
+
+def test_a_bin_goes_back_through_process(tmp_path: Path):
+    walk, again = tmp_path / "walk", tmp_path / "again"
+    argv = ["generate", "--demo", "--out", str(walk), "--frames", "3", "--text", WALK, "--bin", "--quiet"]
+    assert main([*argv, "--iq-order", "qi", "--tx-order", "0,1,2"]) == 0
+    meta = json.loads((walk / "meta.json").read_text())["adc_data_bin"]
+    assert (meta["iq_order"], meta["tx_order"]) == ("qi", [0, 1, 2])
+    words = ["process", str(walk / "adc_data.bin"), "--radar", str(walk / "radar.json"), "--iq-order", "qi"]
+    assert main([*words, "--out", str(again), "--quiet"]) == 0
+    made, read = (read_radar_npz(folder / "radar.npz").values for folder in (walk, again))
+    read = read / meta["counts_per_unit"]
+    assert np.linalg.norm(read - made) < 1e-3 * np.linalg.norm(made)
+
+
+def bad_pictures(folder: Path, good: Path) -> None:
+    """Everything that can be wrong with a depth picture, beside good ones."""
+    for name in ("rgb.png", "depth.png", "camera.json"):
+        (folder / name).write_bytes((good / name).read_bytes())
+    depth = np.asarray(Image.open(good / "depth.png"))
+    Image.fromarray(depth[::2, ::2]).save(folder / "small.png")
+    Image.fromarray(np.zeros_like(depth)).save(folder / "zero.png")
+    Image.fromarray((depth // 40).astype(np.uint8)).save(folder / "eight_bit.png")
+    metres = depth / 1000.0
+    np.save(folder / "nan.npy", np.full_like(metres, np.nan))
+    np.save(folder / "negative.npy", -metres - 1)
+    np.save(folder / "millimetres.npy", metres * 1000)
+    np.save(folder / "objects.npy", np.array([{}], dtype=object))
+    (folder / "cut.png").write_bytes((good / "depth.png").read_bytes()[:1000])
+    (folder / "text.png").write_text("no picture")
+    (folder / "camera_broken.json").write_text("{")
+    (folder / "camera_short.json").write_text('{"fx": 500}')
+    (folder / "lines.cfg").write_text("sensorStop\nflushCfg\n")
+    (folder / "full").mkdir()
+    (folder / "full" / "mine.txt").write_text("mine")
+    (folder / "file").write_text("a file")
+
+
+PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json"]
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        ([], "--demo"),
+        (["--rgb", "rgb.png"], "--depth"),
+        (["--depth", "depth.png"], "--rgb"),
+        (["--demo", "--rgb", "rgb.png"], "--demo"),
+        (["--rgb", "missing.png", "--depth", "depth.png"], "missing.png"),
+        (["--rgb", "text.png", "--depth", "depth.png"], "text.png"),
+        (["--rgb", "rgb.png", "--depth", "missing.png"], "missing.png"),
+        (["--rgb", "rgb.png", "--depth", "cut.png"], "cut.png"),
+        (["--rgb", "rgb.png", "--depth", "text.png"], "text.png"),
+        (["--rgb", "rgb.png", "--depth", "objects.npy"], "objects.npy"),
+        (["--rgb", "rgb.png", "--depth", "small.png"], "small.png"),
+        (["--rgb", "rgb.png", "--depth", "zero.png"], "zero.png"),
+        (["--rgb", "rgb.png", "--depth", "nan.npy"], "nan.npy"),
+        (["--rgb", "rgb.png", "--depth", "negative.npy"], "negative.npy"),
+        (["--rgb", "rgb.png", "--depth", "millimetres.npy"], "millimetres.npy"),
+        (["--rgb", "rgb.png", "--depth", "eight_bit.png"], "eight_bit.png"),
+        ([*PICTURES[:4], "--camera", "missing.json"], "missing.json"),
+        ([*PICTURES[:4], "--camera", "camera_broken.json"], "camera_broken.json"),
+        ([*PICTURES[:4], "--camera", "camera_short.json"], "camera_short.json"),
+        ([*PICTURES, "--text", ""], "empty"),
+        ([*PICTURES, "--text", "walk " * 2000], "10000 characters"),
+        ([*PICTURES, "--text", "a person photosynthesises"], "walking"),
+        ([*PICTURES, "--frames", "0"], "2000"),
+        ([*PICTURES, "--frames", "1000000"], "2000"),
+        ([*PICTURES, "--fps", "-1"], "fps"),
+        ([*PICTURES, "--seed", "-1"], "seed"),
+        ([*PICTURES, "--at", "1"], "x,y"),
+        ([*PICTURES, "--at", "-50,2"], "-50"),
+        ([*PICTURES, "--radar", "nope"], "awr1843"),
+        ([*PICTURES, "--radar", "lines.cfg"], "lines.cfg"),
+        ([*PICTURES, "--radar", "missing.json"], "missing.json"),
+        ([*PICTURES, "--method", "magic"], "physics"),
+        ([*PICTURES, "--tx-order", "0,1"], "tx_order"),
+        ([*PICTURES, "--out", "full"], "--overwrite"),
+        ([*PICTURES, "--out", "file"], "file"),
+        ([*PICTURES, "--out", "file/inside"], "file"),
+    ],
+    ids=lambda value: " ".join(value)[:60] if isinstance(value, list) else None,
+)
+def test_bad_input_is_one_line_and_writes_nothing(
+    words: list[str], says: str, pictures: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+):  # fmt: skip
+    bad_pictures(tmp_path, pictures)
+    before = sorted(str(file) for file in tmp_path.rglob("*"))
+    monkeypatch.chdir(tmp_path)
+    text = [] if "--text" in words else ["--text", WALK]
+    out = [] if "--out" in words else ["--out", "walk"]
+    assert main(["generate", *text, *out, *words]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith("mmweaver: error: ")
+    assert captured.err.count("\n") == 1
+    assert len(captured.err) < 500
+    assert says in captured.err
+    assert captured.out == ""
+    assert sorted(str(file) for file in tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    ("raised", "status", "word"),
+    [
+        (OSError(28, "No space left on device"), 2, "No space left"),
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (MemoryError(), 2, "memory"),
+    ],
+)
+def test_what_stops_it_halfway_leaves_nothing(
+    raised: BaseException, status: int, word: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+):  # fmt: skip
+    def stop(*_: object) -> None:
+        raise raised
+
+    monkeypatch.setattr(result_folder, "draw_animation", stop)
+    assert main(["generate", "--demo", "--frames", "1", "--text", WALK, "--out", str(tmp_path / "out")]) == status
+    captured = capsys.readouterr()
+    assert word in captured.err
+    assert captured.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_disk_that_takes_no_more(tmp_path: Path):
+    """A limit on the size of files makes a write fail for real, within the cube."""
+    code = "import sys; from mmweaver.cli.main import main; sys.exit(main(sys.argv[1:]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "generate", "--demo", "--frames", "3", "--text", WALK,
+         "--out", str(tmp_path / "out")],
+        capture_output=True, text=True, check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000)),
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert done.stderr.startswith("mmweaver: error: cannot write")
+    assert done.stderr.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,100 @@
+"""The command as a whole: help, version, exit statuses, one line for every error."""
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from mmweaver import __version__
+from mmweaver.cli import radar
+from mmweaver.cli.main import main
+
+
+def test_help_is_quick_and_loads_nothing_heavy():
+    code = "import sys; sys.argv = ['mmweaver', '--help']; from mmweaver.cli.main import main\ntry: main()\nfinally: sys.stderr.write(' '.join(m for m in ('numpy', 'matplotlib', 'scipy') if m in sys.modules))"  # noqa: E501
+    start = time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert time.perf_counter() - start < 1.5  # 0.5 s on an idle machine
+    assert "examples:" in done.stdout
+    assert done.stderr == ""
+    assert done.returncode == 0
+
+
+def test_the_module_runs_as_the_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "mmweaver", "radar", "nope"], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("mmweaver: error: ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_version_and_help_end_well(capsys: pytest.CaptureFixture[str]):
+    for argv, word in (
+        (["--version"], __version__),
+        (["generate", "--help"], "--text"),
+        (["process", "--help"], "--axes"),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            main(argv)
+        assert ended.value.code == 0
+        assert word in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "argv", [["fly"], ["radar"], ["radar", "awr1843", "--nope"], ["process", "x.bin"], ["generate", "--frames", "many"]]
+)
+def test_a_bad_command_line_is_one_line(argv: list[str], capsys: pytest.CaptureFixture[str]):
+    assert main(argv) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith("mmweaver: error: ")
+    assert captured.err.count("\n") == 1
+    assert captured.out == ""
+
+
+def test_no_verb_shows_the_help(capsys: pytest.CaptureFixture[str]):
+    assert main([]) == 2
+    assert "generate" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("raised", "status", "word"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (MemoryError(), 2, "memory"),
+        (OSError(28, "No space left on device", "x/y"), 2, "x/y: No space left"),
+    ],
+)
+def test_what_the_machine_does_to_us_is_one_line(
+    raised: BaseException, status: int, word: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def fail(_: object) -> int:
+        raise raised
+
+    monkeypatch.setattr(radar, "run", fail)
+    assert main(["radar", "awr1843"]) == status
+    captured = capsys.readouterr()
+    assert word in captured.err
+    assert captured.err.count("\n") == 1
+
+
+def test_a_bug_is_not_hidden(monkeypatch: pytest.MonkeyPatch):
+    def fail(_: object) -> int:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(radar, "run", fail)
+    with pytest.raises(ZeroDivisionError):
+        main(["radar", "awr1843"])
+
+
+def test_a_reader_that_leaves_is_no_error():
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [sys.executable, "-m", "mmweaver", "radar", "awr1843"], stdout=writing, stderr=subprocess.PIPE, check=False
+    )
+    os.close(writing)
+    assert done.returncode == 141
+    assert done.stderr == b""

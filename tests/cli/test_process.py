@@ -1,0 +1,122 @@
+"""mmweaver process: recordings of a radar become the same files; what is no recording becomes one line."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.cli.main import main
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.records import AdcCube
+from mmweaver.core.seeding import stream
+from mmweaver.formats.dca1000 import write_bin
+from mmweaver.formats.npz_files import read_points_npz, read_radar_npz
+
+
+def make_adc(num_frames: int = 2) -> AdcCube:
+    """One still point at 2 m straight ahead, and noise."""
+    shape = (num_frames, AWR1843.num_loops, AWR1843.num_tx, AWR1843.num_rx, AWR1843.num_samples)
+    random = stream(0, "test")
+    beat_hz = 2 * 2.0 * AWR1843.chirp_slope_hz_per_s / 299_792_458
+    tone = np.exp(2j * np.pi * beat_hz * np.arange(AWR1843.num_samples) / AWR1843.sample_rate_hz)
+    samples = 100 * tone + random.normal(size=shape) + 1j * random.normal(size=shape)
+    return AdcCube(samples=samples.astype(np.complex64), config=AWR1843, scale=1.0)
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("recording")
+    adc = make_adc()
+    write_bin(folder / "adc_data.bin", adc)
+    write_bin(folder / "qi.bin", adc, iq_order="qi")
+    np.save(folder / "adc.npy", adc.samples[:, :, list(AWR1843.tx_order)])
+    return folder
+
+
+def test_a_bin_becomes_the_files_promised(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    out = tmp_path / "capture"
+    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--tx-order", "0,2,1", "--out", str(out)]
+    assert main(argv) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    assert "radar.npz" in captured.out
+    names = {file.name for file in out.iterdir()}
+    assert names == {"radar.npz", "points.npz", "radar.json", "meta.json", "preview.png", "preview.gif"}
+    cube = read_radar_npz(out / "radar.npz")
+    assert cube.values.shape == (2, 64, 32, 12)
+    strongest = np.abs(cube.values).sum(axis=(0, 2, 3)).argmax()
+    assert cube.grid.range_m[strongest] == pytest.approx(2.0, abs=0.03)
+    assert np.isnan(cube.scale)
+    points = read_points_npz(out / "points.npz")
+    best = points.snr_db.argmax()
+    assert (points.x_m[best], points.y_m[best]) == pytest.approx((0, 2), abs=0.05)
+    meta = json.loads((out / "meta.json").read_text())
+    assert meta["inputs"]["recording"]["path"].endswith("adc_data.bin")
+    assert len(meta["inputs"]["recording"]["sha256"]) == 64
+
+
+def test_both_iq_orders_and_npy_give_the_same_cube(recording: Path, tmp_path: Path):
+    words = {
+        "iq": ["adc_data.bin"],
+        "qi": ["qi.bin", "--iq-order", "qi"],
+        "npy": ["adc.npy", "--axes", "frame,loop,tx,rx,sample"],
+    }
+    cubes = []
+    for name, (file, *more) in words.items():
+        out = tmp_path / name
+        assert main(["process", str(recording / file), *more, "--radar", "awr1843", "--out", str(out), "--quiet"]) == 0
+        values = read_radar_npz(out / "radar.npz").values
+        cubes.append(values / np.abs(values).max())
+    assert np.array_equal(cubes[0], cubes[1])
+    assert np.allclose(cubes[0], cubes[2], atol=1e-3)
+
+
+def test_the_summary_for_machines(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--out", str(tmp_path / "x"), "--json"]
+    assert main(argv) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert all(Path(path).is_file() for path in summary["files"].values())
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["missing.bin", "--radar", "awr1843"], "missing.bin"),
+        (["cut.bin", "--radar", "awr1843"], "truncated"),
+        (["empty.bin", "--radar", "awr1843"], "empty"),
+        (["whole.bin", "--radar", "nope"], "awr1843"),
+        (["whole.bin", "--radar", "broken.json"], "broken.json"),
+        (["whole.bin", "--radar", "lines.cfg"], "lines.cfg"),
+        (["whole.bin", "--radar", "awr1843", "--tx-order", "0,0,1"], "tx_order"),
+        (["whole.bin", "--radar", "awr1843", "--tx-order", "x"], "transmitters"),
+        (["whole.bin", "--radar", "awr1843", "--iq-order", "xy"], "iq"),
+        (["whole.bin", "--radar", "bgt60"], "real samples"),
+        (["whole.npy", "--radar", "awr1843"], "--axes"),
+        (["whole.npy", "--radar", "awr1843", "--axes", "frame,loop"], "axes"),
+        (["whole.npy", "--radar", "awr1843", "--axes", "frame,fish"], "fish"),
+        (["objects.npy", "--radar", "awr1843", "--axes", "frame"], "objects.npy"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else None,
+)
+def test_bad_input_is_one_line_and_writes_nothing(
+    words: list[str], says: str, recording: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+):  # fmt: skip
+    whole = (recording / "adc_data.bin").read_bytes()
+    (tmp_path / "whole.bin").write_bytes(whole)
+    (tmp_path / "cut.bin").write_bytes(whole[:-100])
+    (tmp_path / "empty.bin").write_bytes(b"")
+    (tmp_path / "broken.json").write_text("{")
+    (tmp_path / "lines.cfg").write_text("sensorStop\nflushCfg\n")
+    (tmp_path / "whole.npy").write_bytes((recording / "adc.npy").read_bytes())
+    np.save(tmp_path / "objects.npy", np.array([{}], dtype=object))
+    before = sorted(file.name for file in tmp_path.iterdir())
+    monkeypatch.chdir(tmp_path)
+    assert main(["process", *words, "--out", "capture"]) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith("mmweaver: error: ")
+    assert captured.err.count("\n") == 1
+    assert says in captured.err
+    assert captured.out == ""
+    assert sorted(file.name for file in tmp_path.iterdir()) == before

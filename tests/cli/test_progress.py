@@ -1,0 +1,44 @@
+"""The bar shows on a terminal after two seconds, and nowhere else."""
+
+import io
+import sys
+import time
+
+import pytest
+import tqdm  # noqa: F401  (its first import takes longer than the test waits)
+
+from mmweaver.cli import progress
+from mmweaver.cli.progress import StageBar
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def shown(monkeypatch: pytest.MonkeyPatch, stream: io.StringIO, *, patience_s: float, quiet: bool = False) -> str:
+    """What half a second of work writes to stderr; patched here, for pytest puts its own stderr back after set-up."""
+    monkeypatch.setattr(progress, "REFRESH_S", 0.01)
+    monkeypatch.setattr(progress, "PATIENCE_S", patience_s)
+    with monkeypatch.context() as patch:
+        patch.setattr(sys, "stderr", stream)
+        with StageBar(2, quiet=quiet) as bar:
+            bar("first")
+            bar("second")
+            time.sleep(0.5)
+    return stream.getvalue()
+
+
+def test_long_work_on_a_terminal_shows_its_stage(monkeypatch: pytest.MonkeyPatch):
+    text = shown(monkeypatch, Terminal(), patience_s=0.01)
+    assert "second" in text
+    assert "1/2" in text
+
+
+def test_short_work_shows_nothing(monkeypatch: pytest.MonkeyPatch):
+    assert shown(monkeypatch, Terminal(), patience_s=progress.PATIENCE_S) == ""
+
+
+def test_quiet_work_and_pipes_show_nothing(monkeypatch: pytest.MonkeyPatch):
+    assert shown(monkeypatch, Terminal(), patience_s=0.01, quiet=True) == ""
+    assert shown(monkeypatch, io.StringIO(), patience_s=0.01) == ""

@@ -1,0 +1,31 @@
+"""mmweaver radar prints what people and --radar read."""
+
+from pathlib import Path
+
+import pytest
+
+from mmweaver.cli.main import main
+from mmweaver.core.presets import PRESETS
+from mmweaver.core.radar_config import RadarConfig
+
+
+@pytest.mark.parametrize("name", list(PRESETS))
+def test_the_json_is_the_radar_again(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["radar", name, "--json"]) == 0
+    text = capsys.readouterr().out
+    assert RadarConfig.from_json(text) == PRESETS[name]
+    (tmp_path / "radar.json").write_text(text)
+    assert main(["radar", str(tmp_path / "radar.json"), "--json"]) == 0
+    assert capsys.readouterr().out == text
+
+
+def test_people_read_resolutions_and_limits(capsys: pytest.CaptureFixture[str]):
+    assert main(["radar", "awr1843"]) == 0
+    text = capsys.readouterr().out
+    for word in ("4.40 cm", "0.274 m/s", "4.39 m/s", "12 virtual antennas"):
+        assert word in text
+
+
+def test_an_unknown_radar_lists_the_known(capsys: pytest.CaptureFixture[str]):
+    assert main(["radar", "nope"]) == 2
+    assert "awr1843" in capsys.readouterr().err

@@ -1,0 +1,38 @@
+"""What people and machines are told at the end."""
+
+import json
+
+import pytest
+
+from mmweaver.cli.summary import print_summary, summary_lines
+
+META = {
+    "files": {"radar.npz": "the cube", "preview.png": "pictures"},
+    "assumed": ["a stool", "D455 field of view"],
+    "seconds": {"simulate": 0.5, "draw": 1.0},
+    "frames": 20,
+    "radar": {"name": "awr1843"},
+    "resolution": {
+        "range_m": 0.044, "radial_velocity_mps": 0.274, "range_window_m": [0.7, 3.48], "max_velocity_mps": 4.39,
+    },
+    "person": {"height_m": 1.75, "starts_at_m": [0.3, 2.9], "ends_at_m": [-0.08, 1.37], "path_length_m": 1.57},
+}  # fmt: skip
+
+
+def test_people_hear_where_what_and_on_which_assumptions():
+    text = "\n".join(summary_lines("walk", META))
+    for word in ("walk", "1.5 s", "radar.npz", "4.40 cm", "1.75 m", "(-0.08, 1.37)", "assumed: a stool", "D455"):
+        assert word in text
+
+
+def test_machines_read_json(capsys: pytest.CaptureFixture[str]):
+    print_summary("walk", META, as_json=True, quiet=False)
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["files"]["radar.npz"] == "walk/radar.npz"
+    assert summary["assumed"] == META["assumed"]
+    assert summary["seconds"] == META["seconds"]
+
+
+def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]):
+    print_summary("walk", META, as_json=False, quiet=True)
+    assert capsys.readouterr().out == ""

@@ -1,0 +1,148 @@
+"""adc_data.bin, read and written, against a reader made from the format's description alone."""
+
+import struct
+from dataclasses import replace
+from itertools import permutations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843, BGT60
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube
+from mmweaver.core.seeding import stream
+from mmweaver.formats.dca1000 import read_bin, write_bin
+
+SMALL = replace(AWR1843, num_loops=2, num_samples=8, num_range_bins=4, first_range_bin=0)
+
+
+def counts_adc(config: RadarConfig, num_frames: int = 2) -> AdcCube:
+    """Whole counts, all different from their neighbours."""
+    draw = stream(0, "test bin")
+    shape = (num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples)
+    counts = draw.integers(-32767, 32768, (2, *shape))
+    return AdcCube(samples=(counts[0] + 1j * counts[1]).astype(np.complex64), config=config, scale=float("nan"))
+
+
+def described_reader(data: bytes, config: RadarConfig, tx_order: tuple[int, ...], q_first: bool) -> dict:
+    """From the description: int16 little-endian; frame, loop, chirp of the loop, receiver, then two samples in four
+    words, I0 I1 Q0 Q1 or Q0 Q1 I0 I1. Gives {(frame, loop, physical tx, rx, sample): complex}."""
+    found, at, frame = {}, 0, 0
+    while at < len(data):
+        for loop in range(config.num_loops):
+            for tx in tx_order:
+                for rx in range(config.num_rx):
+                    for sample in range(0, config.num_samples, 2):
+                        words = struct.unpack_from("<4h", data, at)
+                        at += 8
+                        i0, i1, q0, q1 = (*words[2:], *words[:2]) if q_first else words
+                        found[frame, loop, tx, rx, sample] = complex(i0, q0)
+                        found[frame, loop, tx, rx, sample + 1] = complex(i1, q1)
+        frame += 1
+    return found
+
+
+@pytest.mark.parametrize("iq_order", ["iq", "qi"])
+@pytest.mark.parametrize("tx_order", list(permutations(range(3))))
+def test_the_file_is_what_the_format_says(tmp_path: Path, iq_order: str, tx_order: tuple[int, ...]):
+    adc = counts_adc(replace(SMALL, tx_order=tx_order))
+    path = tmp_path / "adc_data.bin"
+    assert write_bin(path, adc, iq_order=iq_order, counts_per_unit=1.0) == 1.0
+    assert path.stat().st_size == 2 * 2 * 3 * 4 * 8 * 4
+    found = described_reader(path.read_bytes(), SMALL, tx_order, iq_order == "qi")
+    for index, value in found.items():
+        assert adc.samples[index] == value
+    assert len(found) == adc.samples.size
+    again = read_bin(path, adc.config, iq_order=iq_order)
+    assert np.array_equal(again.samples, adc.samples)
+    assert again.samples.dtype == np.complex64
+    assert np.isnan(again.scale)
+
+
+def test_a_recording_in_another_firing_order(tmp_path: Path):
+    """The caller knows better than the configuration; the record's configuration then says so, for TDM's sake."""
+    adc = counts_adc(replace(SMALL, tx_order=(1, 2, 0)))
+    write_bin(tmp_path / "a.bin", adc, counts_per_unit=1.0)
+    again = read_bin(tmp_path / "a.bin", SMALL, tx_order=(1, 2, 0))
+    assert np.array_equal(again.samples, adc.samples)
+    assert again.config == adc.config
+    write_bin(tmp_path / "b.bin", adc, counts_per_unit=1.0, tx_order=(0, 1, 2))
+    assert np.array_equal(read_bin(tmp_path / "b.bin", SMALL, tx_order=(0, 1, 2)).samples, adc.samples)
+
+
+def test_the_wrong_iq_order_mirrors_the_range_axis(tmp_path: Path):
+    config = replace(AWR1843, num_loops=1, num_range_bins=256, first_range_bin=0)
+    tone = np.exp(2j * np.pi * 40 * np.arange(256) / 256)
+    samples = np.broadcast_to(tone, (1, 1, 3, 4, 256)).astype(np.complex64)
+    write_bin(tmp_path / "a.bin", AdcCube(samples=samples, config=config, scale=1.0), iq_order="qi")
+    for iq_order, peak in (("qi", 40), ("iq", 256 - 40)):
+        read = read_bin(tmp_path / "a.bin", config, iq_order=iq_order).samples[0, 0, 0, 0]
+        assert np.argmax(np.abs(np.fft.fft(read))) == peak
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    values=hnp.arrays(np.float32, (1, 2, 3, 4, 8, 2), elements=st.floats(-1e3, 1e3, width=32)),
+    iq_order=st.sampled_from(["iq", "qi"]),
+    tx_order=st.permutations(range(3)),
+    exponent=st.integers(-12, 6),
+)
+def test_any_signal_comes_back_to_half_a_count(tmp_path_factory, values, iq_order, tx_order, exponent: int):
+    config = replace(SMALL, tx_order=tuple(tx_order))
+    samples = (values * np.float32(10.0**exponent)).view(np.complex64)[..., 0]
+    path = tmp_path_factory.mktemp("bin") / "adc_data.bin"
+    counts = write_bin(path, AdcCube(samples=samples, config=config, scale=1.0), iq_order=iq_order)
+    again = read_bin(path, config, iq_order=iq_order).samples
+    off = again.astype(np.complex128) - samples.astype(np.complex128) * counts
+    assert max(np.abs(off.real).max(), np.abs(off.imag).max()) <= 0.5 + 1e-6
+    peak = max(np.abs(again.real).max(), np.abs(again.imag).max())
+    assert peak <= 16384
+    assert peak >= 16383 or not samples.any()
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [(0, ["empty"]), (767, ["767", "768"]), (768 * 3 + 4, ["2308", "3 whole frames", "768", "4 bytes more"])],
+)
+def test_a_file_of_the_wrong_size_is_refused(tmp_path: Path, size: int, words: list[str]):
+    path = tmp_path / "adc_data.bin"
+    path.write_bytes(bytes(size))
+    with pytest.raises(InputError) as caught:
+        read_bin(path, SMALL)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_what_cannot_be_read_is_refused(tmp_path: Path):
+    with pytest.raises(InputError, match="No such file"):
+        read_bin(tmp_path / "none.bin", SMALL)
+    with pytest.raises(InputError, match="cannot read"):
+        read_bin(tmp_path, SMALL)
+    with pytest.raises(InputError, match="iq, qi"):
+        read_bin(tmp_path / "none.bin", SMALL, iq_order="q")
+    with pytest.raises(InputError, match="tx_order"):
+        read_bin(tmp_path / "none.bin", SMALL, tx_order=(0, 1))
+    with pytest.raises(InputError, match="pairs"):
+        read_bin(tmp_path / "none.bin", replace(SMALL, num_samples=7))
+    with pytest.raises(InputError, match="real samples"):
+        read_bin(tmp_path / "none.bin", BGT60)
+
+
+@pytest.mark.parametrize(
+    ("value", "counts", "word"),
+    [
+        (np.nan, None, "finite"), (np.inf, 1.0, "finite"), (40000.0, 1.0, "int16"), (1.0, 0.0, "above 0"),
+        (1.0, float("nan"), "finite"),
+    ],
+)  # fmt: skip
+def test_what_does_not_fit_is_not_written(tmp_path: Path, value: float, counts: float | None, word: str):
+    adc = counts_adc(SMALL)
+    adc.samples[0, 0, 0, 0, 0] = value
+    with pytest.raises(InputError, match=word):
+        write_bin(tmp_path / "a.bin", adc, counts_per_unit=counts)
+    assert not list(tmp_path.iterdir())

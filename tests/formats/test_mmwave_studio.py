@@ -1,0 +1,105 @@
+"""mmWave Studio's set-up files, from a small one written here."""
+
+import copy
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio, read_mmwave_studio_iq_order
+
+
+def chirp(start: int, end: int, mask: str) -> dict:
+    zero = {"startFreqVar_MHz": 0.0, "freqSlopeVar_KHz_usec": 0.0, "idleTimeVar_usec": 0.0, "adcStartTimeVar_usec": 0.0}
+    return {"rlChirpCfg_t": {"chirpStartIdx": start, "chirpEndIdx": end, "profileId": 0, "txEnable": mask, **zero}}
+
+
+SETUP: dict[str, Any] = {
+    "waveformType": "legacyFrameChirp",
+    "rlChanCfg_t": {"rxChannelEn": "0xF", "txChannelEn": "0x7"},
+    "rlAdcOutCfg_t": {"fmt": {"b2AdcBits": 2, "b2AdcOutFmt": 1}},
+    "rlProfiles": [
+        {
+            "rlProfileCfg_t": {
+                "profileId": 0, "startFreqConst_GHz": 77.0, "idleTimeConst_usec": 100.0, "adcStartTimeConst_usec": 6.0,
+                "rampEndTime_usec": 60.0, "freqSlopeConst_MHz_usec": 60.0, "numAdcSamples": 128,
+                "digOutSampleRate": 2500, "rxGain_dB": "0x1E",
+            }
+        }
+    ],
+    "rlChirps": [chirp(0, 0, "0x1"), chirp(1, 1, "0x4"), chirp(2, 2, "0x2")],
+    "rlFrameCfg_t": {"chirpStartIdx": 0, "chirpEndIdx": 2, "numLoops": 64, "framePeriodicity_msec": 70.0},
+    "rlBpmChirps": [],
+}  # fmt: skip
+
+
+def written(tmp_path: Path, setup: Any, swap: int = 0) -> Path:
+    device = {"rfConfig": setup, "rawDataCaptureConfig": {"rlDevDataFmtCfg_t": {"iqSwapSel": swap}}}
+    path = tmp_path / "capture.mmwave.json"
+    path.write_text(json.dumps({"mmWaveDevices": [device]}))
+    return path
+
+
+def test_the_set_up(tmp_path: Path):
+    config = read_mmwave_studio(written(tmp_path, SETUP))
+    assert config.name == "capture"
+    assert (config.num_tx, config.num_rx, config.tx_order, config.num_loops) == (3, 4, (0, 2, 1), 64)
+    assert config.range_resolution_m == pytest.approx(0.0488, abs=1e-4)
+    assert config.loop_period_s == pytest.approx(480e-6)
+    assert config.frame_period_s == pytest.approx(0.07)
+    assert config.rx_gain_db == 30.0
+    assert config.complex_samples
+
+
+@pytest.mark.parametrize(("swap", "iq_order"), [(0, "iq"), (1, "qi")])
+def test_the_iq_order(tmp_path: Path, swap: int, iq_order: str):
+    assert read_mmwave_studio_iq_order(written(tmp_path, SETUP, swap)) == iq_order
+
+
+def changed(change: Callable[[Any], Any]) -> Any:
+    setup = copy.deepcopy(SETUP)
+    change(setup)
+    return setup
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        (lambda setup: setup.update(waveformType="advFrameChirp"), "legacyFrameChirp"),
+        (lambda setup: setup.update(rlBpmChirps=[{}]), "BPM"),
+        (lambda setup: setup.pop("rlFrameCfg_t"), "lacks rlFrameCfg_t"),
+        (lambda setup: setup.update(rlChirps=[]), "chirp 0"),
+        (lambda setup: setup.update(rlChirps=7), "no mmWave Studio"),
+        (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 0, "0x3")), "TDM"),
+        (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 10**9, "0x1")), "0 to 511"),
+        (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(idleTimeVar_usec=1.0), "idleTimeVar"),
+        (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(profileId=1), "profiles"),
+        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(profileId=1), "rlProfiles"),
+        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(numAdcSamples="many"), "no mmWave Studio"),
+        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(numAdcSamples=128.5), "whole"),
+        (lambda setup: setup["rlProfiles"][0]["rlProfileCfg_t"].update(rampEndTime_usec=20.0), "ramp ends"),
+        (lambda setup: setup["rlFrameCfg_t"].update(numLoops=4000), "frame period"),
+    ],
+)
+def test_a_bad_set_up_is_refused(tmp_path: Path, change: Callable[[Any], Any], word: str):
+    path = written(tmp_path, changed(change))
+    with pytest.raises(InputError, match=word) as caught:
+        read_mmwave_studio(path)
+    assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"mmWaveDevices": []}', '{"mmWaveDevices": [3]}', "\xff"])
+def test_another_file_is_refused(tmp_path: Path, text: str):
+    path = tmp_path / "other.json"
+    path.write_text(text, encoding="latin-1")
+    with pytest.raises(InputError, match=r"other\.json"):
+        read_mmwave_studio(path)
+
+
+def test_what_looks_like_one():
+    assert is_mmwave_studio({"mmWaveDevices": []})
+    assert not is_mmwave_studio([])
+    assert not is_mmwave_studio({"name": "awr1843"})

@@ -1,0 +1,143 @@
+"""mmWave SDK .cfg files, good and bad."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.virtual_array import has_elevation
+from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order
+
+# TI's best range resolution profile for three transmitters, the elevated one last.
+BEST_RANGE = """
+% ***************************************************************
+% Created for SDK ver:03.02
+sensorStop
+flushCfg
+dfeDataOutputMode 1
+channelCfg 15 7 0
+adcCfg 2 1
+adcbufCfg -1 0 1 1 1
+profileCfg 0 77 267 7 57.14 0 0 70 1 256 5209 0 0 30
+chirpCfg 0 0 0 0 0 0 0 1
+chirpCfg 1 1 0 0 0 0 0 4   % TX2
+chirpCfg 2 2 0 0 0 0 0 2
+frameCfg 0 2 16 0 100 1 0
+lowPower 0 0
+bpmCfg -1 0 0 1
+sensorStart
+"""
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "best_range.cfg"
+    path.write_text(text)
+    return path
+
+
+def test_the_best_range_profile(tmp_path: Path):
+    config = read_ti_cfg(written(tmp_path, BEST_RANGE))
+    assert config.name == "best_range"
+    assert config.range_resolution_m == pytest.approx(0.04357, abs=1e-5)
+    assert config.max_velocity_mps == pytest.approx(1.0, abs=0.03)
+    assert config.velocity_resolution_mps == pytest.approx(0.125, abs=0.004)
+    assert (config.num_loops, config.num_tx, config.num_rx, config.tx_order) == (16, 3, 4, (0, 2, 1))
+    assert (config.frame_period_s, config.rx_gain_db, config.complex_samples) == (0.1, 30.0, True)
+    assert (config.num_range_bins, config.first_range_bin) == (64, 16)
+    assert config.range_m[0] == pytest.approx(0.70, abs=0.02)
+    assert has_elevation(config)
+    assert read_ti_cfg_iq_order(tmp_path / "best_range.cfg") == "qi"
+
+
+def test_an_iwr1443_profile_with_two_transmitters(tmp_path: Path):
+    """Transmitters 0 and 2 become 0 and 1: eight antennas in a row. It ends at 77 + 58 x 0.068 = 80.94 GHz."""
+    config = read_ti_cfg(
+        written(
+            tmp_path,
+            "channelCfg 15 5 0\nadcCfg 2 1\nadcbufCfg 0 0 1 1\nprofileCfg 0 77 7 7 58 0 0 68 1 256 5500 0 0 30\n"
+            "chirpCfg 0 0 0 0 0 0 0 4\nchirpCfg 1 1 0 0 0 0 0 1\nframeCfg 0 1 32 0 33.333 1 0\n",
+        )
+    )
+    assert config.tx_order == (1, 0)
+    assert config.num_antennas == 8
+    steps = np.diff(np.sort(config.antenna_position_m[:, 0])) / (config.wavelength_m / 2)
+    assert steps == pytest.approx(np.ones(7))
+    assert not has_elevation(config)
+    assert config.frame_period_s == pytest.approx(0.033333)
+    assert read_ti_cfg_iq_order(tmp_path / "best_range.cfg") == "iq"
+
+
+def test_a_60_ghz_profile_real_samples_and_fewer_receivers(tmp_path: Path):
+    text = BEST_RANGE.replace("channelCfg 15 7", "channelCfg 3 7").replace("adcCfg 2 1", "adcCfg 2 0")
+    config = read_ti_cfg(written(tmp_path, text.replace("0 77 267", "0 60 267")))
+    assert config.frequency_limits_hz == (57e9, 64e9)
+    assert config.num_rx == 2
+    assert not config.complex_samples
+
+
+def test_chirps_repeated_in_the_list_are_loops(tmp_path: Path):
+    text = BEST_RANGE.replace("chirpCfg 2 2 0 0 0 0 0 2", "chirpCfg 2 2 0 0 0 0 0 1\nchirpCfg 3 3 0 0 0 0 0 4")
+    config = read_ti_cfg(written(tmp_path, text.replace("frameCfg 0 2 16", "frameCfg 0 3 16")))
+    assert (config.num_tx, config.num_loops, config.tx_order) == (2, 32, (0, 1))
+    text = BEST_RANGE.replace("chirpCfg 0 0 0", "chirpCfg 0 63 0").replace("frameCfg 0 2 16", "frameCfg 0 63 2")
+    config = read_ti_cfg(written(tmp_path, text.replace("chirpCfg 1 1", "% ").replace("chirpCfg 2 2", "% ")))
+    assert (config.num_tx, config.num_loops) == (1, 128)
+
+
+def test_few_samples_keep_all_their_bins(tmp_path: Path):
+    config = read_ti_cfg(written(tmp_path, BEST_RANGE.replace("1 256 5209", "1 48 2000")))
+    assert (config.first_range_bin, config.num_range_bins) == (0, 48)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("profileCfg", "%", ["lacks profileCfg"]),
+        ("frameCfg", "%", ["lacks frameCfg"]),
+        ("channelCfg 15 7 0\nadcCfg 2 1\n", "", ["lacks channelCfg, adcCfg"]),
+        (BEST_RANGE, "", ["lacks channelCfg, adcCfg, profileCfg, chirpCfg, frameCfg"]),
+        ("0 30\n", "\n", ["line 10", "profileCfg has 12", "needs 14"]),
+        ("70 1 256", "fast 1 256", ["line 10", "no number", "fast"]),
+        ("70 1 256", "nan 1 256", ["line 10", "finite"]),
+        ("1 256 5209", "1 256.5 5209", ["line 10", "whole"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 5", ["mask 5", "TDM"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 0", ["mask 0", "TDM"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 8", ["mask 8"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 1", ["once"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 5 0 0 4", ["line 12", "slope", "alike"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 1 0 0 0 0 4", ["profiles [0, 1]"]),
+        ("chirpCfg 1 1 0", "chirpCfg 1 99999999999 0", ["line 12", "0 to 511"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "", ["chirp 1", "no chirpCfg"]),
+        ("profileCfg 0", "profileCfg 3", ["profile 0", "no profileCfg"]),
+        ("channelCfg 15 7", "channelCfg 15 5", ["channel mask 5"]),
+        ("channelCfg 15 7", "channelCfg 0 7", ["receiver mask"]),
+        ("adcCfg 2 1", "adcCfg 2 7", ["line 8", "ADC format 7"]),
+        ("0 77 267", "0 24 267", ["24 GHz"]),
+        ("57.14", "52", ["ramp ends"]),
+        ("57.14", "60", ["GHz"]),
+        ("frameCfg 0 2 16 0 100", "frameCfg 0 2 200 0 100", ["frame period"]),
+        ("frameCfg 0 2 16", "frameCfg 0 2 0", ["num_loops"]),
+        ("1 256 5209", "1 0 5209", ["above 0"]),
+        ("bpmCfg -1 0 0 1", "bpmCfg -1 1 0 1", ["line 16", "BPM"]),
+        ("lowPower 0 0", "subFrameCfg 0 0 0 1 1 1 1 1 1 100", ["line 15", "subframes"]),
+    ],
+)
+def test_a_bad_file_is_refused_with_the_reason(tmp_path: Path, old: str, new: str, words: list[str]):
+    assert old in BEST_RANGE
+    path = written(tmp_path, BEST_RANGE.replace(old, new))
+    with pytest.raises(InputError) as caught:
+        read_ti_cfg(path)
+    text = str(caught.value)
+    assert "\n" not in text
+    assert text.startswith(str(path))
+    for word in words:
+        assert word in text
+
+
+def test_a_file_that_cannot_be_read(tmp_path: Path):
+    with pytest.raises(InputError, match="No such file"):
+        read_ti_cfg(tmp_path / "none.cfg")
+    (tmp_path / "binary.cfg").write_bytes(bytes(range(256)))
+    with pytest.raises(InputError, match="mmWave SDK"):
+        read_ti_cfg(tmp_path / "binary.cfg")

@@ -1,0 +1,76 @@
+"""What hands do, seen from the joints."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.compose import compose
+from rooms import WINDOW_M, room
+
+LEFT_WRIST, RIGHT_WRIST = joint("left_wrist"), joint("right_wrist")
+
+
+def joints(text: str, seed: int, duration_s: float = 3.0) -> np.ndarray:
+    return compose(text, room(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M).pose.joints_m
+
+
+def to_left(pose: np.ndarray) -> np.ndarray:
+    """Unit vectors to the person's left, (n, 3)."""
+    across = pose[:, joint("left_shoulder")] - pose[:, joint("right_shoulder")]
+    return across / np.linalg.norm(across, axis=1, keepdims=True)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_clapping_hands_meet_and_do_not_cross(seed: int):
+    pose = joints("claps", seed)
+    gap = np.sum((pose[:, LEFT_WRIST] - pose[:, RIGHT_WRIST]) * to_left(pose), axis=1)
+    assert 0.03 < gap.min() < 0.12
+    assert gap.max() > 0.2
+    meets = (gap[1:-1] < gap[:-2]) & (gap[1:-1] <= gap[2:]) & (gap[1:-1] < 0.12)
+    assert 3 <= meets.sum() <= 10
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_cup_reaches_the_mouth(seed: int):
+    for text in ("drinks with the right hand", "sits and drinks with the left hand"):
+        pose = joints(text, seed)
+        wrist = pose[:, RIGHT_WRIST if "right" in text else LEFT_WRIST]
+        height = np.linalg.norm(pose[0, joint("left_knee")] - pose[0, joint("left_hip")]) / 0.237
+        forward = np.cross(to_left(pose), [0.0, 0.0, 1.0])
+        mouth = pose[:, joint("head")] + 0.058 * height * forward
+        distance = np.linalg.norm(wrist - mouth, axis=1)
+        assert distance.min() < 0.12
+        assert distance.max() > 0.25
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_hands_stay_out_of_the_trunk(seed: int):
+    """A trunk of 9 cm about the spine (11 cm about the pelvis is where hanging hands come closest)."""
+    for text in (
+        "waves",
+        "claps",
+        "drinks",
+        "punches",
+        "raises both hands",
+        "walks",
+        "jumping jacks",
+        "squats",
+        "jumps",
+    ):
+        pose = joints(text, seed)
+        for wrist in (LEFT_WRIST, RIGHT_WRIST):
+            for middle in ("pelvis", "spine1", "spine2", "spine3", "neck", "head"):
+                assert np.linalg.norm(pose[:, wrist] - pose[:, joint(middle)], axis=1).min() > 0.09, (text, middle)
+
+
+def test_counts():
+    for count, text in ((2, "claps twice"), (4, "claps four times")):
+        pose = joints(text, 1, 4.0)
+        gap = np.linalg.norm(pose[:, LEFT_WRIST] - pose[:, RIGHT_WRIST], axis=1)
+        meets = (gap[1:-1] < gap[:-2]) & (gap[1:-1] <= gap[2:]) & (gap[1:-1] < 0.12)
+        assert meets.sum() == count
+    pose = joints("punches three times", 1, 4.0)
+    chest = pose[:, joint("spine3")]
+    reach = np.maximum(*(np.linalg.norm(pose[:, w] - chest, axis=1) for w in (LEFT_WRIST, RIGHT_WRIST)))
+    peaks = (reach[1:-1] > reach[:-2]) & (reach[1:-1] >= reach[2:]) & (reach[1:-1] > reach.min() + 0.7 * np.ptp(reach))
+    assert peaks.sum() == 3

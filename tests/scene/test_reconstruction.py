@@ -1,0 +1,105 @@
+"""A whole scene from a room whose geometry is known."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from mmweaver.core.records import Plane, Scene
+from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.scene.reconstruction import reconstruct
+
+TABLE = ((-0.9, 0.3), (1.9, 2.6), (0.69, 0.73))
+
+
+@pytest.fixture(scope="module")
+def scene(box_room: Callable) -> Scene:
+    room = box_room(boxes=[TABLE], pitch_deg=20.0, roll_deg=2.0)
+    photo = room.photo(noise=0.002, holes=0.05, width=640, height=480)
+    return reconstruct(photo, assumptions=("given",))
+
+
+def _walls(scene: Scene) -> list[Plane]:
+    return [plane for plane in scene.planes if plane.kind == "wall"]
+
+
+def test_floor_and_frame(scene: Scene):
+    assert scene.floor_z_m == pytest.approx(-1.4, abs=0.03)
+    assert scene.floor.normal.tolist() == [0, 0, 1]
+    assert scene.floor.centre_m[2] == scene.floor_z_m
+    assert scene.assumptions[0] == "given"
+    assert len(scene.assumptions) > 1
+
+
+@pytest.mark.parametrize(
+    ("normal", "distance_m"), [((0, -1, 0), 3.8), ((1, 0, 0), 2.0), ((-1, 0, 0), 2.2)], ids=["back", "left", "right"]
+)
+def test_walls_are_found_where_they_are(scene: Scene, normal: tuple[int, ...], distance_m: float):
+    found = [wall for wall in _walls(scene) if wall.normal @ np.array(normal) > np.cos(np.deg2rad(2))]
+    assert len(found) == 1
+    assert abs(found[0].normal @ found[0].centre_m) == pytest.approx(distance_m, abs=0.02)
+    assert found[0].material == "plasterboard"
+
+
+def test_planes_are_right_handed_and_face_the_radar(scene: Scene):
+    for plane in scene.planes:
+        np.testing.assert_allclose(np.cross(plane.axis_u, plane.axis_v), plane.normal, atol=1e-9)
+        assert plane.normal @ plane.centre_m < 0
+        assert plane.axis_u[2] == pytest.approx(0)
+        assert min(plane.half_size_m) >= 0.145
+
+
+def test_the_table_is_a_top_and_no_seat(scene: Scene):
+    tops = [plane for plane in scene.planes if plane.kind == "top"]
+    assert len(tops) == 1
+    assert tops[0].centre_m[2] == pytest.approx(0.73 - 1.4, abs=0.03)
+    assert sorted(2 * np.array(tops[0].half_size_m)) == pytest.approx([0.7, 1.2], abs=0.12)
+    assert scene.seats == ()
+
+
+def test_the_mesh_says_the_measured_depth(scene: Scene):
+    """Rays through pixels meet the mesh where the depth picture says, and its faces look at the radar."""
+    photo = scene.photo
+    row, column = (grid.ravel() for grid in np.mgrid[6:474:13, 6:634:13])
+    camera = photo.intrinsics
+    rays = np.stack([(column - camera.cx) / camera.fx, (row - camera.cy) / camera.fy, np.ones(len(row))], axis=1)
+    length = np.linalg.norm(rays, axis=1)
+    unit = (rays / length[:, None]) @ scene.radar_from_camera.T
+    distance, face = RayCaster(scene.vertices_m, scene.faces).first_hit(np.zeros_like(unit), unit)
+    measured = photo.depth_m[row, column]
+    error = np.abs(distance / length - measured)[np.isfinite(measured)]
+    assert np.median(error) < 0.02
+    assert (error < 0.1).mean() > 0.9
+    corners = scene.vertices_m[scene.faces[face[face >= 0]]]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert ((normal * unit[face >= 0]).sum(axis=1) < 0).all()
+    assert len(scene.faces) < 60_000
+    assert scene.face_material.shape == (len(scene.faces),)
+    assert scene.face_material.max() < len(scene.material_names)
+
+
+def test_a_mesh_has_no_faces_between_near_and_far(box_room: Callable):
+    """No curtain from a post's edges to the wall behind it."""
+    room = box_room(boxes=[((-0.3, 0.3), (1.5, 1.7), (0.0, 2.2))])
+    scene = reconstruct(room.photo())
+    corners = scene.vertices_m[scene.faces]
+    is_floor = np.abs(corners[..., 2] - scene.floor_z_m).max(axis=1) < 0.01
+    stretch = np.ptp(corners[~is_floor][..., 1], axis=1)
+    assert stretch.max() < 0.8
+
+
+def test_a_hole_in_a_wall_is_filled_from_its_plane(box_room: Callable):
+    photo = box_room(pitch_deg=0.0).photo()
+    photo.depth_m[90:130, 140:180] = np.nan
+    scene = reconstruct(photo)
+    centre = np.array([[0.0, 1.0, 0.04]])
+    distance = RayCaster(scene.vertices_m, scene.faces).distance_m(np.zeros((1, 3)), centre / np.linalg.norm(centre))
+    assert distance[0] == pytest.approx(3.8, abs=0.03)
+
+
+def test_the_same_photo_gives_the_same_scene(box_room: Callable):
+    photo = box_room(boxes=[TABLE]).photo(noise=0.002)
+    first, second = reconstruct(photo), reconstruct(photo)
+    np.testing.assert_array_equal(first.vertices_m, second.vertices_m)
+    np.testing.assert_array_equal(first.faces, second.faces)
+    np.testing.assert_array_equal(first.free_space.is_free, second.free_space.is_free)

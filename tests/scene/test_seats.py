@@ -1,0 +1,56 @@
+"""Seats, and what is none."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from mmweaver.scene.reconstruction import reconstruct
+
+SOFA = [((-0.8, 0.8), (2.3, 2.9), (0.0, 0.44)), ((-0.8, 0.8), (2.9, 3.1), (0.0, 0.85))]
+
+
+def test_a_sofa_seats_people_who_look_at_the_radar(box_room: Callable):
+    scene = reconstruct(box_room(boxes=SOFA).photo(width=640, height=480))
+    assert 2 <= len(scene.seats) <= 3
+    for seat in scene.seats:
+        assert seat.position_m[2] - scene.floor_z_m == pytest.approx(0.44, abs=0.03)
+        assert np.rad2deg(seat.facing_rad) == pytest.approx(-90, abs=16)
+        assert -0.8 < seat.position_m[0] < 0.8
+        assert 2.35 < seat.position_m[1] < 2.85
+
+
+def test_a_chair_seen_from_its_side(box_room: Callable):
+    """Its back at the left: the sitter looks to the right, +x, which is 0."""
+    chair = [((0.2, 0.65), (2.0, 2.45), (0.40, 0.46)), ((0.15, 0.2), (2.0, 2.45), (0.40, 0.95))]
+    seats = reconstruct(box_room(boxes=chair).photo(width=640, height=480)).seats
+    assert len(seats) == 1
+    assert np.rad2deg(seats[0].facing_rad) == pytest.approx(0, abs=31)
+    assert seats[0].position_m[:2] == pytest.approx([0.43, 2.22], abs=0.12)
+
+
+@pytest.mark.parametrize(
+    "thing",
+    [
+        ((-0.6, 0.6), (2.0, 2.7), (0.0, 0.45)),
+        ((-0.5, 0.5), (2.0, 2.6), (0.0, 0.75)),
+        ((-0.9, 0.9), (3.4, 3.8), (0.0, 0.5)),
+    ],
+    ids=["low table", "table", "bench at the wall"],
+)
+def test_tables_are_no_seats(box_room: Callable, thing: tuple):
+    assert reconstruct(box_room(boxes=[thing]).photo(width=640, height=480)).seats == ()
+
+
+def test_a_low_table_before_a_sofa_is_no_seat(box_room: Callable):
+    table = ((-0.5, 0.5), (1.4, 1.9), (0.36, 0.40))
+    seats = reconstruct(box_room(boxes=[*SOFA, table], pitch_deg=22.0).photo(width=640, height=480)).seats
+    assert len(seats) >= 2
+    assert all(seat.position_m[1] > 2.3 for seat in seats)
+
+
+def test_a_stool_is_a_seat(box_room: Callable):
+    stool = ((0.1, 0.5), (1.9, 2.3), (0.0, 0.46))
+    seats = reconstruct(box_room(boxes=[stool]).photo(width=640, height=480)).seats
+    assert len(seats) == 1
+    assert seats[0].position_m[:2] == pytest.approx([0.3, 2.1], abs=0.1)
