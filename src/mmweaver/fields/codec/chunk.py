@@ -85,7 +85,7 @@ class ChunkEncoder:
             scaled = to_coefficients(left.numpy().astype(np.complex128), self.beams) / step
             parts = np.stack([scaled.real, scaled.imag])
             levels = _rounded(parts, ROUNDING)
-            near = nearness(coded, tuple(self.target.shape[:3]))
+            near = nearness(coded, _shape_of(stretch))
         if levels.any():
             ResidualCoder(levels.shape[1:]).code(stream, levels, near)
         has_gains = bool((layers.calibration != 1).any())
@@ -140,7 +140,7 @@ def _decoded(data: bytes, config: RadarConfig, with_residual: bool) -> Decoded:
         gains = _unpacked_gains(data[at : at + 2 * config.num_antennas])
         at += 2 * config.num_antennas
     stream = Reader(data[at:])
-    shape = (stretch.num_working_frames, config.num_range_bins, stretch.response.num_loops)
+    shape = _shape_of(stretch)
     static = np.zeros((2, config.num_antennas, 1, config.num_range_bins, 1), np.int64)
     if flags & HAS_STATIC:
         _code_static(stream, static)
@@ -164,11 +164,15 @@ def _decoded(data: bytes, config: RadarConfig, with_residual: bool) -> Decoded:
     return Decoded(stretch=stretch, layers=layers, residual=residual, peak=peak, num_residual_values=num_values)
 
 
+def _shape_of(stretch: Stretch) -> tuple[int, int, int]:
+    """Working frames, range cells, Doppler cells."""
+    return stretch.num_working_frames, stretch.config.num_range_bins, stretch.response.num_loops
+
+
 def _point_coder(stretch: Stretch, steps: PointSteps) -> PointCoder:
     config, response = stretch.config, stretch.response
-    shape = (stretch.num_working_frames, config.num_range_bins, response.num_loops)
     moves = round(256 * config.frame_period_s * response.velocity_a_bin_mps / response.range_a_bin_m)
-    return PointCoder(shape, steps, response.num_directions, moves)
+    return PointCoder(_shape_of(stretch), steps, response.num_directions, moves)
 
 
 def _points_of(coded, stretch: Stretch, steps: PointSteps) -> Points:

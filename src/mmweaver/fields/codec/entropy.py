@@ -4,7 +4,7 @@ Probabilities are ratios of counts: additions and divisions of IEEE doubles, the
 machine writes every other reads.
 """
 
-from typing import Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -15,6 +15,7 @@ Chance = Float[np.ndarray, "_"]
 LEAST_CHANCE = 2.0**-14
 
 
+@runtime_checkable
 class BitStream(Protocol):
     """Writes what it is given, or gives what was written."""
 
@@ -27,13 +28,19 @@ class BitStream(Protocol):
         ...
 
 
+def _constriction() -> tuple[Any, Any]:
+    """Its models and coders; the package keeps them in a module that has no name to import from."""
+    import constriction
+
+    stream: Any = constriction.stream  # pyright: ignore[reportAttributeAccessIssue]
+    return stream.model, stream.queue
+
+
 class Writer:
     """A BitStream that writes; `finished` gives the bytes."""
 
     def __init__(self) -> None:
-        import constriction
-
-        model, queue = constriction.stream.model, constriction.stream.queue
+        model, queue = _constriction()
 
         self._coder = queue.RangeEncoder()
         self._bit, self._even = model.Bernoulli(perfect=False), model.Uniform()
@@ -57,9 +64,7 @@ class Reader:
     """A BitStream that reads what a Writer wrote."""
 
     def __init__(self, data: bytes) -> None:
-        import constriction
-
-        model, queue = constriction.stream.model, constriction.stream.queue
+        model, queue = _constriction()
 
         self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4").astype(np.uint32))
         self._bit, self._even = model.Bernoulli(perfect=False), model.Uniform()

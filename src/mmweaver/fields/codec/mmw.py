@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -99,6 +100,43 @@ def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> Deco
     return chunk
 
 
+def described(path: Path | str) -> dict[str, Any]:
+    """What a file holds, plain values only; every chunk is read and checked. Raises InputError where it is damaged."""
+    file = MmwFile(path)
+    header, config = file.header, file.header.config
+    chunks = []
+    for index, size in enumerate(header.chunk_bytes):
+        chunk = read_chunk(file, index)
+        chunks.append(
+            {
+                "frames": chunk.stretch.num_frames,
+                "bytes": size,
+                "scatterers": int(chunk.layers.counts().sum()),
+                "has_static": bool((chunk.layers.static != 0).any()),
+                "has_gains": bool((chunk.layers.calibration != 1).any()),
+                "residual_values": chunk.num_residual_values,
+                "noise_db": round(10 * math.log10(chunk.layers.noise_power), 2),
+            }
+        )
+    shape = grid_of_header(header).shape
+    return {
+        "file": str(path),
+        "bytes": file.num_bytes,
+        "shape": list(shape),
+        "scale": header.scale if math.isfinite(header.scale) else None,
+        "first_frame_s": header.frame_time_s[0],
+        "last_frame_s": header.frame_time_s[-1],
+        "ratio": round(8 * math.prod(shape) / file.num_bytes, 1),
+        "radar": {
+            "name": config.name,
+            "num_antennas": config.num_antennas,
+            "range_resolution_m": config.range_resolution_m,
+            "velocity_resolution_mps": config.velocity_resolution_mps,
+        },
+        "chunks": chunks,
+    }
+
+
 def grid_of_header(header: MmwHeader) -> CubeGrid:
     """The grid of all frames of a file."""
     grid = CubeGrid.of(header.config, len(header.frame_time_s))
@@ -170,9 +208,9 @@ def _within_bytes(written: Callable[[float], list[bytes]], header: MmwHeader, nu
 
 
 def _next_guess(seen: list[tuple[float, float]], low: float, high: float) -> float:
-    """Where the line between the trials on either side of zero (just below it) crosses, or the middle where that is slow.
+    """Where the line between the trials on either side of zero crosses it, or the middle where that is slow.
 
-    Trials on one side alone: the line through the last two, or one of the usual slope.
+    A little below zero is aimed at. Trials on one side alone: the line through the last two, or of the usual slope.
     """
     above = [trial for trial in seen if trial[1] > 0]
     below = [trial for trial in seen if trial[1] <= 0]

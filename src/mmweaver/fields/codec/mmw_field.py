@@ -56,7 +56,7 @@ class MmwField(SignalField):
             if residual is not None:
                 place = local.copy()
                 place[:, 0] = np.clip(np.rint(place[:, 0]), 0, len(residual) - 1)
-                parts = [map_coordinates(part, place.T, order=1) for part in (residual.real, residual.imag)]
+                parts = [map_coordinates(part, place.T, order=1) for part in (np.real(residual), np.imag(residual))]
                 values = values + (parts[0] + 1j * parts[1]) * self._turn_at(local)
             out[chosen] = values
         return out

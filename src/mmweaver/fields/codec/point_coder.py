@@ -143,7 +143,7 @@ def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
 
 
 class PointCoder:
-    """The models of one cube's scatterers. `moves` is how many range cells a Doppler cell moves on a frame, times 256."""
+    """The models of one cube's scatterers. `moves`: range cells that a Doppler cell moves on a frame, times 256."""
 
     def __init__(self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int, moves: int):
         self.shape, self.steps, self.num_directions, self.moves = shape, steps, num_directions, moves

@@ -9,10 +9,8 @@ def between(values: Tensor, cell: np.ndarray, *, is_signal: bool = False) -> Ten
     """Values (cell, ...) at fractional cells: straight lines, or band-limited for a centred signal along range."""
     at = torch.from_numpy(np.asarray(cell, np.float64))
     index = torch.arange(len(values))
-    if is_signal:
-        weight = torch.sinc(at[:, None] - index)
-    else:
-        weight = (1 - (at[:, None] - index).abs()).clamp(min=0)
+    away = at[:, None] - index
+    weight = torch.sinc(away) if is_signal else (1 - away.abs()).clamp(min=0)
     return (weight.to(values.dtype) @ values.reshape(len(values), -1)).reshape(-1, *values.shape[1:])
 
 

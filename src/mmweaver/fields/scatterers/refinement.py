@@ -52,7 +52,9 @@ class Damping:
 def refined(
     points: Points, target: Tensor, response: PointResponse, axes: Axes, damping: Damping, *, steps: int, largest: int
 ) -> tuple[Points, Tensor]:
-    """The points (frame, point) after so many steps, and what they leave of the target (frame, range, doppler, antenna).
+    """The points (frame, point) after so many steps, and what they leave of the target.
+
+    The target is (frame, range, doppler, antenna) in centred phase.
 
     Frames of more than `largest` scatterers are cut into groups of neighbours in range, solved in turn. A step that
     would raise a frame's error is not taken. Padded points have amplitude zero and stay.
@@ -143,7 +145,7 @@ def _stepped(
     factors = response.factors(points, local)
     vectors = _antenna_vectors(points, factors[4], axes)
     num = 4 + response.num_directions
-    kept = [0, 1, 2, 3][: 2 + response.num_directions] + [4, 5]
+    kept = [*range(2 + response.num_directions), 4, 5]
     gradient = _gradient(factors, vectors, seen)[..., kept, :].flatten(-2)
     matrix = _normal_matrix(factors, vectors, kept)
     scale = matrix.diagonal(dim1=-2, dim2=-1)

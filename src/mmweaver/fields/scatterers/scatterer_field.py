@@ -33,7 +33,7 @@ SAMPLES_AT_ONCE = 1 << 14
 
 
 class ScattererField(SignalField):
-    """Points and a static layer (`layers`), where they lie (`stretch`), and the amplitude that 1.0 stands for (`peak`)."""
+    """Points and a static layer (`layers`), where they lie (`stretch`), and the amplitude of 1.0 (`peak`)."""
 
     def __init__(self, layers: Layers, stretch: Stretch, grid: CubeGrid, scale: float, peak: float):
         self.layers, self.stretch = layers, stretch

@@ -66,7 +66,7 @@ class Stretch:
 
 
 def overlap_hop(cube: RadarCube) -> int:
-    """Loops from one frame to the next where the cube's frames overlap and agree about the chirps they share, else 0."""
+    """Loops from one frame to the next where the frames overlap and agree about the chirps they share, else 0."""
     config, time_s = cube.config, cube.grid.frame_time_s
     if len(time_s) < 2:
         return 0
