@@ -1,6 +1,7 @@
 """Small cubes of known echoes, made by the exact sum and the project's own transforms."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -35,6 +36,7 @@ def exact_point(config: RadarConfig, range_m: float, velocity_mps: float, toward
     return radar_cube(AdcCube(samples=adc[None].astype(np.complex64), config=config, scale=1.0)).values[0]
 
 
+@lru_cache
 def crowd(config: RadarConfig = SMALL, num_frames: int = 3, num_points: int = 12, noise: float = 2e-4) -> RadarCube:
     """Moving points over two that stand still, and noise; another cloud in each frame."""
     rng = stream(5, "crowd")

@@ -62,7 +62,7 @@ def test_noise_power_and_gains_survive(encoder: ChunkEncoder):
     assert torch.equal(again.layers.calibration, encoder.layers.calibration)
 
 
-@pytest.mark.parametrize("data", [b"", b"\0" * 16, b"\xff" * 400, b"\x01\0\0\0" + b"\x3f" * 60])
+@pytest.mark.parametrize("data", [b"", b"\0" * 16, b"\xff" * 400])
 def test_nonsense_is_an_input_error(data: bytes):
     with pytest.raises(InputError, match=r"makes no sense"):
         decoded(data, SMALL)

@@ -4,28 +4,28 @@ Probabilities are ratios of counts: additions and divisions of IEEE doubles, the
 machine writes every other reads.
 """
 
-from typing import Any, Protocol, runtime_checkable
+from abc import ABC, abstractmethod
+from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
 
-Whole = Int[np.ndarray, "_"]
-Chance = Float[np.ndarray, "_"]
+# called tens of thousands of times a cube: shapes are said, not checked, here
+Whole = np.ndarray  # (n,) int64
+Chance = np.ndarray  # (n,) float64
 
 LEAST_CHANCE = 2.0**-14
 
 
-@runtime_checkable
-class BitStream(Protocol):
+class BitStream(ABC):
     """Writes what it is given, or gives what was written."""
 
+    @abstractmethod
     def bits(self, chance: Chance, values: Whole) -> Whole:
         """Bits of which each is 1 with its chance. A reader ignores `values` (but for their number)."""
-        ...
 
+    @abstractmethod
     def even(self, sizes: Whole, values: Whole) -> Whole:
         """Numbers of which each is any of 0 ... size - 1."""
-        ...
 
 
 def _constriction() -> tuple[Any, Any]:
@@ -36,7 +36,7 @@ def _constriction() -> tuple[Any, Any]:
     return stream.model, stream.queue
 
 
-class Writer:
+class Writer(BitStream):
     """A BitStream that writes; `finished` gives the bytes."""
 
     def __init__(self) -> None:
@@ -60,7 +60,7 @@ class Writer:
         return self._coder.get_compressed().astype("<u4").tobytes()
 
 
-class Reader:
+class Reader(BitStream):
     """A BitStream that reads what a Writer wrote."""
 
     def __init__(self, data: bytes) -> None:

@@ -109,33 +109,37 @@ class ResidualCoder:
         return values
 
 
+def _at(values: np.ndarray, rows: np.ndarray, bins: np.ndarray, off_row: int, off_bin: int) -> np.ndarray:
+    """The neighbours so far away (frame, row, bin)."""
+    return values[:, (rows + off_row)[:, None], bins + off_bin]
+
+
+def _cross(values: np.ndarray, rows: np.ndarray, bins: np.ndarray, far: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Sums of the two neighbours along range, and of those along Doppler."""
+    along = _at(values, rows, bins, -far, 0) + _at(values, rows, bins, far, 0)
+    return along, _at(values, rows, bins, 0, -far) + _at(values, rows, bins, 0, far)
+
+
+def _corners(values: np.ndarray, rows: np.ndarray, bins: np.ndarray) -> np.ndarray:
+    left = _at(values, rows, bins, -1, -1) + _at(values, rows, bins, 1, -1)
+    return left + _at(values, rows, bins, -1, 1) + _at(values, rows, bins, 1, 1)
+
+
 def _around(size: np.ndarray, rows: np.ndarray, bins: np.ndarray) -> np.ndarray:
     """Weighted sizes of the known neighbours (frame, row, bin); what is not known yet is zero."""
-
-    def at(off_row: int, off_bin: int) -> np.ndarray:
-        return size[:, (rows + off_row)[:, None], bins + off_bin]
-
-    cross = at(-1, 0) + at(1, 0) + at(0, -1) + at(0, 1)
-    corners = at(-1, -1) + at(-1, 1) + at(1, -1) + at(1, 1)
-    far = at(-2, 0) + at(2, 0) + at(0, -2) + at(0, 2)
-    return 2 * cross + corners + far
+    along, across = _cross(size, rows, bins)
+    further, wider = _cross(size, rows, bins, 2)
+    return 2 * (along + across) + _corners(size, rows, bins) + further + wider
 
 
 def _trend(plane: np.ndarray, rows: np.ndarray, bins: np.ndarray, phase: int) -> np.ndarray:
     """What the windows' colour makes of the neighbours, in eighths of a level (frame, row, bin)."""
-
-    def at(off_row: int, off_bin: int) -> np.ndarray:
-        return plane[:, (rows + off_row)[:, None], bins + off_bin]
-
     if phase == 0:
-        return 6 * at(-1, 0) - 2 * at(-2, 0)
-    across = at(0, -1) + at(0, 1)
-    if phase == 1:
-        return 5 * across
-    along = at(-1, 0) + at(1, 0)
-    if phase == 2:
-        return 5 * along
-    return 4 * (across + along) - 2 * (at(-1, -1) + at(-1, 1) + at(1, -1) + at(1, 1))
+        return 6 * _at(plane, rows, bins, -1, 0) - 2 * _at(plane, rows, bins, -2, 0)
+    along, across = _cross(plane, rows, bins)
+    if phase == 3:
+        return 4 * (across + along) - 2 * _corners(plane, rows, bins)
+    return 5 * (across if phase == 1 else along)
 
 
 def _spread(before: np.ndarray) -> np.ndarray:
