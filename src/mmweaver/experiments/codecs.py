@@ -52,7 +52,8 @@ def codec_row(codec: Codec, signal: ExperimentSignal, num_bytes: int) -> dict[st
     start = time.perf_counter()
     data = codec.encoded(cube, num_bytes)
     encode_s = time.perf_counter() - start
-    decode_s, scores = None, dict[str, float | None].fromkeys(SCORES)
+    decode_s: float | None = None
+    scores: dict[str, float | None] = dict.fromkeys(SCORES)
     if data is not None:
         if len(data) > num_bytes:
             raise RuntimeError(f"{codec.name} wrote {len(data)} bytes where {num_bytes} were allowed")

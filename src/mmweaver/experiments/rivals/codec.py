@@ -1,16 +1,27 @@
 """What every codec is, ours and the rivals': a cube and a number of bytes in, at most so many bytes out, and back."""
 
+import importlib
 import struct
 from abc import ABC, abstractmethod
+from typing import Any
 
 import numpy as np
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
 
 TRIALS = 13
 CLOSE_ENOUGH = 0.985
 PEAK = struct.Struct("<f")
+
+
+def library(name: str) -> Any:
+    """A module of the extra `codecs`. Raises InputError where it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise InputError(f"this codec needs {name}; install it with: pip install 'mmweaver[codecs]'") from None
 
 
 class Codec(ABC):

@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.experiments.rivals.codec import KnobCodec
+from mmweaver.experiments.rivals.codec import KnobCodec, library
 from mmweaver.fields.codec.entropy import Reader, Writer
 from mmweaver.fields.codec.residual_coder import ResidualCoder
 from mmweaver.fields.codec.transforms import from_coefficients, to_coefficients
@@ -30,7 +30,7 @@ class Wavelets(KnobCodec):
         return np.float32(knob).tobytes() + zlib.compress(words.view(np.uint8).reshape(-1, 2).T.tobytes(), 9)
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        import pywt
+        pywt = library("pywt")
 
         step = np.frombuffer(data[:4], np.float32)[0]
         words = np.frombuffer(zlib.decompress(data[4:]), np.uint8).reshape(2, -1).T.copy().view("<i2")
@@ -44,7 +44,7 @@ class Wavelets(KnobCodec):
 
 
 def _wavelet(values: np.ndarray) -> tuple[np.ndarray, list]:
-    import pywt
+    pywt = library("pywt")
 
     pieces = pywt.wavedecn(values, "bior4.4", mode="periodization", level=2, axes=(0, 1, 2))
     flat, slices = pywt.coeffs_to_array(pieces, axes=(0, 1, 2))

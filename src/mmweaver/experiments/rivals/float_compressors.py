@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.experiments.rivals.codec import KnobCodec, merged, split
+from mmweaver.experiments.rivals.codec import KnobCodec, library, merged, split
 
 
 class Sz3(KnobCodec):
@@ -25,13 +25,13 @@ class Sz3(KnobCodec):
         return best
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         planes = _laid(split(values), self.layout)
         return bytes([self.layout]) + bytes(imagecodecs.sz3_encode(planes, mode="abs", abs=knob))
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         frames, num_range, num_doppler, antennas = like.grid.shape
         shape = (2 * antennas, frames, num_range, num_doppler)
@@ -56,13 +56,13 @@ class Sperr(KnobCodec):
     coarse, fine = 1e-3, 16.0
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         planes = split(values)
         return bytes(imagecodecs.sperr_encode(planes.reshape(-1, *planes.shape[2:]), knob, "bpp", numthreads=1))
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         frames, num_range, num_doppler, antennas = like.grid.shape
         planes = np.asarray(imagecodecs.sperr_decode(data, numthreads=1))
@@ -76,12 +76,12 @@ class Zfp(KnobCodec):
     coarse, fine = 8.0, 1e-6
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         return bytes(imagecodecs.zfp_encode(split(values), knob, mode="a", numthreads=1))
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         return merged(np.asarray(imagecodecs.zfp_decode(data)))
 
@@ -93,7 +93,7 @@ class Blosc2(KnobCodec):
     coarse, fine = 1.0, 1 / 32000
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        import blosc2
+        blosc2 = library("blosc2")
 
         levels = np.rint(split(values) / knob).astype(np.int16)
         packed = blosc2.compress2(
@@ -103,7 +103,7 @@ class Blosc2(KnobCodec):
         return np.float32(knob).tobytes() + bytes(packed)
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        import blosc2
+        blosc2 = library("blosc2")
 
         frames, num_range, num_doppler, antennas = like.grid.shape
         step = np.frombuffer(data[:4], np.float32)[0]

@@ -4,7 +4,7 @@ import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.experiments.rivals.codec import KnobCodec, merged, split
+from mmweaver.experiments.rivals.codec import KnobCodec, library, merged, split
 
 ZERO, SPAN = 32768, 32000
 
@@ -31,12 +31,12 @@ class Jpeg2000(KnobCodec):
     coarse, fine = 8.0, 140.0
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         return bytes(imagecodecs.jpeg2k_encode(mosaic(values), level=knob, codecformat="j2k", reversible=False))
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         return values_of(np.asarray(imagecodecs.jpeg2k_decode(data)), like)
 
@@ -48,12 +48,12 @@ class JpegXl(KnobCodec):
     coarse, fine = 1 / 25.0, 100.0
 
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         return bytes(imagecodecs.jpegxl_encode(mosaic(values), distance=1 / knob, effort=5, numthreads=1))
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        import imagecodecs
+        imagecodecs = library("imagecodecs")
 
         return values_of(np.asarray(imagecodecs.jpegxl_decode(data, numthreads=1)).reshape(_size(like)), like)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.experiments.rivals.codec import PEAK, Codec, KnobCodec
+from mmweaver.experiments.rivals.codec import PEAK, Codec, KnobCodec, library
 
 CP_STEPS = 300
 TUCKER_STEPS = 3
@@ -97,7 +97,7 @@ class Cp(Codec):
     name = "cp"
 
     def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
-        from tensorly.decomposition import parafac
+        parafac = library("tensorly.decomposition").parafac
 
         rank = (num_bytes - PEAK.size) // (4 * sum(cube.values.shape))
         if rank < 1:
