@@ -28,6 +28,7 @@ unit: $(STAMP)
 bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py
 	$(BIN)/python benchmarks/inr_decode.py
+	$(BIN)/python benchmarks/scatterer_decode.py
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

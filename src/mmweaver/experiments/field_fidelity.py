@@ -1,9 +1,10 @@
-"""How well the paper's INR holds a radar sequence, recipe by recipe, every row beside its floors.
+"""How well fields hold a radar sequence, recipe by recipe, every row beside its floors.
 
 python -m mmweaver.experiments.field_fidelity --out results --data <recordings>
 """
 
 import argparse
+import time
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
@@ -13,12 +14,17 @@ from mmweaver.core.records import RadarCube
 from mmweaver.experiments.results import write_result
 from mmweaver.experiments.signals import RECORDED, SIGNALS, ExperimentSignal
 from mmweaver.fields.field import SignalField
+from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
+from mmweaver.fields.scatterers.layers import VALUES_OF_POINT
+from mmweaver.fields.scatterers.response import PointResponse
+from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.metrics.scorecard import scorecard
 from mmweaver.training.single_signal import RECIPES, fit
 
 EXPERIMENT = "field_fidelity"
 BYTES_PER_VALUE = 4  # float32
 BYTES_PER_CELL = 8  # complex64
+PAPER_VALUES = 10_018  # of the paper's INR over 20 frames
 Fitter = Callable[[RadarCube], tuple[SignalField, float]]
 
 
@@ -68,6 +74,29 @@ def recipe_fitter(name: str, seed: int = 0) -> Fitter:
     return make
 
 
+def scatterer_recipe(cube: RadarCube) -> ScattererRecipe:
+    """As many scatterers as the paper's 10,018 values hold beside the static layer and the gains."""
+    response = PointResponse(cube.config)
+    static = 2 * cube.values.shape[1] * cube.values.shape[3] if len(cube.values) > 1 else 0
+    gains = 2 * cube.values.shape[3]
+    num_points = (PAPER_VALUES - static - gains - 1) // (VALUES_OF_POINT + response.num_directions)
+    return ScattererRecipe(num_points=num_points, with_static=static > 0, with_calibration=True)
+
+
+def fit_scatterers(cube: RadarCube) -> tuple[SignalField, float]:
+    """Scatterers over a static layer, in no more values than the paper's INR."""
+    start = time.perf_counter()
+    field = ScattererField.fit(cube, scatterer_recipe(cube))
+    return field, time.perf_counter() - start
+
+
+def run_scatterers(out: Path, signal_names: tuple[str, ...], data: Path | None) -> Path:
+    """The scatterer field on every signal."""
+    rows = [fidelity_row(SIGNALS[name](data), fit_scatterers) for name in signal_names]
+    config = asdict(ScattererRecipe(num_points=0)) | {"num_points": f"what {PAPER_VALUES} values hold"}
+    return write_result(out, experiment=EXPERIMENT, method="scatterers", config=config, rows=rows)
+
+
 def run(out: Path, recipe_names: tuple[str, ...], signal_names: tuple[str, ...], data: Path | None) -> list[Path]:
     """Every recipe on every signal; one file a recipe."""
     signals = [SIGNALS[name](data) for name in signal_names]
@@ -84,10 +113,15 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results"))
     parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
     parser.add_argument("--recipes", nargs="*", default=["paper", "smooth_short"])
+    parser.add_argument("--without-scatterers", action="store_true")
     parser.add_argument("--signals", nargs="*", default=None)
     arguments = parser.parse_args()
     every = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]
-    run(arguments.out, tuple(arguments.recipes), tuple(arguments.signals or every), arguments.data)
+    names = tuple(arguments.signals or every)
+    if arguments.recipes:
+        run(arguments.out, tuple(arguments.recipes), names, arguments.data)
+    if not arguments.without_scatterers:
+        run_scatterers(arguments.out, names, arguments.data)
 
 
 if __name__ == "__main__":

@@ -57,6 +57,39 @@ def fidelity_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def codecs_table(folder: Path) -> str:
+    """Error over active / moving cells in dB, one row a codec, one column a size; the best of each in bold."""
+    records = sorted(_records(folder / "codecs"), key=lambda record: record["method"] != "mmw")
+    found: dict[tuple[str, int, str], tuple[float | None, float | None]] = {}
+    for record in records:
+        for row in record["rows"]:
+            key = (row["dataset"]["name"], row["size"]["bytes_allowed"], record["method"])
+            found[key] = (row["metrics"]["nmse_active_db"]["value"], row["metrics"]["nmse_moving_db"]["value"])
+    signals, sizes, methods = (list(dict.fromkeys(key[at] for key in found)) for at in range(3))
+    lines = [_line("signal", "codec", *(f"{size:,} B" for size in sizes)), _line(*["---"] * (2 + len(sizes)))]
+    for signal in signals:
+        best = [_best(found, signal, size) for size in sizes]
+        for method in methods:
+            scores = [found.get((signal, size, method), (None, None)) for size in sizes]
+            cells = [_pair(score, least) for score, least in zip(scores, best, strict=True)]
+            lines.append(_line(signal, method, *cells))
+    return "\n".join(lines)
+
+
+def _best(found: dict, signal: str, size: int) -> tuple[float | None, float | None]:
+    scores = [score for key, score in found.items() if key[:2] == (signal, size)]
+    active, moving = ([score[at] for score in scores if score[at] is not None] for at in (0, 1))
+    return min(active, default=None), min(moving, default=None)
+
+
+def _pair(score: tuple[float | None, float | None], best: tuple[float | None, float | None]) -> str:
+    words = [_number(value) for value in score]
+    return " / ".join(
+        f"**{word}**" if value is not None and value == least else word
+        for word, value, least in zip(words, score, best, strict=True)
+    )
+
+
 def super_resolution_table(folder: Path) -> str:
     """NMSE in dB, one row a method, one column a question; all zeros have 0 dB in each."""
     lines = [
@@ -94,7 +127,7 @@ def rooms_table(folder: Path) -> str:
 
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
-    "real_rooms": rooms_table,
+    "real_rooms": rooms_table, "codecs": codecs_table,
 }  # fmt: skip
 
 

@@ -38,8 +38,8 @@ class Layers:
 
 def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:
     """Points and static layer on the response's own range and antenna cells, centred phase."""
-    moving = response.render(layers.points, axes)
-    return (moving + static_cells(layers.static, response, axes)) * layers.calibration
+    cells = response.render(layers.points, axes, static_cells(layers.static, response, axes))
+    return cells * layers.calibration if bool((layers.calibration != 1).any()) else cells
 
 
 def static_cells(static: Tensor, response: PointResponse, axes: Axes) -> Tensor:

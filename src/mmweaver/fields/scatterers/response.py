@@ -109,18 +109,19 @@ class PointResponse:
         angle = 2 * math.pi * (turns + self._curvature(points, axes))
         return at_range, range_slope, at_doppler, doppler_slope, torch.complex(torch.cos(angle), torch.sin(angle))
 
-    def render(self, points: Points, axes: Axes) -> Tensor:
-        """Sum of the points in centred phase, complex (..., range, doppler, antenna)."""
+    def render(self, points: Points, axes: Axes, base: Tensor | None = None) -> Tensor:
+        """Sum of the points in centred phase, complex (..., range, doppler, antenna), added to `base` if given."""
         at_range, range_slope, at_doppler, doppler_slope, steer = self.factors(points, axes)
         echo = points.amplitude[..., None] * steer
         along = self.num_loops / (2 * math.pi) * self.migration * points.doppler_bin[..., None]
         moved = torch.complex(echo.imag * along, -echo.real * along)  # -j along echo
-        left = torch.cat([at_range, range_slope], dim=-2).transpose(-1, -2)
         nearer = points.direction @ axes.place.T * (self.config.wavelength_m / (2 * self.range_a_bin_m))
-        slope = _outer(doppler_slope, moved) + _outer(at_doppler, echo * nearer)
-        right = torch.cat([_outer(at_doppler, echo), slope], dim=-4)
-        flat = torch.matmul(left, right.flatten(-3))
-        shape = (*flat.shape[:-1], axes.doppler_bin.shape[0], axes.place.shape[0], 2)
+        plain = at_doppler[..., None] * _parts(echo)
+        sloped = torch.addcmul(doppler_slope[..., None] * _parts(moved), at_doppler[..., None], _parts(echo * nearer))
+        shape = (*points.amplitude.shape[:-1], len(axes.range_bin), len(axes.doppler_bin), len(axes.place), 2)
+        flat = at_range.new_zeros(1) if base is None else torch.view_as_real(base).flatten(-3)
+        for left, right in ((at_range, plain), (range_slope, sloped)):
+            flat = _add_product(flat, left.transpose(-1, -2), right.flatten(-2))
         return torch.view_as_complex(flat.reshape(shape))
 
     def at_cells(self, points: Points, axes: Axes) -> Tensor:
@@ -162,9 +163,14 @@ class PointResponse:
         return self.delay[own], ends + (place_m - ends.sum(axis=0)) / 2
 
 
-def _outer(real: Tensor, echo: Tensor) -> Tensor:
-    """(..., point, doppler) x complex (..., point, antenna) -> real (..., point, doppler, antenna, 2)."""
-    return real[..., :, None, None] * torch.view_as_real(echo)[..., None, :, :]
+def _parts(echo: Tensor) -> Tensor:
+    """Complex (..., point, antenna) -> real (..., point, 1, 2 antenna)."""
+    return torch.view_as_real(echo).flatten(-2)[..., None, :]
+
+
+def _add_product(total: Tensor, left: Tensor, right: Tensor) -> Tensor:
+    """total + left @ right, in one pass where there is one axis of frames."""
+    return torch.baddbmm(total, left, right) if left.dim() == 3 else total + left @ right
 
 
 def _tensor(values: np.ndarray) -> Tensor:

@@ -1,0 +1,96 @@
+"""What rendering a scatterer field on a whole 20-frame cube costs, as ratios measured in one run.
+
+Writes results/benchmark/scatterer_decode.json in the project's results schema and prints the same as a table.
+"""
+
+import argparse
+import sys
+import time
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.records import CubeGrid
+from mmweaver.experiments.results import write_result
+from mmweaver.fields.scatterers.layers import Layers
+from mmweaver.fields.scatterers.response import Points
+from mmweaver.fields.scatterers.scatterer_field import ScattererField
+from mmweaver.fields.scatterers.stretch import Stretch
+
+NUM_FRAMES = 20
+RESULTS = Path(__file__).resolve().parents[1] / "results"
+POINT_BY_POINT_CELLS = 20_000  # of 491,520; the rest is extrapolated
+
+
+def least_seconds(function, repeats: int = 9) -> float:
+    """The least of some runs of wall time; the first, which warms up, does not count."""
+    function()
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        function()
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def field_of(num_points: int) -> ScattererField:
+    """So many scatterers in each frame, anywhere."""
+    generator = torch.Generator().manual_seed(0)
+
+    def uniform(low: float, high: float, *more: int) -> torch.Tensor:
+        return low + (high - low) * torch.rand(NUM_FRAMES, num_points, *more, generator=generator)
+
+    points = Points(
+        range_bin=uniform(16.0, 79.0), doppler_bin=uniform(-15.0, 15.0), direction=uniform(-0.6, 0.6, 2),
+        amplitude=torch.polar(uniform(0.1, 1.0), uniform(0.0, 6.28)),
+    )  # fmt: skip
+    layers = Layers(
+        points=points, static=torch.ones(64, 12, dtype=torch.complex64),
+        calibration=torch.ones(12, dtype=torch.complex64), noise_power=1e-6,
+    )  # fmt: skip
+    return ScattererField(layers, Stretch.of(AWR1843, NUM_FRAMES, 0), CubeGrid.of(AWR1843, NUM_FRAMES), 1.0, 1.0)
+
+
+def decode_costs() -> dict[str, float]:
+    costs: dict[str, float] = {}
+    field = field_of(40)
+    for num_points in (40, 83):
+        field = field_of(num_points)
+        for threads in (1, 4):
+            costs[f"{num_points}_points_{threads}_threads_s"] = least_seconds(partial(field.native, threads), 15)
+    cells = np.indices(field.grid.shape).reshape(4, -1).T.astype(np.float64)
+    some = cells[:: len(cells) // POINT_BY_POINT_CELLS]
+    share = len(cells) / len(some)
+    costs["point_by_point_83_points_s"] = share * least_seconds(lambda: field.sample(some), 1)
+    a = torch.ones(2048, 2048)
+    gemm_flop_per_s = 2 * 2048**3 / least_seconds(lambda: a @ a, 2)
+    # range x (2 points) x (doppler, antenna, re and im), real
+    flop = 2 * NUM_FRAMES * 64 * (2 * 83) * (32 * 12 * 2)
+    costs["gemm_gflop_per_s"] = gemm_flop_per_s / 1e9
+    costs["times_gemm_limit_83_points"] = costs["83_points_1_threads_s"] / (flop / gemm_flop_per_s)
+    costs["times_faster_than_point_by_point"] = costs["point_by_point_83_points_s"] / costs["83_points_1_threads_s"]
+    return costs
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=RESULTS)
+    arguments = parser.parse_args()
+    torch.set_num_threads(1)
+    values = decode_costs()
+    row = {
+        "dataset": {"name": "20 frames of the awr1843 cube, 64 x 32 x 12", "points": NUM_FRAMES * 64 * 32 * 12},
+        "metrics": {name: {"value": float(f"{value:.4g}")} for name, value in values.items()},
+    }
+    config = {"threads": "as the names say, else 1"}
+    write_result(arguments.out, experiment="benchmark", method="scatterer_decode", config=config, rows=[row])
+    for name, value in values.items():
+        print(f"{name:34} {value:12.4g}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
