@@ -30,6 +30,7 @@ ROUNDING = 0.3  # a number is rounded up from 1 - this: small ones cost more tha
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; smaller scatterers are cheaper as residual
 REFINED_STEPS = 4
+SAME_DECISION = 1.5  # of the logarithm of the step: nearer steps are not tried both ways again
 SAME_COUNT = 0.1  # points refined for a count that differs by less serve again
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # learned gains that differ less from 1 stay behind
@@ -64,9 +65,22 @@ class ChunkEncoder:
         self.layers = replace(layers, calibration=_cut_gains(layers.calibration))
         self.beams = beams_of(stretch.config)
         self._refined_points: tuple[int, Points] | None = None
+        self._with_points: tuple[float, bool] | None = None
 
     def encoded(self, step: float) -> bytes:
-        """The chunk with errors of about step / sqrt(12) a cell (of the peak) where it says anything."""
+        """The chunk with errors of about step / sqrt(12) a cell (of the peak) where it says anything.
+
+        With or without scatterers, whichever is shorter: a step far below the noise is for numbers, not for echoes.
+        """
+        decided = self._with_points
+        if decided is None or abs(math.log(step / decided[0])) > SAME_DECISION:
+            both = [self._encoded(step, with_points=choice) for choice in (True, False)]
+            is_better = len(both[0]) <= len(both[1])
+            self._with_points = step, is_better
+            return both[0] if is_better else both[1]
+        return self._encoded(step, with_points=decided[1])
+
+    def _encoded(self, step: float, *, with_points: bool) -> bytes:
         step = float(np.float32(step))
         stretch, layers = self.stretch, self.layers
         stream = Writer()
@@ -76,7 +90,7 @@ class ChunkEncoder:
             if static.any():
                 _code_static(stream, static)
             steps = PointSteps.of(step, stretch.response, stretch.axes)
-            points = self._refined(layers, steps)
+            points = self._refined(layers, steps) if with_points else no_points(stretch.num_working_frames)
             coded = quantised(points, steps, stretch.axes, stretch.response.num_directions, LEAST_SIZE)
             if len(coded):
                 _point_coder(stretch, steps).code(stream, coded)

@@ -14,6 +14,7 @@ Whole = np.ndarray  # (n,) int64
 Chance = np.ndarray  # (n,) float64
 
 LEAST_CHANCE = 2.0**-14
+MOST_OCTAVES = 30
 
 
 class BitStream(ABC):
@@ -128,37 +129,35 @@ class Mixture:
 
 
 class NumberModel:
-    """Whole numbers from 0: a learned chance for each step up, then an Elias-gamma tail."""
+    """Whole numbers from 0: a learned chance for each step up, then for each octave of the rest, then even bits."""
 
     def __init__(self, num_contexts: int, steps: int, chance: float = 0.4):
         self.steps = steps
         self.models = [Mixture([BitModel(num_contexts, chance, 2.0)]) for _ in range(steps)]
+        self.octaves = [Mixture([BitModel(num_contexts, 0.5, 2.0)]) for _ in range(MOST_OCTAVES)]
 
     def code(self, stream: BitStream, context: Whole, values: Whole) -> Whole:
-        out = np.zeros(len(values), np.int64)
-        open_ = np.arange(len(values))
-        for step in range(self.steps):
-            if not len(open_):
-                return out
-            more = self.models[step].code(stream, [context[open_]], (values[open_] > step).astype(np.int64))
-            open_ = open_[more > 0]
-            out[open_] = step + 1
-        if len(open_):
-            out[open_] = self.steps + _gamma(stream, values[open_] - self.steps)
+        out = _climbed(stream, self.models, context, values)
+        rest = np.flatnonzero(out == self.steps)
+        if len(rest):
+            more = values[rest] - self.steps + 1
+            wanted = np.frexp(np.maximum(more, 1).astype(np.float64))[1].astype(np.int64) - 1
+            octave = _climbed(stream, self.octaves, context[rest], wanted)
+            if octave.max() >= MOST_OCTAVES:
+                raise ValueError("a number too large: the stream is damaged")
+            size = 2**octave
+            out[rest] += size - 1 + stream.even(size, more - size)
         return out
 
 
-def _gamma(stream: BitStream, values: Whole) -> Whole:
-    """Elias gamma of numbers from 0."""
-    length = np.zeros(len(values), np.int64)
-    wanted = np.floor(np.log2(np.maximum(values, 0) + 1)).astype(np.int64)
+def _climbed(stream: BitStream, models: list[Mixture], context: Whole, values: Whole) -> Whole:
+    """How many models in turn say "further", at most all of them."""
+    out = np.zeros(len(values), np.int64)
     open_ = np.arange(len(values))
-    while len(open_):
-        half = np.full(len(open_), 0.5)
-        more = stream.bits(half, (wanted[open_] > length[open_]).astype(np.int64))
+    for step, model in enumerate(models):
+        if not len(open_):
+            break
+        more = model.code(stream, [context[open_]], (values[open_] > step).astype(np.int64))
         open_ = open_[more > 0]
-        length[open_] += 1
-        if length.max(initial=0) > 30:
-            raise ValueError("a number too large: the stream is damaged")
-    size = 2**length
-    return size + stream.even(size, values + 1 - size) - 1
+        out[open_] = step + 1
+    return out

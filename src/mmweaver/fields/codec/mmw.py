@@ -22,7 +22,10 @@ POINTS_A_FRAME = 95  # more of them take long to fit and say little more
 LEAST_BYTES = 256
 FINEST_STEP, COARSEST_STEP = 1e-6, 0.5
 TRIALS = 9
-CLOSE_ENOUGH = 0.98  # of the bytes allowed
+BENT = 0.1  # trials whose sizes (as logarithms) are nearer than this are joined by a line
+CLOSE_ENOUGH = 0.97  # of the bytes allowed
+# a first guess: the step that suits 500 bytes a frame, and how it falls with more of them
+FIRST_STEP, FIRST_SLOPE, USUAL_BYTES = 3e-3, 1.2, 500
 CLOSE_ENOUGH_DB = 0.1
 ACTIVE_DB = 12.0
 
@@ -189,7 +192,8 @@ def _within_bytes(written: Callable[[float], list[bytes]], header: MmwHeader, nu
     low, high = math.log(FINEST_STEP), math.log(COARSEST_STEP)
     best: bytes | None = None
     seen: list[tuple[float, float]] = []
-    guess = math.log(0.02)
+    ample = num_bytes / (sum(header.chunk_frames) * USUAL_BYTES)
+    guess = min(max(math.log(FIRST_STEP) - FIRST_SLOPE * math.log(ample), low), high)
     for _ in range(TRIALS):
         data = packed_mmw(header, written(math.exp(guess)))
         seen.append((guess, math.log(len(data) / num_bytes)))
@@ -216,7 +220,7 @@ def _next_guess(seen: list[tuple[float, float]], low: float, high: float) -> flo
     below = [trial for trial in seen if trial[1] <= 0]
     if above and below:
         first, second = max(above), min(below)
-        if len(seen) > 2 and (seen[-1][1] > 0) == (seen[-2][1] > 0):
+        if min(first[1], -second[1]) > BENT and (seen[-1][1] > 0) == (seen[-2][1] > 0):
             return (first[0] + second[0]) / 2  # one side alone moves: the curve is bent
     elif len(seen) > 1:
         first, second = seen[-2:]

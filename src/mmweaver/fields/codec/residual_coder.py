@@ -15,11 +15,12 @@ Levels = Int[np.ndarray, "2 beam frame range doppler"]
 Nearness = Int[np.ndarray, "frame range doppler"]
 
 # a sum of neighbours falls into the class of the first bound above it
-SUM_BOUNDS = np.array([1, 2, 3, 4, 6, 8, 11, 16, 24, 40, 70])
-TREND_BOUNDS = np.array([1, 4, 7, 11, 16, 23, 33, 49, 73, 110, 180])  # in eighths
+SUM_BOUNDS = np.array([1, 2, 3, 4, 6, 8, 11, 16, 24, 40, 70, 120, 220, 400, 800, 1600, 3200, 6400])
+TREND_BOUNDS = np.array([1, 4, 7, 11, 16, 23, 33, 49, 73, 110, 180, 300, 500, 900, 1600, 3000, 6000])  # in eighths
 NUM_SUMS, NUM_TRENDS = len(SUM_BOUNDS) + 1, len(TREND_BOUNDS) + 1
 NUM_NEAR = 6
-CAP = 40
+CAP = 4000
+FAR = 160  # eighths; where the trend is so strong, what is coded is the way from it
 MARGIN = 2
 BLOCK_ROWS = 16
 STEPS = 14
@@ -43,6 +44,7 @@ class ResidualCoder:
         )
         self.sign = Mixture([BitModel(2 * t, 0.5, 4.0)])
         self.size = NumberModel(n * t * 2, STEPS, 0.3)
+        self.way = NumberModel(n, STEPS, 0.8)
 
     def code(self, stream: BitStream, levels: Levels, near: Nearness) -> None:
         """Levels (part, beam, frame, range, doppler), changed in place by a reader."""
@@ -97,6 +99,25 @@ class ResidualCoder:
         size[at] = np.minimum(known, CAP).reshape(shape)
 
     def _numbers(self, stream, contexts, by_total, by_trend, trend, part, wanted) -> np.ndarray:
+        values = np.zeros(len(wanted), np.int64)
+        is_far = np.abs(trend) >= FAR
+        if is_far.any():
+            values[is_far] = self._far(stream, by_total[is_far], trend[is_far], wanted[is_far])
+            near = np.flatnonzero(~is_far)
+            contexts = [context[near] for context in contexts]
+            values[near] = self._near(stream, contexts, by_total[near], by_trend[near], trend[near], part, wanted[near])
+            return values
+        return self._near(stream, contexts, by_total, by_trend, trend, part, wanted)
+
+    def _far(self, stream, by_total, trend, wanted) -> np.ndarray:
+        expected = (trend + 4) // 8
+        way = wanted - expected
+        size = self.way.code(stream, by_total, np.abs(way))
+        some = np.flatnonzero(size)
+        size[some] *= 1 - 2 * stream.bits(np.full(len(some), 0.5), (way[some] < 0).astype(np.int64))
+        return expected + size
+
+    def _near(self, stream, contexts, by_total, by_trend, trend, part, wanted) -> np.ndarray:
         values = np.zeros(len(wanted), np.int64)
         some = np.flatnonzero(self.zero.code(stream, contexts, (wanted != 0).astype(np.int64)))
         if len(some):
