@@ -65,7 +65,9 @@ def codecs_table(folder: Path) -> str:
         for row in record["rows"]:
             key = (row["dataset"]["name"], row["size"]["bytes_allowed"], record["method"])
             found[key] = (row["metrics"]["nmse_active_db"]["value"], row["metrics"]["nmse_moving_db"]["value"])
-    signals, sizes, methods = (list(dict.fromkeys(key[at] for key in found)) for at in range(3))
+    signals = list(dict.fromkeys(signal for signal, _, _ in found))
+    sizes = sorted({size for _, size, _ in found})
+    methods = list(dict.fromkeys(method for _, _, method in found))
     lines = [_line("signal", "codec", *(f"{size:,} B" for size in sizes)), _line(*["---"] * (2 + len(sizes)))]
     for signal in signals:
         best = [_best(found, signal, size) for size in sizes]
