@@ -4,7 +4,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from mmweaver.cli import generate, process, radar
+from mmweaver.cli import compress, decompress, generate, info, process, radar
 from mmweaver.cli.arguments import Parser, glued
 from mmweaver.core.errors import InputError
 from mmweaver.core.version import __version__
@@ -16,6 +16,7 @@ EXAMPLES = """examples:
       --text "a person walks towards the radar, then waves with the left hand" --out walk/
   mmweaver process adc_data.bin --radar radar.json --iq-order iq --tx-order 0,2,1 --out capture/
   mmweaver radar awr1843
+  mmweaver compress walk/radar.npz -o walk.mmw --bytes 10000
 """
 BAD_INPUT, INTERRUPTED, READER_GONE = 2, 130, 141
 
@@ -46,7 +47,7 @@ def build_parser() -> Parser:
     parser = Parser(prog="mmweaver", description=DESCRIPTION, epilog=EXAMPLES)
     parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", title="verbs")
-    for module in (generate, process, radar):
+    for module in (generate, process, radar, compress, decompress, info):
         module.add_verb(verbs)
     return parser
 

@@ -1,0 +1,51 @@
+"""mmweaver info: what a .mmw file holds."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+EXAMPLES = """examples:
+  mmweaver info walk.mmw
+  mmweaver info walk.mmw --json
+"""
+
+
+def add_verb(verbs: Any) -> None:
+    """Declares the verb and its options."""
+    parser = verbs.add_parser(
+        "info", help="print what a .mmw file holds", epilog=EXAMPLES,
+        description="Reads all of a .mmw file, checks it, and says what is in it.",
+    )  # fmt: skip
+    parser.add_argument("file", type=Path, metavar="FILE", help="a .mmw file")
+    parser.add_argument("--json", action="store_true", help="print it for machines")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Prints the description on stdout. Raises InputError where the file is damaged."""
+    from mmweaver.fields.codec.mmw import described
+
+    facts = described(arguments.file)
+    print(json.dumps(facts, indent=2) if arguments.json else "\n".join(_lines(facts)))
+    return 0
+
+
+def _lines(facts: dict[str, Any]) -> list[str]:
+    radar = facts["radar"]
+    lines = [
+        f"{facts['file']}: {facts['bytes']:,} bytes, every checksum right",
+        f"  radar    {radar['name']}, {radar['num_antennas']} antennas, {radar['range_resolution_m'] * 100:.2f} cm and"
+        f" {radar['velocity_resolution_mps']:.3f} m/s bins",
+        f"  cube     {' x '.join(map(str, facts['shape']))} complex64 (frame, range, doppler, antenna), scale"
+        f" {facts['scale'] if facts['scale'] is not None else 'unknown'}",
+        f"  time     {facts['first_frame_s']:.3f} to {facts['last_frame_s']:.3f} s",
+        f"  ratio    {facts['ratio']:,} times fewer bytes than complex64",
+    ]
+    for index, chunk in enumerate(facts["chunks"]):
+        lines.append(
+            f"  chunk {index}  {chunk['frames']} frames, {chunk['bytes']:,} bytes: {chunk['scatterers']} scatterers,"
+            f" {'a' if chunk['has_static'] else 'no'} static layer, {chunk['residual_values']} residual values, noise"
+            f" {chunk['noise_db']:.1f} dB below the peak"
+        )
+    return lines

@@ -1,0 +1,28 @@
+"""Our own codec as one of them: whole .mmw files, header and checksums included."""
+
+import tempfile
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import RadarCube
+from mmweaver.core.shapes import CubeValues
+from mmweaver.experiments.rivals.codec import Codec
+from mmweaver.fields.codec.mmw import compressed, read_cube
+
+
+class Mmw(Codec):
+    """Scatterers, static layer and residual in a .mmw file."""
+
+    name = "mmw"
+
+    def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
+        try:
+            return compressed(cube, num_bytes=num_bytes)
+        except InputError:
+            return None
+
+    def decoded(self, data: bytes, like: RadarCube) -> CubeValues:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "cube.mmw"
+            path.write_bytes(data)
+            return read_cube(path).values

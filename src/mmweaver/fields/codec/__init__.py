@@ -1,0 +1,1 @@
+"""A radar cube in few bytes."""

@@ -1,0 +1,61 @@
+"""Unitary transforms of a residual: antennas -> beams, and frames -> their cosine transform where nothing moves."""
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.virtual_array import SAME_PLACE_WAVELENGTHS
+
+Array = np.ndarray
+STILL = 1  # Doppler bins on either side of zero that a resting scene fills
+
+
+def beams_of(config: RadarConfig) -> Complex[Array, "beam antenna"]:
+    """Each row of the array by its own DFT, straight ahead in the middle; rows from low to high, unitary."""
+    position_m = config.antenna_position_m
+    height = np.round(position_m[:, 2] / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))
+    beams = np.zeros((config.num_antennas, config.num_antennas), complex)
+    first = 0
+    for level in np.unique(height):
+        row = np.flatnonzero(height == level)
+        row = row[np.argsort(position_m[row, 0], kind="stable")]
+        num = len(row)
+        turns = np.outer(np.arange(num) - num // 2, np.arange(num)) / num
+        beams[first : first + num, row] = np.exp(-2j * np.pi * turns) / np.sqrt(num)
+        first += num
+    return beams
+
+
+def cosines(num: int) -> Float[Array, "num num"]:
+    """The orthonormal DCT-II.
+
+    >>> bool(np.allclose(cosines(5) @ cosines(5).T, np.eye(5)))
+    True
+    """
+    index = np.arange(num)
+    matrix = np.cos(np.pi * (index[None] + 0.5) * index[:, None] / num) * np.sqrt(2 / num)
+    matrix[0] /= np.sqrt(2)
+    return matrix
+
+
+def to_coefficients(
+    residual: Complex[Array, "frame range doppler antenna"], beams: Complex[Array, "beam antenna"]
+) -> Complex[Array, "beam frame range doppler"]:
+    """Beams, and for Doppler bins at rest the cosine transform over frames."""
+    values = np.tensordot(beams, residual, axes=(1, 3))
+    return _still_turned(values, cosines(values.shape[1]))
+
+
+def from_coefficients(
+    values: Complex[Array, "beam frame range doppler"], beams: Complex[Array, "beam antenna"]
+) -> Complex[Array, "frame range doppler antenna"]:
+    """The inverse of `to_coefficients`."""
+    values = _still_turned(values.copy(), cosines(values.shape[1]).T)
+    return np.moveaxis(np.tensordot(beams.conj(), values, axes=(0, 0)), 0, 3)
+
+
+def _still_turned(values: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    middle = values.shape[3] // 2
+    still = slice(max(0, middle - STILL), middle + STILL + 1)
+    values[..., still] = np.einsum("ts,bsrd->btrd", matrix, values[..., still], optimize=True)
+    return values

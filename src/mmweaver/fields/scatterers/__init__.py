@@ -1,0 +1,1 @@
+"""A radar sequence as point scatterers over a static background."""

@@ -1,0 +1,117 @@
+"""Fits scatterers to a cube: greedily where the most energy is left, then all together, and again."""
+
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+
+from mmweaver.fields.scatterers.greedy import Beams, next_points
+from mmweaver.fields.scatterers.layers import Layers, at_rest, joined, no_points, static_cells, strongest
+from mmweaver.fields.scatterers.refinement import Damping, refined
+from mmweaver.fields.scatterers.stretch import Stretch
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitRecipe:
+    """How hard to try.
+
+    `num_points` over all frames: where they are worth most, they go. A scatterer must take away `least_gain` times
+    the noise power of a cell to be kept in the running; so frames of noise get none.
+    """
+
+    num_points: int
+    with_static: bool = True
+    with_calibration: bool = False
+    stages: int = 20
+    steps_a_stage: int = 1
+    last_steps: int = 8
+    swaps: int = 0  # times the weakest are replaced by new ones
+    swapped_share: float = 0.15
+    largest_group: int = 160
+    least_gain: float = 12.0
+
+
+def fitted(target: Tensor, stretch: Stretch, recipe: FitRecipe) -> Layers:
+    """Layers whose rendering is close to the working frames `target`, in the least-squares sense."""
+    with torch.no_grad():
+        return _Fit(target, stretch, recipe).run()
+
+
+class _Fit:
+    """State of one fit. `residual` is always target / calibration - static - points."""
+
+    def __init__(self, target: Tensor, stretch: Stretch, recipe: FitRecipe):
+        self.target, self.recipe = target, recipe
+        self.response, self.axes = stretch.response, stretch.axes
+        self.beams = Beams.over(self.axes, self.response.num_directions)
+        self.calibration = torch.ones(target.shape[-1], dtype=target.dtype)
+        self.points = no_points(len(target))
+        self.damping = Damping.fresh(len(target))
+        self.static = torch.zeros_like(target[0, :, 0])
+        self.residual = target.clone()
+        self._rest()
+
+    def run(self) -> Layers:
+        recipe = self.recipe
+        for stage in range(recipe.stages):
+            self._add(round(recipe.num_points * (stage + 1) / recipe.stages))
+            self._refine(recipe.steps_a_stage)
+        for _ in range(recipe.swaps):
+            self.points = strongest(self.points, round(recipe.num_points * (1 - recipe.swapped_share)))
+            self.residual = self._without_static() - self.response.render(self.points, self.axes)
+            self._refine(1)
+            self._add(recipe.num_points)
+            self._refine(max(2, recipe.steps_a_stage))
+        self._refine(recipe.last_steps)
+        return Layers(
+            points=self.points, static=self.static, calibration=self.calibration, noise_power=self._noise_power()
+        )
+
+    def _add(self, wanted: int) -> None:
+        have = int((self.points.amplitude != 0).sum())
+        least = self.recipe.least_gain * self._noise_power()
+        if wanted > have:
+            new = next_points(self.residual, self.response, self.axes, self.beams, count=wanted - have, least=least)
+            self.points = joined(self.points, new)
+
+    def _refine(self, steps: int) -> None:
+        if not self.points.amplitude.shape[1]:
+            return
+        self.points, self.residual = refined(
+            self.points, self._without_static(), self.response, self.axes, self.damping,
+            steps=steps, largest=self.recipe.largest_group,
+        )  # fmt: skip
+        self._rest()
+        if self.recipe.with_calibration:
+            self._calibrate()
+
+    def _without_static(self) -> Tensor:
+        return self.target / self.calibration - static_cells(self.static, self.response, self.axes)
+
+    def _rest(self) -> None:
+        """What is left at rest goes to the static layer."""
+        if not self.recipe.with_static:
+            return
+        more = at_rest(self.residual, self.response, self.axes)
+        self.static = self.static + more
+        self.residual = self.residual - static_cells(more, self.response, self.axes)
+
+    def _calibrate(self) -> None:
+        """Gain of each antenna that suits the points best; the mean gain stays 1."""
+        heard = self._without_static()
+        model = heard - self.residual
+        gain = (model.conj() * heard).sum((0, 1, 2)) / model.abs().square().sum((0, 1, 2)).clamp(min=1e-30)
+        gain = gain / gain.abs().mean().clamp(min=1e-6)
+        self.calibration = self.calibration * gain
+        self.static = self.static / gain
+        self.residual = self._without_static() - model
+
+    def _noise_power(self) -> float:
+        """Of one cell: the median of a chi-squared with two degrees of freedom is ln 2 of its mean."""
+        power = torch.view_as_real(self.residual).square().sum(-1)
+        return float(power.flatten()[:: max(1, power.numel() // 100_000)].median()) / 0.6931
+
+
+def with_strongest(layers: Layers, count: int) -> Layers:
+    """The layers with only the `count` strongest points."""
+    return replace(layers, points=strongest(layers.points, count))

@@ -1,0 +1,94 @@
+"""Where a scatterer would explain most of what is left."""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+from torch.nn.functional import max_pool2d
+
+from mmweaver.fields.scatterers.response import Axes, PointResponse, Points
+
+BEAMS_A_WAVELENGTH = 2.2  # a little more than the array's own resolution
+FRAMES_AT_ONCE = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class Beams:
+    """A grid of directions, (beam, 2), and what the array hears from each, (antenna, beam), of unit length."""
+
+    direction: Tensor
+    steer: Tensor
+
+    @classmethod
+    def over(cls, axes: Axes, num_directions: int) -> "Beams":
+        """As dense as the array's aperture asks for; one zero direction where it cannot tell any."""
+        sides = []
+        for side in range(2):
+            if side >= num_directions:
+                sides.append(torch.zeros(1))
+                continue
+            aperture = float(axes.place[:, side].max() - axes.place[:, side].min())
+            sides.append(torch.linspace(-0.95, 0.95, max(3, round(2 * BEAMS_A_WAVELENGTH * (aperture + 0.5)))))
+        x, z = torch.meshgrid(*sides, indexing="ij")
+        direction = torch.stack([x.flatten(), z.flatten()], dim=1)
+        direction = direction[(direction**2).sum(1) <= 1]
+        angle = 2 * torch.pi * (axes.place @ direction.T)
+        return cls(direction=direction, steer=torch.polar(torch.ones_like(angle), angle) / len(axes.place) ** 0.5)
+
+
+def matched_power(residual: Tensor, response: PointResponse, beams: Beams) -> tuple[Tensor, Tensor]:
+    """Energy that one scatterer in each cell would take away (frame, range, doppler), and its beam."""
+    smoothed = _along(_along(residual, response.range_kernel, 1), response.doppler_kernel, 2)
+    power, beam = [], []
+    for part in smoothed.split(FRAMES_AT_ONCE):
+        best = torch.view_as_real(part @ beams.steer).square().sum(-1).max(dim=-1)
+        power.append(best.values)
+        beam.append(best.indices)
+    return torch.cat(power), torch.cat(beam)
+
+
+def _along(values: Tensor, kernel, dim: int) -> Tensor:
+    """Inner product with the kernel at every cell, over its main lobe."""
+    taps = kernel(torch.tensor([0.0, 1.0]))[0]
+    taps = taps / (taps[0] ** 2 + 2 * taps[1] ** 2) ** 0.5
+    out = taps[0] * values
+    size = values.shape[dim] - 1
+    out.narrow(dim, 0, size).add_(taps[1] * values.narrow(dim, 1, size))
+    out.narrow(dim, 1, size).add_(taps[1] * values.narrow(dim, 0, size))
+    return out
+
+
+def next_points(
+    residual: Tensor, response: PointResponse, axes: Axes, beams: Beams, *, count: int, least: float
+) -> Points:
+    """The `count` best new scatterers over all frames, as (frame, point) padded with amplitude zero.
+
+    Only local maxima over range and Doppler count, and only those that would take away more energy than `least`.
+    """
+    power, beam = matched_power(residual, response, beams)
+    peak = power * (power >= max_pool2d(power, 3, stride=1, padding=1))
+    frames, num_range, num_doppler = power.shape
+    flat = peak.flatten()
+    best = torch.topk(flat, min(count, flat.numel()))
+    chosen = best.indices[best.values > max(least, 0.0)]
+    frame = chosen // (num_range * num_doppler)
+    order = torch.argsort(frame, stable=True)
+    chosen, frame = chosen[order], frame[order]
+    counts = torch.bincount(frame, minlength=frames)
+    slot = torch.arange(len(frame)) - torch.repeat_interleave(counts.cumsum(0) - counts, counts)
+    size = int(counts.max()) if len(frame) else 0
+    place = chosen % (num_range * num_doppler)
+    points = Points(
+        range_bin=torch.full((frames, size), float(axes.range_bin[0])),
+        doppler_bin=torch.zeros(frames, size),
+        direction=torch.zeros(frames, size, 2),
+        amplitude=torch.zeros(frames, size, dtype=torch.complex64),
+    )
+    points.range_bin[frame, slot] = axes.range_bin[place // num_doppler]
+    points.doppler_bin[frame, slot] = axes.doppler_bin[place % num_doppler]
+    points.direction[frame, slot] = beams.direction[beam.flatten()[chosen]]
+    heard = residual.flatten(0, 2)[chosen]
+    steer = beams.steer.T[beam.flatten()[chosen]] / len(axes.place) ** 0.5
+    # half of what is there: neighbours share it, and the refinement soon finds the rest
+    points.amplitude[frame, slot] = 0.5 * (heard * steer).sum(-1)
+    return points

@@ -1,0 +1,230 @@
+"""Levenberg-Marquardt over all scatterers of a frame at once, all frames side by side.
+
+A scatterer is a product of a range, a Doppler and an antenna factor, so the normal matrix of hundreds of scatterers
+is a product of three small Gram matrices, entry by entry: no Jacobian is ever formed.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+
+from mmweaver.fields.scatterers.layers import picked
+from mmweaver.fields.scatterers.response import Axes, PointResponse, Points
+
+LARGEST_STEP_BINS = 0.5
+LARGEST_STEP_DIRECTION = 0.25
+DAMPING_START, DAMPING_LEAST, DAMPING_MOST = 1e-3, 1e-5, 1e3
+HALO_BINS = 4  # a group of scatterers sees the residual so many range bins beyond its own
+
+# parameter: range bin, Doppler bin, direction x, direction z, real and imaginary amplitude
+RANGE_FACTOR = (1, 0, 0, 0, 0, 0)  # 1 = the kernel's slope
+DOPPLER_FACTOR = (0, 1, 0, 0, 0, 0)
+ANTENNA_FACTOR = (0, 0, 1, 2, 3, 4)
+SIGN = (-1.0, -1.0, 1.0, 1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Groups:
+    """Scatterers that are solved for together, (frame, group, point) in shape, and the range bins they see."""
+
+    points: Points
+    first: Tensor  # (frame, group) index of the first range cell seen
+    num_cells: int
+
+
+@dataclass
+class Damping:
+    """One damping a frame."""
+
+    value: Tensor
+
+    @classmethod
+    def fresh(cls, num_frames: int) -> "Damping":
+        return cls(torch.full((num_frames,), DAMPING_START))
+
+    def learn(self, is_better: Tensor) -> None:
+        changed = torch.where(is_better, self.value / 4, self.value * 6)
+        self.value = changed.clamp(DAMPING_LEAST, DAMPING_MOST)
+
+
+def refined(
+    points: Points, target: Tensor, response: PointResponse, axes: Axes, damping: Damping, *, steps: int, largest: int
+) -> tuple[Points, Tensor]:
+    """The points (frame, point) after so many steps, and what they leave of the target.
+
+    The target is (frame, range, doppler, antenna) in centred phase.
+
+    Frames of more than `largest` scatterers are cut into groups of neighbours in range, solved in turn. A step that
+    would raise a frame's error is not taken. Padded points have amplitude zero and stay.
+    """
+    residual = target - response.render(points, axes)
+    cost = _energy(residual)
+    for _ in range(steps):
+        count = points.range_bin.shape[1]
+        num_groups = max(1, math.ceil(count / largest))
+        halves = 1 if num_groups == 1 else 2
+        for half in range(halves):
+            points = _sorted_by_range(points) if num_groups > 1 else points
+            groups = _grouped(points, num_groups, axes)
+            moved = _stepped(groups, residual, response, axes, damping.value, half if halves == 2 else None)
+            trial = _ungrouped(moved, count)
+            left = target - response.render(trial, axes)
+            trial_cost = _energy(left)
+            is_better = trial_cost < cost
+            damping.learn(is_better)
+            points = _chosen(is_better, trial, points)
+            residual = torch.where(is_better[:, None, None, None], left, residual)
+            cost = torch.where(is_better, trial_cost, cost)
+    return points, residual
+
+
+def _energy(residual: Tensor) -> Tensor:
+    return torch.view_as_real(residual).flatten(1).square().sum(dim=1)
+
+
+def _sorted_by_range(points: Points) -> Points:
+    order = points.range_bin.argsort(dim=1)
+    return picked(points, order)
+
+
+def _grouped(points: Points, num_groups: int, axes: Axes) -> Groups:
+    frames, count = points.range_bin.shape
+    each = math.ceil(count / num_groups)
+    pad = each * num_groups - count
+    padded = replace(points)
+    if pad:
+        padded = Points(
+            range_bin=torch.cat([points.range_bin, points.range_bin[:, -1:].expand(-1, pad)], 1),
+            doppler_bin=torch.cat([points.doppler_bin, points.doppler_bin.new_zeros(frames, pad)], 1),
+            direction=torch.cat([points.direction, points.direction.new_zeros(frames, pad, 2)], 1),
+            amplitude=torch.cat([points.amplitude, points.amplitude.new_zeros(frames, pad)], 1),
+        )
+    shaped = Points(
+        range_bin=padded.range_bin.reshape(frames, num_groups, each),
+        doppler_bin=padded.doppler_bin.reshape(frames, num_groups, each),
+        direction=padded.direction.reshape(frames, num_groups, each, 2),
+        amplitude=padded.amplitude.reshape(frames, num_groups, each),
+    )
+    total = len(axes.range_bin)
+    if num_groups == 1:
+        return Groups(points=shaped, first=torch.zeros(frames, 1, dtype=torch.long), num_cells=total)
+    low = (shaped.range_bin.amin(-1) - axes.range_bin[0]).floor().long() - HALO_BINS
+    high = (shaped.range_bin.amax(-1) - axes.range_bin[0]).ceil().long() + HALO_BINS
+    num_cells = min(total, int((high - low).max()) + 1)
+    return Groups(points=shaped, first=low.clamp(0, total - num_cells), num_cells=num_cells)
+
+
+def _ungrouped(points: Points, count: int) -> Points:
+    return Points(
+        range_bin=points.range_bin.flatten(1, 2)[:, :count],
+        doppler_bin=points.doppler_bin.flatten(1, 2)[:, :count],
+        direction=points.direction.flatten(1, 2)[:, :count],
+        amplitude=points.amplitude.flatten(1, 2)[:, :count],
+    )
+
+
+def _chosen(mask: Tensor, yes: Points, no: Points) -> Points:
+    return Points(
+        range_bin=torch.where(mask[:, None], yes.range_bin, no.range_bin),
+        doppler_bin=torch.where(mask[:, None], yes.doppler_bin, no.doppler_bin),
+        direction=torch.where(mask[:, None, None], yes.direction, no.direction),
+        amplitude=torch.where(mask[:, None], yes.amplitude, no.amplitude),
+    )
+
+
+def _stepped(
+    groups: Groups, residual: Tensor, response: PointResponse, axes: Axes, damping: Tensor, half: int | None
+) -> Points:
+    """One damped Gauss-Newton step of every group, or of every second one."""
+    points = groups.points
+    cells = groups.first[..., None] + torch.arange(groups.num_cells)
+    seen = residual[torch.arange(len(residual))[:, None, None], cells]  # frame, group, range, doppler, antenna
+    local = replace(axes, range_bin=axes.range_bin[cells][:, :, None, :])
+    factors = response.factors(points, local)
+    vectors = _antenna_vectors(points, factors[4], axes)
+    num = 4 + response.num_directions
+    kept = [*range(2 + response.num_directions), 4, 5]
+    gradient = _gradient(factors, vectors, seen)[..., kept, :].flatten(-2)
+    matrix = _normal_matrix(factors, vectors, kept)
+    scale = matrix.diagonal(dim1=-2, dim2=-1)
+    least = 1e-6 * scale.amax(dim=-1, keepdim=True) + 1e-30
+    # columns of unit length: parameters of several kinds, amplitudes of many decibels
+    norm = (scale + least).rsqrt()
+    matrix = matrix * norm[..., None, :] * norm[..., :, None]
+    matrix.diagonal(dim1=-2, dim2=-1).add_(damping[:, None, None])
+    root, _ = torch.linalg.cholesky_ex(matrix)
+    step = torch.cholesky_solve((gradient * norm)[..., None], root)[..., 0] * norm
+    step = torch.nan_to_num(step).unflatten(-1, (num, -1))
+    is_real = (points.amplitude != 0).to(step.dtype)
+    if half is not None:
+        is_real = is_real * (torch.arange(step.shape[1]) % 2 == half)[:, None]
+    return _moved(points, step * is_real[..., None, :], response)
+
+
+def _moved(points: Points, step: Tensor, response: PointResponse) -> Points:
+    bins = step[..., :2, :].clamp(-LARGEST_STEP_BINS, LARGEST_STEP_BINS)
+    direction = points.direction
+    if response.num_directions:
+        turn = step[..., 2:-2, :].clamp(-LARGEST_STEP_DIRECTION, LARGEST_STEP_DIRECTION).transpose(-1, -2)
+        direction = direction.clone()
+        direction[..., : response.num_directions] += turn
+        direction = direction.clamp(-1.0, 1.0)
+    return Points(
+        range_bin=points.range_bin + bins[..., 0, :],
+        doppler_bin=points.doppler_bin + bins[..., 1, :],
+        direction=direction,
+        amplitude=points.amplitude + torch.complex(step[..., -2, :], step[..., -1, :]),
+    )
+
+
+def _antenna_vectors(points: Points, steer: Tensor, axes: Axes) -> Tensor:
+    """Real (..., kind, point, 2 antenna): echo, its two turns, and the two amplitudes' unit vectors."""
+    echo = points.amplitude[..., None] * steer
+    turns = [echo * (-2j * math.pi * axes.place[:, side]) for side in (0, 1)]
+    stacked = torch.stack([echo, *turns, steer, 1j * steer], dim=-3)
+    return torch.view_as_real(stacked).flatten(-2)
+
+
+def _normal_matrix(factors: tuple[Tensor, ...], vectors: Tensor, kept: list[int]) -> Tensor:
+    at_range, range_slope, at_doppler, doppler_slope, _ = factors
+    by_range = _gram(torch.stack([at_range, range_slope], dim=-3))
+    by_doppler = _gram(torch.stack([at_doppler, doppler_slope], dim=-3))
+    by_antenna = _gram(vectors)
+    rows = []
+    for i in kept:
+        row = [
+            by_range[..., RANGE_FACTOR[i], :, RANGE_FACTOR[j], :]
+            * by_doppler[..., DOPPLER_FACTOR[i], :, DOPPLER_FACTOR[j], :]
+            * by_antenna[..., ANTENNA_FACTOR[i], :, ANTENNA_FACTOR[j], :]
+            * (SIGN[i] * SIGN[j])
+            for j in kept
+        ]
+        rows.append(torch.cat(row, dim=-1))
+    return torch.cat(rows, dim=-2)
+
+
+def _gram(stack: Tensor) -> Tensor:
+    """(..., kind, point, entry) -> (..., kind, point, kind, point)."""
+    kinds, count = stack.shape[-3:-1]
+    flat = stack.flatten(-3, -2)
+    return (flat @ flat.transpose(-1, -2)).unflatten(-1, (kinds, count)).unflatten(-3, (kinds, count))
+
+
+def _gradient(factors: tuple[Tensor, ...], vectors: Tensor, seen: Tensor) -> Tensor:
+    """(..., parameter, point): inner products of the residual with every derivative."""
+    at_range, range_slope, at_doppler, doppler_slope, _ = factors
+    count = at_range.shape[-2]
+    left = torch.cat([at_range, range_slope], dim=-2)
+    flat = torch.view_as_real(seen).flatten(-3)
+    shape = (*left.shape[:-1], seen.shape[-2], seen.shape[-1] * 2)
+    by_range = (left @ flat).reshape(shape)  # 2 point, doppler, 2 antenna
+    plain, sloped = by_range[..., :count, :, :], by_range[..., count:, :, :]
+    middle = (at_doppler[..., None, :] @ plain)[..., 0, :]
+    nearer = (at_doppler[..., None, :] @ sloped)[..., 0, :]
+    faster = (doppler_slope[..., None, :] @ plain)[..., 0, :]
+    echo = vectors[..., 0, :, :]
+    parts = [-(nearer * echo).sum(-1), -(faster * echo).sum(-1)]
+    parts += [(middle * vectors[..., kind, :, :]).sum(-1) for kind in (1, 2, 3, 4)]
+    return torch.stack(parts, dim=-2)

@@ -1,0 +1,247 @@
+"""ScattererField: a radar sequence as point scatterers over a static layer. Read this file first.
+
+A frame's scatterers answer anywhere: between bins, between antennas, at another instant (each goes on at its own
+velocity, phase and all, until the next frame's take over), and in another radar (`for_radar`).
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import torch
+from jaxtyping import Complex
+from torch import Tensor
+
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid, RadarCube
+from mmweaver.core.seeding import stream
+from mmweaver.core.shapes import CubeValues
+from mmweaver.dsp.windows import hann
+from mmweaver.fields.field import SignalField
+from mmweaver.fields.sampling import Coordinates, antenna_at, coordinates_on
+from mmweaver.fields.scatterers.between import between, between_rows
+from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
+from mmweaver.fields.scatterers.layers import Layers, rendered
+from mmweaver.fields.scatterers.response import PointResponse, Points
+from mmweaver.fields.scatterers.stretch import Stretch, overlap_hop
+
+POINTS_A_FRAME = 83  # of six values: about the 10,018 values of the paper's INR in 20 frames
+STATIC_POINTS = 200  # into which the static layer is turned for another radar
+SAMPLES_AT_ONCE = 1 << 14
+
+
+class ScattererField(SignalField):
+    """Points and a static layer (`layers`), where they lie (`stretch`), and the amplitude of 1.0 (`peak`)."""
+
+    def __init__(self, layers: Layers, stretch: Stretch, grid: CubeGrid, scale: float, peak: float):
+        self.layers, self.stretch = layers, stretch
+        self.config, self.grid, self.scale, self.peak = stretch.config, grid, scale, peak
+
+    @classmethod
+    def fit(cls, cube: RadarCube, recipe: FitRecipe | None = None) -> "ScattererField":
+        """The scatterers that explain a cube. Raises InputError where the cube is empty or holds no numbers.
+
+        Without a recipe: 83 points a frame (scaled down where windows overlap) and a static layer.
+        """
+        values = cube.values
+        if not np.isfinite(values).all():
+            raise InputError("the cube holds values that are no numbers; mend the recording")
+        peak = float(np.abs(values).max(initial=0.0))
+        if peak == 0.0:
+            raise InputError("the cube is all zeros: there is nothing to fit")
+        stretch = Stretch.of(cube.config, len(values), overlap_hop(cube))
+        working = stretch.working(values / np.float32(peak))
+        recipe = recipe or FitRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
+        return cls(fitted(working, stretch, recipe), stretch, cube.grid, cube.scale, peak)
+
+    @property
+    def num_values(self) -> int:
+        return self.layers.num_values(self.stretch.response)
+
+    def native(self) -> CubeValues:
+        """Values at the cells of the field's own grid; the quickest way."""
+        with torch.inference_mode():
+            working = rendered(self.layers, self.stretch.response, self.stretch.axes)
+            return self.stretch.cube_values(working * self.peak)
+
+    def on_grid(self, grid: CubeGrid) -> CubeValues:
+        """Values at the cells of any grid of this radar; see `SignalField.on_grid`."""
+        if grid is self.grid:
+            return self.native()
+        frame, range_cell, _, antenna = coordinates_on(self.grid, grid)
+        response = PointResponse(self.config)
+        axes = response.axes(grid)
+        gains = between(self.layers.calibration, antenna)
+        still = between(between(self.layers.static, range_cell, is_signal=True).T, antenna).T
+        with torch.inference_mode():
+            points = self._at(_frames_of(self.grid, frame), response)
+            cells = torch.cat([response.render(part, axes) for part in _each(points)])
+            cells += still[:, None] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
+            return (cells * gains * response.turn(axes) * self.peak).numpy()
+
+    def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
+        """Values at any coordinates (point, 4), complex64; see `SignalField`."""
+        out = np.empty(len(coordinates), np.complex64)
+        for frame in np.unique(coordinates[:, 0]):
+            at = np.flatnonzero(coordinates[:, 0] == frame)
+            for first in range(0, len(at), SAMPLES_AT_ONCE):
+                part = at[first : first + SAMPLES_AT_ONCE]
+                out[part] = self._scattered(coordinates[part], frame)
+        return out
+
+    def with_noise(self, cube: RadarCube, seed: int) -> RadarCube:
+        """A rendered cube with the noise floor of the capture: white before the windows, so neighbours share it."""
+        config, shape = cube.config, cube.values.shape
+        rng = stream(seed, "scatterer field noise")
+        loops = rng.standard_normal((shape[0], config.num_loops, shape[3], config.num_samples, 2), dtype=np.float32)
+        samples = loops.view(np.complex64)[..., 0] * hann(config.num_samples).astype(np.float32)
+        first = config.first_range_bin
+        spectrum = np.fft.fft(samples, axis=-1)[..., first : first + shape[1]]
+        spectrum = np.fft.fft(spectrum * hann(config.num_loops)[:, None, None], axis=1).transpose(0, 3, 1, 2)
+        power = 2 * np.sum(hann(config.num_samples) ** 2) * np.sum(hann(config.num_loops) ** 2)
+        noise = spectrum * (self.peak * math.sqrt(self._cell_noise() / power))
+        return replace(cube, values=(cube.values + noise).astype(np.complex64))
+
+    def for_radar(self, config: RadarConfig, num_frames: int | None = None) -> RadarCube:
+        """What another radar (bandwidth, chirps, array) at the same place would have seen; nothing is fitted again.
+
+        The static layer becomes points first. Learned gains belong to this array and stay behind.
+        """
+        num_frames = num_frames or max(1, round(self._span_s() / config.frame_period_s))
+        grid = CubeGrid.of(config, num_frames)
+        response = PointResponse(config)
+        axes = response.axes()
+        time_s = grid.frame_time_s - self.grid.frame_time_s[0]
+        with torch.inference_mode():
+            points = self._at(_frames_at(self.grid, time_s), response)
+            still = _carried(self._static_points(), self.stretch.response, response, torch.zeros(1))
+            cells = torch.cat([response.render(part, axes) for part in _each(points)]) + response.render(still, axes)
+            values = (cells * response.turn(axes) * self.peak).numpy()
+        return RadarCube(values=values, grid=grid, config=config, scale=self.scale)
+
+    def _at(self, frame: np.ndarray, response: PointResponse) -> Points:
+        """Points (asked, point) at fractional frames, for another response."""
+        starts = np.arange(self.stretch.num_frames)
+        if self.stretch.hop:
+            index = np.zeros(len(frame), int)
+            step_s = self.stretch.hop * self.config.loop_period_s
+            middle_s = self.stretch.response.num_loops * self.config.loop_period_s / 2
+        else:
+            index = np.abs(frame[:, None] - starts).argmin(axis=1)
+            time_s = self.grid.frame_time_s
+            step_s = time_s[1] - time_s[0] if len(time_s) > 1 else 0.0
+            middle_s = self.config.active_time_s / 2
+        late_s = (frame - index) * step_s + response.config.active_time_s / 2 - middle_s
+        points = self.layers.points
+        chosen = Points(
+            range_bin=points.range_bin[index],
+            doppler_bin=points.doppler_bin[index],
+            direction=points.direction[index],
+            amplitude=points.amplitude[index],
+        )
+        return _carried(chosen, self.stretch.response, response, torch.from_numpy(late_s))
+
+    def _scattered(self, coordinates: np.ndarray, frame: float) -> np.ndarray:
+        """Samples of one frame, cell by cell."""
+        response = PointResponse(self.config)
+        grid = self.grid
+        place_m = antenna_at(grid.antenna_position_m, coordinates[:, 3])
+        cells = replace(
+            grid,
+            range_m=_along(grid.range_m, coordinates[:, 1]),
+            radial_velocity_mps=_along(grid.radial_velocity_mps, coordinates[:, 2]),
+            antenna_position_m=place_m,
+        )
+        axes = response.axes(cells)
+        with torch.inference_mode():
+            points = self._at(np.array([frame]), response)
+            total = response.at_cells(points, axes)[0]
+            still = between(self.layers.static, coordinates[:, 1], is_signal=True)
+            still = between_rows(still, coordinates[:, 3])
+            total += still * response.doppler_kernel(axes.doppler_bin)[0]
+            total *= between(self.layers.calibration, coordinates[:, 3])
+            return (total * response.turn_at_cells(axes) * self.peak).numpy()
+
+    def _static_points(self) -> Points:
+        """The static layer as points, (1, point)."""
+        response, axes = self.stretch.response, self.stretch.axes
+        still = self.layers.static[None, :, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
+        if not bool((still != 0).any()):
+            return Points(
+                range_bin=torch.zeros(1, 0), doppler_bin=torch.zeros(1, 0), direction=torch.zeros(1, 0, 2),
+                amplitude=torch.zeros(1, 0, dtype=torch.complex64),
+            )  # fmt: skip
+        one = replace(self.stretch, num_frames=1)
+        recipe = FitRecipe(num_points=STATIC_POINTS, with_static=False, least_gain=0.0)
+        points = fitted(still, one, recipe).points
+        return replace(points, doppler_bin=torch.zeros_like(points.doppler_bin))
+
+    def _cell_noise(self) -> float:
+        """Noise power of a cell of the native grid, in units of peak squared."""
+        if not self.stretch.hop:
+            return self.layers.noise_power
+        window, long = hann(self.config.num_loops), self.stretch.long_window
+        return self.layers.noise_power * float(
+            np.sum(window**2) / window.sum() ** 2 / (np.sum(long**2) / long.sum() ** 2)
+        )
+
+    def _span_s(self) -> float:
+        time_s = self.grid.frame_time_s
+        step_s = time_s[1] - time_s[0] if len(time_s) > 1 else self.config.frame_period_s
+        return float(time_s[-1] - time_s[0] + step_s)
+
+
+def _carried(points: Points, own: PointResponse, other: PointResponse, late_s: Tensor) -> Points:
+    """Points in units of another response, `late_s` (frame,) seconds after their own middle.
+
+    Range and phase go on with the velocity; the phase is that of the other radar's carrier at that range.
+    """
+    late_s = late_s[:, None].double()
+    velocity_mps = points.doppler_bin.double() * own.velocity_a_bin_mps
+    range_m = (points.range_bin.double() - own.coupling * points.doppler_bin) * own.range_a_bin_m
+    later_m = range_m + velocity_mps * late_s
+    before, after = own.config, other.config
+    turns = 2 * velocity_mps * late_s / after.wavelength_m
+    if after is not before:
+        delay_s = 2 * range_m / SPEED_OF_LIGHT_MPS
+        turns = turns + (after.centre_frequency_hz - before.centre_frequency_hz) * delay_s
+        turns = turns - (after.chirp_slope_hz_per_s - before.chirp_slope_hz_per_s) * delay_s**2 / 2
+    angle = 2 * math.pi * (turns - turns.round())
+    turned = torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
+    doppler_bin = velocity_mps / other.velocity_a_bin_mps
+    return Points(
+        range_bin=(later_m / other.range_a_bin_m + other.coupling * doppler_bin).float(),
+        doppler_bin=doppler_bin.float(),
+        direction=points.direction,
+        amplitude=points.amplitude * turned,
+    )
+
+
+def _each(points: Points) -> list[Points]:
+    """Frame by frame, which keeps memory small where frames are many."""
+    return [
+        Points(
+            range_bin=points.range_bin[at : at + 1],
+            doppler_bin=points.doppler_bin[at : at + 1],
+            direction=points.direction[at : at + 1],
+            amplitude=points.amplitude[at : at + 1],
+        )
+        for at in range(len(points.range_bin))
+    ]
+
+
+def _frames_of(grid: CubeGrid, frame: np.ndarray) -> np.ndarray:
+    return np.clip(frame, -0.5, len(grid.frame_time_s) - 0.5)
+
+
+def _frames_at(grid: CubeGrid, time_s: np.ndarray) -> np.ndarray:
+    """Fractional frames of times since the first frame."""
+    own_s = grid.frame_time_s
+    return time_s / (own_s[1] - own_s[0]) if len(own_s) > 1 else np.zeros(len(time_s))
+
+
+def _along(axis: np.ndarray, cell: np.ndarray) -> np.ndarray:
+    step = axis[1] - axis[0] if len(axis) > 1 else 0.0
+    return axis[0] + cell * step

@@ -1,0 +1,40 @@
+import torch
+from tests.fields.echoes import SMALL
+
+from mmweaver.fields.scatterers.layers import Layers, at_rest, compact, joined, no_points, static_cells, strongest
+from mmweaver.fields.scatterers.response import PointResponse, Points
+
+
+def some(amplitudes: list[list[float]]) -> Points:
+    size = torch.tensor(amplitudes)
+    return Points(range_bin=size * 10, doppler_bin=size, direction=torch.stack([size, -size], -1), amplitude=size + 0j)
+
+
+def test_padding_goes_to_the_end_and_no_more_of_it_than_needed():
+    points = compact(some([[0.0, 0.3, 0.0, 0.1], [0.0, 0.0, 0.2, 0.0]]))
+    assert points.amplitude.real.tolist() == torch.tensor([[0.3, 0.1], [0.2, 0.0]]).tolist()
+    assert points.range_bin[0].tolist() == torch.tensor([3.0, 1.0]).tolist()
+    assert joined(points, no_points(2)).amplitude.shape == (2, 2)
+
+
+def test_the_strongest_are_kept_over_all_frames():
+    points = strongest(some([[0.5, 0.3, 0.1], [0.4, 0.05, 0.0]]), 3)
+    assert (points.amplitude != 0).sum(dim=1).tolist() == [2, 1]
+
+
+def test_a_static_layer_is_found_again():
+    response = PointResponse(SMALL)
+    axes = response.axes()
+    parts = torch.randn(2, 24, 12, generator=torch.Generator().manual_seed(0))
+    static = torch.complex(parts[0], parts[1])
+    cells = static_cells(static, response, axes).expand(3, -1, -1, -1)
+    assert torch.allclose(at_rest(cells, response, axes), static, atol=1e-5)
+
+
+def test_values_are_counted():
+    response = PointResponse(SMALL)
+    gains = torch.ones(12, dtype=torch.complex64)
+    layers = Layers(points=some([[0.5, 0.0]]), static=torch.zeros(24, 12) + 0j, calibration=gains, noise_power=1.0)
+    assert layers.num_values(response) == 6 + 1
+    with_all = Layers(points=some([[0.5, 0.2]]), static=torch.ones(24, 12) + 0j, calibration=2 * gains, noise_power=1.0)
+    assert with_all.num_values(response) == 12 + 2 * 24 * 12 + 24 + 1
