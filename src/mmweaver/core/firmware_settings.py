@@ -70,9 +70,9 @@ class FirmwareSettings:
 
 
 # By radar preset. RadHAR: grouped in Doppler and not in range, as the recordings show; threshold and clutter removal
-# are the 3D profile's. MARS: what stands still is missing from the recordings, so clutter removal was on; the rest
-# is the 3D profile's.
+# are the 3D profile's. MARS: what stands still is missing from the recordings, so clutter removal was on; neighbours in
+# range and in Doppler are both there, so grouping was off; the rest is the 3D profile's.
 FIRMWARE = {
     "iwr1443_radhar": FirmwareSettings(group_range=False),
-    "iwr1443_mars": FirmwareSettings(static_removal=True),
+    "iwr1443_mars": FirmwareSettings(static_removal=True, group_range=False, group_doppler=False),
 }

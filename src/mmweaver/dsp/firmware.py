@@ -101,17 +101,24 @@ def firmware_spectrum(adc: AdcCube, settings: FirmwareSettings, frames: slice = 
     counts = adc.samples[frames]
     if np.isfinite(adc.scale):
         counts = counts * np.float32(adc.scale / config.adc_count_sqrt_mw)
-    window = _symmetric_window(config.num_samples, BLACKMAN)
+    window = _symmetric_window(config.num_samples, BLACKMAN).astype(np.float32)
     size = num_range_bins(config)
-    one = _whole(np.fft.fft(counts * window, n=size, axis=-1) / RANGE_SCALING)
+    one = _whole(_fft(counts * window, size, -1) / np.float32(RANGE_SCALING))
     if settings.static_removal:
         one = _whole(one - one.mean(axis=1, keepdims=True))
     loops = config.num_loops
     slow = one.reshape(len(one), loops, config.num_antennas, size).transpose(0, 3, 1, 2)
-    weight = _symmetric_window(loops, (0.5, 0.5, 0.0))[:, None]
+    weight = _symmetric_window(loops, (0.5, 0.5, 0.0)).astype(np.float32)[:, None]
     # every stage but the first halves: the Hann window halves once already
-    two = np.fft.fft(slow * weight, axis=2) / (1 << max((loops - 1).bit_length() - 1, 0))
-    return _whole(np.fft.fftshift(two, axes=2)).astype(np.complex64)
+    two = _fft(slow * weight, loops, 2) / np.float32(1 << max((loops - 1).bit_length() - 1, 0))
+    return _whole(np.fft.fftshift(two, axes=2))
+
+
+def _fft(values: np.ndarray, size: int, axis: int) -> np.ndarray:
+    """scipy's FFT, which keeps single precision."""
+    from scipy import fft
+
+    return np.asarray(fft.fft(values, n=size, axis=axis))
 
 
 def _symmetric_window(num: int, terms: tuple[float, float, float]) -> Float[np.ndarray, " num"]:
@@ -122,7 +129,7 @@ def _symmetric_window(num: int, terms: tuple[float, float, float]) -> Float[np.n
 def _whole(values: np.ndarray) -> np.ndarray:
     """As 16-bit registers hold it: whole numbers, saturating."""
     real, imaginary = (np.clip(np.rint(part), -INT16, INT16) for part in (np.real(values), np.imag(values)))
-    return real + 1j * imaginary
+    return (real + 1j * imaginary).astype(np.complex64)
 
 
 def _objects(

@@ -84,7 +84,11 @@ def cut(stretches: list[Stretch], length: int, most: int) -> list[Stretch]:
         for first in range(0, int(stretch.frame[-1]) - length + 2, length):
             chosen = np.flatnonzero((stretch.frame >= first) & (stretch.frame < first + length))
             # it begins and ends with a measured pose, so that nothing is extrapolated
-            if len(chosen) > length // 2 and stretch.frame[chosen[0]] == first and stretch.frame[chosen[-1]] == first + length - 1:
+            if (
+                len(chosen) > length // 2
+                and stretch.frame[chosen[0]] == first
+                and stretch.frame[chosen[-1]] == first + length - 1
+            ):
                 pieces.append(
                     replace(
                         stretch,
@@ -99,7 +103,8 @@ def cut(stretches: list[Stretch], length: int, most: int) -> list[Stretch]:
 
 def joints_from_kinect(kinect_m: Float[np.ndarray, "sample 25 3"]) -> Float[np.ndarray, "sample 22 3"]:
     """Our 22 joints from the Kinect's 25."""
-    return np.stack([kinect_m[:, a] * (1 - share) + kinect_m[:, b] * share for a, b, share in map(MIXED.get, JOINT_NAMES)], axis=1)
+    mixed = [MIXED[name] for name in JOINT_NAMES]
+    return np.stack([kinect_m[:, one] * (1 - share) + kinect_m[:, two] * share for one, two, share in mixed], axis=1)
 
 
 def body_height_m(stretches: list[Stretch]) -> float:
