@@ -75,7 +75,6 @@ def test_the_whole_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(mars, "PIECES_TO_ESTIMATE", 1)
     monkeypatch.setattr(mars, "PIECE_FRAMES", 10)
     monkeypatch.setattr(mars, "HEIGHTS_M", (0.2, 0.3))
-    monkeypatch.setattr(mars, "EXPONENTS", (2.0, 8.0))
     monkeypatch.setattr(mars, "VARIANTS", {"simulator": Variant(), "grouped": Variant(grouped=True)})
     lines: list[str] = []
     scores = mars.run(folder, tmp_path, lines.append)

@@ -1,9 +1,9 @@
 """Same pose, real radar against ours: the MARS recordings beside simulated point clouds, frame by frame.
 
-The simulator is driven by the Kinect's joints and seen through the firmware's chain. Seven global numbers are not
-known and are estimated on `validate`: the radar's place in the Kinect's frame (3), the receiver's gain, the CFAR's
-threshold, how sharply skin reflects, and (by what the recordings show) that peak grouping was off. `test` is only
-scored.
+The simulator as it stands is driven by the Kinect's joints and seen through the firmware's chain. Six global numbers
+are not known and are estimated on `validate`: the radar's place in the Kinect's frame (3), the receiver's gain, the
+CFAR's threshold and the person's height. That clutter removal was on and peak grouping off is what the recordings show
+by themselves. `test` is only scored.
 
     python -m mmweaver.experiments.mars --data shared/data/pointclouds/mars/subject1 --out results
 """
@@ -35,7 +35,6 @@ from mmweaver.simulation.receiver import Impairments
 from mmweaver.simulation.simulator import Simulator
 
 PIECE_FRAMES, PIECES = 20, 20
-EXPONENTS = (2.0, 8.0, 20.0, 60.0, 150.0, 400.0)
 HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estimation begins
 THRESHOLDS = (400, 2000)
 PIECES_TO_ESTIMATE = 12
@@ -49,7 +48,6 @@ class Setup:
     shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # from the Kinect's frame to the radar's
     gain_db: float = 0.0  # against the preset's receiver
     threshold: int = 768
-    exponent: float = 2.0
     height_m: float = 1.75
 
 
@@ -59,7 +57,7 @@ class Variant:
 
     impairments: Impairments = Impairments()  # noqa: RUF009 (frozen)
     albedo_db: float = 0.0
-    exponent: float | None = None
+    exponent: float = 2.0  # of the skin, 2 = Lambert
     has_floor: bool = True
     wall_m: float | None = None
     joint_noise_m: float = 0.0
@@ -74,7 +72,9 @@ VARIANTS: dict[str, Variant] = {
     "no_phase_noise": Variant(impairments=Impairments(phase_noise_dbc_per_hz=None, chirp_jitter_s=0.0)),
     "body_6_db_fainter": Variant(albedo_db=-6.0),
     "body_6_db_brighter": Variant(albedo_db=6.0),
-    "lambert_skin": Variant(exponent=2.0),
+    "skin_exponent_20": Variant(exponent=20.0),
+    "skin_exponent_60": Variant(exponent=60.0),
+    "skin_exponent_400": Variant(exponent=400.0),
     "skin_of_200_points": Variant(num_points=200),
     "skin_of_3200_points": Variant(num_points=3200),
     "no_floor_bounce": Variant(has_floor=False),
@@ -101,7 +101,7 @@ def simulate(pieces: list[Stretch], setup: Setup, variant: Variant, seed: int = 
         variant.impairments,
     )
     albedo = SkinEcho().albedo * 10 ** (variant.albedo_db / 10)
-    echo = SkinEcho(albedo=albedo, exponent=setup.exponent if variant.exponent is None else variant.exponent)
+    echo = SkinEcho(albedo=albedo, exponent=variant.exponent)
     adcs = []
     for index, piece in enumerate(pieces):
         rng = stream(seed, "joint noise", index)
@@ -137,15 +137,14 @@ def calibrate(pieces: list[Stretch], report: Callable[[str], object] = print) ->
     """The global numbers, from `validate` alone.
 
     Left and right, near and far by the median distance of the clouds' centroids; the gain by the median intensity and
-    the threshold by the mean number of points; height and the skin's exponent by the Chamfer distance, for the beam
-    holds the centroid's height where it is, wherever the body is.
+    the threshold by the mean number of points; height by the Chamfer distance, for the beam holds the centroid's height
+    where it is, wherever the body is.
     """
     real: Clouds = [piece.clouds for piece in pieces]
     setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
     setup = _levels(pieces, _centred(pieces, setup, real), real)
     x, y, _ = setup.shift_m
     setup = _best([replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M], pieces, real, report)
-    setup = _best([replace(setup, exponent=exponent) for exponent in EXPONENTS], pieces, real, report)
     setup = _levels(pieces, _centred(pieces, setup, real), real)
     report(f"estimated: {setup}")
     return setup
