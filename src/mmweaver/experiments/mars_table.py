@@ -49,4 +49,4 @@ def _cell(metrics: dict[str, Any], key: str) -> str:
 
 
 if __name__ == "__main__":
-    print(table(Path(sys.argv[1]) / "mars"))
+    sys.stdout.write(table(Path(sys.argv[1]) / "mars") + "\n")
