@@ -14,6 +14,7 @@ from mmweaver.core.presets import AWR1843, MMMESH
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
+from mmweaver.dsp.firmware import firmware_points
 from mmweaver.formats.npz_files import read_npz, read_points_npz, read_pose_npz, read_radar_npz
 from mmweaver.methods import METHODS, Signal
 from mmweaver.weaver import MAX_FRAMES, Room, Weaver, check_request
@@ -109,6 +110,18 @@ def test_dropping_the_samples_changes_nothing_else(weaver: Weaver, room: Room):
     with pytest.raises(InputError, match="keep_adc"):
         dropped.save("nowhere", adc_data_bin=True)
     assert not Path("nowhere").exists()
+
+
+def test_firmware_points_leave_the_signal_as_it_is(weaver: Weaver, room: Room):
+    board = Weaver(points="firmware").generate(room, TEXT, frames=4, seed=3, keep_adc=False)
+    ours = weaver.generate(room, TEXT, frames=4, seed=3)
+    assert board.adc is None
+    assert np.array_equal(board.cube.values, ours.cube.values)
+    assert np.array_equal(board.points.x_m, firmware_points(ours.adc).x_m)
+    with pytest.raises(InputError, match="known: cfar, firmware"):
+        Weaver(points="lidar")
+    with pytest.raises(InputError, match="take --points cfar"):
+        Weaver(radar="bgt60", points="firmware")
 
 
 def test_a_listener_hears_every_stage():

@@ -24,7 +24,7 @@ META_VERSION = 1
 FILES = {
     "radar.npz": "the cube, complex64 (frame, range, doppler, antenna), and its axes in m, m/s and s",
     "pose.npz": "22 joints of the person at each frame, in metres, in the radar's frame",
-    "points.npz": "CFAR point cloud: frame, x, y, z in metres, radial velocity in m/s, SNR in dB",
+    "points.npz": "point cloud: frame, x, y, z in metres, radial velocity in m/s, SNR in dB",
     "adc_data.bin": "raw ADC samples as a DCA1000 writes them, int16",
     "radar.json": "the radar: chirp, array and frame; --radar reads it",
     "meta.json": "all that is needed to make this again, and what was assumed",

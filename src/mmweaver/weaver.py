@@ -17,13 +17,14 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
-from mmweaver.dsp.points import point_cloud
-from mmweaver.formats.radar_file import load_radar
+from mmweaver.dsp.detection import check_points, detect
+from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.methods import METHODS
 from mmweaver.motion.compose import compose
 from mmweaver.motion.resample import resample
@@ -96,7 +97,9 @@ class Weaver:
     """Generates radar signals with one method and one radar.
 
     `method` is a name in METHODS, `radar` a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
-    hears the name of each stage as it begins. Raises InputError for what is not known.
+    hears the name of each stage as it begins. `points` chooses the point cloud: "cfar", this project's own, or
+    "firmware", that of TI's demo; `firmware` are its settings (default: what the radar's .cfg or preset says). Raises
+    InputError for what is not known.
     """
 
     def __init__(
@@ -105,11 +108,18 @@ class Weaver:
         radar: str | Path | RadarConfig = "awr1843",
         *,
         listener: Callable[[str], object] | None = None,
+        points: str = "cfar",
+        firmware: FirmwareSettings | None = None,
     ):
         self.method_name = method
         self.method = METHODS[method]()
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
+        check_points(points, self.radar)
+        self.points = points
+        if points == "firmware" and firmware is None:
+            firmware = FirmwareSettings() if isinstance(radar, RadarConfig) else load_firmware(str(radar))
+        self.firmware = firmware
 
     def read_room(self, rgb: str | Path, depth: str | Path, camera: str | Path | None = None) -> Room:
         """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON."""
@@ -151,7 +161,8 @@ class Weaver:
         dropped as soon as they are processed, for long sequences. The same seed gives the same bits. Raises
         InputError for a request that cannot be met.
         """
-        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at, keep_adc=keep_adc)
+        needs_adc = keep_adc or self.points == "firmware"
+        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc)
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
@@ -160,10 +171,10 @@ class Weaver:
                 range_window_m=(float(config.range_m[0]), float(config.range_m[-1])), start_m=at,
             )  # fmt: skip
         signal = self.method(
-            room.scene, motion.pose, config, num_frames=frames, seed=seed, keep_adc=keep_adc, stages=stages
+            room.scene, motion.pose, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
         )
         with stages("point cloud"):
-            points = point_cloud(signal.cube)
+            points = detect(signal.cube, signal.adc, self.points, self.firmware)
         pose = resample(motion.pose, signal.cube.grid.frame_time_s)
         meta = {
             "schema_version": META_VERSION,
@@ -171,6 +182,8 @@ class Weaver:
             "version": __version__,
             "text": text, "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
             "method": self.method_name,
+            "points": self.points,
+            "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(config),
             "inputs": room.inputs,
             "camera": room.scene.photo.intrinsics,
@@ -179,8 +192,8 @@ class Weaver:
             "plan": motion.plan,
         }  # fmt: skip
         return Generation(
-            cube=signal.cube, points=points, adc=signal.adc, pose=pose, motion=motion.pose, scene=room.scene,
-            meta=meta, stages=stages,
+            cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, pose=pose, motion=motion.pose,
+            scene=room.scene, meta=meta, stages=stages,
         )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from PIL import Image
 
 from mmweaver import result_folder
 from mmweaver.cli.main import main
-from mmweaver.formats.npz_files import read_radar_npz
+from mmweaver.formats.npz_files import read_npz, read_radar_npz
 from mmweaver.scene.sample import sample_photo
 
 WALK = "a person walks towards the radar"
@@ -79,6 +79,40 @@ def test_a_bin_goes_back_through_process(tmp_path: Path):
     made, read = (read_radar_npz(folder / "radar.npz").values for folder in (walk, again))
     read = read / meta["counts_per_unit"]
     assert np.linalg.norm(read - made) < 1e-3 * np.linalg.norm(made)
+
+
+BOARD_CFG = """channelCfg 15 7 0
+adcCfg 2 1
+adcbufCfg 0 1 0 1
+profileCfg 0 77 267 7 57.14 0 0 70 1 240 4884 0 0 30
+chirpCfg 0 0 0 0 0 0 0 1
+chirpCfg 1 1 0 0 0 0 0 4
+chirpCfg 2 2 0 0 0 0 0 2
+frameCfg 0 2 16 0 100 1 0
+cfarCfg 0 2 8 4 3 0 1280
+peakGrouping 1 1 1 1 229
+multiObjBeamForming 1 0.5
+clutterRemoval 1
+"""
+
+
+def test_points_as_a_board_reports_them(tmp_path: Path):
+    """On the board's steps of 4.09 cm, hardly anything that stands still, and the settings in meta.json."""
+    (tmp_path / "board.cfg").write_text(BOARD_CFG)
+    out = tmp_path / "board"
+    argv = ["generate", "--demo", "--radar", str(tmp_path / "board.cfg"), "--points", "firmware", "--frames", "10"]
+    assert main([*argv, "--text", WALK, "--out", str(out), "--quiet"]) == 0
+    points = read_npz(out / "points.npz")
+    assert len(points["frame"]) > 10
+    assert np.mean(points["radial_velocity_mps"] == 0) < 0.4
+    seen = points["y_m"] > 0  # angles that leave no way ahead put a point off its range
+    step = np.sqrt(points["x_m"] ** 2 + points["y_m"] ** 2 + points["z_m"] ** 2) / (0.043569 * 240 / 256)
+    assert np.abs(step - np.rint(step))[seen].max() < 0.06
+    assert len(points["intensity"]) == len(points["frame"])
+    meta = json.loads((out / "meta.json").read_text())
+    assert meta["points"] == "firmware"
+    assert meta["firmware"]["static_removal"] is True
+    assert meta["firmware"]["range_cfar"]["threshold"] == 1280
 
 
 def bad_pictures(folder: Path, good: Path) -> None:

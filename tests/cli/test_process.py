@@ -11,7 +11,14 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
 from mmweaver.formats.dca1000 import write_bin
-from mmweaver.formats.npz_files import read_points_npz, read_radar_npz
+from mmweaver.formats.npz_files import read_npz, read_points_npz, read_radar_npz
+
+BARE_CFG = """channelCfg 15 7 0
+adcCfg 2 1
+profileCfg 0 77 267 7 57.14 0 0 70 1 240 4884 0 0 30
+chirpCfg 0 0 0 0 0 0 0 1
+frameCfg 0 0 16 0 100 1 0
+"""
 
 
 def make_adc(num_frames: int = 2) -> AdcCube:
@@ -72,6 +79,17 @@ def test_both_iq_orders_and_npy_give_the_same_cube(recording: Path, tmp_path: Pa
     assert np.allclose(cubes[0], cubes[2], atol=1e-3)
 
 
+def test_points_as_a_board_reports_them(recording: Path, tmp_path: Path):
+    out = tmp_path / "capture"
+    argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--points", "firmware"]
+    assert main([*argv, "--out", str(out), "--quiet"]) == 0
+    points = read_npz(out / "points.npz")
+    best = points["intensity"].argmax()
+    assert (points["x_m"][best], points["y_m"][best]) == pytest.approx((0, 2), abs=0.05)
+    assert (points["radial_velocity_mps"] == 0).any()
+    assert json.loads((out / "meta.json").read_text())["firmware"]["device"] == "xwr14xx"
+
+
 def test_the_summary_for_machines(recording: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     argv = ["process", str(recording / "adc_data.bin"), "--radar", "awr1843", "--out", str(tmp_path / "x"), "--json"]
     assert main(argv) == 0
@@ -92,6 +110,9 @@ def test_the_summary_for_machines(recording: Path, tmp_path: Path, capsys: pytes
         (["whole.bin", "--radar", "awr1843", "--tx-order", "x"], "transmitters"),
         (["whole.bin", "--radar", "awr1843", "--iq-order", "xy"], "iq"),
         (["whole.bin", "--radar", "bgt60"], "real samples"),
+        (["whole.bin", "--radar", "bgt60", "--points", "firmware"], "--points cfar"),
+        (["whole.bin", "--radar", "awr1843", "--points", "lidar"], "firmware"),
+        (["whole.bin", "--radar", "bare.cfg", "--points", "firmware"], "cfarCfg"),
         (["whole.npy", "--radar", "awr1843"], "--axes"),
         (["whole.npy", "--radar", "awr1843", "--axes", "frame,loop"], "axes"),
         (["whole.npy", "--radar", "awr1843", "--axes", "frame,fish"], "fish"),
@@ -108,6 +129,7 @@ def test_bad_input_is_one_line_and_writes_nothing(
     (tmp_path / "cut.bin").write_bytes(whole[:-100])
     (tmp_path / "empty.bin").write_bytes(b"")
     (tmp_path / "broken.json").write_text("{")
+    (tmp_path / "bare.cfg").write_text(BARE_CFG)
     (tmp_path / "lines.cfg").write_text("sensorStop\nflushCfg\n")
     (tmp_path / "whole.npy").write_bytes((recording / "adc.npy").read_bytes())
     np.save(tmp_path / "objects.npy", np.array([{}], dtype=object))

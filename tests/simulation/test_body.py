@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.rooms import standing_person
 
-from mmweaver.simulation.body import ALBEDO, CAPSULES, Body
+from mmweaver.simulation.body import ALBEDO, CAPSULES, Body, SkinEcho
 
 PERSON = standing_person((0.0, 2.0, -1.2))
 JOINTS = PERSON.joints_m[:1]
@@ -68,3 +68,12 @@ def test_turning_an_arm_spins_no_skin():
     places = body.skin(joints).place_m
     assert np.linalg.norm(places[1] - places[0], axis=-1).max() < 0.005
     assert np.linalg.norm(places[1] - places[0], axis=-1).max() == pytest.approx(0.003, abs=0.0015)
+
+
+def test_a_sharper_skin_returns_as_much_over_all_angles():
+    """4 albedo cos^n, scaled: the integral over the hemisphere is Lambert's whatever n."""
+    angle = np.linspace(0, np.pi / 2, 2001)
+    ring = np.sin(angle) * (angle[1] - angle[0])
+    over_all = [(SkinEcho(exponent=n).strength * np.cos(angle) ** n * ring).sum() for n in (2.0, 8.0, 20.0)]
+    assert max(over_all) < 1.001 * min(over_all)
+    assert SkinEcho().strength == pytest.approx(4 * ALBEDO)

@@ -82,3 +82,14 @@ def add_layout_options(parser: Options) -> None:
     parser.add_argument(
         "--tx-order", type=turns, metavar="N,N,N", help="transmitters in their turns (default: the radar's)"
     )
+
+
+def add_points_option(parser: Options) -> None:
+    """The option that chooses the point cloud."""
+    parser.add_argument(
+        "--points",
+        choices=("cfar", "firmware"),
+        default="cfar",
+        help="point cloud: cfar, ours (default), or firmware, as TI's out-of-box demo would report it with the"
+        " cfarCfg, peakGrouping, clutterRemoval and multiObjBeamForming of the radar's .cfg",
+    )

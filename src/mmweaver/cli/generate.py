@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.cli.arguments import add_layout_options, add_output_options, number, place, whole
+from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, whole
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ def add_verb(verbs: Any) -> None:
     radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
     radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
     radar.add_argument("--method", default="physics", help="how the signal is made (default physics)")
+    add_points_option(radar)
     radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     output = parser.add_argument_group("output")
     output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
@@ -78,13 +79,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_output_folder(out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
-        from mmweaver.formats.radar_file import load_radar
+        from mmweaver.formats.radar_file import load_firmware, load_radar
         from mmweaver.weaver import Weaver, check_request
 
         radar = load_radar(arguments.radar)
         if arguments.tx_order is not None:
             radar = replace(radar, tx_order=arguments.tx_order)
-        weaver = Weaver(method=arguments.method, radar=radar, listener=bar)
+        firmware = load_firmware(arguments.radar) if arguments.points == "firmware" else None
+        weaver = Weaver(method=arguments.method, radar=radar, listener=bar, points=arguments.points, firmware=firmware)
         request = {
             "frames": arguments.frames,
             "fps": arguments.fps,

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_layout_options, add_output_options
+from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option
 
 NUM_STAGES = 6
 EXAMPLES = """examples:
@@ -22,6 +22,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("file", type=Path, metavar="FILE", help="adc_data.bin of a DCA1000, or raw ADC samples as .npy")
     parser.add_argument("--radar", required=True, metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
+    add_points_option(parser)
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     add_layout_options(parser)
     add_output_options(parser)
@@ -41,7 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         recording = process_recording(
             arguments.file, arguments.radar, iq_order=arguments.iq_order, tx_order=arguments.tx_order,
-            axes=arguments.axes, stages=Stages(bar),
+            axes=arguments.axes, points=arguments.points, stages=Stages(bar),
         )  # fmt: skip
         meta = recording.save(arguments.out, overwrite=arguments.overwrite)
     print_summary(arguments.out, meta, as_json=arguments.json, quiet=arguments.quiet)

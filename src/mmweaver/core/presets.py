@@ -105,6 +105,39 @@ IWR6843 = ti_1843(
     frequency_limits_hz=BAND_60_HZ,
 )
 
+# IWR1443BOOST of the RadHAR recordings. Their places lie on steps of 4.09 cm, their driver's range on 4.36 cm: TI's 3D
+# profile, whose 240 samples at 4.884 Msps (4.36 cm) fill a 256-bin FFT. 16 loops of 0.615 m/s and 30 frames a second
+# ask for the shortest idle time; all but the frame rate and that are the SDK's profile_3d.cfg. Unknown: receiver gain
+# (30 dB as in the profile), beam (the board's data sheet has +-25 degrees in azimuth at -6 dB, as the xWR1843's).
+IWR1443_RADHAR = ti_1843(
+    "iwr1443_radhar",
+    chirp_slope_hz_per_s=70.0e12,
+    idle_time_s=7e-6,
+    adc_start_time_s=7e-6,
+    ramp_end_time_s=57.14e-6,
+    num_samples=240,
+    sample_rate_hz=4.884e6,
+    num_loops=16,
+    frame_period_s=1 / 30,
+    num_range_bins=126,
+)
+
+# IWR1443BOOST of the MARS recordings. Measured on them: range steps of 2.93 cm, velocity steps of 0.356 m/s (nothing
+# beyond 1.42 m/s), azimuth on 64 bins, elevation, 10 frames a second. So sample rate over slope is 0.05 us (for a
+# 256-bin FFT), and loops times loop period 5.3 ms. Unknown: how these share out; taken are the 3D profile's slope and
+# ramp, as many samples as fit, and 16 loops.
+IWR1443_MARS = ti_1843(
+    "iwr1443_mars",
+    chirp_slope_hz_per_s=70.0e12,
+    idle_time_s=53.6e-6,
+    adc_start_time_s=7e-6,
+    ramp_end_time_s=57.14e-6,
+    num_samples=168,
+    sample_rate_hz=3.5e6,
+    num_loops=16,
+    first_range_bin=10,
+)
+
 # Infineon BGT60TR13C: 58 to 63.5 GHz in 64 real samples; receivers in an L, its corner the third. Receiver spacing
 # and sides are from the data sheet's drawing, unconfirmed by a recording.
 BGT60 = RadarConfig(
@@ -132,5 +165,9 @@ BGT60 = RadarConfig(
 )
 
 PRESETS: Registry[RadarConfig] = Registry(
-    "radar preset", [(config.name, config) for config in (AWR1843, MMMESH, RF_GENESIS, HUPR, IWR6843, BGT60)]
+    "radar preset",
+    [
+        (config.name, config)
+        for config in (AWR1843, MMMESH, RF_GENESIS, HUPR, IWR6843, IWR1443_RADHAR, IWR1443_MARS, BGT60)
+    ],
 )

@@ -1,6 +1,6 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m mmweaver.experiments.tables results README.md docs/fields.md
+python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md
 """
 
 import json
@@ -127,9 +127,27 @@ def rooms_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def statistics_table(folder: Path) -> str:
+    """Recorded beside simulated: one row a number, the simulated ones with their range over seeds."""
+    (record,) = _records(folder / "signal_statistics")
+    rows = record["rows"]
+    lines = [_line("number", *(f"{row['dataset']['name']}, {row['dataset']['origin']}" for row in rows))]
+    lines.append(_line(*["---"] * (1 + len(rows))))
+    for name, metric in rows[0]["metrics"].items():
+        cells = [_with_interval(row["metrics"][name]) for row in rows]
+        lines.append(_line(f"{metric['definition']} ({metric['unit']})", *cells))
+    return "\n".join(lines)
+
+
+def _with_interval(metric: dict[str, Any]) -> str:
+    edges = metric.get("interval")
+    value = _number(metric["value"])
+    return f"{value} ({_number(edges[0])} to {_number(edges[1])})" if edges else value
+
+
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
-    "real_rooms": rooms_table, "codecs": codecs_table,
+    "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
 }  # fmt: skip
 
 

@@ -18,6 +18,7 @@ from mmweaver.core.skeleton import JOINT_NAMES
 
 CUBE_AXES = ("frame", "range", "doppler", "antenna")
 POINT_COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
+FIRMWARE_COLUMNS = ("intensity",)
 NO_DATE = (1980, 1, 1, 0, 0, 0)  # the first a zip file can name
 
 
@@ -107,8 +108,12 @@ def read_pose_npz(path: str | Path) -> PoseSequence:
 
 # points.npz ---------------------------------------------------------------------------------------------------------
 def write_points_npz(path: Path, points: PointCloud) -> None:
-    """Writes detections, one row each: frame (int32) and five float32 columns, all of one length."""
-    columns = {name: np.asarray(getattr(points, name), np.float32) for name in POINT_COLUMNS}
+    """Writes detections, one row each: frame (int32) and five float32 columns, all of one length.
+
+    A firmware's points bring a sixth, `intensity`, in the device's counts.
+    """
+    names = (*POINT_COLUMNS, *(name for name in FIRMWARE_COLUMNS if hasattr(points, name)))
+    columns = {name: np.asarray(getattr(points, name), np.float32) for name in names}
     write_npz(path, frame=np.asarray(points.frame, np.int32), **columns)
 
 

@@ -5,11 +5,13 @@ import math
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
 from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio
 from mmweaver.formats.ti_cfg import read_ti_cfg
+from mmweaver.formats.ti_firmware import read_ti_firmware
 
 
 def load_radar(name_or_path: str) -> RadarConfig:
@@ -29,6 +31,17 @@ def load_radar(name_or_path: str) -> RadarConfig:
         f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, a mmWave Studio .json, or a .json"
         " from: mmweaver radar awr1843 --json"
     )
+
+
+def load_firmware(name_or_path: str) -> FirmwareSettings:
+    """The settings of the point cloud of a TI .cfg, of a preset that has its own, or else the IWR1443 demo's defaults.
+
+    Raises InputError where the .cfg does not say them.
+    """
+    path = Path(name_or_path)
+    if name_or_path not in PRESETS and path.suffix.lower() == ".cfg" and path.is_file():
+        return read_ti_firmware(path)
+    return FIRMWARE.get(name_or_path, FirmwareSettings())
 
 
 def _from_json(path: Path) -> RadarConfig:

@@ -24,7 +24,9 @@ CHIRP_VARIATIONS = ("start frequency", "slope", "idle time", "ADC start time")
 
 
 @dataclass(frozen=True)
-class _Line:
+class Line:
+    """A command's numbers, and which line of the file they are from."""
+
     number: int
     values: tuple[float, ...]
 
@@ -36,7 +38,7 @@ def read_ti_cfg(path: Path | str) -> RadarConfig:
     fire one transmitter after the other, or the radar could not exist.
     """
     path = Path(path)
-    lines = _lines(path)
+    lines = ti_cfg_lines(path)
     try:
         return radar_from_ti(_chirps(path.stem, lines))
     except InputError as error:
@@ -46,7 +48,7 @@ def read_ti_cfg(path: Path | str) -> RadarConfig:
 
 def read_ti_cfg_iq_order(path: Path | str) -> str:
     """The I/Q order of a capture made with this .cfg, "iq" or "qi", from adcbufCfg's SampleSwap ("iq" without one)."""
-    lines = _lines(Path(path)).get("adcbufCfg")
+    lines = ti_cfg_lines(Path(path)).get("adcbufCfg")
     if not lines:
         return "iq"
     values = lines[-1].values
@@ -55,12 +57,17 @@ def read_ti_cfg_iq_order(path: Path | str) -> str:
     return "qi" if swap == 1 else "iq"
 
 
-def _lines(path: Path) -> dict[str, list[_Line]]:
+def ti_cfg_lines(path: Path, more: dict[str, int] | None = None) -> dict[str, list[Line]]:
+    """The lines of the radar and those of `more` commands (how many numbers follow each at least), by command.
+
+    Raises InputError as `read_ti_cfg` does.
+    """
+    counts = {**NEEDED, **OPTIONAL, **(more or {})}
     try:
         text = path.read_text(encoding="utf-8", errors="replace")
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    found: dict[str, list[_Line]] = {}
+    found: dict[str, list[Line]] = {}
     for number, raw in enumerate(text.splitlines(), 1):
         words = raw.split("%")[0].split()
         if not words:
@@ -70,8 +77,8 @@ def _lines(path: Path) -> dict[str, list[_Line]]:
             raise InputError(
                 f"{path}, line {number}: {REFUSED[command]} cannot be read; use one legacy frame of TDM chirps"
             )
-        if command in NEEDED or command in OPTIONAL:
-            found.setdefault(command, []).append(_Line(number, _numbers(path, number, command, rest)))
+        if command in counts:
+            found.setdefault(command, []).append(Line(number, _numbers(path, number, command, rest, counts[command])))
     if missing := [command for command in NEEDED if command not in found]:
         raise InputError(f"{path} lacks {', '.join(missing)}; is it a mmWave SDK .cfg?")
     return found
@@ -82,8 +89,7 @@ def _is_off(command: str, words: list[str]) -> bool:
     return command == "bpmCfg" and len(words) > 1 and words[1] == "0"
 
 
-def _numbers(path: Path, number: int, command: str, words: list[str]) -> tuple[float, ...]:
-    needed = {**NEEDED, **OPTIONAL}[command]
+def _numbers(path: Path, number: int, command: str, words: list[str], needed: int) -> tuple[float, ...]:
     try:
         values = tuple(float(word) for word in words)
     except ValueError:
@@ -97,17 +103,17 @@ def _numbers(path: Path, number: int, command: str, words: list[str]) -> tuple[f
     return values
 
 
-def _chirps(name: str, lines: dict[str, list[_Line]]) -> TiChirps:
+def _chirps(name: str, lines: dict[str, list[Line]]) -> TiChirps:
     channel, adc, frame = (lines[command][-1] for command in ("channelCfg", "adcCfg", "frameCfg"))
-    first, last, num_loops = (_whole(frame, "frameCfg", at) for at in range(3))
+    first, last, num_loops = (whole(frame, "frameCfg", at) for at in range(3))
     masks, profile_ids = _fired(lines["chirpCfg"], first, last)
     if len(profile_ids) != 1:
         raise InputError(f"the frame's chirps use profiles {sorted(profile_ids)}; only one profile can be read")
-    profiles = {_whole(line, "profileCfg", 0): line for line in lines["profileCfg"]}
+    profiles = {whole(line, "profileCfg", 0): line for line in lines["profileCfg"]}
     profile = profiles.get(min(profile_ids))
     if profile is None:
         raise InputError(f"the chirps use profile {min(profile_ids)}, which no profileCfg defines")
-    adc_format = _whole(adc, "adcCfg", 1)
+    adc_format = whole(adc, "adcCfg", 1)
     if adc_format not in ADC_FORMATS:
         raise InputError(
             f"line {adc.number}: adcCfg has ADC format {adc_format}; known are 0 (real), 1 and 2 (complex)"
@@ -119,11 +125,11 @@ def _chirps(name: str, lines: dict[str, list[_Line]]) -> TiChirps:
         adc_start_time_us=profile.values[3],
         ramp_end_time_us=profile.values[4],
         slope_mhz_per_us=profile.values[7],
-        num_samples=_whole(profile, "profileCfg", 9),
+        num_samples=whole(profile, "profileCfg", 9),
         sample_rate_ksps=profile.values[10],
-        rx_gain_db=float(_whole(profile, "profileCfg", 13) & 0x3F),
-        rx_mask=_whole(channel, "channelCfg", 0),
-        tx_mask=_whole(channel, "channelCfg", 1),
+        rx_gain_db=float(whole(profile, "profileCfg", 13) & 0x3F),
+        rx_mask=whole(channel, "channelCfg", 0),
+        tx_mask=whole(channel, "channelCfg", 1),
         chirp_tx_masks=masks,
         num_loops=num_loops,
         frame_period_ms=frame.values[4],
@@ -131,12 +137,12 @@ def _chirps(name: str, lines: dict[str, list[_Line]]) -> TiChirps:
     )
 
 
-def _fired(lines: list[_Line], first: int, last: int) -> tuple[tuple[int, ...], set[int]]:
+def _fired(lines: list[Line], first: int, last: int) -> tuple[tuple[int, ...], set[int]]:
     """Transmitter mask of each chirp from first to last, and the profiles they use."""
     masks: dict[int, int] = {}
     profiles: dict[int, int] = {}
     for line in lines:
-        start, end, profile, mask = (_whole(line, "chirpCfg", at) for at in (0, 1, 2, 7))
+        start, end, profile, mask = (whole(line, "chirpCfg", at) for at in (0, 1, 2, 7))
         if not 0 <= start <= end <= 511:
             raise InputError(f"line {line.number}: chirpCfg runs from chirp {start} to {end}; it must lie in 0 to 511")
         for what, value in zip(CHIRP_VARIATIONS, line.values[3:7], strict=True):
@@ -154,7 +160,8 @@ def _fired(lines: list[_Line], first: int, last: int) -> tuple[tuple[int, ...], 
     return tuple(masks[chirp] for chirp in wanted), {profiles[chirp] for chirp in wanted}
 
 
-def _whole(line: _Line, command: str, at: int) -> int:
+def whole(line: Line, command: str, at: int) -> int:
+    """A number of a line that must be whole. Raises InputError where it is not."""
     value = line.values[at]
     if value != int(value):
         raise InputError(f"line {line.number}: number {at + 1} of {command} must be whole, not {value:g}")

@@ -22,6 +22,22 @@ RING = 6  # corners of a capsule's low-poly hull
 
 
 @dataclass(frozen=True, kw_only=True)
+class SkinEcho:
+    """How skin returns a wave that meets it at an angle: 4 albedo cos^exponent of its area, 2 being Lambert's law.
+
+    Other exponents are scaled to return as much over all angles, so a larger one is a flash where skin faces the radar.
+    """
+
+    albedo: float = ALBEDO
+    exponent: float = 2.0
+
+    @property
+    def strength(self) -> float:
+        """Cross section of one square metre that faces the radar."""
+        return 4 * self.albedo * (self.exponent + 1) / 3
+
+
+@dataclass(frozen=True, kw_only=True)
 class Capsule:
     """A part of the body: from joint to joint (or past it), with a radius at either end for a 1.75 m person."""
 
@@ -85,7 +101,10 @@ class Skin:
 class Body:
     """One subject's capsules and skin points; `skin` and `hull` pose them."""
 
-    def __init__(self, subject: int, height_m: float, num_points: int = DEFAULT_NUM_POINTS):
+    def __init__(
+        self, subject: int, height_m: float, num_points: int = DEFAULT_NUM_POINTS, echo: SkinEcho | None = None
+    ):
+        self.echo = echo or SkinEcho()
         self.scale = height_m / REFERENCE_HEIGHT_M
         self.height_m = height_m
         rng = stream(subject, "body", num_points)
@@ -238,6 +257,6 @@ def _capsule_faces(count: int) -> np.ndarray:
     return (one[None] + np.arange(count)[:, None, None] * (2 * RING + 2)).reshape(-1, 3)
 
 
-def body_of(pose: PoseSequence, num_points: int = DEFAULT_NUM_POINTS) -> Body:
+def body_of(pose: PoseSequence, num_points: int = DEFAULT_NUM_POINTS, echo: SkinEcho | None = None) -> Body:
     """The body that a pose sequence moves."""
-    return Body(pose.subject, pose.height_m, num_points)
+    return Body(pose.subject, pose.height_m, num_points, echo)

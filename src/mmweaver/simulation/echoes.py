@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.simulation.antenna import pattern, scatterer_gain
-from mmweaver.simulation.body import ALBEDO, Body
+from mmweaver.simulation.body import Body
 from mmweaver.simulation.mirrors import Mirror, fresnel_radius_m
 from mmweaver.simulation.room import Room, StaticEchoes
 from mmweaver.simulation.synthesis import EchoRows
@@ -101,7 +101,8 @@ class BodyEchoes:
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
 
     def _direct(self) -> "Rows":
-        cross_section = 4 * ALBEDO * np.maximum(self.cos, 0) ** 2 * self.body.area_m2
+        echo = self.body.echo
+        cross_section = echo.strength * np.maximum(self.cos, 0) ** echo.exponent * self.body.area_m2
         amplitude = self.gain * self._pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return Rows(
             None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible, False
@@ -118,7 +119,7 @@ class BodyEchoes:
         corner = mirror.crossing(np.zeros(3), image)
         leg_m = np.linalg.norm(corner, axis=-1)
         to_corner = (corner - place) / np.maximum(way_m - leg_m, 1e-6)[..., None]
-        cos = (normal * to_corner).sum(-1)
+        cos = np.clip((normal * to_corner).sum(-1), -1, 1)  # skin that touches the face has no direction to it
         taper = mirror.inside(corner, fresnel_radius_m(leg_m, way_m - leg_m, self.config.wavelength_m))
         cos_face = np.abs(to_corner @ mirror.plane.normal)
         seen = (cos > 0.02) & (mirror.side(place) > 0.02) & (taper > 0.02) & (way_m < 2 * self.config.max_range_m)
@@ -128,9 +129,11 @@ class BodyEchoes:
         over = self.gain * self._pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / way_m * coefficient
         micro = self.body.micro_phase[chosen]
         direct = self._pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]
-        skin = np.sqrt(4 * ALBEDO * area_m2 * np.maximum(cos, 0))
-        mixed = over * direct * skin * np.sqrt(np.maximum(self.cos[:, chosen], 0)) * micro
-        double = over**2 / self.gain * skin * np.sqrt(np.maximum(cos, 0)) * micro
+        echo = self.body.echo
+        share = echo.exponent / 4  # of each of the two directions, in amplitude
+        skin = np.sqrt(echo.strength * area_m2) * np.maximum(cos, 0) ** share
+        mixed = over * direct * skin * np.maximum(self.cos[:, chosen], 0) ** share * micro
+        double = over**2 / self.gain * skin * np.maximum(cos, 0) ** share * micro
         ghosts = [
             Rows(None, mirror, chosen, mixed, seen & self.visible[:, chosen], True),
             Rows(mirror, mirror, chosen, double, seen, False),

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
-from mmweaver.simulation.body import DEFAULT_NUM_POINTS, body_of
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS, SkinEcho, body_of
 from mmweaver.simulation.echoes import BodyEchoes
 from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
@@ -48,22 +48,34 @@ class Simulator:
         self.room_adc = self.room.adc + leak
 
     def run(
-        self, pose: PoseSequence, *, num_frames: int, seed: int, num_points: int = DEFAULT_NUM_POINTS
+        self,
+        pose: PoseSequence,
+        *,
+        num_frames: int,
+        seed: int,
+        num_points: int = DEFAULT_NUM_POINTS,
+        echo: SkinEcho | None = None,
     ) -> Simulation:
         """ADC samples of the posed person, all frames at once: mind the memory, or take `chunks`."""
-        chunks = list(self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points))
+        chunks = list(self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points, echo=echo))
         samples = np.concatenate([chunk.samples for chunk in chunks])
         return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
 
     def chunks(
-        self, pose: PoseSequence, *, num_frames: int, seed: int, num_points: int = DEFAULT_NUM_POINTS
+        self,
+        pose: PoseSequence,
+        *,
+        num_frames: int,
+        seed: int,
+        num_points: int = DEFAULT_NUM_POINTS,
+        echo: SkinEcho | None = None,
     ) -> Iterator[AdcCube]:
         """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
 
         Raises InputError where the pose does not cover the frames or holds numbers that are none.
         """
         self._check(pose, num_frames)
-        body = body_of(pose, num_points)
+        body = body_of(pose, num_points, echo)
         receiver = Receiver(self.config, self.impairments, seed)
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))

@@ -1,0 +1,108 @@
+"""The detection matrix of TI's demo, its CFAR along range and Doppler in whole logarithms, and its peak grouping."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Complex, Float, Int
+
+from mmweaver.core.firmware_settings import FirmwareCfar, FirmwareSettings
+
+DB_PER_OCTAVE = 20 * np.log10(2)
+
+Level = Int[np.ndarray, "range doppler"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DetectionMatrix:
+    """`level` (frame, range, doppler), whole numbers: log2 of the magnitudes' geometric mean, times
+    `counts_per_octave`."""
+
+    level: Int[np.ndarray, "frame range doppler"]
+    counts_per_octave: float
+
+
+def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"], device: str) -> DetectionMatrix:
+    """Sum of the antennas' log2 magnitudes: in Q8 as it is ("xwr16xx"), or in Q9 over a power of two ("xwr14xx")."""
+    num = spectrum.shape[-1]
+    octaves = np.log2(np.maximum(np.abs(spectrum), 1))  # the device's logarithm of 0 is 0
+    if device == "xwr16xx":
+        level = np.floor(octaves * 256).astype(np.int64).sum(axis=-1)
+        return DetectionMatrix(level=np.minimum(level, 65535), counts_per_octave=256.0 * num)
+    shift = (num - 1).bit_length()
+    level = np.floor(octaves * 2048).astype(np.int64).sum(axis=-1) >> (shift + 2)  # Q11 to Q9
+    return DetectionMatrix(level=level, counts_per_octave=512.0 * num / 2**shift)
+
+
+def detected(
+    level: Level, settings: FirmwareSettings, counts_per_octave: float
+) -> tuple[Bool[np.ndarray, "range doppler"], Float[np.ndarray, "range doppler"]]:
+    """Cells that pass every CFAR of the settings, and how many dB they stand over the first one's noise."""
+    passed = np.ones(level.shape, bool)
+    over: np.ndarray | None = None
+    for cfar, turned in ((settings.range_cfar, False), (settings.doppler_cfar, True)):
+        if cfar is None:
+            continue
+        half = cfar.window // 2 if settings.device == "xwr14xx" else cfar.window
+        # Doppler is tested in the FFT's own order, so a CFAR that does not wrap ends at the fastest velocities
+        line = np.fft.ifftshift(level, axes=1).T if turned else level
+        noise = noise_level(line, cfar, half)
+        noise = np.fft.fftshift(noise.T, axes=1) if turned else noise
+        excess = level - noise
+        passed &= excess > cfar.threshold
+        over = excess if over is None else over
+    assert over is not None, "FirmwareSettings has at least one CFAR"
+    return passed, over * (DB_PER_OCTAVE / counts_per_octave)
+
+
+def noise_level(level: Int[np.ndarray, "along across"], cfar: FirmwareCfar, half: int) -> Int[np.ndarray, "along _"]:
+    """Noise around each cell along the first axis, from `half` cells on either side beyond the guard cells.
+
+    "ca" shifts the sum of both sides right by `noise_shift`, "caso" and "cago" the smaller or greater side by one
+    less. Without `cyclic`, a cell with no room on one side takes the other side alone; with room on neither its noise
+    is beyond reach.
+    """
+    num = len(level)
+    reach = cfar.guard + half
+    running = np.concatenate([np.zeros_like(level[:1]), np.cumsum(_padded(level, reach, cfar.cyclic), axis=0)])
+    at = np.arange(num)
+    before = running[at + half] - running[at]
+    start = at + reach + cfar.guard + 1
+    after = running[start + half] - running[start]
+    one_side = cfar.noise_shift - 1
+    if cfar.average == "ca":
+        noise = (before + after) >> cfar.noise_shift
+    elif cfar.average == "caso":
+        noise = np.minimum(before, after) >> one_side
+    else:
+        noise = np.maximum(before, after) >> one_side
+    if not cfar.cyclic:
+        has_before, has_after = at >= reach, at < num - reach
+        noise = np.where((has_before & ~has_after)[:, None], before >> one_side, noise)
+        noise = np.where((has_after & ~has_before)[:, None], after >> one_side, noise)
+        noise = np.where((has_after | has_before)[:, None], noise, np.iinfo(np.int32).max)
+    return noise
+
+
+def _padded(level: np.ndarray, reach: int, cyclic: bool) -> np.ndarray:
+    """Wrapped around, as often as the reach asks, or with silence beyond the ends."""
+    padding = ((reach, reach), (0, 0))
+    return np.pad(level, padding, mode="wrap") if cyclic else np.pad(level, padding)
+
+
+def is_local_peak(level: Level, settings: FirmwareSettings) -> Bool[np.ndarray, "range doppler"]:
+    """Cells within the range bins asked for that no neighbour exceeds.
+
+    Neighbours: the eight around with grouping in range and Doppler, the two along the one direction that is grouped,
+    none without grouping. Doppler wraps; beyond the range bins asked for there is nothing.
+    """
+    rows = np.arange(len(level))
+    inside = (rows >= settings.first_range_bin) & (rows <= settings.last_range_bin)
+    kept = np.where(inside[:, None], level, -1)
+    padded = np.pad(kept, ((1, 1), (0, 0)), constant_values=-1)
+    along_range = (-1, 0, 1) if settings.group_range else (0,)
+    along_doppler = (-1, 0, 1) if settings.group_doppler else (0,)
+    peak = np.broadcast_to(inside[:, None], level.shape).copy()
+    for row in along_range:
+        for column in along_doppler:
+            peak &= kept >= np.roll(padded[1 + row : 1 + row + len(level)], -column, axis=1)
+    return peak

@@ -1,0 +1,297 @@
+"""Same pose, real radar against ours: the MARS recordings beside simulated point clouds, frame by frame.
+
+The simulator as it stands is driven by the Kinect's joints and seen through the firmware's chain. Six global numbers
+are not known and are estimated on `validate`: the radar's place in the Kinect's frame (3), the receiver's gain, the
+CFAR's threshold and the person's height. That clutter removal was on and peak grouping off is what the recordings show
+by themselves. `test` is only scored.
+
+    python -m mmweaver.experiments.mars --data shared/data/pointclouds/mars/subject1 --out results
+"""
+
+import argparse
+import hashlib
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
+from mmweaver.core.presets import IWR1443_MARS
+from mmweaver.core.records import AdcCube, PointCloud
+from mmweaver.core.seeding import stream
+from mmweaver.dsp.cube import radar_cube, remove_static
+from mmweaver.dsp.firmware import FirmwareCloud, firmware_points
+from mmweaver.dsp.points import point_cloud
+from mmweaver.experiments.cloud_scores import CloudScores, part_of, score
+from mmweaver.experiments.empty_room import empty_room
+from mmweaver.experiments.mars_data import Stretch, body_height_m, cut, read_mars
+from mmweaver.experiments.results import write_result
+from mmweaver.simulation.body import Body, SkinEcho
+from mmweaver.simulation.receiver import Impairments
+from mmweaver.simulation.simulator import Simulator
+
+PIECE_FRAMES, PIECES = 20, 20
+HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estimation begins
+THRESHOLDS = (400, 2000)
+PIECES_TO_ESTIMATE = 12
+Clouds = list[tuple[PointCloud, ...]]  # one tuple a piece, one cloud a sample
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """The numbers that are estimated; all global, none of a frame."""
+
+    shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # from the Kinect's frame to the radar's
+    gain_db: float = 0.0  # against the preset's receiver
+    threshold: int = 768
+    height_m: float = 1.75
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variant:
+    """What is changed in the simulator; the defaults are the simulator as it stands."""
+
+    impairments: Impairments = Impairments()  # noqa: RUF009 (frozen)
+    albedo_db: float = 0.0
+    exponent: float = 2.0  # of the skin, 2 = Lambert
+    has_floor: bool = True
+    wall_m: float | None = None
+    joint_noise_m: float = 0.0
+    num_points: int = 800
+    chain: str = "firmware"
+    grouped: bool = False
+
+
+VARIANTS: dict[str, Variant] = {
+    "simulator": Variant(),
+    "no_thermal_noise": Variant(impairments=Impairments(thermal_noise=False)),
+    "no_phase_noise": Variant(impairments=Impairments(phase_noise_dbc_per_hz=None, chirp_jitter_s=0.0)),
+    "body_6_db_fainter": Variant(albedo_db=-6.0),
+    "body_6_db_brighter": Variant(albedo_db=6.0),
+    "skin_exponent_20": Variant(exponent=20.0),
+    "skin_exponent_60": Variant(exponent=60.0),
+    "skin_exponent_400": Variant(exponent=400.0),
+    "skin_of_200_points": Variant(num_points=200),
+    "skin_of_3200_points": Variant(num_points=3200),
+    "no_floor_bounce": Variant(has_floor=False),
+    "wall_at_3_m_behind": Variant(wall_m=3.0),
+    "joint_noise_1_cm": Variant(joint_noise_m=0.01),
+    "our_cfar": Variant(chain="cfar"),
+    "peak_grouping": Variant(grouped=True),
+}
+
+
+def settings_of(setup: Setup) -> FirmwareSettings:
+    """The firmware's settings with the threshold estimated."""
+    base = FIRMWARE["iwr1443_mars"]
+    assert base.range_cfar is not None, "the preset has a CFAR in range"
+    return replace(base, range_cfar=replace(base.range_cfar, threshold=setup.threshold))
+
+
+def simulate(pieces: list[Stretch], setup: Setup, variant: Variant, seed: int = 0) -> list[AdcCube]:
+    """ADC samples of each piece, in a room of a floor and perhaps a wall behind the person."""
+    feet_m = min(float(piece.joints_m[..., 2].min()) for piece in pieces) + setup.shift_m[2]
+    simulator = Simulator(
+        empty_room(floor_z_m=feet_m - 0.04, has_floor=variant.has_floor, wall_y_m=variant.wall_m),
+        IWR1443_MARS,
+        variant.impairments,
+    )
+    albedo = SkinEcho().albedo * 10 ** (variant.albedo_db / 10)
+    echo = SkinEcho(albedo=albedo, exponent=variant.exponent)
+    adcs = []
+    for index, piece in enumerate(pieces):
+        rng = stream(seed, "joint noise", index)
+        noisy = replace(
+            piece, joints_m=piece.joints_m + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape)
+        )
+        run = simulator.run(
+            noisy.pose(setup.shift_m, setup.height_m), num_frames=int(piece.frame[-1]) + 1, seed=seed,
+            num_points=variant.num_points, echo=echo,
+        )  # fmt: skip
+        adcs.append(run.adc)
+    return adcs
+
+
+def detect(adcs: list[AdcCube], pieces: list[Stretch], setup: Setup, variant: Variant) -> Clouds:
+    """What the chain reports at the frames that were recorded."""
+    settings = settings_of(setup)
+    if variant.grouped:
+        settings = replace(settings, group_range=True, group_doppler=True)
+    clouds: Clouds = []
+    for adc, piece in zip(adcs, pieces, strict=True):
+        louder = replace(adc, samples=adc.samples * np.float32(10 ** (setup.gain_db / 20)))
+        if variant.chain == "cfar":
+            cloud = point_cloud(remove_static(radar_cube(louder)), max_points_per_frame=64)
+        else:
+            cloud = firmware_points(louder, settings)
+        clouds.append(tuple(part_of(cloud, int(frame)) for frame in piece.frame))
+    return clouds
+
+
+# estimation ---------------------------------------------------------------------------------------------------------
+def calibrate(pieces: list[Stretch], report: Callable[[str], object] = print) -> Setup:
+    """The global numbers, from `validate` alone.
+
+    Left and right, near and far by the median distance of the clouds' centroids; the gain by the median intensity and
+    the threshold by the mean number of points; height by the Chamfer distance, for the beam holds the centroid's height
+    where it is, wherever the body is.
+    """
+    real: Clouds = [piece.clouds for piece in pieces]
+    setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
+    setup = _levels(pieces, _centred(pieces, setup, real), real)
+    x, y, _ = setup.shift_m
+    setup = _best([replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M], pieces, real, report)
+    setup = _levels(pieces, _centred(pieces, setup, real), real)
+    report(f"estimated: {setup}")
+    return setup
+
+
+def _best(tried: list[Setup], pieces: list[Stretch], real: Clouds, report: Callable[[str], object]) -> Setup:
+    distance = [score(_simulated(pieces, setup, Variant()), real).value("chamfer_m") for setup in tried]
+    for setup, found in zip(tried, distance, strict=True):
+        report(f"Chamfer {found:.3f} m: {setup}")
+    return tried[int(np.argmin(distance))]
+
+
+def _centred(pieces: list[Stretch], setup: Setup, real: Clouds) -> Setup:
+    """The radar's place moved sideways and in depth until the centroids agree."""
+    right, ahead, _ = _centroid_offset(_simulated(pieces, setup, Variant()), real)
+    x, y, z = setup.shift_m
+    return replace(setup, shift_m=(round(float(x - right), 3), round(float(y - ahead), 3), z))
+
+
+def _centroid_offset(ours: Clouds, real: Clouds) -> np.ndarray:
+    both = [
+        (a, b) for one, other in zip(ours, real, strict=True) for a, b in zip(one, other, strict=True) if len(a.x_m)
+    ]
+    return np.median([_middle(a) - _middle(b) for a, b in both], axis=0)
+
+
+def _middle(cloud: PointCloud) -> np.ndarray:
+    return np.array([cloud.x_m.mean(), cloud.y_m.mean(), cloud.z_m.mean()])
+
+
+def _levels(pieces: list[Stretch], setup: Setup, real: Clouds) -> Setup:
+    """Gain, then threshold, twice: the threshold decides which intensities are left."""
+    wanted = np.mean([len(cloud.x_m) for piece in real for cloud in piece])
+    adcs = simulate(pieces, setup, Variant())
+    for _ in range(2):
+        found = detect(adcs, pieces, setup, Variant())
+        setup = replace(setup, gain_db=round(setup.gain_db + _median_db(real) - _median_db(found), 1))
+        low, high = THRESHOLDS
+        while high - low > 30:
+            middle = (low + high) // 2
+            clouds = detect(adcs, pieces, replace(setup, threshold=middle), Variant())
+            many = np.mean([len(cloud.x_m) for piece in clouds for cloud in piece]) > wanted
+            low, high = (middle, high) if many else (low, middle)
+        setup = replace(setup, threshold=(low + high) // 2)
+    return setup
+
+
+def _median_db(clouds: Clouds) -> float:
+    levels = [cloud.intensity for piece in clouds for cloud in piece if isinstance(cloud, FirmwareCloud)]
+    return float(20 * np.log10(np.median(np.concatenate(levels))))
+
+
+# floors and ceiling -------------------------------------------------------------------------------------------------
+def centroid_floor(pieces: list[Stretch], setup: Setup) -> Clouds:
+    """One point at the middle of the joints."""
+    return [
+        tuple(_points(joints.mean(axis=0)[None] + np.asarray(setup.shift_m)) for joints in piece.joints_m)
+        for piece in pieces
+    ]
+
+
+def surface_floor(pieces: list[Stretch], setup: Setup, num: int) -> Clouds:
+    """As many points as an average frame has, anywhere on the body's skin."""
+    body = Body(0, setup.height_m)
+    clouds: Clouds = []
+    for index, piece in enumerate(pieces):
+        skin = body.skin(piece.joints_m + np.asarray(setup.shift_m)).place_m
+        rng = stream(0, "surface floor", index)
+        clouds.append(tuple(_points(place[rng.choice(len(place), num, replace=False)]) for place in skin))
+    return clouds
+
+
+def random_frame_floor(pieces: list[Stretch], pool: list[Stretch]) -> Clouds:
+    """Any real frame of the other split."""
+    every = [cloud for stretch in pool for cloud in stretch.clouds]
+    rng = stream(0, "random frame floor")
+    return [tuple(every[rng.integers(len(every))] for _ in piece.clouds) for piece in pieces]
+
+
+def neighbour_ceiling(pieces: list[Stretch]) -> Clouds:
+    """The real frame before, for the first the one after."""
+    return [(piece.clouds[1], *piece.clouds[:-1]) for piece in pieces]
+
+
+def _points(place_m: np.ndarray) -> PointCloud:
+    none = np.full(len(place_m), np.nan)
+    return PointCloud(
+        frame=np.zeros(len(place_m), int), x_m=place_m[:, 0], y_m=place_m[:, 1], z_m=place_m[:, 2],
+        radial_velocity_mps=none, snr_db=none,
+    )  # fmt: skip
+
+
+# the experiment -----------------------------------------------------------------------------------------------------
+def run(data: Path, out: Path, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
+    """Estimates on `validate`, scores everything on `test`, and writes results/mars/*.json. Returns the scores."""
+    validate, test = read_mars(data, "validate"), read_mars(data, "test")
+    began = time.perf_counter()
+    setup = calibrate(cut(validate, PIECE_FRAMES, PIECES_TO_ESTIMATE), report)
+    pieces = cut(test, PIECE_FRAMES, PIECES)
+    real: Clouds = [piece.clouds for piece in pieces]
+    mean = round(np.mean([len(cloud.x_m) for stretch in validate for cloud in stretch.clouds]))
+    ways: dict[str, Callable[[], Clouds]] = {
+        "floor_centroid": partial(centroid_floor, pieces, setup),
+        "floor_random_on_body": partial(surface_floor, pieces, setup, mean),
+        "floor_random_real_frame": partial(random_frame_floor, pieces, validate),
+        "ceiling_neighbouring_frame": partial(neighbour_ceiling, pieces),
+    }
+    for name, variant in VARIANTS.items():
+        ways[name] = partial(_simulated, pieces, setup, variant)
+    scores: dict[str, CloudScores] = {}
+    for name, way in ways.items():
+        started = time.perf_counter() if name != "simulator" else began
+        scores[name] = score(way(), real)
+        report(f"{name:28s} {scores[name].line()}")
+        _write(out, name, setup, data, scores, seconds=time.perf_counter() - started)
+    return scores
+
+
+def _simulated(pieces: list[Stretch], setup: Setup, variant: Variant) -> Clouds:
+    return detect(simulate(pieces, setup, variant), pieces, setup, variant)
+
+
+def _write(out: Path, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float) -> None:
+    files = sorted(data.glob("*_test.csv"))
+    row: dict[str, Any] = {
+        "dataset": {
+            "name": "MARS subject 1, test",
+            "sha256": {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files},
+        },
+        "n": scores[name].num_frames,
+        "seeds": [0],
+        "seconds": round(seconds, 1),
+        "metrics": scores[name].metrics(floor=scores["floor_centroid"]),
+    }
+    variant = asdict(VARIANTS[name]) if name in VARIANTS else None
+    config = {"estimated_on_validate": asdict(setup), "variant": variant, "frames_a_piece": PIECE_FRAMES}
+    write_result(out, experiment="mars", method=name, config=config, rows=[row])
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description="MARS recordings beside simulated point clouds")
+    parser.add_argument("--data", type=Path, required=True, help="folder of a MARS subject")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    run(arguments.data, arguments.out)
+
+
+if __name__ == "__main__":
+    main()

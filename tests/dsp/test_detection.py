@@ -1,0 +1,28 @@
+"""Which point cloud."""
+
+import numpy as np
+import pytest
+from tests.cubes import point_adc, point_cube
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843, BGT60
+from mmweaver.dsp.detection import check_points, detect
+from mmweaver.dsp.firmware import FirmwareCloud, firmware_points
+from mmweaver.dsp.points import point_cloud
+
+
+def test_by_name():
+    cube, adc = point_cube(), point_adc(noise=0.3)
+    assert np.array_equal(detect(cube, adc, "cfar").x_m, point_cloud(cube).x_m)
+    ours = detect(cube, adc, "firmware")
+    assert isinstance(ours, FirmwareCloud)
+    assert np.array_equal(ours.x_m, firmware_points(adc).x_m)
+    assert isinstance(detect(cube, None, "firmware"), FirmwareCloud)
+
+
+def test_another_name_is_refused():
+    with pytest.raises(InputError, match="known: cfar, firmware"):
+        check_points("lidar", AWR1843)
+    with pytest.raises(InputError, match="take --points cfar"):
+        check_points("firmware", BGT60)
+    check_points("cfar", BGT60)
