@@ -33,6 +33,7 @@ def test_the_native_grid_by_three_ways(field: ScattererField):
     truth = crowd().values
     native = field.native()
     assert error_db(native, truth) < -30
+    assert np.array_equal(field.native(threads=2), native)
     assert error_db(field.on_grid(replace(field.grid)), native) < -90
     index = np.stack([np.random.default_rng(0).integers(0, size, 300) for size in native.shape], axis=1)
     assert error_db(field.sample(index.astype(float)), native[tuple(index.T)]) < -90

@@ -81,9 +81,14 @@ class ScattererField(SignalField):
         if threads == 1:
             for part in parts:
                 fill(part)
-        else:
+            return out
+        before = torch.get_num_threads()
+        torch.set_num_threads(1)
+        try:
             with ThreadPoolExecutor(threads) as pool:
                 list(pool.map(fill, parts))
+        finally:
+            torch.set_num_threads(before)
         return out
 
     def on_grid(self, grid: CubeGrid) -> CubeValues:
