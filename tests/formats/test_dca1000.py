@@ -146,3 +146,16 @@ def test_what_does_not_fit_is_not_written(tmp_path: Path, value: float, counts: 
     with pytest.raises(InputError, match=word):
         write_bin(tmp_path / "a.bin", adc, counts_per_unit=counts)
     assert not list(tmp_path.iterdir())
+
+
+def test_a_clipped_converter_is_written_as_it_is(tmp_path: Path):
+    """int16 reaches -32768 but only +32767: a receiver driven too hard leaves both."""
+    adc = counts_adc(SMALL)
+    samples = adc.samples.copy()
+    samples.flat[0], samples.flat[1] = -32768 - 32768j, 32767 + 32767j
+    write_bin(tmp_path / "a.bin", replace(adc, samples=samples), counts_per_unit=1.0)
+    assert np.array_equal(read_bin(tmp_path / "a.bin", SMALL).samples, samples)
+    samples.flat[1] = 32768
+    with pytest.raises(InputError, match="int16"):
+        write_bin(tmp_path / "b.bin", replace(adc, samples=samples), counts_per_unit=1.0)
+    assert not (tmp_path / "b.bin").exists()

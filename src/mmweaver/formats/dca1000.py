@@ -67,14 +67,18 @@ def write_bin(
     """
     config = _checked(adc.config, iq_order, tx_order)
     samples = adc.samples[:, :, list(config.tx_order)]
-    peak = float(max(np.abs(np.real(samples)).max(initial=0), np.abs(np.imag(samples)).max(initial=0)))
+    parts = np.real(samples), np.imag(samples)
+    low = float(min(part.min(initial=0) for part in parts))
+    high = float(max(part.max(initial=0) for part in parts))
+    peak = max(-low, high)
     if not np.isfinite(peak):
         raise InputError("the ADC samples hold values that are not finite; nothing was written")
     if counts_per_unit is None:
         counts_per_unit = HEADROOM * INT16_MAX / peak if peak > 0 else 1.0
     if not (np.isfinite(counts_per_unit) and counts_per_unit > 0):
         raise InputError(f"counts per unit must be above 0 and finite, not {counts_per_unit}")
-    if round(peak * counts_per_unit) > INT16_MAX:
+    # int16 reaches one count further down than up: a converter that clips leaves -32768
+    if round(high * counts_per_unit) > INT16_MAX or round(low * counts_per_unit) < -INT16_MAX - 1:
         raise InputError(
             f"a sample of {peak * counts_per_unit:.0f} counts does not fit int16;"
             f" take at most {INT16_MAX / peak:.6g} counts per unit"
