@@ -3,33 +3,18 @@
 Writes results/benchmark/inr_decode.json in the project's results schema and prints the same as a table.
 """
 
-import argparse
 import sys
-import time
-from pathlib import Path
 
 import numpy as np
 import torch
+from measuring import least_seconds, report, results_folder
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from mmweaver.experiments.results import write_result
 from mmweaver.fields.paper_inr import InrField, InrShape, fresh_modulation
 
 NUM_FRAMES = 20
-RESULTS = Path(__file__).resolve().parents[1] / "results"
-
-
-def least_seconds(function, repeats: int = 5) -> float:
-    """The least of some runs of wall time; the first, which warms up, does not count."""
-    function()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def decode_costs() -> dict[str, float]:
@@ -66,19 +51,10 @@ def decode_costs() -> dict[str, float]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=RESULTS)
-    arguments = parser.parse_args()
+    out = results_folder(__doc__)
     torch.set_num_threads(1)
-    values = decode_costs()
-    row = {
-        "dataset": {"name": "20 frames of the awr1843 cube, 64 x 32 x 12", "points": NUM_FRAMES * 64 * 32 * 12},
-        "metrics": {name: {"value": float(f"{value:.4g}")} for name, value in values.items()},
-    }
-    config = {"threads": "1, but where the name says 4"}
-    write_result(arguments.out, experiment="benchmark", method="inr_decode", config=config, rows=[row])
-    for name, value in values.items():
-        print(f"{name:34} {value:12.4g}")
+    dataset = {"name": "20 frames of the awr1843 cube, 64 x 32 x 12", "points": NUM_FRAMES * 64 * 32 * 12}
+    report(out, "inr_decode", dataset, decode_costs(), {"threads": "1, but where the name says 4"})
     return 0
 
 

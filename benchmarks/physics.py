@@ -3,7 +3,6 @@
 Writes results/benchmark/physics.json in the project's results schema and prints the same as a table.
 """
 
-import argparse
 import os
 import resource
 import subprocess
@@ -16,6 +15,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
+from measuring import report, results_folder
 
 ROOT = Path(__file__).resolve().parents[1]
 SENTENCE = "a person walks towards the radar, then waves with the left hand"
@@ -96,19 +96,10 @@ def synthesis_errors() -> dict[str, float]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=ROOT / "results")
-    arguments = parser.parse_args()
-    from mmweaver.experiments.results import write_result
-
+    out = results_folder(__doc__)
     values = {**whole_command(), **simulation_costs(), **synthesis_errors()}
-    row = {
-        "dataset": {"name": "bundled sample room, 20 frames", "text": SENTENCE, "body_points": 800},
-        "metrics": {name: {"value": float(f"{value:.4g}")} for name, value in values.items()},
-    }
-    write_result(arguments.out, experiment="benchmark", method="physics", config={"blas_threads": 1}, rows=[row])
-    for name, value in values.items():
-        print(f"{name:32} {value:10.3f}")
+    dataset = {"name": "bundled sample room, 20 frames", "text": SENTENCE, "body_points": 800}
+    report(out, "physics", dataset, values, {"blas_threads": 1})
     return 0
 
 

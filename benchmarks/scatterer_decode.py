@@ -3,37 +3,22 @@
 Writes results/benchmark/scatterer_decode.json in the project's results schema and prints the same as a table.
 """
 
-import argparse
 import sys
-import time
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import torch
+from measuring import least_seconds, report, results_folder
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
-from mmweaver.experiments.results import write_result
 from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.response import Points
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.fields.scatterers.stretch import Stretch
 
 NUM_FRAMES = 20
-RESULTS = Path(__file__).resolve().parents[1] / "results"
 POINT_BY_POINT_CELLS = 20_000  # of 491,520; the rest is extrapolated
-
-
-def least_seconds(function, repeats: int = 9) -> float:
-    """The least of some runs of wall time; the first, which warms up, does not count."""
-    function()
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        function()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def field_of(num_points: int) -> ScattererField:
@@ -76,19 +61,10 @@ def decode_costs() -> dict[str, float]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=RESULTS)
-    arguments = parser.parse_args()
+    out = results_folder(__doc__)
     torch.set_num_threads(1)
-    values = decode_costs()
-    row = {
-        "dataset": {"name": "20 frames of the awr1843 cube, 64 x 32 x 12", "points": NUM_FRAMES * 64 * 32 * 12},
-        "metrics": {name: {"value": float(f"{value:.4g}")} for name, value in values.items()},
-    }
-    config = {"threads": "as the names say, else 1"}
-    write_result(arguments.out, experiment="benchmark", method="scatterer_decode", config=config, rows=[row])
-    for name, value in values.items():
-        print(f"{name:34} {value:12.4g}")
+    dataset = {"name": "20 frames of the awr1843 cube, 64 x 32 x 12", "points": NUM_FRAMES * 64 * 32 * 12}
+    report(out, "scatterer_decode", dataset, decode_costs(), {"threads": "as the names say, else 1"})
     return 0
 
 

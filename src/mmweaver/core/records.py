@@ -4,7 +4,7 @@ Frame of reference for every position: the radar's. x right, y away from the rad
 origin at the radar. Radial velocity positive = moving away.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -184,8 +184,3 @@ class Scene:
     @property
     def floor(self) -> Plane:
         return next(plane for plane in self.planes if plane.kind == "floor")
-
-
-def with_assumptions(scene: Scene, *more: str) -> Scene:
-    """The same scene with more sentences for meta.json."""
-    return replace(scene, assumptions=scene.assumptions + more)

@@ -1,7 +1,5 @@
 """Timed steps and a root path -> one dense, smooth PoseSequence."""
 
-from dataclasses import replace
-
 import numpy as np
 from jaxtyping import Float
 
@@ -53,12 +51,3 @@ def assemble(
     joints_m = solve(body, controls)
     joints_m[..., 2] += floor_z_m
     return PoseSequence(time_s=time_s, joints_m=joints_m, height_m=body.height_m)
-
-
-def with_times(steps: tuple[Step, ...], spans_s: list[float]) -> tuple[Step, ...]:
-    """The steps one after the other, each lasting its span."""
-    ends = np.cumsum(spans_s)
-    return tuple(
-        replace(step, start_s=float(end - span), end_s=float(end))
-        for step, span, end in zip(steps, spans_s, ends, strict=True)
-    )

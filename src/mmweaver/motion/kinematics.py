@@ -69,11 +69,6 @@ def solve(body: Body, controls: Controls) -> Joints:
     return joints
 
 
-def shoulder_elevation(arm_rad: Float[Array, "n 4"]) -> Angles:
-    """How far the upper arm is raised from hanging, 0 to pi."""
-    return np.arccos(np.clip(np.cos(arm_rad[:, 0]) * np.cos(arm_rad[:, 1]), -1 + 1e-6, 1 - 1e-6))
-
-
 def arm_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
     """Upper arm in the chest's frame."""
     sign = 1.0 if side == LEFT else -1.0

@@ -12,7 +12,7 @@ from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.simulation.antenna import mirror_gain, pattern, scatterer_gain
 from mmweaver.simulation.edges import find_edges
 from mmweaver.simulation.materials import MATERIALS, reflection
-from mmweaver.simulation.mirrors import Mirror, mirrors_of, specular_paths
+from mmweaver.simulation.mirrors import mirrors_of, specular_paths
 from mmweaver.simulation.synthesis import fast_time, phasor
 
 AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
@@ -167,6 +167,3 @@ def static_adc(echoes: StaticEchoes, config: RadarConfig, amplitude: np.ndarray 
             delay_s = echoes.way_m[chunk, m].mean(axis=1) / SPEED_OF_LIGHT_MPS
             adc[m] += slow[:, m].T @ fast_time(delay_s, 0.0, config)
     return adc
-
-
-__all__ = ["Mirror", "Room", "StaticEchoes", "static_adc"]

@@ -1,6 +1,6 @@
 """Fits scatterers to a cube: greedily where the most energy is left, then all together, and again."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
@@ -110,8 +110,3 @@ class _Fit:
         """Of one cell: the median of a chi-squared with two degrees of freedom is ln 2 of its mean."""
         power = torch.view_as_real(self.residual).square().sum(-1)
         return float(power.flatten()[:: max(1, power.numel() // 100_000)].median()) / 0.6931
-
-
-def with_strongest(layers: Layers, count: int) -> Layers:
-    """The layers with only the `count` strongest points."""
-    return replace(layers, points=strongest(layers.points, count))

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import CubeGrid, RadarCube
+from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.cube import tdm_compensation
 from mmweaver.dsp.windows import hann
@@ -125,16 +125,3 @@ def _compensation(config: RadarConfig, num_loops: int) -> np.ndarray:
     """TDM compensation (doppler, antenna) of a frame of so many loops."""
     doppler_hz = (np.arange(num_loops) - num_loops // 2) / (num_loops * config.loop_period_s)
     return np.exp(-2j * np.pi * doppler_hz[:, None] * np.repeat(config.tx_delay_s, config.num_rx))
-
-
-def grid_of(config: RadarConfig, num_frames: int, hop: int, start_s: float, frame_step_s: float) -> CubeGrid:
-    """The native grid of a stretch that starts at `start_s`."""
-    step_s = hop * config.loop_period_s if hop else frame_step_s
-    native = CubeGrid.of(config, num_frames)
-    return CubeGrid(
-        frame_time_s=start_s + np.arange(num_frames) * step_s,
-        range_m=native.range_m,
-        radial_velocity_mps=native.radial_velocity_mps,
-        antenna_position_m=native.antenna_position_m,
-        wavelength_m=native.wavelength_m,
-    )
