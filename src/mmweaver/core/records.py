@@ -12,6 +12,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import (
     AdcValues,
     AntennaPositions,
+    ClassPixels,
     CubeValues,
     DepthPixels,
     Faces,
@@ -125,12 +126,21 @@ class CameraIntrinsics:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ClassMask:
+    """What each pixel shows: an index into `names`, COCO-Stuff names ("couch", "wall-concrete"); 0 = not known."""
+
+    index: ClassPixels
+    names: tuple[str, ...]  # names[0] is "unlabeled"
+
+
+@dataclass(frozen=True, kw_only=True)
 class RgbdPhoto:
     """A colour picture and its depth along the optical axis in metres; nan = no measurement."""
 
     rgb: RgbPixels
     depth_m: DepthPixels
     intrinsics: CameraIntrinsics
+    classes: ClassMask | None = None  # where somebody said what is what
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,6 +176,16 @@ class Seat:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Landmark:
+    """Something that a sentence may name as a place to go to: a door, a table, a window, a bed."""
+
+    kind: str  # the word for it: door | table | window | ...
+    position_m: Vec3  # its middle
+    approach_m: tuple[float, float]  # (x, y) of the floor where one stands to use it
+    facing_rad: float  # direction one looks there, from +x (right) towards +y (away from the radar)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Scene:
     """The room of one photo, as the ray caster and the motion room need it."""
 
@@ -180,6 +200,7 @@ class Scene:
     free_space: FreeSpace
     seats: tuple[Seat, ...]
     assumptions: tuple[str, ...]  # sentences for meta.json
+    landmarks: tuple[Landmark, ...] = ()
 
     @property
     def floor(self) -> Plane:

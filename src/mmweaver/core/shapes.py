@@ -29,6 +29,7 @@ Joints = Float[Array, "frame 22 3"]
 # pictures
 RgbPixels = UInt8[Array, "height width 3"]
 DepthPixels = Float[Array, "height width"]
+ClassPixels = UInt8[Array, "height width"]
 # meshes
 Vertices = Float[Array, "vertex 3"]
 Faces = Int[Array, "face 3"]

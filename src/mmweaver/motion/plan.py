@@ -25,6 +25,7 @@ class Step:
     speed: int = 0  # -1 slowly, 0, 1 quickly
     count: int = 0  # how often; 0: as time allows
     seat: str = ""  # the word used for it: sofa, chair, ...
+    target: str = ""  # the Landmark.kind to go to: door, table, ...
     facing: str = ""  # left | right | towards | away | ""
     seconds: float = 0.0  # how long, where the sentence says so
     on_feet: bool = False  # the sentence says that the person stands
