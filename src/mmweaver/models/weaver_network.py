@@ -1,0 +1,163 @@
+"""The weaver: a network that writes the scatterer field of a person moving in a room.
+
+    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 4,800 resting points, faces, unseen places
+                                                           |
+    joints ---PoseEncoder--------> z_pose -----------------+--> strength and place of moving points
+                                                                (anchored to the body and its mirror images)
+
+The network says how strong each echo is on average and where it lies; phases are drawn when a signal is made, for
+nobody can know them. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
+Reference: paper, section "Generalization via Hypernetworks"; decisions 40 and 41.
+"""
+
+import math
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from mmweaver.models.body_anchors import (
+    BODY_FEATURES,
+    GHOST_FEATURES,
+    MIRRORED,
+    NUM_ANCHORS,
+    NUM_GHOSTS,
+    NUM_MIRRORS,
+    Anchors,
+    body_anchors,
+    ghost_anchors,
+)
+from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
+from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
+from mmweaver.models.room_view import PLANE_FEATURES, POINT_FEATURES, RoomView
+
+WIDTH, HEADS, LAYERS = 128, 4, 2
+NUM_UNSEEN = 24  # resting echoes from beyond the picture
+LARGEST_STEP = 12.0  # of a logarithm of power
+
+
+@dataclass(frozen=True, kw_only=True)
+class Echoes:
+    """Mean echoes (..., echo): cross sections in square metres, places in metres, m/s and direction cosines."""
+
+    range_m: Tensor
+    velocity_mps: Tensor
+    direction: Tensor
+    cross_section_m2: Tensor
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoomCode:
+    """What is known of a room once its photo has been encoded; kept and used for any number of motions."""
+
+    view: RoomView
+    z_env: Tensor
+    resting: Echoes
+
+
+class WeaverNetwork(nn.Module):
+    """Rooms and motions -> mean echoes. `encode_room` once a room, then `moving` for each motion."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.environment = EnvironmentEncoder()
+        self.pose = PoseEncoder()
+        self.point = _mlp(POINT_FEATURES + MAP_CHANNELS + 32, 96, 1)
+        self.point_context = nn.Linear(Z_ENV, 32)
+        self.face = _mlp(PLANE_FEATURES + 32, 64, 1)
+        self.unseen = nn.Linear(Z_ENV, NUM_UNSEEN * 4)
+        self.body_in, self.ghost_in = nn.Linear(BODY_FEATURES, WIDTH), nn.Linear(GHOST_FEATURES, WIDTH)
+        self.part = nn.Parameter(0.02 * torch.randn(NUM_ANCHORS + NUM_GHOSTS, WIDTH))
+        self.from_env, self.from_pose = nn.Linear(Z_ENV, WIDTH), nn.Linear(Z_POSE, WIDTH)
+        layer = nn.TransformerEncoderLayer(
+            WIDTH, HEADS, 2 * WIDTH, dropout=0.0, activation="gelu", batch_first=True, norm_first=True
+        )
+        self.mix = nn.TransformerEncoder(layer, LAYERS, enable_nested_tensor=False)
+        self.out = nn.Sequential(nn.LayerNorm(WIDTH), nn.Linear(WIDTH, 5))
+        for head in (self.point[-1], self.face[-1], self.out[-1]):
+            nn.init.normal_(head.weight, std=1e-3)
+            nn.init.zeros_(head.bias)
+        nn.init.normal_(self.unseen.weight, std=1e-3)
+        nn.init.normal_(self.unseen.bias, std=0.5)
+
+    def encode_room(self, view: RoomView) -> RoomCode:
+        """Rooms (room, ...) -> their code; resting echoes (room, echo)."""
+        z_env, places = self.environment(view.image)
+        parts = [self._points(view, z_env, places), self._faces(view, z_env), self._unseen(z_env)]
+        resting = Echoes(
+            range_m=torch.cat([part.range_m for part in parts], -1),
+            velocity_mps=torch.cat([part.velocity_mps for part in parts], -1),
+            direction=torch.cat([part.direction for part in parts], -2),
+            cross_section_m2=torch.cat([part.cross_section_m2 for part in parts], -1),
+        )
+        return RoomCode(view=view, z_env=z_env, resting=resting)
+
+    def moving(self, code: RoomCode, joints_m: Tensor, velocity_mps: Tensor) -> Echoes:
+        """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo)."""
+        body = body_anchors(joints_m, velocity_mps, code.view)
+        ghosts = ghost_anchors(joints_m, velocity_mps, code.view)
+        z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
+        token = torch.cat([self.body_in(body.features), self.ghost_in(ghosts.features)], dim=-2) + self.part
+        token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
+        mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
+        return _placed(self.out(mixed), body, ghosts)
+
+    def _points(self, view: RoomView, z_env: Tensor, places: Tensor) -> Echoes:
+        local = nn.functional.interpolate(places, (60, 80), mode="bilinear", align_corners=False)
+        context = self.point_context(z_env)[:, None].expand(-1, view.point_m.shape[1], -1)
+        known = torch.cat([view.point_features, local.flatten(2).transpose(1, 2), context], dim=-1)
+        level = self.point(known)[..., 0]
+        distance = view.point_m.norm(dim=-1).clamp(min=0.15)
+        # a Lambert surface of a few percent, turned by the network
+        cross_section = view.point_area_m2 * torch.exp(_bounded(level) - 4.0)
+        return _resting(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
+
+    def _faces(self, view: RoomView, z_env: Tensor) -> Echoes:
+        """The mirror image of the radar in each face: an echo from the foot of the perpendicular."""
+        context = self.point_context(z_env)[:, None].expand(-1, view.plane_features.shape[1], -1)
+        level = self.face(torch.cat([view.plane_features, context], dim=-1))[..., 0]
+        normal = view.plane_axes[..., 2, :]
+        distance = -(view.plane_centre_m * normal).sum(-1)
+        there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0)
+        cross_section = there * torch.exp(_bounded(level) - 4.0)
+        return _resting(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
+
+    def _unseen(self, z_env: Tensor) -> Echoes:
+        free = self.unseen(z_env).unflatten(-1, (NUM_UNSEEN, 4))
+        distance = 0.3 + 3.7 * torch.sigmoid(free[..., 0])
+        direction = torch.stack([torch.tanh(free[..., 1]), 0.5 * torch.tanh(free[..., 2])], dim=-1)
+        return _resting(distance, direction, torch.exp(_bounded(free[..., 3]) - 6.0))
+
+
+def _resting(distance: Tensor, direction: Tensor, cross_section: Tensor) -> Echoes:
+    return Echoes(
+        range_m=distance, velocity_mps=torch.zeros_like(distance), direction=direction, cross_section_m2=cross_section
+    )
+
+
+def _placed(out: Tensor, body: Anchors, ghosts: Anchors) -> Echoes:
+    """Network's words: level, and small steps in range, velocity and direction."""
+    level, step_r, step_v, step_x, step_z = out.unbind(-1)
+    there = torch.cat([body.is_there, ghosts.is_there], -1)
+    start = torch.cat([torch.full_like(body.range_m, math.log(0.02)), torch.full_like(ghosts.range_m, math.log(2e-4))], -1)
+    range_m = torch.cat([body.range_m, ghosts.range_m], -1)
+    return Echoes(
+        range_m=range_m - 0.06 + 0.2 * torch.tanh(step_r),
+        velocity_mps=torch.cat([body.velocity_mps, ghosts.velocity_mps], -1) + 0.5 * torch.tanh(step_v),
+        direction=torch.cat([body.direction, ghosts.direction], -2)
+        + 0.1 * torch.tanh(torch.stack([step_x, step_z], -1)) / range_m[..., None],
+        cross_section_m2=there * torch.exp(start + _bounded(level)),
+    )
+
+
+def _bounded(level: Tensor) -> Tensor:
+    return LARGEST_STEP * torch.tanh(level / LARGEST_STEP)
+
+
+def _mlp(wide_in: int, hidden: int, wide_out: int) -> nn.Sequential:
+    return nn.Sequential(
+        nn.Linear(wide_in, hidden), nn.GELU(), nn.Linear(hidden, hidden), nn.GELU(), nn.Linear(hidden, wide_out)
+    )
+
+
+assert len(MIRRORED) * NUM_MIRRORS == NUM_GHOSTS
