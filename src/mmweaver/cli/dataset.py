@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 120 --workers 4
-  mmweaver dataset small/ --rooms "living room,office" --layouts 2 --sequences 12
+  mmweaver dataset small/ --rooms "living_room,office" --layouts 2 --sequences 12
   mmweaver dataset data/ --workers 4            # after a kill: goes on where it stopped
 """
 

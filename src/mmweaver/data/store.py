@@ -168,8 +168,8 @@ def read_rooms(folder: Path) -> list[StoredRoom]:
         raise InputError(f"{folder} holds no data set (no {PLAN_FILE}); make one with: mmweaver dataset {folder}")
     root = zarr.open_group(folder, mode="r")
     config = RadarConfig.from_json(json.dumps(root.attrs["radar"]))
-    names = sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and is_done(folder, path.name))
-    return [_room(folder / name, config) for name in names if "iq" in zarr.open_group(folder / name, mode="r")]
+    names = sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and (path / "iq").is_dir())
+    return [_room(folder / name, config) for name in names]
 
 
 def _room(folder: Path, config: RadarConfig) -> StoredRoom:

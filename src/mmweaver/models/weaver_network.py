@@ -73,6 +73,7 @@ class WeaverNetwork(nn.Module):
             WIDTH, HEADS, 2 * WIDTH, dropout=0.0, activation="gelu", batch_first=True, norm_first=True
         )
         self.mix = nn.TransformerEncoder(layer, LAYERS, enable_nested_tensor=False)
+        self.noise_level = nn.Parameter(torch.zeros(()))  # logarithm of the receiver's noise over its data sheet's
         self.out = nn.Sequential(nn.LayerNorm(WIDTH), nn.Linear(WIDTH, 5))
         for head in (self.point[-1], self.face[-1], self.out[-1]):
             nn.init.normal_(head.weight, std=1e-3)
@@ -92,11 +93,16 @@ class WeaverNetwork(nn.Module):
         )
         return RoomCode(view=view, z_env=z_env, resting=resting)
 
-    def moving(self, code: RoomCode, joints_m: Tensor, velocity_mps: Tensor) -> Echoes:
-        """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo)."""
+    def moving(self, code: RoomCode, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None) -> Echoes:
+        """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo).
+
+        `frames` (room, chosen) picks the frames whose echoes are wanted; the pose encoder sees all.
+        """
+        z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
+        if frames is not None:
+            z_pose, joints_m, velocity_mps = (_picked(part, frames) for part in (z_pose, joints_m, velocity_mps))
         body = body_anchors(joints_m, velocity_mps, code.view)
         ghosts = ghost_anchors(joints_m, velocity_mps, code.view)
-        z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
         token = torch.cat([self.body_in(body.features), self.ghost_in(ghosts.features)], dim=-2) + self.part
         token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
@@ -127,6 +133,11 @@ class WeaverNetwork(nn.Module):
         distance = 0.3 + 3.7 * torch.sigmoid(free[..., 0])
         direction = torch.stack([torch.tanh(free[..., 1]), 0.5 * torch.tanh(free[..., 2])], dim=-1)
         return _resting(distance, direction, torch.exp(_bounded(free[..., 3]) - 6.0))
+
+
+def _picked(values: Tensor, frames: Tensor) -> Tensor:
+    index = frames.reshape(*frames.shape, *[1] * (values.dim() - 2)).expand(-1, -1, *values.shape[2:])
+    return values.gather(1, index)
 
 
 def _resting(distance: Tensor, direction: Tensor, cross_section: Tensor) -> Echoes:

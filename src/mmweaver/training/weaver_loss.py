@@ -1,0 +1,61 @@
+"""What the weaver is trained on: mean power, never phase.
+
+The power of a radar cell in which several echoes of unknown phase meet is exponentially distributed about its mean.
+The likelihood of that mean is the Itakura-Saito divergence, p/m - log(p/m) - 1: it asks for the right decibels
+everywhere, faint cells as much as strong ones. Reference: Fevotte et al. 2009; decision 41.
+"""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mmweaver.models.mean_power import MeanPower, PowerMaps
+from mmweaver.models.radar_view import points_of
+from mmweaver.models.weaver_network import Echoes
+
+FLOOR = 1e-5  # of the peak: what a 50 dB picture no longer shows counts for nothing
+POOLS = ((1, 1), (4, 2), (8, 8))  # cells of a map taken together: small steps of an echo shall not cost twice
+
+
+@dataclass(frozen=True, kw_only=True)
+class Targets:
+    """Maps of recorded (or simulated) power: of some frames, and of the room without a person."""
+
+    maps: PowerMaps  # (sequence, frame, range, other)
+    empty: PowerMaps  # (sequence, range, other)
+
+
+def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
+    """Mean over cells of p/m - log(p/m) - 1, both raised by `least` (broadcast)."""
+    ratio = (power + least) / (mean + least)
+    return (ratio - ratio.log() - 1).mean()
+
+
+def weaver_loss(
+    radar: MeanPower, resting: Echoes, moving: Echoes, targets: Targets, noise_gain: Tensor
+) -> dict[str, Tensor]:
+    """Terms of the loss by name; their sum is what is minimised. `noise_gain` scales the receiver's noise floor."""
+    still = radar.maps(points_of(resting, radar.response))
+    person = radar.maps(points_of(moving, radar.response))
+    terms: dict[str, Tensor] = {}
+    for name, noise in zip(("range_doppler", "range_azimuth", "range_elevation"), radar.noise_maps(), strict=True):
+        truth, empty = getattr(targets.maps, name), getattr(targets.empty, name)
+        if truth.shape[-1] == 0:
+            continue
+        floor = noise * noise_gain
+        mean = getattr(person, name) + getattr(still, name)[:, None] + floor
+        peak = truth.amax(dim=(1, 2, 3), keepdim=True)
+        for rows, columns in POOLS:
+            terms[f"{name}_{rows}x{columns}"] = itakura_saito(
+                _pooled(mean, rows, columns), _pooled(truth, rows, columns), FLOOR * peak
+            ) / len(POOLS)
+        least = 1e-3 * floor + FLOOR * empty.amax(dim=(1, 2), keepdim=True)
+        terms[f"{name}_empty"] = 0.5 * itakura_saito(getattr(still, name), empty, least)
+    return terms
+
+
+def _pooled(maps: Tensor, rows: int, columns: int) -> Tensor:
+    if (rows, columns) == (1, 1):
+        return maps
+    return torch.nn.functional.avg_pool2d(maps, (rows, columns), ceil_mode=True)
