@@ -10,6 +10,7 @@ from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto, 
 from mmweaver.data.plan import PEOPLE_HEIGHT_M, RoomSpec, SequenceSpec
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.compose import compose
+from mmweaver.motion.resample import joints_and_velocities
 from mmweaver.scene.procedural.room import make_room
 from mmweaver.simulation.simulator import Simulator
 
@@ -55,17 +56,27 @@ def make(spec: RoomSpec, config: RadarConfig, num_frames: int) -> MadeRoom:
 
 
 def make_sequence(
-    spec: SequenceSpec, scene: Scene, simulator: Simulator, num_frames: int, *, subject: int | None = None
+    spec: SequenceSpec,
+    scene: Scene,
+    simulator: Simulator,
+    num_frames: int,
+    *,
+    subject: int | None = None,
+    noise_seed: int | None = None,
 ) -> MadeSequence:
-    """One sequence; `subject` gives the person another skin (a twin). Raises InputError where there is no room."""
+    """One sequence; another `subject` has another skin and another `noise_seed` other noise (a twin).
+
+    Raises InputError where there is no room.
+    """
     config = simulator.config
     pose = pose_of(spec, scene, config, num_frames)
     if subject is not None:
         pose = replace(pose, subject=subject)
-    parts = [radar_cube(chunk).values for chunk in simulator.chunks(pose, num_frames=num_frames, seed=spec.seed)]
+    seed = spec.seed if noise_seed is None else noise_seed
+    parts = [radar_cube(chunk).values for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed)]
     grid = CubeGrid.of(config, num_frames)
     cube = RadarCube(values=np.concatenate(parts), grid=grid, config=config, scale=1.0)
-    joints, velocity = joints_in_frames(pose, grid.frame_time_s + config.active_time_s / 2)
+    joints, velocity = joints_and_velocities(pose, grid.frame_time_s + config.active_time_s / 2)
     return MadeSequence(spec=spec, cube=cube, joints_m=joints, joint_velocity_mps=velocity)
 
 
@@ -83,15 +94,6 @@ def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: i
             if attempt == RETRIES - 1:
                 raise
     raise AssertionError("unreachable")
-
-
-def joints_in_frames(pose: PoseSequence, time_s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Joints and their velocities at given times, (time, 22, 3) float32 each."""
-    from scipy.interpolate import CubicSpline
-
-    spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
-    time_s = np.clip(time_s, pose.time_s[0], pose.time_s[-1])
-    return spline(time_s).astype(np.float32), spline(time_s, 1).astype(np.float32)
 
 
 def _empty(simulator: Simulator) -> np.ndarray:

@@ -139,6 +139,7 @@ class StoredRoom:
     folder: Path
     kind: str
     layout: int
+    lighting: str
     photo: RgbdPhoto
     empty: np.ndarray  # (range, antenna) complex64
     joints_m: np.ndarray
@@ -172,6 +173,11 @@ def read_rooms(folder: Path) -> list[StoredRoom]:
     return [_room(folder / name, config) for name in names]
 
 
+def read_plan(folder: Path) -> dict[str, Any]:
+    """The plan a data set was made by."""
+    return json.loads((folder / PLAN_FILE).read_text())
+
+
 def _room(folder: Path, config: RadarConfig) -> StoredRoom:
     import zarr
 
@@ -181,7 +187,7 @@ def _room(folder: Path, config: RadarConfig) -> StoredRoom:
     classes = ClassMask(index=np.asarray(group["photo_class"]), names=names) if names else None
     empty = np.asarray(group["empty_iq"])
     return StoredRoom(
-        folder=folder, kind=attrs["kind"], layout=attrs["layout"],
+        folder=folder, kind=attrs["kind"], layout=attrs["layout"], lighting=attrs["lighting"],
         photo=RgbdPhoto(
             rgb=np.asarray(group["photo_rgb"]), depth_m=np.asarray(group["photo_depth_m"]).astype(np.float64),
             intrinsics=CameraIntrinsics(**attrs["camera"]), classes=classes,

@@ -60,8 +60,8 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anch
     distance = place.norm(dim=-1).clamp(min=0.2)
     towards = -place / distance[..., None]
     radial = -(speed * towards).sum(-1)
-    facing = _facing(joints_m)
-    side = (facing[..., None, :] * towards).sum(-1)
+    front = facing(joints_m)
+    side = (front[..., None, :] * towards).sum(-1)
     clear, in_view = _clearance(place, distance, room)
     floor = room.plane_centre_m[:, 0, 2]
     length = bone.norm(dim=-1).clamp(min=1e-3)
@@ -69,7 +69,7 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anch
     features = torch.stack(
         [
             *(place / 3).unbind(-1), distance / 3, 1 / distance, radial / 2, speed.norm(dim=-1) / 2,
-            *unit.unbind(-1), (unit * towards).sum(-1).abs(), side, *facing[..., None, :2].expand(*distance.shape, 2).unbind(-1),
+            *unit.unbind(-1), (unit * towards).sum(-1).abs(), side, *front[..., None, :2].expand(*distance.shape, 2).unbind(-1),
             place[..., 2] - floor[:, None, None], *clear.unbind(-1), in_view, _depth_behind(distance, towards),
         ],
         dim=-1,
@@ -127,7 +127,7 @@ def _bones(joints_m: Tensor) -> Tensor:
     return torch.stack(parts, dim=-2)
 
 
-def _facing(joints_m: Tensor) -> Tensor:
+def facing(joints_m: Tensor) -> Tensor:
     """Where the chest looks, (..., 3): right shoulder to left shoulder, turned to the front."""
     across = joints_m[..., joint("left_shoulder"), :] - joints_m[..., joint("right_shoulder"), :]
     up = joints_m[..., joint("neck"), :] - joints_m[..., joint("pelvis"), :]
@@ -144,7 +144,9 @@ def _clearance(place: Tensor, distance: Tensor, room: RoomView) -> tuple[Tensor,
         row = room.camera[:, None, None, 1] * camera[..., 1] / depth + room.camera[:, None, None, 3]
         rows, columns = room.depth_m.shape[-2:]
         grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1)
-        surface = torch.nn.functional.grid_sample(room.depth_m[:, None], grid, mode="nearest", align_corners=False)[:, 0]
+        surface = torch.nn.functional.grid_sample(room.depth_m[:, None], grid, mode="nearest", align_corners=False)[
+            :, 0
+        ]
         inside = (grid.abs() < 1).all(dim=-1).to(distance.dtype)
         known = (surface > 0.1) & (inside > 0)
         seen.append(torch.where(known, torch.tanh(2 * (surface - depth)), torch.ones_like(surface)))

@@ -25,7 +25,9 @@ class EnvironmentEncoder(nn.Module):
         from transformers import EfficientNetConfig, EfficientNetModel
 
         b0 = EfficientNetModel(
-            EfficientNetConfig(width_coefficient=1.0, depth_coefficient=1.0, hidden_dim=1280, num_channels=IMAGE_CHANNELS)
+            EfficientNetConfig(
+                width_coefficient=1.0, depth_coefficient=1.0, hidden_dim=1280, num_channels=IMAGE_CHANNELS
+            )
         )
         self.stem = b0.embeddings
         self.blocks = nn.ModuleList(list(b0.encoder.blocks)[:BLOCKS])

@@ -19,8 +19,8 @@ JOINT_VALUES = 6  # place and velocity
 class PoseEncoder(nn.Module):
     """Joints and their velocities (sequence, frame, 22, 6) -> z_pose (sequence, frame, 512).
 
-        (frame, 22, 6) -> FC -> + joint -> attention over joints -> mean | pelvis -> FC -> + time
-                       -> attention over frames -> z_pose
+    (frame, 22, 6) -> FC -> + joint -> attention over joints -> mean | pelvis -> FC -> + time
+                   -> attention over frames -> z_pose
     """
 
     def __init__(self) -> None:

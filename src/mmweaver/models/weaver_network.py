@@ -150,7 +150,9 @@ def _placed(out: Tensor, body: Anchors, ghosts: Anchors) -> Echoes:
     """Network's words: level, and small steps in range, velocity and direction."""
     level, step_r, step_v, step_x, step_z = out.unbind(-1)
     there = torch.cat([body.is_there, ghosts.is_there], -1)
-    start = torch.cat([torch.full_like(body.range_m, math.log(0.02)), torch.full_like(ghosts.range_m, math.log(2e-4))], -1)
+    start = torch.cat(
+        [torch.full_like(body.range_m, math.log(0.02)), torch.full_like(ghosts.range_m, math.log(2e-4))], -1
+    )
     range_m = torch.cat([body.range_m, ghosts.range_m], -1)
     return Echoes(
         range_m=range_m - 0.06 + 0.2 * torch.tanh(step_r),

@@ -5,6 +5,7 @@ The likelihood of that mean is the Itakura-Saito divergence, p/m - log(p/m) - 1:
 everywhere, faint cells as much as strong ones. Reference: Fevotte et al. 2009; decision 41.
 """
 
+import math
 from dataclasses import dataclass
 
 import torch
@@ -14,6 +15,7 @@ from mmweaver.models.mean_power import MeanPower, PowerMaps
 from mmweaver.models.radar_view import points_of
 from mmweaver.models.weaver_network import Echoes
 
+STEEPEST = 8.0
 FLOOR = 1e-5  # of the peak: what a 50 dB picture no longer shows counts for nothing
 POOLS = ((1, 1), (4, 2), (8, 8))  # cells of a map taken together: small steps of an echo shall not cost twice
 
@@ -27,9 +29,14 @@ class Targets:
 
 
 def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
-    """Mean over cells of p/m - log(p/m) - 1, both raised by `least` (broadcast)."""
-    ratio = (power + least) / (mean + least)
-    return (ratio - ratio.log() - 1).mean()
+    """Mean over cells of p/m - log(p/m) - 1, both raised by `least` (broadcast).
+
+    From p = STEEPEST m on it goes on as a straight line in decibels: one glint that was not foreseen shall not weigh
+    as much as all the rest.
+    """
+    log_ratio = (power + least).log() - (mean + least).log()
+    bounded = log_ratio.clamp(max=math.log(STEEPEST))
+    return (bounded.exp() - bounded - 1 + (STEEPEST - 1) * (log_ratio - bounded)).mean()
 
 
 def weaver_loss(

@@ -152,7 +152,9 @@ class _Loop:
         total = 0.0
         with torch.inference_mode():
             for index in range(recipe.validation_batches):
-                batch = draw_batch(self.unseen, 10_000 + recipe.seed, index, size=recipe.batch_size, frames=recipe.frames)
+                batch = draw_batch(
+                    self.unseen, 10_000 + recipe.seed, index, size=recipe.batch_size, frames=recipe.frames
+                )
                 total += float(torch.stack(list(self._terms(batch).values())).sum())
         value = total / recipe.validation_batches
         if value < self.best:
