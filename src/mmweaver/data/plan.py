@@ -14,7 +14,8 @@ ACTIVITIES: dict[str, tuple[str, ...]] = {
     "walking": ("a person walks towards the radar", "a person walks to the left", "a person walks to the right",
                 "someone walks away", "a person walks around"),
     "jogging": ("a person jogs on the spot", "a person jogs"),
-    "waving": ("a person waves with the right hand", "a person waves with the left hand", "someone waves with both hands"),
+    "waving": ("a person waves with the right hand", "a person waves with the left hand",
+               "someone waves with both hands"),
     "clapping": ("a person claps", "someone claps quickly"),
     "jumping jacks": ("a person does jumping jacks",),
     "left-hand raise": ("a person raises the left hand",),
@@ -50,17 +51,15 @@ class Withheld:
         >>> Withheld().split(kind="living_room", layout=0, person=3, activity="walking")
         ''
         """
-        reasons = [
-            name
-            for name, is_so in (
-                ("validation", kind in self.validation_kinds),
-                ("test_room", kind in self.test_kinds),
-                ("test_layout", layout >= self.first_test_layout and kind not in self.validation_kinds + self.test_kinds),
-                ("test_person", person in self.test_people),
-                ("test_activity", activity in self.test_activities),
-            )
-            if is_so
-        ]  # fmt: skip
+        is_other_kind = kind in self.validation_kinds + self.test_kinds
+        withheld = {
+            "validation": kind in self.validation_kinds,
+            "test_room": kind in self.test_kinds,
+            "test_layout": layout >= self.first_test_layout and not is_other_kind,
+            "test_person": person in self.test_people,
+            "test_activity": activity in self.test_activities,
+        }
+        reasons = [name for name, is_so in withheld.items() if is_so]
         return "train" if not reasons else reasons[0] if len(reasons) == 1 else ""
 
 

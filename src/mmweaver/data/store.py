@@ -92,7 +92,7 @@ def write_room(folder: Path, made: MadeRoom) -> None:
     _put(group, "photo_depth_m", photo.depth_m.astype(np.float32), ("row", "column"))
     if photo.classes is not None:
         _put(group, "photo_class", photo.classes.index, ("row", "column"))
-    _put(group, "empty_iq", np.stack([made.empty.real, made.empty.imag], -1), ("range", "antenna", "part"))
+    _put(group, "empty_iq", np.stack([np.real(made.empty), np.imag(made.empty)], -1), ("range", "antenna", "part"))
     group.attrs.update(
         {
             "kind": made.spec.kind, "layout": made.spec.layout, "lighting": made.spec.lighting,
@@ -155,7 +155,7 @@ class StoredRoom:
         """The cube of one sequence, in sqrt(mW)."""
         import zarr
 
-        group = zarr.open_group(self.folder, mode="r")
+        group: Any = zarr.open_group(self.folder, mode="r")
         pairs = np.asarray(group["iq"][index]).astype(np.float32) * np.float32(group["iq_scale"][index])
         values = np.ascontiguousarray(pairs).view(np.complex64)[..., 0]
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
@@ -182,7 +182,7 @@ def _room(folder: Path, config: RadarConfig) -> StoredRoom:
     import zarr
 
     group = zarr.open_group(folder, mode="r")
-    attrs = dict(group.attrs)
+    attrs: dict[str, Any] = dict(group.attrs)
     names = tuple(attrs["class_names"])
     classes = ClassMask(index=np.asarray(group["photo_class"]), names=names) if names else None
     empty = np.asarray(group["empty_iq"])

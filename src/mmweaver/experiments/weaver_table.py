@@ -198,7 +198,8 @@ def main() -> None:
         config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each}, rows=rows,
     )  # fmt: skip
     for row in rows:
-        print(f"{row['method']:30}", *(f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items()))
+        values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
+        print(f"{row['method']:30}", *values, flush=True)  # noqa: T201
 
 
 def _row(name: str, values: dict[str, np.ndarray], rooms: list[str], split: str) -> dict[str, Any]:

@@ -69,7 +69,8 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anch
     features = torch.stack(
         [
             *(place / 3).unbind(-1), distance / 3, 1 / distance, radial / 2, speed.norm(dim=-1) / 2,
-            *unit.unbind(-1), (unit * towards).sum(-1).abs(), side, *front[..., None, :2].expand(*distance.shape, 2).unbind(-1),
+            *unit.unbind(-1), (unit * towards).sum(-1).abs(), side,
+            *front[..., None, :2].expand(*distance.shape, 2).unbind(-1),
             place[..., 2] - floor[:, None, None], *clear.unbind(-1), in_view, _depth_behind(distance, towards),
         ],
         dim=-1,
@@ -103,7 +104,8 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anc
     cos = (to_image * normal).sum(-1).abs()
     material = room.plane_features[:, None, :NUM_MIRRORS, None, :5].expand(*cos.shape, 5)
     features = torch.stack(
-        [near.expand_as(far) / 3, far / 3, radial / 2, cos, *torch.tanh(3 * margin).unbind(-1), height / 2, own_height.expand_as(far) / 2,
+        [near.expand_as(far) / 3, far / 3, radial / 2, cos, *torch.tanh(3 * margin).unbind(-1), height / 2,
+         own_height.expand_as(far) / 2,
          *to_image.unbind(-1)[::2]],
         dim=-1,
     )  # fmt: skip
@@ -135,7 +137,7 @@ def facing(joints_m: Tensor) -> Tensor:
 
 
 def _clearance(place: Tensor, distance: Tensor, room: RoomView) -> tuple[Tensor, Tensor]:
-    """How much farther than the anchor the photo's surface lies there (at it, above it, beside it), and whether in view."""
+    """How much farther than the anchor the photo's surface lies (at it, above, beside it), and whether in view."""
     seen, inside = [], torch.zeros_like(distance)
     for x, z in ((0.0, 0.0), (0.0, 0.1), (0.12, 0.0), (-0.12, 0.0)):
         camera = (place + place.new_tensor([x, 0.0, z])) @ room.camera_from_radar[:, None].transpose(-1, -2)

@@ -11,8 +11,8 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
-from mmweaver.core.records import CubeGrid
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
 from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.response import PointResponse, Points

@@ -47,12 +47,14 @@ class EnvironmentEncoder(nn.Module):
 
 
 def _channels(stem: nn.Module, blocks: nn.ModuleList) -> int:
+    stem.eval()
+    blocks.eval()
     with torch.no_grad():
-        stem.eval(), blocks.eval()
         x = stem(torch.zeros(1, IMAGE_CHANNELS, 32, 32))
         for block in blocks:
             x = block(x)
-    stem.train(), blocks.train()
+    stem.train()
+    blocks.train()
     return x.shape[1]
 
 

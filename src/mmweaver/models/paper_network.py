@@ -6,6 +6,8 @@
 Reference: paper, section "Generalization via Hypernetworks" and "Implementation" (2.1 M + 4.9 M, 14.73 M in all).
 """
 
+import itertools
+
 import torch
 from torch import Tensor, nn
 
@@ -58,7 +60,7 @@ def evaluate_each(theta: Tensor, gamma: Tensor, beta: Tensor, encoded: Tensor, s
     act = torch.relu
     at, h = 0, encoded
     sizes = shape.sizes
-    for index, (fan_in, fan_out) in enumerate(zip(sizes, sizes[1:], strict=False)):
+    for index, (fan_in, fan_out) in enumerate(itertools.pairwise(sizes)):
         weight = theta[:, at : at + fan_in * fan_out].unflatten(-1, (fan_out, fan_in))
         bias = theta[:, at + fan_in * fan_out : at + (fan_in + 1) * fan_out]
         at += (fan_in + 1) * fan_out

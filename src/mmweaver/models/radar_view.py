@@ -32,7 +32,7 @@ def points_of(echoes: Echoes, response: PointResponse) -> Points:
 
 
 def pattern_db(direction: Tensor, config: RadarConfig) -> Tensor:
-    """Loss of one antenna towards direction cosines (..., 2) along x and z; the twin of `simulation.antenna.pattern`."""
+    """Loss of one antenna towards direction cosines (..., 2) along x and z; `simulation.antenna.pattern` in torch."""
     x, z = direction.unbind(-1)
     ahead = (1 - x.square() - z.square()).clamp(min=1e-4).sqrt()
     azimuth = torch.rad2deg(torch.atan2(x, ahead)).abs().clamp(min=1e-3)

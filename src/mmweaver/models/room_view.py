@@ -113,15 +113,16 @@ def _points(grid: DepthGrid, scene: Scene, rows: np.ndarray, columns: np.ndarray
     slope = ray / np.array([grid.intrinsics.fx, grid.intrinsics.fy])
     cell = (grid.intrinsics.height / POINT_ROWS) * (grid.intrinsics.width / POINT_COLUMNS)
     solid_angle = cell / (grid.intrinsics.fx * grid.intrinsics.fy) / (1 + (slope**2).sum(-1)) ** 1.5
-    known = np.isfinite(depth.ravel())
-    has_normal = np.isfinite(normal).all(axis=1)
+    known = np.asarray(np.isfinite(depth.ravel()))
+    has_normal = np.asarray(np.isfinite(normal).all(axis=1))
     point, normal = np.where(known[:, None], point, 0.0), np.where(has_normal[:, None], normal, 0.0)
     distance = np.where(known, distance, 0.0)
     towards = -point / np.maximum(distance, 1e-3)[:, None]
     cos = np.abs((normal * towards).sum(axis=1))
+    height = np.asarray(point[:, 2])
     features = np.column_stack(
         [
-            distance / 4, point / 4, (point[:, 2] - scene.floor_z_m) / 2, cos, (1 - cos) ** 8, cos**8,
+            distance / 4, point / 4, (height - scene.floor_z_m) / 2, cos, (1 - cos) ** 8, cos**8,
             np.abs(normal[:, 2]), has_normal, known, colour.mean(axis=1),
         ]
     )  # fmt: skip

@@ -75,7 +75,9 @@ class WeaverNetwork(nn.Module):
         self.mix = nn.TransformerEncoder(layer, LAYERS, enable_nested_tensor=False)
         self.noise_level = nn.Parameter(torch.zeros(()))  # logarithm of the receiver's noise over its data sheet's
         self.out = nn.Sequential(nn.LayerNorm(WIDTH), nn.Linear(WIDTH, 5))
-        for head in (self.point[-1], self.face[-1], self.out[-1]):
+        for network in (self.point, self.face, self.out):
+            head = network[-1]
+            assert isinstance(head, nn.Linear)
             nn.init.normal_(head.weight, std=1e-3)
             nn.init.zeros_(head.bias)
         nn.init.normal_(self.unseen.weight, std=1e-3)
