@@ -45,12 +45,18 @@ def add_verb(verbs: Any) -> None:
     )
     room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
     person = parser.add_argument_group("the person")
-    person.add_argument("--text", help=f"what the person does (with --demo: {DEMO_TEXT!r})")
+    person.add_argument(
+        "--text",
+        action="append",
+        help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
+    )
     person.add_argument(
         "--at",
         type=place,
+        action="append",
         metavar="X,Y",
-        help="where the person starts: metres right of and ahead of the radar (default: chosen)",
+        help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
+        " the first --at is the first one's",
     )
     radar = parser.add_argument_group("the radar")
     radar.add_argument(
@@ -91,24 +97,24 @@ def run(arguments: argparse.Namespace) -> int:
             "frames": arguments.frames,
             "fps": arguments.fps,
             "seed": arguments.seed,
-            "at": arguments.at,
+            "at": arguments.at if arguments.at is None or len(arguments.at) > 1 or len(text) > 1 else arguments.at[0],
             "keep_adc": arguments.bin,
         }
-        check_request(weaver.radar, text=text, **request)
-        result = weaver.generate(_read_room(weaver, arguments), text, **request)
+        texts = text if len(text) > 1 else text[0]
+        check_request(weaver.radar, text=texts, **request)
+        result = weaver.generate(_read_room(weaver, arguments), texts, **request)
         meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order)
     print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
 
 
-def _check_inputs(arguments: argparse.Namespace) -> tuple[str, Path]:
-    """The text and the output folder, once it is clear which room is meant."""
+def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str], Path]:
+    """The texts and the output folder, once it is clear which room is meant."""
     pictures = (arguments.rgb, arguments.depth, arguments.camera)
     if arguments.demo:
         if any(picture is not None for picture in pictures):
             raise InputError("--demo brings its own room; leave out --rgb, --depth and --camera, or leave out --demo")
-        text = DEMO_TEXT if arguments.text is None else arguments.text
-        return text, arguments.out or Path(DEMO_OUT)
+        return arguments.text or [DEMO_TEXT], arguments.out or Path(DEMO_OUT)
     if arguments.rgb is None and arguments.depth is None:
         raise InputError("which room? give --rgb and --depth, or try --demo")
     if arguments.depth is None:

@@ -35,11 +35,13 @@ def compose(
     range_window_m: tuple[float, float],
     start_m: tuple[float, float] | None = None,
     height_m: float | None = None,
+    others: tuple[PoseSequence, ...] = (),
 ) -> Motion:
     """Reads the sentence, shares out the time, finds room on the scene's floor, and moves the body.
 
     `range_window_m`: the slant ranges that the radar keeps; the body stays inside. `start_m`: where the person starts,
-    (x, y). `height_m`: the body's height, else drawn from the seed between 1.63 and 1.96 m. Raises InputError where the
+    (x, y). `height_m`: the body's height, else drawn from the seed between 1.63 and 1.96 m. `others`: people who are
+    there already; the way keeps clear of them (see `company`). Raises InputError where the
     sentence is not understood, its steps do not fit the time, or the room has no place for it.
     """
     if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
@@ -50,7 +52,7 @@ def compose(
     body = Body(height_m)
     floor = FloorMap(scene, range_window_m, height_m)
     plan, spot_notes = _jogging_without_a_way(plan)
-    placement = place(plan, floor, body, seed=seed, start_m=start_m)
+    placement = place(plan, floor, body, seed=seed, start_m=start_m, others=others)
     pose = assemble(
         plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
         seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,

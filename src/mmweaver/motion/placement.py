@@ -6,7 +6,9 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
+from mmweaver.motion.apart import keeps_clear
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
 from mmweaver.motion.plan import MotionPlan, Step
@@ -42,9 +44,10 @@ class Placement:
 
 
 def place(
-    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None
-) -> Placement:
-    """Finds a way for the whole plan that is free and in view all along.
+    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None,
+    others: tuple[PoseSequence, ...] = (),
+) -> Placement:  # fmt: skip
+    """Finds a way for the whole plan that is free and in view all along, and clear of `others`.
 
     `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, or where
     there is no room, saying what there is.
@@ -57,9 +60,12 @@ def place(
     ways: list[Way] = []
     for _ in range(TRIES):
         try:
-            ways.append(_try(plan, floor, body, rng, start_m))
+            way = _try(plan, floor, body, rng, start_m)
         except NoWay:
             continue
+        if others and not _is_clear_of(way, plan, others):
+            continue
+        ways.append(way)
         if len(ways) >= ENOUGH:
             break
     if not ways:
@@ -71,6 +77,12 @@ def place(
         seat_height_m=tuple(best.seat_height_m),
         assumptions=tuple(dict.fromkeys(best.notes)),
     )
+
+
+def _is_clear_of(way: Way, plan: MotionPlan, others: tuple[PoseSequence, ...]) -> bool:
+    time_s = np.arange(0.0, plan.steps[-1].end_s + 1e-9, 0.05)
+    track_m = way.path().position_m(time_s)
+    return all(keeps_clear(track_m, time_s, other) for other in others)
 
 
 def _starts_seated(plan: MotionPlan) -> bool:
