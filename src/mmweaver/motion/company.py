@@ -46,8 +46,11 @@ def compose_company(
                     starts[index],
                 )  # fmt: skip
             except InputError:
-                if not people and attempt == 0:
-                    raise  # not even alone
+                if attempt == 0:  # what is wrong even alone is said as such
+                    compose(
+                        texts[index], scene, duration_s=duration_s, seed=_seed_of(seed, index, 0, 0),
+                        range_window_m=range_window_m, start_m=starts[index],
+                    )  # fmt: skip
                 crowded = index
                 order.sort(key=lambda one: (starts[one] is None, one != crowded))  # it goes first the next time
                 break
