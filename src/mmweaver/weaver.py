@@ -33,6 +33,7 @@ from mmweaver.motion.sentence import parse
 from mmweaver.motion.timing import schedule
 from mmweaver.pictures.view import View
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
+from mmweaver.scene.capture_photo import read_capture_photo
 from mmweaver.scene.photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
@@ -140,6 +141,18 @@ class Weaver:
             given = {"rgb": rgb, "depth": depth, "camera": camera}
             inputs = {name: file_digest(path) for name, path in given.items() if path is not None}
         return self._reconstruct(photo, assumptions, inputs, stages)
+
+    def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None) -> Room:
+        """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
+
+        `rgb`: a picture that takes the place of the frame of color.avi, where that cannot be decoded.
+        """
+        stages = Stages(self._listener)
+        with stages("read the photo"):
+            found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
+            given = {"depth": found.folder / "depth.zst", "rgb": rgb or found.folder / "color.avi"}
+            inputs = {"photo": photo, **{name: file_digest(path) for name, path in given.items()}}
+        return self._reconstruct(found.photo, found.assumptions, inputs, stages)
 
     def sample_room(self) -> Room:
         """The room that comes with the project."""

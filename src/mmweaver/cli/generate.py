@@ -43,6 +43,11 @@ def add_verb(verbs: Any) -> None:
         metavar="JSON",
         help="fx, fy, cx, cy in pixels (default: a RealSense D455's field of view)",
     )
+    room.add_argument(
+        "--capture", type=Path, metavar="DIR",
+        help="instead: a capture folder of mmwave-capture-std; its RealSense's photo and depth",
+    )  # fmt: skip
+    room.add_argument("--photo", type=whole, default=0, metavar="N", help="which photo of the capture (default 0)")
     room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
     person = parser.add_argument_group("the person")
     person.add_argument(
@@ -103,24 +108,36 @@ def run(arguments: argparse.Namespace) -> int:
         texts = text if len(text) > 1 else text[0]
         check_request(weaver.radar, text=texts, **request)
         result = weaver.generate(_read_room(weaver, arguments), texts, **request)
-        meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order)
+        meta = result.save(
+            out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq"
+        )
     print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
 
 
 def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str], Path]:
     """The texts and the output folder, once it is clear which room is meant."""
-    pictures = (arguments.rgb, arguments.depth, arguments.camera)
+    pictures = (arguments.rgb, arguments.depth, arguments.camera, arguments.capture)
     if arguments.demo:
         if any(picture is not None for picture in pictures):
-            raise InputError("--demo brings its own room; leave out --rgb, --depth and --camera, or leave out --demo")
+            raise InputError(
+                "--demo brings its own room; leave out --rgb, --depth, --camera and --capture, or leave out --demo"
+            )
         return arguments.text or [DEMO_TEXT], arguments.out or Path(DEMO_OUT)
+    if arguments.capture is not None:
+        if arguments.depth is not None or arguments.camera is not None:
+            raise InputError("--capture brings its own depth and camera; leave out --depth and --camera")
+        return _text_and_out(arguments)
     if arguments.rgb is None and arguments.depth is None:
         raise InputError("which room? give --rgb and --depth, or try --demo")
     if arguments.depth is None:
         raise InputError("--rgb needs --depth too: the room is built from the distance of each pixel")
     if arguments.rgb is None:
         raise InputError("--depth needs --rgb too: the colour picture of the same view")
+    return _text_and_out(arguments)
+
+
+def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str], Path]:
     if arguments.text is None:
         raise InputError("what does the person do? give --text, for example --text 'a person walks to the left'")
     if arguments.out is None:
@@ -131,4 +148,6 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str], Path]:
 def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     if arguments.demo:
         return weaver.sample_room()
+    if arguments.capture is not None:
+        return weaver.read_capture(arguments.capture, photo=arguments.photo, rgb=arguments.rgb)
     return weaver.read_room(arguments.rgb, arguments.depth, arguments.camera)
