@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
-from mmweaver.core.shapes import PerFrame, PerIndex
+from mmweaver.core.shapes import Array, PerFrame, PerIndex
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.cube import radar_cube
@@ -134,7 +135,7 @@ def process_capture(path: str | Path, *, points: str = "cfar", stages: Stages | 
     return Recording(adc=packets.adc, cube=cube, points=cloud, meta=meta, stages=stages)
 
 
-def nearest_photos(frame_time_s: PerFrame, photo_time_s: PerFrame) -> tuple[PerIndex, PerFrame]:
+def nearest_photos(frame_time_s: PerFrame, photo_time_s: Float[Array, " photo"]) -> tuple[PerIndex, PerFrame]:
     """For each radar frame the index of the photo nearest in time, and photo minus frame in seconds.
 
     >>> index, late_s = nearest_photos(np.array([0.0, 0.1, 0.2]), np.array([0.02, 0.09, 0.15]))
@@ -160,8 +161,8 @@ def _photos(folder: Path, frame_time_s: PerFrame) -> dict[str, Any]:
 
 def _capture_assumptions(report: PacketReport, config: RadarConfig) -> list[str]:
     sentences = [
-        f"frames follow each other every {config.frame_period_s * 1e3:g} ms, as radar.cfg says; frame_clock_s holds when"
-        " their first packets came"
+        f"frames follow each other every {config.frame_period_s * 1e3:g} ms, as radar.cfg says; frame_clock_s holds"
+        " when their first packets came"
     ]
     if report.lost_bytes:
         sentences.append(f"{report.lost} packets were lost: {report.lost_bytes} bytes of samples are zero")

@@ -116,12 +116,11 @@ def _put_together(path: Path, pieces: list[_Piece], size: int) -> tuple[np.ndarr
     for piece in pieces:
         place = slice(piece.first_byte, piece.first_byte + len(piece.payload))
         new = np.frombuffer(piece.payload, np.uint8)
-        if there[place].any():
-            if not (there[place].all() and np.array_equal(data[place], new)):
-                raise InputError(
-                    f"{path} holds different data for byte {piece.first_byte}: more than one recording in a file;"
-                    " record each into its own"
-                )
+        if there[place].any() and not (there[place].all() and np.array_equal(data[place], new)):
+            raise InputError(
+                f"{path} holds different data for byte {piece.first_byte}: more than one recording in a file;"
+                " record each into its own"
+            )
         data[place], there[place] = new, True
     return data, there
 

@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jaxtyping import UInt8
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.core.shapes import DepthPixels, PerFrame, RgbPixels
+from mmweaver.core.shapes import Array, DepthPixels, PerFrame, RgbPixels
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.scene.avi_frames import avi_frame
 from mmweaver.scene.picture_files import read_rgb
@@ -28,7 +29,7 @@ MOST_BYTES = 8_000_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class CapturedPhoto:
-    """One photo of a capture, when all of its photos were taken (seconds, the recorder's clock), and what was assumed."""
+    """One photo of a capture, its folder, and what was assumed."""
 
     photo: RgbdPhoto
     folder: Path
@@ -113,7 +114,9 @@ def _assumptions(index: int) -> tuple[str, ...]:
     )
 
 
-def _coloured(depth_m: DepthPixels, lens: CameraIntrinsics, rgb: RgbPixels, colour_lens: CameraIntrinsics) -> RgbPixels:
+def _coloured(
+    depth_m: DepthPixels, lens: CameraIntrinsics, rgb: UInt8[Array, "rows columns 3"], colour_lens: CameraIntrinsics
+) -> RgbPixels:
     """The colour of each depth pixel; where depth is missing that of a point at the median depth."""
     filled = np.where(np.isfinite(depth_m), depth_m, np.nanmedian(depth_m))
     points = unproject(filled, lens)
@@ -139,7 +142,7 @@ def _depth_frame(path: Path, index: int, lens: CameraIntrinsics) -> np.ndarray:
                 content = _read_fully(stream, size)
                 if len(content) < size:
                     raise InputError(
-                        f"{path} holds {at} photos of {lens.width} x {lens.height} pixels; choose one from 0 to {at - 1}"
+                        f"{path} holds {at} photos of {lens.width} x {lens.height}; choose one from 0 to {at - 1}"
                         if at
                         else f"{path} holds not one photo of {lens.width} x {lens.height} pixels; it is cut off"
                     )
