@@ -7,10 +7,9 @@
 Only this file knows the order of the rooms; they exchange the records of `core/records.py` and nothing else.
 """
 
-import dataclasses
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +33,8 @@ from mmweaver.motion.timing import schedule
 from mmweaver.pictures.view import View
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.capture_photo import read_capture_photo
-from mmweaver.scene.photo import read_photo
+from mmweaver.scene.panes import with_panes
+from mmweaver.scene.photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
 
@@ -133,26 +133,37 @@ class Weaver:
             firmware = FirmwareSettings() if isinstance(radar, RadarConfig) else load_firmware(str(radar))
         self.firmware = firmware
 
-    def read_room(self, rgb: str | Path, depth: str | Path, camera: str | Path | None = None) -> Room:
-        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON."""
+    def read_room(
+        self, rgb: str | Path, depth: str | Path | None = None, camera: str | Path | None = None, **seen: Any
+    ) -> Room:
+        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON.
+
+        `seen`: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or `segmenter` and
+        `sam` (models) say what is what, so that materials follow from it. See `scene.photo.read_photo`.
+        """
         stages = Stages(self._listener)
         with stages("read the photo"):
-            photo, assumptions = read_photo(rgb, depth, camera)
-            given = {"rgb": rgb, "depth": depth, "camera": camera}
-            inputs = {name: file_digest(path) for name, path in given.items() if path is not None}
+            photo, assumptions = read_photo(rgb, depth, camera, **seen)
+            files = {"rgb": rgb, "depth": depth, "camera": camera, "classes": seen.get("classes")}
+            inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
+            models = ("depth_model", "segmenter", "sam")
+            inputs |= {name: str(seen[name]) for name in models if seen.get(name) is not None}
         return self._reconstruct(photo, assumptions, inputs, stages)
 
-    def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None) -> Room:
+    def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None, **seen: Any) -> Room:
         """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
 
-        `rgb`: a picture that takes the place of the frame of color.avi, where that cannot be decoded.
+        `rgb`: a picture that takes the place of the frame of color.avi, where that cannot be decoded. `seen`:
+        `classes`, `segmenter` and `sam` as in `read_room`.
         """
         stages = Stages(self._listener)
         with stages("read the photo"):
             found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
             given = {"depth": found.folder / "depth.zst", "rgb": rgb or found.folder / "color.avi"}
             inputs = {"photo": photo, **{name: file_digest(path) for name, path in given.items()}}
-        return self._reconstruct(found.photo, found.assumptions, inputs, stages)
+            inputs |= {name: str(source) for name, source in seen.items() if source is not None}
+            whole, closed = with_panes(replace(found.photo, classes=classes_of(found.photo, **seen)))
+        return self._reconstruct(whole, (*found.assumptions, *closed), inputs, stages)
 
     def sample_room(self) -> Room:
         """The room that comes with the project."""
@@ -295,7 +306,7 @@ def check_request(
         raise InputError(f"the seed must be 0 or above, not {seed}")
     texts = texts_of(text)
     places_of(text, at)
-    config = radar if fps is None else dataclasses.replace(radar, frame_period_s=1 / fps)
+    config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
     if frames * config.frame_period_s > MAX_SECONDS:
         raise InputError(
             f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"

@@ -35,7 +35,13 @@ def add_verb(verbs: Any) -> None:
     room = parser.add_argument_group("the room")
     room.add_argument("--rgb", type=Path, metavar="PNG", help="colour picture")
     room.add_argument(
-        "--depth", type=Path, metavar="FILE", help="its depth: 16-bit PNG (mm, or camera.json's unit) or .npy in metres"
+        "--depth",
+        type=Path,
+        metavar="FILE",
+        help="its depth: 16-bit PNG (mm, or camera.json's unit), .npy or float TIFF in metres",
+    )
+    room.add_argument(
+        "--depth-model", metavar="DIR|HUB", help="where there is no --depth: a metric depth model that estimates it"
     )
     room.add_argument(
         "--camera",
@@ -43,6 +49,15 @@ def add_verb(verbs: Any) -> None:
         metavar="JSON",
         help="fx, fy, cx, cy in pixels (default: a RealSense D455's field of view)",
     )
+    room.add_argument(
+        "--classes", type=Path, metavar="PNG", help="what each pixel shows (COCO-Stuff's numbers): materials follow"
+    )
+    room.add_argument(
+        "--segmenter",
+        metavar="DIR|HUB",
+        help="instead: a model that finds it (SegFormer, MaskFormer, Mask2Former, ...)",
+    )
+    room.add_argument("--sam", metavar="DIR|HUB", help="a SAM model whose masks sharpen the segmenter's edges")
     room.add_argument(
         "--capture", type=Path, metavar="DIR",
         help="instead: a capture folder of mmwave-capture-std; its RealSense's photo and depth",
@@ -117,21 +132,31 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str], Path]:
     """The texts and the output folder, once it is clear which room is meant."""
-    pictures = (arguments.rgb, arguments.depth, arguments.camera, arguments.capture)
+    pictures = (
+        arguments.rgb, arguments.depth, arguments.camera, arguments.capture, arguments.depth_model, arguments.classes,
+        arguments.segmenter, arguments.sam,
+    )  # fmt: skip
     if arguments.demo:
         if any(picture is not None for picture in pictures):
             raise InputError(
-                "--demo brings its own room; leave out --rgb, --depth, --camera and --capture, or leave out --demo"
+                "--demo brings its own room; leave out --rgb, --depth, --camera and all else that tells of a room, or"
+                " leave out --demo"
             )
         return arguments.text or [DEMO_TEXT], arguments.out or Path(DEMO_OUT)
     if arguments.capture is not None:
-        if arguments.depth is not None or arguments.camera is not None:
-            raise InputError("--capture brings its own depth and camera; leave out --depth and --camera")
+        if any(given is not None for given in (arguments.depth, arguments.camera, arguments.depth_model)):
+            raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")
         return _text_and_out(arguments)
     if arguments.rgb is None and arguments.depth is None:
         raise InputError("which room? give --rgb and --depth, or try --demo")
-    if arguments.depth is None:
-        raise InputError("--rgb needs --depth too: the room is built from the distance of each pixel")
+    if arguments.depth is not None and arguments.depth_model is not None:
+        raise InputError("--depth-model is for a photo without depth; leave out one of --depth and --depth-model")
+    if arguments.depth is None and arguments.depth_model is None:
+        raise InputError(
+            "--rgb needs --depth too, for the room is built from the distance of each pixel; a metric depth model can"
+            " estimate it: --depth-model DIR, or a Hub name such as"
+            " depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf"
+        )
     if arguments.rgb is None:
         raise InputError("--depth needs --rgb too: the colour picture of the same view")
     return _text_and_out(arguments)
@@ -148,6 +173,7 @@ def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str], Path]:
 def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     if arguments.demo:
         return weaver.sample_room()
+    seen = {"classes": arguments.classes, "segmenter": arguments.segmenter, "sam": arguments.sam}
     if arguments.capture is not None:
-        return weaver.read_capture(arguments.capture, photo=arguments.photo, rgb=arguments.rgb)
-    return weaver.read_room(arguments.rgb, arguments.depth, arguments.camera)
+        return weaver.read_capture(arguments.capture, photo=arguments.photo, rgb=arguments.rgb, **seen)
+    return weaver.read_room(arguments.rgb, arguments.depth, arguments.camera, depth_model=arguments.depth_model, **seen)

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.core.shapes import Array, DepthPixels
+from mmweaver.core.shapes import Array, ClassPixels, DepthPixels
 from mmweaver.geometry.pinhole import unproject
 
 GridBool = Bool[Array, "row column"]
@@ -16,7 +16,8 @@ GridVectors = Float[Array, "row column 3"]
 _CELLS_ACROSS = 160
 _NORMAL_RADIUS = 3  # cells: a window of 7 x 7
 _MIN_NORMAL_SUPPORT = 12  # cells of that window on one surface
-_MIN_CELL_SUPPORT = 0.35  # share of a cell's pixels with a measurement
+_MIN_CELL_SUPPORT = 0.35  # share of a cell's pixels with a measurement,
+_SPARSE = 0.5  # less where so few of all pixels have one
 _SHIFTS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 
 
@@ -29,6 +30,7 @@ class DepthGrid:
     points_m: GridVectors  # (row, column, 3)
     normals: GridVectors  # unit, towards the camera; nan where no surface could be fitted
     rgb: GridVectors  # mean colour, 0 to 1
+    class_index: Int[Array, "row column"] | None = None  # what most of a cell shows, where the photo says
 
 
 def depth_tolerance_m(depth_m: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -58,7 +60,17 @@ def make_grid(photo: RgbdPhoto) -> DepthGrid:
         points_m=unproject(depth, intrinsics),
         normals=_fitted_normals(depth, intrinsics),
         rgb=colours.mean(axis=(1, 3)) / 255.0,
+        class_index=None if photo.classes is None else _most_common(photo.classes.index, size),
     )
+
+
+def _most_common(index: ClassPixels, size: int) -> Int[Array, "row column"]:
+    """The class that most pixels of each cell have."""
+    rows, columns = index.shape[0] // size, index.shape[1] // size
+    blocks = index[: rows * size, : columns * size].reshape(rows, size, columns, size)
+    present = np.unique(index)
+    shares = np.stack([(blocks == one).mean(axis=(1, 3)) for one in present])
+    return present[np.argmax(shares, axis=0)].astype(np.int64)
 
 
 def drop_strays(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixels:
@@ -85,7 +97,8 @@ def _block_median(blocks: Float[Array, "row column pixel"]) -> GridFloat:
     low = np.take_along_axis(ordered, (np.maximum(count - 1, 0) // 2)[..., None], axis=2)[..., 0]
     high = np.take_along_axis(ordered, np.minimum(count // 2, blocks.shape[2] - 1)[..., None], axis=2)[..., 0]
     median = np.where(high - low < depth_tolerance_m(low), (low + high) / 2, low)
-    return np.where(count >= max(1, _MIN_CELL_SUPPORT * blocks.shape[2]), median, np.nan)
+    needed = _MIN_CELL_SUPPORT * min(1.0, float(np.isfinite(blocks).mean()) / _SPARSE)
+    return np.where(count >= max(1, needed * blocks.shape[2]), median, np.nan)
 
 
 def _fitted_normals(depth_m: GridFloat, intrinsics: CameraIntrinsics) -> GridVectors:
