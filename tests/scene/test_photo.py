@@ -289,7 +289,9 @@ def test_sixteen_bits_a_channel(files: Files):
 def test_nine_holes_in_ten_are_the_most(files: Files):
     kept = np.random.default_rng(0).permutation(72 * 96).reshape(72, 96)
     Image.fromarray(np.where(kept < 0.101 * kept.size, DEPTH, 0).astype(np.uint16)).save(files.depth)
-    assert np.isfinite(files.read()[0].depth_m).mean() == pytest.approx(0.1, abs=0.002)
+    photo, assumptions = files.read()
+    assert np.isfinite(photo.depth_m).mean() > 0.9
+    assert "Only 10 % of the pixels" in assumptions[0]
     Image.fromarray(np.where(kept < 0.09 * kept.size, DEPTH, 0).astype(np.uint16)).save(files.depth)
     assert "only 9.0 %" in files.error()
 

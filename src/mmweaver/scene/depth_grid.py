@@ -16,8 +16,7 @@ GridVectors = Float[Array, "row column 3"]
 _CELLS_ACROSS = 160
 _NORMAL_RADIUS = 3  # cells: a window of 7 x 7
 _MIN_NORMAL_SUPPORT = 12  # cells of that window on one surface
-_MIN_CELL_SUPPORT = 0.35  # share of a cell's pixels with a measurement,
-_SPARSE = 0.5  # less where so few of all pixels have one
+_MIN_CELL_SUPPORT = 0.35  # share of a cell's pixels with a measurement
 _SHIFTS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 
 
@@ -97,8 +96,7 @@ def _block_median(blocks: Float[Array, "row column pixel"]) -> GridFloat:
     low = np.take_along_axis(ordered, (np.maximum(count - 1, 0) // 2)[..., None], axis=2)[..., 0]
     high = np.take_along_axis(ordered, np.minimum(count // 2, blocks.shape[2] - 1)[..., None], axis=2)[..., 0]
     median = np.where(high - low < depth_tolerance_m(low), (low + high) / 2, low)
-    needed = _MIN_CELL_SUPPORT * min(1.0, float(np.isfinite(blocks).mean()) / _SPARSE)
-    return np.where(count >= max(1, needed * blocks.shape[2]), median, np.nan)
+    return np.where(count >= max(1, _MIN_CELL_SUPPORT * blocks.shape[2]), median, np.nan)
 
 
 def _fitted_normals(depth_m: GridFloat, intrinsics: CameraIntrinsics) -> GridVectors:

@@ -14,6 +14,7 @@ from mmweaver.scene.estimated_depth import EXAMPLE, estimate_depth
 from mmweaver.scene.panes import with_panes
 from mmweaver.scene.picture_files import read_depth, read_rgb
 from mmweaver.scene.segmentation import segment
+from mmweaver.scene.sparse_depth import fill_scattered_holes
 
 SAME_SHAPE = 0.01  # two pictures in the same proportions
 WIDE_ENOUGH = 640  # a coarser depth picture is enlarged to about so many columns
@@ -62,6 +63,7 @@ def read_photo(
             f"{rgb} has no depth: give --depth, or a model that estimates it: --depth-model DIR or Hub name, for"
             f" example {EXAMPLE}"
         )
+    depth_m, patched = fill_scattered_holes(depth_m)
     pixels, depth_m, resized = _of_one_size(pixels, depth_m)
     height, width = depth_m.shape
     own = {"width": float(seen[0]), "height": float(seen[1]), **numbers}
@@ -70,7 +72,7 @@ def read_photo(
     mask = classes_of(photo, classes=classes, segmenter=segmenter, sam=sam)
     photo, closed = with_panes(replace(photo, classes=mask))
     stated = _assumptions(photo, has_camera=camera is not None, turned=turned and depth is not None)
-    return photo, (*stated, *resized, *sentences, *closed)
+    return photo, (*stated, *patched, *resized, *sentences, *closed)
 
 
 def classes_of(
