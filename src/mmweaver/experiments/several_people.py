@@ -55,6 +55,7 @@ class Pair:
     other_noise: RadarCube
     twin: RadarCube
     second_alone: RadarCube
+    empty: RadarCube
 
 
 def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> Pair:
@@ -73,7 +74,7 @@ def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> P
     skins = [replace(pose, subject=pose.subject + OTHER_SKIN) for pose in (one, two)]
     return Pair(
         poses=(one, two), mutual=cube(one, two), plain=cube(one, two, mutual=False), without_second=cube(one),
-        other_noise=cube(one, two, noise=seed + OTHER_SKIN), twin=cube(*skins), second_alone=cube(two),
+        other_noise=cube(one, two, noise=seed + OTHER_SKIN), twin=cube(*skins), second_alone=cube(two), empty=cube(),
     )  # fmt: skip
 
 
@@ -98,9 +99,10 @@ def scores_of(pair: Pair) -> dict[str, dict[str, float]]:
 
 def dimming_db(pair: Pair) -> float:
     """Moving energy that the second person adds to the first, over what that person has alone, in dB."""
-    base, both, alone = (remove_static(cube).values for cube in (pair.without_second, pair.mutual, pair.second_alone))
-    added = float((np.abs(both - base) ** 2).sum())  # the same receiver noise in both: it cancels
-    return 10 * float(np.log10(added / float((np.abs(alone) ** 2).sum())))
+    cubes = (pair.without_second, pair.mutual, pair.empty, pair.second_alone)
+    first, both, empty, alone = (remove_static(cube).values for cube in cubes)
+    added, own = both - first, alone - empty  # the same receiver noise in all: it cancels
+    return 10 * float(np.log10((np.abs(added) ** 2).sum() / (np.abs(own) ** 2).sum()))
 
 
 def points_near(points: PointCloud, pose: PoseSequence) -> float:
