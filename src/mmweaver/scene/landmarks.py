@@ -74,8 +74,10 @@ def _tops(
         for label in range(1, count + 1):
             squares = labels == label
             kind = _kind_of(squares, height, photo, radar_from_camera, floor_z_m, height_map)
-            if kind:
-                found.append(_thing(kind, squares, height_map, floor_z_m))
+            thing = _thing(kind, squares, height_map, floor_z_m)
+            # One top may fall apart where things stand on it.
+            if kind and all(np.hypot(*(thing.position_m - other.position_m)[:2]) > _APART_M for other in found):
+                found.append(thing)
             if kind or squares.sum() * CELL_M**2 >= _MIN_TOP_M2:
                 taken |= squares
     return found

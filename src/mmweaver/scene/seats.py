@@ -126,7 +126,8 @@ def find_seats(height_map: HeightMap, floor_z_m: float, sittable: GridClass | No
     score = 2 * back + (0.5 + 1.5 * is_round) * fit + drop + 0.7 * under_table - 2 * obstructed
     is_backed = (back >= _MIN_BACK) & (obstructed < 0.35) & (drop + under_table > 0.4)
     is_stool = on_stool & (obstructed < 0.1)
-    is_bench = is_named & (obstructed < 0.35) & (drop + under_table > 0.4)
+    # Without a back one sits at the edge.
+    is_bench = is_named & (obstructed < 0.35) & (drop + under_table > 0.8)
     score = np.where(is_backed, score + 2, score)
     return _spread_out(height_map, candidates, np.where(is_backed | is_stool | is_bench, score, -np.inf), floor_z_m)
 
