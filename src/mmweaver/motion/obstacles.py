@@ -29,7 +29,7 @@ _SHARES = np.array([0.0, 0.33, 0.67, 1.0])
 _STEP_S = 0.1
 _ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
 _LOWEST_M = 0.09  # above the floor: soles meet the floor
-_MOST_POINTS = 20_000
+_MOST_POINTS = 34_000
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from mmweaver.scene.seats import bed_squares
 
 _TABLE_M, _COUNTER_M = (0.33, 0.82), (0.82, 1.02)
 _MIN_TOP_M2, _MIN_BED_M2, _MIN_COUNTER_M2 = 0.16, 0.8, 0.25
-_LEVEL_M = 0.03
+_LEVEL_M, _LOW_M, _HALF_DEPTH_M = 0.03, 0.6, 0.29
 _BODY_M, _FARTHEST_M = 0.27, 1.1  # a body's half width, and how far from a thing one still stands at it
 _APART_M = 0.5
 
@@ -92,11 +92,17 @@ def _kind_of(
     height_map: HeightMap,
 ) -> str:
     """table | counter | "" for a level patch: a table is hollow below, what is solid is a chest or a cabinet."""
+    from scipy import ndimage
+
     area = float(squares.sum()) * CELL_M**2
     if area >= _MIN_COUNTER_M2 and height_m >= _COUNTER_M[0]:
         return "counter"
     if area < _MIN_TOP_M2 or height_m >= _COUNTER_M[0]:
         return ""
+    whole = ndimage.binary_fill_holes(ndimage.binary_closing(squares, structure=np.ones((5, 5), bool)))
+    is_deep = np.asarray(ndimage.distance_transform_edt(np.asarray(whole))).max() * CELL_M > _HALF_DEPTH_M
+    if is_deep and height_m > _LOW_M:
+        return "table"  # chests are not as deep; what seems solid below are its chairs
     return "" if _solid_share(squares, height_m, photo, radar_from_camera, floor_z_m, height_map) > 0.6 else "table"
 
 

@@ -42,7 +42,7 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     is_floor = floor_cells(level) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
 
     height_map = make_height_map(photo, radar_from_camera, gravity.floor_z_m)
-    free_space = find_free_space(height_map)
+    free_space = find_free_space(height_map, -gravity.floor_z_m)
     seats = find_seats(height_map, gravity.floor_z_m, sittable_squares(photo, radar_from_camera, gravity.floor_z_m))
 
     material, surface_names = cell_materials(level, grid.rgb, surfaces, is_floor, seats)
