@@ -9,7 +9,8 @@ from mmweaver.core.seeding import stream
 from mmweaver.motion.assemble import assemble
 from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
 from mmweaver.motion.floor_map import FloorMap
-from mmweaver.motion.placement import place
+from mmweaver.motion.obstacles import Obstacles
+from mmweaver.motion.placement import Placement, clearest, place
 from mmweaver.motion.plan import MotionPlan
 from mmweaver.motion.sentence import parse
 from mmweaver.motion.timing import schedule
@@ -52,12 +53,16 @@ def compose(
     body = Body(height_m)
     floor = FloorMap(scene, range_window_m, height_m)
     plan, spot_notes = _jogging_without_a_way(plan)
-    placement = place(plan, floor, body, seed=seed, start_m=start_m, others=others)
-    pose = assemble(
-        plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
-        seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
-    )  # fmt: skip
-    return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions)
+    placements = place(plan, floor, body, seed=seed, start_m=start_m, others=others)
+
+    def moved(placement: Placement) -> PoseSequence:
+        return assemble(
+            plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
+            seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
+        )  # fmt: skip
+
+    placement, pose, note = clearest(placements, moved, Obstacles(scene))
+    return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions + note)
 
 
 def _jogging_without_a_way(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:

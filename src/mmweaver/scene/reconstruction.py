@@ -6,10 +6,12 @@ from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.geometry.rotations import level_from_camera
+from mmweaver.scene.class_evidence import sittable_squares
 from mmweaver.scene.depth_grid import DepthGrid, GridBool, GridVectors, make_grid
 from mmweaver.scene.free_space import find_free_space
 from mmweaver.scene.gravity import corrected_by_walls, find_gravity
 from mmweaver.scene.height_map import make_height_map
+from mmweaver.scene.landmarks import find_landmarks
 from mmweaver.scene.materials import (
     ASSUMPTION,
     ASSUMPTION_OF_CLASSES,
@@ -47,8 +49,8 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     is_floor = floor_cells(level) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
 
     height_map = make_height_map(photo, radar_from_camera, gravity.floor_z_m)
-    free_space = find_free_space(height_map)
-    seats = find_seats(height_map, gravity.floor_z_m)
+    free_space = find_free_space(height_map, -gravity.floor_z_m)
+    seats = find_seats(height_map, gravity.floor_z_m, sittable_squares(photo, radar_from_camera, gravity.floor_z_m))
 
     material, surface_names = cell_materials(level, grid.rgb, surfaces, is_floor, seats)
     if grid.class_index is not None and photo.classes is not None:
@@ -71,6 +73,9 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
         floor_z_m=gravity.floor_z_m,
         free_space=free_space,
         seats=seats,
+        landmarks=find_landmarks(
+            photo, radar_from_camera, gravity.floor_z_m, (floor, *planes), height_map, free_space, seats
+        ),
         assumptions=(
             *assumptions,
             *gravity.assumptions,
