@@ -54,8 +54,8 @@ def add_verb(verbs: Any) -> None:
     )
     room.add_argument(
         "--segmenter",
-        metavar="DIR|HUB",
-        help="instead: a model that finds it (SegFormer, MaskFormer, Mask2Former, ...)",
+        metavar="builtin|DIR|HUB",
+        help="instead: what finds it: builtin, or a SegFormer, MaskFormer, Mask2Former ... by folder or Hub name",
     )
     room.add_argument("--sam", metavar="DIR|HUB", help="a SAM model whose masks sharpen the segmenter's edges")
     room.add_argument(

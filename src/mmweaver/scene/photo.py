@@ -8,14 +8,16 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import ClassMask, RgbdPhoto
 from mmweaver.core.shapes import DepthPixels, RgbPixels
+from mmweaver.scene.builtin_segmenter import segment_builtin
 from mmweaver.scene.camera_file import d455_intrinsics, intrinsics_for, read_camera_file
 from mmweaver.scene.class_file import read_class_file
 from mmweaver.scene.estimated_depth import EXAMPLE, estimate_depth
 from mmweaver.scene.panes import with_panes
 from mmweaver.scene.picture_files import read_depth, read_rgb
-from mmweaver.scene.segmentation import segment
+from mmweaver.scene.segmentation import segment, sharpened
 from mmweaver.scene.sparse_depth import fill_scattered_holes
 
+BUILTIN = "builtin"  # the name of our own segmenter
 SAME_SHAPE = 0.01  # two pictures in the same proportions
 WIDE_ENOUGH = 640  # a coarser depth picture is enlarged to about so many columns
 
@@ -41,7 +43,8 @@ def read_photo(
             RealSense D455.
         depth_model: folder or Hub name of a metric depth model, where there is no `depth`.
         classes: a picture of COCO-Stuff's class numbers (see `class_file`), or
-        segmenter: folder or Hub name of a model that finds them; `sam`, one whose masks sharpen their edges.
+        segmenter: folder or Hub name of a model that finds them, or "builtin" for the small one that comes with the
+            project; `sam`, a model whose masks sharpen their edges.
 
     Raises InputError, in one line, for whatever cannot be used.
     """
@@ -85,6 +88,9 @@ def classes_of(
         raise InputError("--sam finds edges and no classes; give --segmenter too")
     if classes is not None:
         return read_class_file(_existing(classes, "--classes"), photo.intrinsics.width, photo.intrinsics.height)
+    if segmenter == BUILTIN:
+        mask = segment_builtin(photo)
+        return mask if sam is None else sharpened(mask, photo.rgb, sam)
     return None if segmenter is None else segment(photo.rgb, segmenter, sam)
 
 

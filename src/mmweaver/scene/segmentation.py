@@ -38,9 +38,13 @@ def segment(rgb: RgbPixels, source: str, sam: str | None = None) -> ClassMask:
         outputs = model(**inputs)
         labels = processor.post_process_semantic_segmentation(outputs, target_sizes=[(height, width)])[0]
     index = look_up[np.clip(labels.cpu().numpy().astype(int), -1, len(look_up) - 2)]
-    if sam is not None:
-        index = painted(index, sam_masks(rgb, sam))
-    return ClassMask(index=index, names=NAMES)
+    mask = ClassMask(index=index, names=NAMES)
+    return mask if sam is None else sharpened(mask, rgb, sam)
+
+
+def sharpened(mask: ClassMask, rgb: RgbPixels, sam: str) -> ClassMask:
+    """The same classes with the edges of SAM's masks."""
+    return ClassMask(index=painted(mask.index, sam_masks(rgb, sam)), names=mask.names)
 
 
 def sam_masks(rgb: RgbPixels, source: str) -> list[Bool[Array, "height width"]]:
