@@ -1,6 +1,6 @@
 """A small segmenter of our own: colours, heights and slopes of the depth grid in, a class for each cell out.
 
-    7 channels a cell (about 160 x 120)                     class scores a cell
+    7 channels a cell (about 80 x 60)                       class scores a cell
       colour 3, height over the floor, |up . normal|,            |
       1 / depth, measured or not                                 |
          |                                                       |
@@ -27,6 +27,7 @@ from mmweaver.scene.gravity import find_gravity
 
 WEIGHTS = Path(__file__).parents[1] / "weights" / "segmenter.safetensors"
 CHANNELS = 7
+EVERY = 2  # of the depth grid's rows and columns so many-th is looked at
 # Each group is told by its first class; what is in none of them is "unlabeled".
 GROUPS: tuple[tuple[str, ...], ...] = (
     ("unlabeled",),
@@ -54,12 +55,12 @@ def group_of_classes(names: tuple[str, ...]) -> Int[Array, " name"]:
 
 
 def grid_features(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) -> Float[Array, "7 row column"]:
-    """What the network sees of each cell; 0 where nothing was measured."""
+    """What the network sees of every second cell each way; 0 where nothing was measured."""
     height = grid.points_m @ radar_from_camera[2] - floor_z_m
     slope = np.abs(grid.normals @ radar_from_camera[2])
     geometry = (height / 2.5, slope, 1 / grid.depth_m, np.isfinite(grid.depth_m).astype(float))
     stacked = np.concatenate([np.moveaxis(grid.rgb, -1, 0), np.stack(geometry)])
-    return np.nan_to_num(stacked).astype(np.float32)
+    return np.nan_to_num(stacked[:, ::EVERY, ::EVERY]).astype(np.float32)
 
 
 def make_network() -> Any:
@@ -126,7 +127,7 @@ def segment_builtin(photo: RgbdPhoto) -> ClassMask:
     gravity = find_gravity(grid)
     features = grid_features(grid, level_from_camera(gravity.up_camera), gravity.floor_z_m)
     groups = groups_of_cells(features, load_network())
-    size = photo.intrinsics.width // grid.intrinsics.width
+    size = EVERY * (photo.intrinsics.width // grid.intrinsics.width)
     numbers = np.array([NAMES.index(name) for name in GROUP_NAMES], np.uint8)
     cells = np.repeat(np.repeat(numbers[groups], size, axis=0), size, axis=1)
     index = np.zeros(photo.depth_m.shape, np.uint8)
