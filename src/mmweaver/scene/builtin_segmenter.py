@@ -130,7 +130,6 @@ def segment_builtin(photo: RgbdPhoto) -> ClassMask:
     size = EVERY * (photo.intrinsics.width // grid.intrinsics.width)
     numbers = np.array([NAMES.index(name) for name in GROUP_NAMES], np.uint8)
     cells = np.repeat(np.repeat(numbers[groups], size, axis=0), size, axis=1)
-    index = np.zeros(photo.depth_m.shape, np.uint8)
-    rows, columns = min(len(index), len(cells)), min(index.shape[1], cells.shape[1])
-    index[:rows, :columns] = cells[:rows, :columns]
+    height, width = photo.intrinsics.height, photo.intrinsics.width
+    index = np.pad(cells, ((0, max(0, height - len(cells))), (0, max(0, width - cells.shape[1]))))[:height, :width]
     return ClassMask(index=index, names=NAMES)
