@@ -92,6 +92,15 @@ def test_a_living_person_never_rests():
     assert moving_db[1] < moving_db[0] - 30
 
 
+def test_the_last_frame_moves_as_the_others_do():
+    """A motion that ends where the last frame begins is carried on, not frozen."""
+    simulator = Simulator(scene_of(()), AWR1843, IDEAL)
+    person = standing_person((0.0, 2.0, -1.2), (0.0, -1.0, 0.0), seconds=0.101)
+    adc = simulator.run(person, num_frames=2, seed=0, motions=STILL).adc.samples
+    speeds = [AWR1843.radial_velocity_mps[np.argmax(loop_spectrum(frame))] for frame in adc]
+    assert speeds == pytest.approx([-1.0, -1.0], abs=0.3)
+
+
 def test_jitter_lets_resting_clutter_leak_into_doppler():
     adc = []
     for impairments in (IDEAL, replace(IDEAL, chirp_jitter_s=1.1e-9, phase_noise_dbc_per_hz=-93.0)):

@@ -105,10 +105,16 @@ class Simulator:
         return BodyEchoes(self.room, body, moved.reshape(joints.shape), chest_m.reshape(joints.shape[:2]))
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
-        """(frame, node, 22, 3): slow time is interpolated, never held."""
+        """(frame, node, 22, 3): slow time is interpolated, never held.
+
+        A frame that begins with the last pose goes on as fast as that pose was: held, it would be a person who freezes.
+        """
         times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
         spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
-        return spline(np.clip(times, pose.time_s[0], pose.time_s[-1]))
+        last_s = pose.time_s[-1]
+        joints = spline(np.clip(times, pose.time_s[0], last_s))
+        beyond_s = np.maximum(times - last_s, 0.0)
+        return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
 
     def _check(self, pose: PoseSequence, num_frames: int) -> None:
         needed_s = (num_frames - 1) * self.config.frame_period_s
