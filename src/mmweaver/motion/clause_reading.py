@@ -23,7 +23,7 @@ from mmweaver.motion.lexicon import (
     SPEEDS,
     TIMES,
 )
-from mmweaver.motion.plan import KNOWN, Step
+from mmweaver.motion.plan import Step
 from mmweaver.motion.words import Word
 
 OPPOSITE = {"left": "right", "right": "left"}

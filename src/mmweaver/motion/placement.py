@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
+from mmweaver.motion.activities import CLEARANCE_M
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
 from mmweaver.motion.plan import MotionPlan, Step
@@ -25,10 +26,6 @@ from mmweaver.motion.way import (
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
-WANTED_CLEARANCE_M = {
-    "jumping_jacks": 0.85, "jump": 0.5, "squat": 0.6, "wave": 0.6, "clap": 0.45, "raise": 0.5, "punch": 0.75,
-    "drink": 0.4, "stand": 0.35, "turn": 0.4, "jog": 0.5, "sit": 0.4, "sit_down": 0.5, "stand_up": 0.5, "walk": 0.3,
-}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,7 +95,7 @@ def _try(
             way.turn_to(sitting.facing_rad, step.start_s - 0.3)
         way.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
         if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
-            wanted = max(WANTED_CLEARANCE_M[step.lower], WANTED_CLEARANCE_M.get(step.upper, 0.0))
+            wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
             way.cost += 2.0 * max(0.0, wanted - float(floor.clearance_at(way.place)))
             way.cost += float(floor.dislike_at(way.place))
     way.cost += float(rng.uniform(0, 0.5))

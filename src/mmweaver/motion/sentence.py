@@ -5,7 +5,7 @@ from dataclasses import replace
 from mmweaver.core.errors import InputError
 from mmweaver.motion.clause_reading import Reading, read_clause
 from mmweaver.motion.clauses import clauses_of
-from mmweaver.motion.plan import KNOWN, MotionPlan, Step
+from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.words import words_of
 
 LONGEST_TEXT = 1000
