@@ -10,6 +10,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.motion.activities import CLEARANCE_M
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
+from mmweaver.motion.other_ways import check_floor, is_other, lay_other, turn_by
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
 from mmweaver.motion.seating import STOOL_HEIGHT_M, Sitting, reachable, seats_of, stool_at, stool_fits, stool_note
@@ -87,8 +88,11 @@ def _try(
             target = _seat_ahead(way, step, following, seats)
             _lay_move(way, step, target, first=k == 0, last=following is None)
             sitting = target if following is not None and following.lower == "sit_down" else None
-        elif step.lower == "turn" or step.facing:
+        elif step.lower == "turn" and step.turn_deg:
+            turn_by(way, np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s)
+        elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
             _lay_turn(way, step, rng, first=k == 0)
+        check_floor(way, step, body)
         way.from_seat = way.from_seat or step.lower == "stand_up"
         if step.lower == "sit_down" and k:
             sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
@@ -111,7 +115,7 @@ def _start(
         return _start_seated(floor, body, rng, start_m, seats)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
-    if first.facing:
+    if first.facing and first.upper not in ("point", "look_around"):
         facing = _facing_rad(first.facing, spot) + float(rng.normal(0, 0.05))
     return Way(floor=floor, rng=rng, place=spot, heading_rad=facing), None
 
@@ -166,7 +170,7 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
         said = _direction_rad(way, step)
         lasts = max(step.end_s - step.start_s - 0.35, 0.1)
         speed = float(np.hypot(*gap)) / lasts
-        fits = 0.45 <= speed <= (1.6 if step.lower == "walk" else 2.6)
+        fits = 0.45 <= speed <= (2.6 if step.lower == "jog" else 1.6)
         if (
             fits
             and (said is None or abs(angle_between(said, towards)) < 0.9)
@@ -177,6 +181,9 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
 
 
 def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
+    if target is None and is_other(step):
+        lay_other(way, step, _direction_rad(way, step), first=first, last=last)
+        return
     if target is not None:
         gap = target.feet_m - way.place
         direction = float(np.arctan2(gap[1], gap[0]))

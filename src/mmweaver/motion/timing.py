@@ -33,6 +33,9 @@ def _limits(step: Step) -> tuple[float, float]:
     """Least and natural seconds of a step."""
     if step.seconds:
         return step.seconds, step.seconds
+    if step.lower == "turn" and step.turn_deg:
+        lasts = 0.3 + abs(step.turn_deg) / 185
+        return lasts, lasts + 0.2
     doing = BY_KEY[step.upper or step.lower]
     if step.count and doing.counted_s:
         least, natural, besides = doing.counted_s

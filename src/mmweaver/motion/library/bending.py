@@ -79,10 +79,10 @@ def putting_down(stage: Stage) -> Controls:
 def _to_the_floor(controls: Controls, stage: Stage, down: PerTime, arms: tuple[int, ...]) -> None:
     """Deep enough that the hands come near the floor: by the knees or by the back, as the seed has it."""
     depth = float(stage.rng.uniform(0.72, 0.95))
-    crouched(controls, stage.body, depth * down, lean_rad=1.45 / depth * 0.93)
+    crouched(controls, stage.body, depth * down, lean_rad=1.5 / depth)
     for side in (LEFT, RIGHT):
         if side in arms:
-            controls.arm_rad[:, side, 0] += 1.35 * down
+            controls.arm_rad[:, side, 0] += 1.5 * down
             controls.arm_rad[:, side, 1] -= 0.1 * down
         else:
             controls.arm_rad[:, side, 0] += 0.5 * down

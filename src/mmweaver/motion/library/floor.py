@@ -20,7 +20,7 @@ PerTime = Float[Array, " n"]
 KNEELING_M = 0.316  # of the height: the pelvis over the floor, thighs upright
 LYING_M = 0.075  # of the height: the pelvis over the floor
 BACK_BEHIND_M = 0.36  # of the height: the pelvis of who lies on the back behind the root
-BELLY_AHEAD_M = 0.36  # of the height: the pelvis of who lies on the belly ahead of the root
+BELLY_AHEAD_M = 0.648  # of the height: the pelvis of who lies on the belly ahead of the root
 
 
 def kneeling_down(stage: Stage) -> Controls:
@@ -113,19 +113,20 @@ def _on_belly(stage: Stage, u: PerTime, *, falls: bool) -> Controls:
     """Forward: the knees give, the trunk tips over the toes, the arms go ahead, and the body lies stretched out."""
     controls, body, h = upright(stage), stage.body, stage.body.height_m
     stand = body.pelvis_height_m(STAND_STRETCH)
-    at = [0.0, 0.3, 0.6, 1.0]
+    at = [0.0, 0.3, 0.52, 0.78, 1.0]
     u = np.clip(u, 0.0, 1.0)
-    controls.pelvis_m[:, 2] += flowing(u, at, [stand, 0.4 * h, 0.2 * h, LYING_M * h]) - stand
-    shift_pelvis(controls, flowing(u, at, [0.0, 0.04 * h, 0.21 * h, BELLY_AHEAD_M * h]), 0.0, 0.0)
-    controls.pelvis_rad[:, 1] += flowing(u, at, [0.0, 0.35, 0.95, 1.5])
-    controls.spine_rad[:, 1] += flowing(u, at, [0.0, 0.25, 0.05, -0.05])
-    controls.head_rad[:, 0] -= flowing(u, at, [0.0, 0.2, 0.5, 0.35])
+    controls.pelvis_m[:, 2] += flowing(u, at, [stand, 0.43 * h, 0.305 * h, 0.168 * h, LYING_M * h]) - stand
+    shift_pelvis(controls, flowing(u, at, [0.0, 0.1, 0.35, 0.605, BELLY_AHEAD_M]) * h, 0.0, 0.0)
+    controls.pelvis_rad[:, 1] += flowing(u, at, [0.0, 0.3, 0.62, 1.25, 1.5])
+    controls.spine_rad[:, 1] += flowing(u, at, [0.0, 0.25, 0.2, 0.0, -0.05])
+    controls.head_rad[:, 0] -= flowing(u, at, [0.0, 0.2, 0.4, 0.5, 0.35])
     for side in (LEFT, RIGHT):
-        controls.foot_rad[:, side, 1] += flowing(u, at, [0.0, 0.6, 1.35, 2.2])
-    controls.knee_up_rad[:] -= flowing(u, at, [0.0, 0.25, 0.9, 1.45])
+        controls.foot_rad[:, side, 1] += flowing(u, at, [0.0, 0.8, 1.4, 2.0, 2.2])
+        controls.foot_m[:, side, 2] += 0.012 * h * rise(u)
+    controls.knee_up_rad[:] -= flowing(u, at, [0.0, 0.0, 0.2, 0.9, 1.45])
     controls.knee_room[:] = np.maximum(controls.knee_room, rise(3 * u))
-    arms = [0.0, 1.1, 1.9, 2.95]
+    arms = [0.0, 0.8, 1.5, 2.3, 2.95] if falls else [0.0, 0.7, 1.35, 2.2, 2.95]
     controls.arm_rad[:, :, 0] += flowing(u, at, arms)[:, None]
-    controls.arm_rad[:, :, 1] += flowing(u, at, [0.0, 0.1, 0.25, 0.3])[:, None]
-    controls.arm_rad[:, :, 3] += flowing(u, at, [0.0, 0.3, 0.35, -0.1])[:, None]
+    controls.arm_rad[:, :, 1] += flowing(u, at, [0.0, 0.1, 0.2, 0.3, 0.3])[:, None]
+    controls.arm_rad[:, :, 3] += flowing(u, at, [0.0, 0.3, 0.3, 0.1, -0.1])[:, None]
     return controls
