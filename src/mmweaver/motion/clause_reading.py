@@ -28,7 +28,8 @@ from mmweaver.motion.verb_steps import LEGS, step_of
 from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.words import Word
 
-STEPPING = GOING | {"walk", "jog", "run", "jump", "hop", "turn", "advance", "march", "retreat", "sidestep", "stumble"}
+STEPPING = GOING | {"walk", "jog", "run", "jump", "hop", "turn", "advance", "march", "retreat", "sidestep", "stumble", "pushed", "dance",
+            "turn", "tumble", "stagger", "limp"}
 DISTANCES = {"meters", "metres", "meter", "metre", "m", "cm", "centimeters", "feet", "yards"}
 LEG_VERBS = {"kick", "raise", "lift", "stomp", "stamp", "one_leg_stand", "hop", "jump", "leap", "turn", "pivot", "rotate", "spin",
              "kneel_down", "kneel", "lunge", "limp", "hobble", "step", "walk", "limp"}
@@ -62,6 +63,8 @@ class Reading:
         """Takes over what a clause without an activity says about the last step."""
         last, about = self.steps[-1], more.about
         if last.direction and about.direction and last.direction != about.direction:
+            if last.moves and self._leads_back(last, about):
+                return
             raise InputError(
                 f"{self.text!r} and {more.text!r} name two directions; say which movement goes where, with 'then'"
             )
@@ -76,23 +79,68 @@ class Reading:
         )
 
 
+    def _leads_back(self, last: Step, about: Step) -> bool:
+        """'Walks forwards and backwards', 'steps aside and then back': the other direction is a way of its own."""
+        if last.lower == "sidestep":
+            other = {"left": "right", "right": "left"}.get(last.direction, "")
+            if about.direction not in ("back", "backwards", other) or not other:
+                return False
+            self.steps.append(replace(last, direction=other, count=about.count or last.count))
+        elif about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg:
+            self.steps.append(replace(last, direction=about.direction, count=about.count or last.count))
+        else:
+            return False
+        self.forms.append("s")
+        return True
+
+
 def read_clause(clause: Clause) -> Reading:
     """Reads verbs and modifiers; raises InputError for what must not be acted out as if it were something known."""
     words = clause.words
     reading = Reading(clause.link, clause.text)
     _refuse(clause)
     verbs = _verbs(words)
-    about = modifiers(words, clause.text, reading.notes)
     if not verbs:
-        reading.about = about
+        reading.about = modifiers(words, clause.text, reading.notes)
         _note_unknown(words, clause, reading, has_verb=False)
         return reading
+    for at in verbs:  # "a chachacha basic step"
+        noun = words[at].lemma in ("step", "turn", "jump") and words[at].form in ("base", "s") and at
+        if noun and not _is_known(words[at - 1]) and words[at - 1].text[:1].isalpha():
+            subject = words[at].form == "s" and words[at].text not in ("steps", "turns", "jumps")
+            if not subject and any(word.is_verb and not word.is_activity for word in words[:at]):
+                raise InputError(not_known(clause.text, words[at - 1].text))
     _note_unknown(words, clause, reading, has_verb=True)
     reading.form = _form(words, verbs[0])
-    for k, at in enumerate(verbs):
-        reading.steps.append(step_of(words, at, about, clause.text))
-        reading.forms.append(words[at].form if k else reading.form)
+    # what stands before the first verb belongs to it
+    starts = [0, *(_start_of(words, before, at) for before, at in zip(verbs, verbs[1:], strict=False))]
+    ends = [*starts[1:], len(words)]
+    for k, (at, end) in enumerate(zip(verbs, ends, strict=True)):
+        begin = starts[k]
+        own = words[begin:end]
+        about = modifiers(own, clause.text, reading.notes)
+        reading.steps.append(step_of(own, at - begin, about, clause.text))
+        reading.forms.append(_form(words[starts[k] :], at - starts[k]) if k else reading.form)
     return reading
+
+
+def _start_of(words: list[Word], before: int, at: int) -> int:
+    """Where a later verb's own words begin: at its light verb ("takes a turn"), else at its adjectives."""
+    if words[at].form == "past":  # "walks with the left hand raised"
+        noun = [i for i in range(before + 1, at) if words[i].text == "with"]
+        if noun:
+            return noun[-1]
+    light = [i for i in range(before + 1, at) if words[i].is_verb and not words[i].is_activity]
+    if light:
+        return light[0]
+    while at - 1 > before and (words[at - 1].text in _BEFORE_NOUNS or words[at - 1].text.startswith("deg")):
+        at -= 1
+    return at
+
+
+_THINGS = {"object", "objects", "something", "thing", "things", "box", "it", "them"}
+_BEFORE_NOUNS = {"a", "an", "one", "small", "big", "quick", "fast", "slow", "sharp", "short", "full", "is", "gets",
+                 "sideways", "little", "slight", "further"}
 
 
 def _refuse(clause: Clause) -> None:
@@ -134,9 +182,14 @@ def _verbs(words: list[Word]) -> list[int]:
     found: list[int] = []
     texts = {word.text for word in words}
     for i, word in enumerate(words):
-        if word.lemma == "move" and texts & ARMS:
+        if word.lemma == "head" and i and (words[i - 1].text in OWN or words[i - 1].text in ("the", "with")):
+            continue
+        if word.lemma == "reach" and words[i + 1 : i + 2] and words[i + 1].text in ("the", "his", "her", "its", "their"):
+            continue  # "reaches the end"
+        after = words[i + 1].text if i + 1 < len(words) else ""
+        if word.lemma == "move" and (texts & ARMS or after in ("them", "it", "him", "her")):
             continue  # it is the arm that moves, and how is not known
-        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS)
+        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS or texts & set(TARGETS))
         if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):
             found.append(i)
     if len(found) > 1 and words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
@@ -157,9 +210,9 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return True
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
-    if word.lemma == "step" and found and words[found[-1]].lemma in STEPPING:
-        return True
-    same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)
+    if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
+        return not any(other.is_verb and not other.is_activity for other in words[found[-1] + 1 : i])
+    same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)
     return same
 
 
@@ -175,7 +228,7 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
         reading.unknown = unknown + [word.text for word in words if word.is_verb]
         return
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
-    if moved is not None and any(not _is_known(word) for word in words[moved + 1 : moved + 3]):
+    if moved is not None and any(not _is_known(word) or word.text in _THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
     for text in unknown:
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)

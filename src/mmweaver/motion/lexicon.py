@@ -61,7 +61,8 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
      " leading-foot "),
     (r"\ban? ((?:small |big |large |quick |slow |short |long |little |single |fast )?step)\b", r" one \1 "),
     (r"\b((?:(?:counter|anti)[- ]?)?clockwise) ((?:small |big |large |wide )?circles?)\b", r"\2 \1"),
-    (r"\b(?:in|on|along|around)(?: an?| the)?(?: [a-z-]+){0,2} circles?\b"
+    (r"\b(?:in|on|along|around)(?: an?| the)?(?: (?:small|big|large|wide|tight|narrow|full|whole|complete|little|slow|fast|quick|"
+     r"huge|single|one|two|three|four|few|very|slightly|his|her|its)){0,2} circles?\b"
      r"|\ba (?:full |whole |complete |big |small )?circle\b",
      " in_circle "),
     (r"\b(?:figure|number)[ -](?:of )?(?:an? )?(?:8|eight)\b", " semicircle "),
@@ -80,7 +81,7 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\bas well(?: as)?\b|\balso\b|\btoo\b", " "),
     (r"\bhands? together\b", " hands "),
     (r"\bhands and knees\b|\ball fours\b", " allfours "),
-    (r"\bright (after|before|then|now)\b", r" \1 "),
+    (r"(?<!the )(?<!his )(?<!her )(?<!its )\bright (after|before|then|now)\b", r" \1 "),
     (r"\ba (?:couple|pair) of (?:times|steps)\b", " 2 times "),
     (r"\b(?:several|many|a few|multiple|some|few) (times|steps|punches|squats|jumps|claps|sips)\b", r" 3 \1 "),
     (r"\bonce again\b|\bagain\b|\bonce more\b", " "),
@@ -94,6 +95,7 @@ DIRECTIONS = {
     **dict.fromkeys(("away", "retreat", "retreats", "retreating"), "away"),
     **dict.fromkeys(("forward", "forwards", "ahead", "straight", "onward", "advance", "advances"), "forwards"),
     **dict.fromkeys(("backward", "backwards", "back", "rear", "reverse"), "backwards"),
+    "back_to_start": "back",
     "in_circle": "circle",
     "on_spot": "spot",
     "around": "around",
@@ -167,12 +169,12 @@ NOT_HUMAN = _words(
 # Words that make it another movement than the one known, so that leaving them out would be wrong.
 OTHER_MOVEMENT = _words(
     """
-    stairs stair staircase stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail
-    railing rope trampoline treadmill bike bicycle ball like allfours diagonally zigzag slalom obstacle hurdle
+    s-shape s-curve slalom eight figure     break breakdance breakdancing mid-air midair     stairs stair staircase stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail
+    railing   trampoline treadmill bike bicycle like allfours diagonally zigzag slalom obstacle hurdle
     over knees knee leg legs foot tiptoe tiptoes handstand cartwheel floor ground wheelchair swimming flip
-    somersault asleep drunken drunk limp crossed spiral triangle rectangle swings phone head shoulder shoulders
-    elbow elbows hips hip thigh sit-ups push-ups lunge lunges plank tennis racket upward downward platform edge
-    curb log bridge bent hunched crouched against reacts balance shuffle scooter skateboard grapevine waltz circle
+    somersault asleep       crossed spiral triangle rectangle swings   head shoulder shoulders
+    elbow elbows hips hip thigh sit-ups push-ups     plank tennis racket upward downward platform edge
+    curb log bridge bent hunched crouched against reacts   shuffle scooter skateboard grapevine waltz circle
     circles tango salsa waltzing ballet backflip kata karate fight fighting drums drum piano trumpet flute
     conductor conducts skiing skating surfing climbing climbs climb vault vaults crawl crawls crawling dog partner
     someone_else sits_up leap-frog zombie stork sneaks sneaking sneak injured drags dragging half-circle guitar
@@ -205,7 +207,7 @@ FILLERS = _words(
     seconds minute exercise exercises workout gym set sets repetitions reps fitness jacks steps pairs large-ish
     meters metres meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them
     something anything first about whole complete successive consecutive row close someone's person's man's user's
-    woman's arm's starting ending performing doing object thing things ball box book soup pot surface board plate food meal
+    woman's arm's drunk drunken sharp tight careful recovery awkward strong rough starting ending performing doing object thing things ball box book soup pot surface board plate food meal
     dish bowl door handle screen keyboard computer laptop cloth whiteboard blackboard letter note pen apple sandwich
     breakfast lunch dinner rope cart plane waist breast breast-high chest-high hair teeth sink mirror newspaper magazine mail email
     towards_it it's one's reading_glasses order tempo pose posture stance kind sort type_of lot rhythm music song hall

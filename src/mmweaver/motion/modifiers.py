@@ -26,6 +26,8 @@ def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
             about = replace(about, hand=about.hand or "both")
         elif text in SEATS:
             about = replace(about, seat=text)
+        elif text == "back" and before in (*OWN, "hollow", "straight", "bent", "hurting", "aching"):
+            continue  # a part of the body
         elif text in DIRECTIONS:
             about = _direction(about, text, words, i)
         elif "_" in text or text.startswith(("arc", "deg")) or text in ("onback", "onbelly", "lookdown", "highkick"):
@@ -43,7 +45,8 @@ def _left_or_right(
         return replace(about, arc_deg=360.0 if text == "left" else -360.0)
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
-    if before in OWN and not any(word.lemma in ("turn", "rotate", "pivot") for word in words):
+    bends = ("turn", "rotate", "pivot", "spin")
+    if before in OWN and not any(word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words):
         notes.append(
             f"'{before} {text}' is taken as the {text} of a person who faces the radar, {OPPOSITE[text]} in the photo"
         )
@@ -60,8 +63,11 @@ def _arm_soon(words: list[Word], i: int) -> bool:
 
 def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
     direction = DIRECTIONS[text]
+    if direction == "circle" and about.direction in OPPOSITE:
+        return replace(about, direction="circle", arc_deg=360.0 if about.direction == "left" else -360.0)
     following = {word.text for word in words[i + 1 : i + 4]}
-    if text == "back" and not any(word.lemma in ("step", "lean") for word in words):
+    going = any(word.is_verb and word.lemma in ("walk", "go", "run", "return", "jog", "head", "come") for word in words)
+    if text == "back" and (going or not any(word.lemma in ("step", "lean") for word in words)):
         direction = "back"
     if text == "straight" and any(word.lemma in ("stand", "sit", "raise", "jump", "punch") for word in words):
         return about
@@ -124,6 +130,7 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
 
 
 _PUSHED_FROM = {
+    "own_left": "left", "own_right": "right",  # of somebody who faces the viewer
     "behind": "forwards", "back": "forwards", "rear": "forwards", "front": "backwards", "left": "right",
     "right": "left", "on_left_side": "right", "on_right_side": "left",
 }  # fmt: skip

@@ -7,7 +7,7 @@ from mmweaver.motion.body import Body
 from mmweaver.motion.library.floor import BACK_BEHIND_M, BELLY_AHEAD_M
 from mmweaver.motion.plan import Step
 from mmweaver.motion.root_path import Move, Turn
-from mmweaver.motion.way import SLOWEST_MPS, NoWay, Way, face_along, ramps_of, wished_speed
+from mmweaver.motion.way import RAMP_S, SLOWEST_MPS, NoWay, Way, face_along, ramps_of, wished_speed
 
 Array = np.ndarray
 SPECIAL = ("sidestep", "stumble", "leap")
@@ -48,17 +48,23 @@ def _walk_bend(way: Way, step: Step, direction_rad: float | None, *, first: bool
     begin = face_along(way, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
     lasts = step.end_s - begin - sum(ramps) / 2
-    bend = np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
+    either = float(way.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
+    bend = either * np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
     speed, slowest = wished_speed(step, way.rng), SLOWEST_MPS.get(step.lower, 0.5)
-    for share in (1.0, 0.8, 0.65, 0.5):
-        length = max(speed * share, slowest) * lasts
+    for radius in (speed * lasts / abs(bend), 1.3, 1.0, 0.8, 0.65, 0.5, 0.4):
+        length = min(radius * abs(bend), speed * lasts)
+        if length < slowest * min(lasts, 1.0):
+            continue
+        stops = length < slowest * lasts  # a small bend is done before its time is over
+        span = length / (0.85 * speed) + 0.5 * (ramps[0] + RAMP_S) if stops else step.end_s - begin
+        span = min(span, step.end_s - begin)
         move = Move(
-            start_s=begin, end_s=step.end_s, length_m=length, direction_rad=direction, ramp_in_s=ramps[0],
-            ramp_out_s=ramps[1], curvature_per_m=bend / length,
+            start_s=begin, end_s=begin + span, length_m=length, direction_rad=direction, ramp_in_s=ramps[0],
+            ramp_out_s=min(RAMP_S, 0.4 * span) if stops else ramps[1], curvature_per_m=bend / length,
         )  # fmt: skip
-        places = way.place + move.shift_m(np.linspace(begin, step.end_s, 60))
+        places = way.place + move.shift_m(np.linspace(begin, begin + span, 60))
         if way.floor.can_stand(places).all():
-            _take(way, move, places, extra_cost=1.0 - share)
+            _take(way, move, places, extra_cost=0.5 * stops)
             way.heading_rad += bend
             way.last_direction_rad = None
             return
@@ -91,7 +97,8 @@ def _jolt(way: Way, step: Step, direction_rad: float | None) -> None:
     """A short way in a short time: caught after a push, or jumped."""
     direction = _relative(way, step, direction_rad)
     if direction is None:
-        direction = way.heading_rad + float(way.rng.choice([0.0, np.pi, np.pi]))
+        ways = (0.5 * np.pi, -0.5 * np.pi) if step.style == "side" else (0.0, np.pi, np.pi)
+        direction = way.heading_rad + float(way.rng.choice(ways))
     if step.lower == "stumble":
         length, span = float(way.rng.uniform(0.3, 0.6)), min(step.end_s - step.start_s, 1.2)
         begin = step.start_s + 0.12
@@ -113,8 +120,10 @@ def _take(way: Way, move: Move, places: Float[Array, "n 2"], extra_cost: float) 
     way.from_seat = False
 
 
-def turn_by(way: Way, angle_rad: float, start_s: float, span_s: float) -> None:
+def turn_by(way: Way, step: Step) -> None:
     """Turns by an angle that may be more than half a turn, to the left where positive, within the step."""
+    either = float(way.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
+    angle_rad, start_s, span_s = either * np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s
     lasts = min(0.25 + abs(angle_rad) / 3.2, max(span_s, 0.6))
     way.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle_rad))
     way.heading_rad += angle_rad

@@ -89,7 +89,7 @@ def _try(
             _lay_move(way, step, target, first=k == 0, last=following is None)
             sitting = target if following is not None and following.lower == "sit_down" else None
         elif step.lower == "turn" and step.turn_deg:
-            turn_by(way, np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s)
+            turn_by(way, step)
         elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
             _lay_turn(way, step, rng, first=k == 0)
         check_floor(way, step, body)

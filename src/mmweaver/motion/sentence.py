@@ -16,7 +16,7 @@ from mmweaver.motion.words import words_of
 LONGEST_TEXT = 1000
 MOST_STEPS = 24
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
-LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop"}
+LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
 
 def parse(text: str) -> MotionPlan:
@@ -33,13 +33,19 @@ def parse(text: str) -> MotionPlan:
         raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
     text, notes = corrected(text)
     readings: list[Reading] = []
-    for clause in clauses_of(words_of(text)):
+    words = words_of(text)
+    lemmas = {word.lemma for word in words}
+    if {"jump", "turn"} <= lemmas and {word.text for word in words} & {"air", "during"}:
+        raise InputError(f"{text.strip()!r}: jumping with a turn is not known; say 'jumps, then turns'")
+    for clause in clauses_of(words):
         reading = read_clause(clause)
         notes += reading.notes
         if reading.adds_nothing and readings and reading.link in ("and", "comma", "then", "while"):
             readings[-1].absorb(reading)
-        elif reading.steps:
+        elif reading.steps and not _is_its_end(readings, reading):
             readings.append(reading)
+        elif reading.steps:
+            continue
         elif readings and _needs_no_step(readings[-1].steps[-1], reading):
             continue
         elif not reading.is_empty:
@@ -50,6 +56,16 @@ def parse(text: str) -> MotionPlan:
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     return MotionPlan(text=asked, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
+
+
+def _is_its_end(readings: list[Reading], reading: Reading) -> bool:
+    """'Lifts a foot and puts it down again', 'is pushed and stumbles': one movement."""
+    if not readings:
+        return False
+    before, now = readings[-1].steps[-1], reading.steps[0]
+    if len(reading.steps) > 1 or before.upper:
+        return before.upper == "raise" and now.lower == "put_down" and len(reading.steps) == 1
+    return (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
 
 
 def _needs_no_step(before: Step, reading: Reading) -> bool:
@@ -80,8 +96,25 @@ def _in_sequence(readings: list[Reading]) -> list[Step]:
     return steps
 
 
+def _same_way(one: Step, other: Step) -> list[Step]:
+    """'Walks to the left, taking five steps' is one walk."""
+    if one.direction and other.direction and one.direction != other.direction:
+        raise InputError(
+            f"{one.clause!r} and {other.clause!r} name two directions; say which movement goes where, with 'then'"
+        )
+    more = one if one.direction or one.arc_deg else other
+    return [
+        replace(
+            more, count=one.count or other.count, speed=one.speed or other.speed, upper=one.upper or other.upper,
+            hand=one.hand or other.hand, target=one.target or other.target,
+        )
+    ]  # fmt: skip
+
+
 def _joined(one: Step, other: Step) -> list[Step]:
     """Two at once as one step; where a push or a turn meets a walk, as what that looks like."""
+    if one.lower == other.lower and one.moves and not (one.upper and other.upper):
+        return _same_way(one, other)
     pair = {one.lower, other.lower}
     walk, more = (one, other) if one.moves and one.lower != "stumble" else (other, one)
     if "stumble" in pair and walk.moves and walk.lower != "stumble" and not (one.upper or other.upper):
@@ -93,15 +126,17 @@ def _joined(one: Step, other: Step) -> list[Step]:
             return [one, other]
         bend = replace(walk, arc_deg=angle, turn_deg=0.0, style="" if more.direction in OPPOSITE else "either")
         return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]
-    if {one.lower, other.lower} == {"turn", "stumble"} or (one.lower == other.lower == "walk"):
+    if {one.lower, other.lower} == {"turn", "stumble"}:
         return [one, other]
     return [overlay(one, other)]
 
 
 def _goes_together(before: Reading, reading: Reading) -> bool:
+    one, other = before.steps[-1], reading.steps[0]
+    if reading.link == "comma" and reading.form == "ing" and one.lower == other.lower == "walk" and not other.direction:
+        return True
     if reading.link == "while":
         return True
-    one, other = before.steps[-1], reading.steps[0]
     compatible = _can_overlay(one, other)
     if reading.link == "and":
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":

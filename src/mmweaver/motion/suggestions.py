@@ -5,6 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from mmweaver.motion.activities import BODY, HANDS
+from mmweaver.motion.lexicon import FILLERS
 from mmweaver.motion.paraphrases import PARAPHRASES
 
 NEAR = 0.3  # cosine of character n-grams from which on a guess is worth a person's time
@@ -37,6 +38,8 @@ def _grams(text: str) -> list[str]:
     """Pieces of 3 to 5 letters of every word, its ends marked."""
     found = []
     for word in text.lower().replace("_", " ").split():
+        if word in FILLERS:
+            continue
         marked = f"<{word}>"
         found += [marked[i : i + n] for n in (3, 4, 5) for i in range(len(marked) - n + 1)]
     return found
@@ -49,7 +52,7 @@ def _table() -> tuple[list[str], list[str], np.ndarray, dict[str, tuple[int, flo
     texts, keys = [], []
     for key, example in examples.items():
         for text in (example, *PARAPHRASES.get(key, ())):
-            texts.append(text.removeprefix("a person ").removeprefix("is "))
+            texts.append(text)
             keys.append(key)
     count: dict[str, int] = {}
     for text in texts:

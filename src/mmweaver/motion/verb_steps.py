@@ -150,7 +150,9 @@ def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
 def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
     way = {"back": "backwards", "towards": "forwards", "away": "backwards"}.get(step.direction, step.direction)
     known = ("left", "right", "forwards", "backwards")
-    return replace(step, direction=way if way in known else "", count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
+    style = "side" if "sideways" in {word.text for word in words} and way not in known else ""
+    way = way if way in known else ""
+    return replace(step, direction=way, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
 
 
 def _floor_step(step: Step, words: list[Word], at: int) -> Step:

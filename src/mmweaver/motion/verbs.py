@@ -88,22 +88,31 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?: up| back up)? (?:again )?(?:from|out of) (?:an? |the |his |her |its |their )?"
      r"(?:kneeling|knees?|kneel)(?: (?:position|pose|stance|posture))?\b", " kneel_up "),
     (rf"\b{_BE} {_LITTLE}(?:pushed|shoved|bumped|jostled|punched|hit|puched|pulled)\b", " pushed "),
-    (r"\b(?:receives?|received|receiving|recovers? from|suffers?|reacts? to|recovering from|recover from)"
-     r" (?:an? |the )?(?:strong |hard |slight |light |sudden |heavy )*(?:push|shove|hit|kick|punch)\b", " pushed "),
+    (r"\b(?:receives?|received|receiving|recovers? from|suffers?|reacts? to|recovering from|recover from|gets?|got|takes|taking)"
+     r" (?:an? |the )?(?:strong |hard |slight |light |sudden |heavy |gentle |soft )*(?:push|shove|hit|kick|punch)\b", " pushed "),
+    (r"\b(?:the|this) push(?:ing)?(?: force)?\b", " "),
+    (r"\bto the (?:front|fore)\b", " forwards "),
+    (r"\bto the back\b", " backwards "),
     (r"\bloses? (?:his |her |its |their |the )?balance\b|\bstumbling\b|\bstumbels?\b|\bstrumbles?\b|\btrips\b",
      " stumbles "),
-    (r"\bfrom (?:the |his |her |its |their )?(behind|back|rear|front|left|right)(?:[- ]hand)?(?: side)?\b", r" from_\1 "),
+    (r"\bfrom (?:his|her|its|their) (left|right)(?:[- ]hand)?(?: side)?\b", r" from_own_\1 "),
+    (r"\bfrom (?:the |his |her |its |their )?(behind|back|rear|front|left|right)(?:[- ]?hand)?(?: ?side)?\b", r" from_\1 "),
+    (r"\bby (?:pushing|supporting|using|leaning|pressing)\b[^,.;]*", " "),
+    (r"\b(?:up|down|onto|over|on) (?:an?|the|one) (?:small |high |little )?(?:step|stair|platform|curb)\b", " stairs "),
+    (rf"\b(?:rais(?:es|ing|ed?)|lift(?:s|ing)?) {_OWN}(?:left |right )?(arms?|hands?) (?:up )?to (?:the )?(?:height|level) of "
+     rf"{_OWN}(?:shoulders?|chest)\b", r" arms_out \1 "),
     (r"\bin (?:the |his |her |its |their )back\b", " from_back "),
     (r"\bon (?:the |his |her |its |their )(left|right) (?:hand )?(?:shoulder|side)\b(?=[^,.]*)", r" on_\1_side "),
     (r"\b(?:goes|gets|going|getting|go|get|falls|drops|sinks|moves|drop|fall|sits|descends)(?: down)?(?: slowly)?"
      rf" (?:down )?(?:on|onto|to|in|into) {_OWN}(?:one |his left |his right |left |right )?knees?\b", " kneel_down "),
-    (r"\bkneel(?:s|ing)? (?:down|on|onto)\b|\bknees (?:down|on)\b|\bknelt(?: down)?\b|\bsits on (?:his|her) heels\b",
+    (r"\bkneels? (?:down|on|onto)\b|\bkneeling down\b|\bknees (?:down|on)\b|\bknelt(?: down)?\b|\bsits on (?:his|her) heels\b",
      " kneel_down "),
     (r"\b(?:is |are )(?:kneeling|on (?:his|her|its|their) knees)\b", " kneeling "),
     (r"\b(?:lies?|lays?|lying|laying|lie|layed|lays himself|lays itself) (?:itself |himself |herself )?down\b",
      " lie_down "),
     (r"\b(?:on|onto) (?:his|her|its|their|the) (?:back)\b", " onback "),
     (r"\b(?:on|onto) (?:his|her|its|their|the) (?:belly|stomach|tummy|front|chest|face)\b|\bface down\b", " onbelly "),
+    (r"\b(?:stands?|gets?|getting|standing|rises?|rising)(?: back)? up from (?:lying|laying|lie)\b([^,.;]*)", r" get_up \1 "),
     (r"\b(?:stands?|gets?|getting|standing|rises?|rising)(?: back)? up from (?:the |lying on the )?(?:floor|ground)\b"
      r"|\b(?:gets?|getting|stands?|standing|rises?)(?: back)? up (?:again )?(?:after|from) (?:lying|a fall)\b",
      " get_up "),
@@ -166,6 +175,10 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r" (?:out )?((?:his |her |its |their |the |both |left |right |one )*(?:arms?|hands?)) (?:out )?(?:horizontally )?"
      r"(?:to (?:the|his|her|its|their|both) sides?|sideways|sidewards|horizontally|to (?:the |his |her |its |their )?"
      r"shoulders?(?: height| level)?|out|outwards?|apart|to a t-pose)\b", r" arms_out \1 "),
+    (r"\b(?:stretch(?:es|ing|ed)?|hold(?:s|ing)?|extend(?:s|ing|ed)?|rais(?:es|ing|ed?)|lift(?:s|ing)?|puts?)"
+     r" (?:out )?((?:his |her |its |their |the |both |left |right |one )*(?:arms?|hands?)) (?:straight |out )*"
+     r"(?:forwards?|ahead|to the front|in front of (?:him|her|it|his body|her body|the body|himself|itself))\b",
+     r" arms_out \1 forwards "),
     (r"\bwith (?:(?:his|her|its|their|both) )?(?:arms?|hands?) (?:stretched|spread|extended|held|outstretched)"
      r"(?: out)?(?: (?:to (?:the|both|his|her) sides?|sideways|wide|horizontally))\b", " while arms_out "),
     (r"\bstretch(?:es|ing|ed)? (?:out )?(?:himself|herself|itself|his body|her body|his back|her back|the body)\b",
@@ -180,11 +193,22 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:stand(?:s|ing)?|balanc(?:es|ing)|stay(?:s|ing)?|is)(?: still)? (?:only )?(?:himself |itself |herself )?on "
      r"(?:only )?(?:one|a single|the|his|her|its|their) ?(left|right)? (?:leg|foot)\b", r" one_leg_stand \1 leg "),
     (r"\b(left|right) (?:leg|foot|feet|food|knee)\b", r" \1_leg "),
-    (r"\bside ?-?steps?\b|\bsitesteps?\b", " sidestep "),
+    (r"\bside ?-?step(?:s|ping|ped)?\b|\bsitesteps?\b", " sidestep "),
+    (r"\bafter (?:(?:a|an|one|two|three|four|five|six|some|few|couple|of|several|\d+|the|first|second|short|small) )+"
+     r"(?:steps?|meters?|metres?|while|moment|seconds?|time|distance)\b", " then "),
+    (r"\((left|right) (?:turn|curve|bend|circle)\)", r" to the \1 "),
+    (r"\baround an? (left|right) corner\b", r" arc90 to the \1 "),
+    (r"\b(?:one |a )?third of (?:an? |the )?circle\b", " arc120 "),
+    (r"\b(90|180|270|360)\b(?= (?:turn|jump|spin|clockwise|counter|left|right|rotation))", r"\1 degrees "),
     (r"\bside-? ?kick(s|ing)?\b|\bkick(?:s|ing|ed)? (?:to the )?side(?:ways)?\b", " kicks "),
     (r"\bhigh[- ]kick(s|ing)?\b", " highkick kicks "),
     (r"\bduck(?:s|ing|ed)? (?:down|away)?\b", " duck_down "),
     (r"\bu-? ?turn\b", " arc180 "),
+    (r"\bthrow(?:s|ing)? (?:(?:a|some|few|several|two|three|quick|fast|hard) )*(punch|punches|jabs?|hooks?|uppercuts?)\b",
+     r" punches \1 "),
+    (r"\b(?:in the air|in mid-?air)(?= *(?:[.,]|$))", " mid-air "),
+    (r"\bsome one\b", " someone "),
+    (r"\ba quarter\b(?! ?-?(?:circle|turn|of|ride|cir))", " arc90 "),
     (r"\b(\d+) ?/ ?(\d+)(?:th)? (?:of )?(?:an? |the )?circle\b", r" fraction_\1_\2 "),
     (r"\b(?:three|3)[- ](?:quarters?|fourths?|quater) (?:of )?(?:an? |the )?circle\b", " arc270 "),
     (r"\bthree fourth of a circle\b", " arc270 "),
@@ -197,13 +221,21 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bquarter(?: of an?)? turn\b", " deg90 "),
     (r"\b(?:half|halve)(?: a)? turn\b", " deg180 "),
     (r"\b(?:full|complete|whole) (?:turn|spin|rotation)\b", " deg360 "),
+    (r"\b(walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging) (?:in |along |with |through )?(?:an? |the )?"
+     r"(?:(?:slow|fast|sharp|wide|tight|slight|small|big|normal) )*deg(\d+) (?:turn|bend|corner)\b", r" \1 arc\2 "),
+    (r"\b(walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging) (?:in |along |with |through )?(?:an? |the )?"
+     r"(?:(?:slow|fast|sharp|wide|tight|slight|small|big|normal) )*(left|right)[- ](?:hand )?(?:turn|bend|corner|curve|arc)\b",
+     r" \1 arc90 to the \2 "),
+    (r"\b(walks?|walking|goes|going|runs?|running|moves?|moving) (?:in|along|through|with) an? (?:(?:slow|fast|sharp|wide|tight|"
+     r"slight|small|big|normal) )*(?:turn|corner)\b", r" \1 arc90 "),
+    (r"\baround (?:an?|the) corner\b", " arc90 "),
     (r"\b(?:in |along |around |a |an |slight |wide |sharp |big |long |light |small |tight )*(?:curve|arc|bend)\b"
-     r"(?! (?:down|over|forward))", " arc60 "),
+     r"(?! (?:down|over|forward|posture|position|pose|stance|manner|way|legs?|knees?))", " arc60 "),
     (r"\b(?:counter|anti)[- ]?(?:clock|clook)[- ]?wise\b|\bcounter clock wise\b", " to the left "),
     (r"\bclock[- ]?wise\b", " to the right "),
     (r"\bback to (?:the |his |her |its |their )?(?:start(?:ing)?|initial|original|first|old)[a-z ]*"
-     r"(?:point|position|place|spot|pose|track|path|trajectory)?\b", " back "),
-    (r"\bto (?:the|his|her|its) (?:original |starting |initial )(?:position|point|place|spot)\b", " back "),
+     r"(?:point|position|place|spot|pose|track|path|trajectory)?\b", " back_to_start "),
+    (r"\bto (?:the|his|her|its) (?:original |starting |initial )(?:position|point|place|spot)\b", " back_to_start "),
 )  # fmt: skip
 
 # What follows a push and only says that it was caught.

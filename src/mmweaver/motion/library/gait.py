@@ -86,7 +86,7 @@ class Footfall:
 
 
 def walking(stage: Stage) -> Controls:
-    return stepping(stage, walking_style(stage, cruise_mps(stage)), jog=False)
+    return stepping(stage, walking_style(stage, max(cruise_mps(stage), 0.7)), jog=False)
 
 
 def jogging(stage: Stage) -> Controls:

@@ -47,9 +47,9 @@ def stamping(stage: Stage) -> Controls:
     """One knee goes up and the foot comes down hard, flat."""
     controls, time_s, h = upright(stage), stage.time_s, stage.body.height_m
     side = leg_side(stage)
-    for begin, lasts in repeats(stage, 0.85, 0.65, 1.3):
-        at = [begin, begin + 0.45 * lasts, begin + 0.8 * lasts]
-        up = flowing(time_s, at, [0.0, vary(stage, 0.15), 0.0])
+    for begin, lasts in repeats(stage, 0.95, 0.75, 1.4):
+        at = [begin, begin + 0.42 * lasts, begin + 0.86 * lasts]
+        up = flowing(time_s, at, [0.0, vary(stage, 0.13, 0.08), 0.0])
         over = plateau(time_s, begin - 0.15 * lasts, begin + 1.05 * lasts, 0.4 * lasts, 0.3 * lasts)
         shift_foot(controls, side, 0.05 * h * np.maximum(up, 0) / 0.15, 0.0, np.maximum(up, 0.0) * h)
         lean_over(controls, stage.body, 1 - side, over)

@@ -4,7 +4,7 @@ import numpy as np
 
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.limbs import cycles, flowing, hand_to, mix_arm, one_side, place, repeats, sides
-from mmweaver.motion.profiles import plateau, rise, wander
+from mmweaver.motion.profiles import plateau, rise, travel, wander
 from mmweaver.motion.stage import Stage
 
 
@@ -144,14 +144,10 @@ def stretching(stage: Stage, controls: Controls) -> Controls:
 def circling_arms(stage: Stage, controls: Controls) -> Controls:
     """Stretched arms go round at the sides: forward, up, back, down."""
     rate, end = cycles(stage, stage.tempo(0.5, 0.8, 1.1), 0.5, 1.2)
-    begin = stage.start_s
-    turns = max(1, round(rate * (end - begin)))
-    rate = turns / max(end - begin, 0.5)
-    phase = 2 * np.pi * turns * rise((stage.time_s - begin) / (turns / rate))
-    if turns > 2:
-        steady = 2 * np.pi * rate * (stage.time_s - begin)
-        phase = np.where((stage.time_s > begin) & (stage.time_s < end), steady, phase)
-        phase = 2 * np.pi * turns * np.clip((stage.time_s - begin) * rate / turns, 0, 1)
+    lasts = max(end - stage.start_s, 0.8)
+    turns = max(1, round(rate * lasts))
+    ramp = min(0.5, 0.4 / lasts)
+    phase = 2 * np.pi * turns * travel(np.clip((stage.time_s - stage.start_s) / lasts, 0, 1), ramp, ramp)
     for side in sides(stage) if stage.step.hand else (LEFT, RIGHT):
         controls.arm_rad[:, side, 0] = -0.02 + phase
         controls.arm_rad[:, side, 1] = 0.18 + 0.12 * np.sin(phase / 2) ** 2

@@ -30,7 +30,7 @@ def throwing(stage: Stage, controls: Controls) -> Controls:
     time_s, side = stage.time_s, one_side(stage)
     sign = 1.0 if side == LEFT else -1.0
     under = stage.step.style == "under" or stage.rng.random() < 0.2
-    for begin, lasts in repeats(stage, 1.5, 1.2, 2.2):
+    for begin, lasts in repeats(stage, 1.6, 1.3, 2.3):
         at = [begin + share * lasts for share in (0.0, 0.4, 0.66, 0.8, 1.0)]
         on = plateau(time_s, begin, begin + lasts, 0.2 * lasts, 0.2 * lasts)
         mix_arm(controls, side, keyed_arm(time_s, begin, lasts, _UNDER if under else _OVER), on)
