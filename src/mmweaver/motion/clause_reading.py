@@ -28,13 +28,72 @@ from mmweaver.motion.verb_steps import LEGS, step_of
 from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.words import Word
 
-STEPPING = GOING | {"walk", "jog", "run", "jump", "hop", "turn", "advance", "march", "retreat", "sidestep", "stumble", "pushed", "dance",
-            "turn", "tumble", "stagger", "limp"}
+STEPPING = GOING | {
+    "walk",
+    "jog",
+    "run",
+    "jump",
+    "hop",
+    "turn",
+    "advance",
+    "march",
+    "retreat",
+    "sidestep",
+    "stumble",
+    "pushed",
+    "dance",
+    "turn",
+    "tumble",
+    "stagger",
+    "limp",
+}
 DISTANCES = {"meters", "metres", "meter", "metre", "m", "cm", "centimeters", "feet", "yards"}
-LEG_VERBS = {"kick", "raise", "lift", "stomp", "stamp", "one_leg_stand", "hop", "jump", "leap", "turn", "pivot", "rotate", "spin",
-             "kneel_down", "kneel", "lunge", "limp", "hobble", "step", "walk", "limp"}
-FLOOR_VERBS = {"lie", "lay", "lie_down", "fall", "collapse", "topple", "pick_up", "put_down", "get_up", "stand_up", "kneel",
-               "kneel_down", "kneel_up", "stomp", "stamp", "look_around", "bend", "faint", "wipe", "clean", "point"}
+LEG_VERBS = {
+    "kick",
+    "raise",
+    "lift",
+    "stomp",
+    "stamp",
+    "one_leg_stand",
+    "hop",
+    "jump",
+    "leap",
+    "turn",
+    "pivot",
+    "rotate",
+    "spin",
+    "kneel_down",
+    "kneel",
+    "lunge",
+    "limp",
+    "hobble",
+    "step",
+    "walk",
+    "limp",
+}
+FLOOR_VERBS = {
+    "lie",
+    "lay",
+    "lie_down",
+    "fall",
+    "collapse",
+    "topple",
+    "pick_up",
+    "put_down",
+    "get_up",
+    "stand_up",
+    "kneel",
+    "kneel_down",
+    "kneel_up",
+    "stomp",
+    "stamp",
+    "look_around",
+    "bend",
+    "faint",
+    "wipe",
+    "clean",
+    "point",
+}
 
 
 @dataclass
@@ -78,7 +137,6 @@ class Reading:
             seconds=last.seconds or about.seconds,
         )
 
-
     def _leads_back(self, last: Step, about: Step) -> bool:
         """'Walks forwards and backwards', 'steps aside and then back': the other direction is a way of its own."""
         if last.lower == "sidestep":
@@ -86,7 +144,9 @@ class Reading:
             if about.direction not in ("back", "backwards", other) or not other:
                 return False
             self.steps.append(replace(last, direction=other, count=about.count or last.count))
-        elif about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg:
+        elif (
+            about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg
+        ):
             self.steps.append(replace(last, direction=about.direction, count=about.count or last.count))
         else:
             return False
@@ -139,8 +199,25 @@ def _start_of(words: list[Word], before: int, at: int) -> int:
 
 
 _THINGS = {"object", "objects", "something", "thing", "things", "box", "it", "them"}
-_BEFORE_NOUNS = {"a", "an", "one", "small", "big", "quick", "fast", "slow", "sharp", "short", "full", "is", "gets",
-                 "sideways", "little", "slight", "further"}
+_BEFORE_NOUNS = {
+    "a",
+    "an",
+    "one",
+    "small",
+    "big",
+    "quick",
+    "fast",
+    "slow",
+    "sharp",
+    "short",
+    "full",
+    "is",
+    "gets",
+    "sideways",
+    "little",
+    "slight",
+    "further",
+}
 
 
 def _refuse(clause: Clause) -> None:
@@ -184,7 +261,11 @@ def _verbs(words: list[Word]) -> list[int]:
     for i, word in enumerate(words):
         if word.lemma == "head" and i and (words[i - 1].text in OWN or words[i - 1].text in ("the", "with")):
             continue
-        if word.lemma == "reach" and words[i + 1 : i + 2] and words[i + 1].text in ("the", "his", "her", "its", "their"):
+        if (
+            word.lemma == "reach"
+            and words[i + 1 : i + 2]
+            and words[i + 1].text in ("the", "his", "her", "its", "their")
+        ):
             continue  # "reaches the end"
         after = words[i + 1].text if i + 1 < len(words) else ""
         if word.lemma == "move" and (texts & ARMS or after in ("them", "it", "him", "her")):
@@ -276,5 +357,3 @@ def _is_known(word: Word) -> bool:
         or text.replace(".", "").isdigit()
         or len(text) == 1
     )
-
-

@@ -25,7 +25,7 @@ LIGHT = _words(
     """
 )
 IRREGULAR = {
-    "sat": "sit", "stood": "stand", "drank": "drink", "drunk": "drink", "ran": "run", "strode": "stride",
+    "sat": "sit", "stood": "stand", "drank": "drink", "ran": "run", "strode": "stride",
     "went": "go", "gone": "go", "came": "come", "made": "make", "did": "do", "does": "do", "done": "do", "took": "take",
     "gave": "give", "began": "begin", "kept": "keep", "leapt": "leap", "threw": "throw", "goes": "go",
     "froze": "freeze", "fell": "fall", "ate": "eat", "wrote": "write", "lying": "lie", "knelt": "kneel",

@@ -46,7 +46,9 @@ def _left_or_right(
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
     bends = ("turn", "rotate", "pivot", "spin")
-    if before in OWN and not any(word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words):
+    if before in OWN and not any(
+        word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words
+    ):
         notes.append(
             f"'{before} {text}' is taken as the {text} of a person who faces the radar, {OPPOSITE[text]} in the photo"
         )
@@ -105,8 +107,6 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
     if value != int(value) or not 1 <= value <= MOST_TIMES:
         raise InputError(f"{text} times is not possible; say a whole number from 1 to {MOST_TIMES}")
     return replace(about, count=int(value))
-
-
 
 
 def _token(about: Step, text: str, texts: set[str]) -> Step:

@@ -21,7 +21,9 @@ class Step:
         ""  # left | right | towards | away | forwards | backwards | back | pacing | circle | seat | spot | around
     )
     arc_deg: float = 0.0  # how far the way bends, to the person's left where positive
-    turn_deg: float = 0.0  # of a turn or a turning jump, to the person's left where positive; 0: as the direction has it
+    turn_deg: float = (
+        0.0  # of a turn or a turning jump, to the person's left where positive; 0: as the direction has it
+    )
     style: str = ""  # back | front (lying and falling) | bent (walking) | knee (of one knee)
     speed: int = 0  # -1 slowly, 0, 1 quickly
     count: int = 0  # how often; 0: as time allows

@@ -54,7 +54,11 @@ def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
     if not anything_before:
         return [step]
     if step.upper:  # goes down, then does it there
-        return [*first, replace(step, lower=down, upper="", count=0, seconds=0.0), replace(step, lower=STILL[step.posture])]
+        return [
+            *first,
+            replace(step, lower=down, upper="", count=0, seconds=0.0),
+            replace(step, lower=STILL[step.posture]),
+        ]
     return [*first, replace(step, lower=down)]
 
 
@@ -96,7 +100,9 @@ def merged(steps: list[Step]) -> list[Step]:
     """Two equal still postures in a row are one."""
     result: list[Step] = []
     for step in steps:
-        plain = step.lower in ("sit", "stand", "kneel", "lie") and not step.upper and not step.seconds and not step.facing
+        plain = (
+            step.lower in ("sit", "stand", "kneel", "lie") and not step.upper and not step.seconds and not step.facing
+        )
         same = {"sit": ("sit", "sit_down"), "kneel": ("kneel", "kneel_down"), "lie": ("lie", "lie_down", "fall")}.get(
             step.lower, (step.lower,)
         )

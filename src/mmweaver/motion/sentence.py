@@ -1,6 +1,7 @@
 """A sentence -> MotionPlan: every clause becomes a step or an overlay, or the error says which clause could not."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.clause_reading import Reading, read_clause
@@ -52,7 +53,11 @@ def parse(text: str) -> MotionPlan:
             raise InputError(not_known(clause.text))
     if not readings:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
-    steps = carried_over(with_postures(_in_sequence(readings)))
+    sequence = _in_sequence(readings)
+    for before, step in pairwise(sequence):
+        if step.lower in ("lie", "lie_down") and before.seat:
+            raise InputError(f"{step.clause!r}: lying is known on the floor only; leave out the {before.seat}")
+    steps = carried_over(with_postures(sequence))
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     return MotionPlan(text=asked, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))

@@ -12,7 +12,7 @@ from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA, ACTIVITY_PHRASES, RECOVERIN
 SHORTEST = 6  # letters; shorter words have too many neighbours
 # Words of the language that are one letter away from ours and mean something else.
 OTHER_WORDS = frozenset(
-    "clasps passes passed bowls shakes wakes slides rides stars starts stands stares staring planks waving weaving jumper walker runner"
+    "clasps showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands stares staring planks waving weaving jumper walker runner"
     " turner stepper sitting setting hitting spitting falling calling filling standing landing lifting sifting rolling"
     " pulling polling pushing rushing wiping piping tipping ripping texting testing resting reading heading leading"
     " kicking licking picking packing pointing painting printing bending sending lending mending".split()
@@ -68,11 +68,34 @@ def _known() -> frozenset[str]:
     for verb in verbs:
         if verb.isalpha():
             stem = verb.removesuffix("e")
-            known |= {verb, verb + "s", verb + "es", stem + "ing", stem + "ed", verb + verb[-1] + "ing", verb + verb[-1] + "ed"}
-    for words in (ARMS, BOTH, DIRECTIONS, FILLERS, MANY, NEGATIONS, NOT_HUMAN, NUMBERS, OTHER_MOVEMENT, RADAR, SEATS, SPEEDS,
-                  TARGETS):
+            known |= {
+                verb,
+                verb + "s",
+                verb + "es",
+                stem + "ing",
+                stem + "ed",
+                verb + verb[-1] + "ing",
+                verb + verb[-1] + "ed",
+            }
+    for words in (
+        ARMS,
+        BOTH,
+        DIRECTIONS,
+        FILLERS,
+        MANY,
+        NEGATIONS,
+        NOT_HUMAN,
+        NUMBERS,
+        OTHER_MOVEMENT,
+        RADAR,
+        SEATS,
+        SPEEDS,
+        TARGETS,
+    ):
         known |= set(words)
     for pattern, _ in ACTIVITY_PHRASES:
         known |= set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", pattern)))
-    known |= set("quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward".split())
+    known |= set(
+        "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward".split()
+    )
     return frozenset(word for word in known if word.isalpha() and word.islower())

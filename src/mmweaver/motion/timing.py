@@ -6,6 +6,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.motion.activities import BY_KEY
 from mmweaver.motion.plan import MotionPlan, Step
 
+
 def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
     """The plan with start and end of every step.
 

@@ -23,6 +23,10 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     if word.lemma in BASE_VERB_SPEED:
         step = replace(step, speed=step.speed or BASE_VERB_SPEED[word.lemma])
     step = _arms_step(step, texts)
+    if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
+        step = replace(step, lower="sit")  # "reads a book on the sofa"
+    if step.lower in ("walk", "jog") and texts & {"drunken", "drunk"}:
+        step = replace(step, lower="stagger")
     if step.lower in _BY_LOWER:
         step = _BY_LOWER[step.lower](step, words, at)
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
@@ -76,7 +80,7 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
         direction = "" if not step.seat else "seat"
     step = replace(step, direction=direction, hand="", target=target, facing=_facing(words))
     if "sideways" in texts and step.lower == "walk" or _is_step_aside(step, words, at):
-        return replace(step, lower="sidestep", arc_deg=0.0, turn_deg=0.0)
+        return _sideways_step(replace(step, lower="sidestep"), words, at)
     if direction == "spot":
         return replace(step, lower="march" if step.lower == "walk" else step.lower, arc_deg=0.0, turn_deg=0.0)
     return _bent(step)
@@ -177,6 +181,8 @@ def _leg_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
+    if step.direction == "back":
+        raise InputError(f"{step.clause!r}: say to which side, left or right, the way back goes")
     return replace(step, hand="", arc_deg=0.0, turn_deg=0.0)
 
 

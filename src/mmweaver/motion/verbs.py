@@ -78,7 +78,9 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
 
 _OWN = r"(?:his |her |its |their |the |both |own )*"
 _BE = r"(?:is|are|was|were|be|been|being|beeing|gets?|got|getting|has been|having been)"
-_LITTLE = r"(?:slightly |strongly |hard |heavily |heavly |lightly |gently |suddenly |then |also |again |quickly |somehow )*"
+_LITTLE = (
+    r"(?:slightly |strongly |hard |heavily |heavly |lightly |gently |suddenly |then |also |again |quickly |somehow )*"
+)
 _BODY = r"(?:person|man|woman|human|user|guy|girl|boy|subject|somebody|someone|figure|individual)"
 
 # Replaced in this order, before lexicon.PHRASES: several words that mean one activity become one token.
@@ -181,6 +183,10 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r" arms_out \1 forwards "),
     (r"\bwith (?:(?:his|her|its|their|both) )?(?:arms?|hands?) (?:stretched|spread|extended|held|outstretched)"
      r"(?: out)?(?: (?:to (?:the|both|his|her) sides?|sideways|wide|horizontally))\b", " while arms_out "),
+    (r"\bwith (?:(?:his|her|its|their|both|the) )*(?:arms?|hands?) (?:raised|lifted|held up) (?:to (?:the|both|his|her|their) sides?|"
+     r"sideways|horizontally)\b", " while arms_out "),
+    (rf"\b(?:rises|rise|rising|rose) (?=(?:up )?{_OWN}(?:left |right )?(?:arms?|hands?|legs?|foot|feet|knees?)\b)", " raises "),
+    (r"\bdrunk (?=person|man|woman|human|guy|people|way|manner)|\b(?:seems? |looks? |is |being |like )drunk(?:en)?\b", " drunken "),
     (r"\bstretch(?:es|ing|ed)? (?:out )?(?:himself|herself|itself|his body|her body|his back|her back|the body)\b",
      " stretches "),
     (r"\b(?:circl(?:es|ing)|rotat(?:es|ing)|swing(?:s|ing)?|windmill(?:s|ing)?) (?:with )?"
@@ -221,8 +227,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bquarter(?: of an?)? turn\b", " deg90 "),
     (r"\b(?:half|halve)(?: a)? turn\b", " deg180 "),
     (r"\b(?:full|complete|whole) (?:turn|spin|rotation)\b", " deg360 "),
-    (r"\b(walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging) (?:in |along |with |through )?(?:an? |the )?"
-     r"(?:(?:slow|fast|sharp|wide|tight|slight|small|big|normal) )*deg(\d+) (?:turn|bend|corner)\b", r" \1 arc\2 "),
+    (r"\b(walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging) (?:slowly |quickly )?(?:in |along |with |through )?(?:an? |the )? *"
+     r"(?:(?:slow|slowly|fast|sharp|wide|tight|slight|small|big|normal|a) )* ?deg(\d+) +(?:turn|bend|corner)\b", r" \1 arc\2 "),
     (r"\b(walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging) (?:in |along |with |through )?(?:an? |the )?"
      r"(?:(?:slow|fast|sharp|wide|tight|slight|small|big|normal) )*(left|right)[- ](?:hand )?(?:turn|bend|corner|curve|arc)\b",
      r" \1 arc90 to the \2 "),

@@ -4,7 +4,6 @@ Who is on the floor is posed by the same controls: the pelvis's height and pitch
 The root stays where the feet stood; somebody on the back lies behind it, on the belly ahead of it.
 """
 
-
 import numpy as np
 from jaxtyping import Float
 
@@ -57,8 +56,6 @@ def _kneeling(stage: Stage, u: PerTime) -> Controls:
     return controls
 
 
-
-
 def lying_down(stage: Stage) -> Controls:
     lasts = float(np.clip(0.95 * stage.duration_s, 2.3, (5.0, 3.6, 2.5)[stage.step.speed + 1]))
     return _down(stage, (stage.time_s - stage.start_s) / lasts, falls=False)
@@ -103,7 +100,9 @@ def _on_back(stage: Stage, u: PerTime, *, falls: bool) -> Controls:
     controls.knee_up_rad[:] += 0.5 * np.pi * rise(u / 0.6)
     controls.knee_out_rad[:] *= 1 - rise(u / 0.6)[:, None]
     out = 0.6 if falls else 0.25
-    controls.arm_rad[:, :, 0] += flowing(u, at, [0.0, 0.7, 0.15 if not falls else 0.6, 0.0 if falls else -0.1, -0.03])[:, None]
+    controls.arm_rad[:, :, 0] += flowing(u, at, [0.0, 0.7, 0.15 if not falls else 0.6, 0.0 if falls else -0.1, -0.03])[
+        :, None
+    ]
     controls.arm_rad[:, :, 1] += flowing(u, at, [0.0, out, 0.55, 0.4, 0.22])[:, None]
     controls.arm_rad[:, :, 3] += flowing(u, at, [0.0, 0.2, 0.1, 0.0, -0.05])[:, None]
     return controls

@@ -122,7 +122,9 @@ def hopping_on_one_leg(stage: Stage) -> Controls:
     _bounce(controls, inner, one_leg=True)
     bob = controls.pelvis_m[:, 2] - high
     back = float(stage.rng.uniform(0.12, 0.2))
-    shift_foot(controls, side, -back * h * up, -0.01 * h * up, up * (0.14 * h + 0.5 * bob) - controls.foot_m[:, side, 2] * up)
+    shift_foot(
+        controls, side, -back * h * up, -0.01 * h * up, up * (0.14 * h + 0.5 * bob) - controls.foot_m[:, side, 2] * up
+    )
     lean_over(controls, stage.body, 1 - side, up)
     lift_weight(controls, side, np.minimum(up, controls.contact[:, side]))
     controls.foot_rad[:, side, 1] += 0.7 * up
