@@ -7,8 +7,8 @@ The sentences are split by motion into a half that the lexicon was made on and a
 sentences of the checking half, drawn by a fixed seed, were judged by hand: right if every movement that the sentence
 names is shown in its order, with its side, direction, hand or foot where one is said. The verdicts are kept beside the
 result (results/kitml/judgements.json) with the reading they were given for; a reading that has changed since makes its
-verdict void, and the result says how many are. An earlier draw (judgements_first.json) is kept as it was judged: its
-faults were mended, so it is no longer a check.
+verdict void, and the result says how many are. Two earlier draws (judgements_first.json, judgements_second.json) are
+kept as they were judged: their faults were mended, so they are no longer a check.
 """
 
 import argparse
@@ -30,6 +30,7 @@ from mmweaver.motion.sentence import parse
 JUDGED = 200
 Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | wrong), why
 SEED = 2026
+EARLIER = ("first", "second")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,12 +93,14 @@ def drawn(readings: dict[str, str], checking: list[Sentence], before: Collection
     return [checking[k].name for k in order if checking[k].name in readings and checking[k].name not in before][:JUDGED]
 
 
-def result_row(sentences: list[Sentence], judgements: Judgements, first: Judgements, digest: str) -> dict[str, Any]:
+def result_row(
+    sentences: list[Sentence], judgements: Judgements, before: dict[str, Judgements], digest: str
+) -> dict[str, Any]:
     """Shares over all sentences and each half, and what the judgements say."""
     readings = understood(sentences)
     checking = [sentence for sentence in sentences if sentence.is_for_checking]
     developed = [sentence for sentence in sentences if not sentence.is_for_checking]
-    names = drawn(readings, checking, first)
+    names = drawn(readings, checking, {name for earlier in before.values() for name in earlier})
     valid = [name for name in names if judgements.get(name, {}).get("reading") == readings[name]]
     wrong = sum(judgements[name]["verdict"] == "wrong" for name in valid)
     seen = {_plain(sentence.text) for sentence in developed}
@@ -111,11 +114,14 @@ def result_row(sentences: list[Sentence], judgements: Judgements, first: Judgeme
             sum(_plain(s.text) not in seen for s in checking),
             "the same, of checking sentences whose words occur in no sentence of the other half",
         ),
-        "wrong_first_draw": _share(
-            sum(verdict["verdict"] == "wrong" for verdict in first.values()),
-            len(first),
-            "an earlier 200 of the checking half, judged before the faults found in them were mended",
-        ),
+        **{
+            f"wrong_{name}_draw": _share(
+                sum(verdict["verdict"] == "wrong" for verdict in earlier.values()),
+                len(earlier),
+                "an earlier 200 of the checking half, judged before the faults found in them were mended",
+            )
+            for name, earlier in before.items()
+        },
         "wrong": _share(wrong, len(valid), "judged wrong by hand, of understood sentences of the checking half"),
     }
     activities = Counter(part.split()[0] for reading in readings.values() for part in reading.split(" | "))
@@ -151,14 +157,18 @@ def _plain(text: str) -> str:
 def run(out: Path, folder: Path) -> Path:
     """Writes results/kitml/reading.json; judgements are read from results/kitml/judgements.json."""
     path = folder / "kitml_annotations.json"
-    verdicts = [_judgements(out, name) for name in ("judgements", "judgements_first")]
-    row = result_row(sentences_of(path), *verdicts, hashlib.sha256(path.read_bytes()).hexdigest())
+    judgements, before = _judgements(out, "judgements"), _before(out)
+    row = result_row(sentences_of(path), judgements, before, hashlib.sha256(path.read_bytes()).hexdigest())
     return write_result(out, experiment="kitml", method="reading", config={"judged": JUDGED}, rows=[row])
 
 
 def _judgements(out: Path, name: str) -> Judgements:
     path = out / "kitml" / f"{name}.json"
     return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+
+
+def _before(out: Path) -> dict[str, Judgements]:
+    return {name: _judgements(out, f"judgements_{name}") for name in EARLIER}
 
 
 def main() -> None:

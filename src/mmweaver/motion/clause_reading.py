@@ -289,6 +289,14 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return before in ("a", "the", "this", "that")
     if word.lemma == "seat" and word.form != "past":
         return True
+    if word.lemma in ("phone", "text", "comb", "box") and before in ("a", "the", "his", "her", "their", "my"):
+        return True
+    if (
+        word.lemma == "point"
+        and word.form == "base"
+        and (found or before in ("a", "the", "starting", "same", "specific"))
+    ):
+        return True
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
     if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
@@ -311,6 +319,9 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
     if moved is not None and any(not _is_known(word) or word.text in _THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
+    odd = _odd_way(words)
+    if odd:
+        raise InputError(not_known(clause.text, odd))
     for text in unknown:
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
         if doing and text not in (
@@ -334,6 +345,24 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
     if unknown:
         listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
         reading.notes.append(f"of the text, {listed} says nothing that can be acted out and was left aside")
+
+
+def _odd_way(words: list[Word]) -> str:
+    """An unknown word that says which way or what is done: 'in a pentagon', 'performs capoeira'."""
+    for i, word in enumerate(words):
+        if _is_known(word) or not word.text[:1].isalpha():
+            continue
+        before = [other.text for other in words[max(i - 3, 0) : i]]
+        if before[-2:] in (["in", "a"], ["in", "an"], ["of", "a"], ["of", "an"], ["like", "a"]):
+            return word.text
+        lead = i - 1
+        while lead >= 0 and words[lead].text in ("a", "an", "the", "some", "his", "her", "with"):
+            lead -= 1
+        if lead >= 0 and words[lead].lemma in ("do", "perform", "make", "practice", "practise", "execute"):
+            following = words[i + 1] if i + 1 < len(words) else None
+            if following is None or not following.is_verb:
+                return word.text
+    return ""
 
 
 def _is_known(word: Word) -> bool:

@@ -50,9 +50,10 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\bhand[- ]?raises?\b|\barm[- ]?raises?\b|\braised? hands?\b", " raise hand "),
     (r"\bfrom (?:the )?left to (?:the )?right\b", " to the right "),
     (r"\bfrom (?:the )?right to (?:the )?left\b", " to the left "),
-    (r"\b(?:left and (?:the |his |her |their )?right|right and (?:the |his |her |their )?left)\b", " both "),
+    (r"\b(?:left and (?:the |his |her |their |its )?right|right and (?:the |his |her |their |its )?left)"
+     r"(?= (?:hand|arm|fist|punch|jab|hook|palm))", " both "),
     (r"\b(?:one after the other|alternat\w+)\b", " both "),
-    (r"\bback and forth\b|\bto and fro\b|\bback and forwards?\b|\bup and down the room\b", " pacing_to_and_fro "),
+    (r"\bback and forth\b|\bto and fro\b|\bforth and back\b|\bback and forwards?\b|\bup and down the room\b", " pacing_to_and_fro "),
     (r"\baround (?:the|in the) (?:room|place)\b", " pacing_to_and_fro "),
     (r"\bup and down (?:the |some )?(?:steps|stairs)\b", " stairs "),
     (r"\bup and down\b|\b(?:from )?side to side\b", " "),
@@ -65,7 +66,7 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
      r"huge|single|one|two|three|four|few|very|slightly|his|her|its)){0,2} circles?\b"
      r"|\ba (?:full |whole |complete |big |small )?circle\b",
      " in_circle "),
-    (r"\b(?:figure|number)[ -](?:of )?(?:an? )?(?:8|eight)\b", " semicircle "),
+    (r"\b(?:figure|number)[ -](?:of )?(?:an? )?(?:8|eight)\b", " figure-eight "),
     (r"\bto (?:the|his|her|one|their|its) side\b|\b(?:sidewards|sideway|sidewise|laterally|sidewards)\b", " sideways "),
     (r"\b(?:on|in) (?:the |one |a )?(?:same )?(?:spot|place)\b|\bin-place\b", " on_spot "),
     (r"\babout[- ]face\b|\b(?:all the way )?around\b(?= *(?:$|[,.;]|and|then))",
@@ -169,7 +170,9 @@ NOT_HUMAN = _words(
 # Words that make it another movement than the one known, so that leaving them out would be wrong.
 OTHER_MOVEMENT = _words(
     """
-    s-shape s-curve slalom eight figure     break breakdance breakdancing mid-air midair     stairs stair staircase stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail
+    figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
+       square ellipse oval loop loops number torso trunk defense defence guard defensive gymnastics gymnastic angle
+       s-shape s-curve slalom eight figure     break breakdance breakdancing mid-air midair     stairs stair staircase stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail
     railing   trampoline treadmill bike bicycle like allfours diagonally zigzag slalom obstacle hurdle
     over knees knee leg legs foot tiptoe tiptoes handstand cartwheel floor ground wheelchair swimming flip
     somersault asleep       crossed spiral triangle rectangle swings   head shoulder shoulders

@@ -120,6 +120,8 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
     if text.startswith("fraction_"):
         _, part, whole = text.split("_")
         return replace(about, arc_deg=360.0 * int(part) / max(int(whole), 1))
+    if text == "from_side":
+        return replace(about, style="side")
     if text.startswith(("from_", "on_")) and "pushed" in texts and not about.direction:
         return replace(about, direction=_PUSHED_FROM.get(text.removeprefix("from_"), about.direction))
     if text in ("onback", "onbelly"):

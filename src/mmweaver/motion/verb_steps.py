@@ -154,7 +154,8 @@ def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
 def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
     way = {"back": "backwards", "towards": "forwards", "away": "backwards"}.get(step.direction, step.direction)
     known = ("left", "right", "forwards", "backwards")
-    style = "side" if "sideways" in {word.text for word in words} and way not in known else ""
+    side = step.style == "side" or "sideways" in {word.text for word in words}
+    style = "side" if side and way not in known else ""
     way = way if way in known else ""
     return replace(step, direction=way, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
 

@@ -91,12 +91,24 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?:kneeling|knees?|kneel)(?: (?:position|pose|stance|posture))?\b", " kneel_up "),
     (rf"\b{_BE} {_LITTLE}(?:pushed|shoved|bumped|jostled|punched|hit|puched|pulled)\b", " pushed "),
     (r"\b(?:receives?|received|receiving|recovers? from|suffers?|reacts? to|recovering from|recover from|gets?|got|takes|taking)"
-     r" (?:an? |the )?(?:strong |hard |slight |light |sudden |heavy |gentle |soft )*(?:push|shove|hit|kick|punch)\b", " pushed "),
+     r" (?:an? |the )?(?:very |strong |hard |slight |light |sudden |heavy |gentle |soft |little )*(?:push|shove|hit|kick|punch)\b", " pushed "),
     (r"\b(?:the|this) push(?:ing)?(?: force)?\b", " "),
     (r"\bto the (?:front|fore)\b", " forwards "),
     (r"\bto the back\b", " backwards "),
     (r"\bloses? (?:his |her |its |their |the )?balance\b|\bstumbling\b|\bstumbels?\b|\bstrumbles?\b|\btrips\b",
      " stumbles "),
+    (r"\b(left|right)-hand(?:ed)? side\b", r" \1 side "),
+    (r"\bas if (?:[a-z]+ ){0,5}pushed|\b(?:due to|because of|caused by|after|following) (?:an? |the )(?:push|shove|hit)\b", " like "),
+    (r"\bfrom (?:in )?front of (?:him|her|it|them|the person)\b|\bfrom in front\b|\bfrom the frontside\b", " from_front "),
+    (r"\bfrom (?:the|one|a) side\b", " from_side "),
+    (r"\bpushed (?:a bit |slightly |a little )?backs\b", " pushed backwards "),
+    (r"\bbow(?:s|ing|ed)? (?:his|her|its|their|the) head\b", " look_around lookdown "),
+    (r"\bupper[- ]?body\b|\btorso\b", " torso "),
+    (r"\b(wav(?:es?|ing)(?: (?:his|her|its|their|the) (?:left |right )?(?:hands?|arms?))?) (?:from )?(?:left and right|right and left|"
+     r"to the left and (?:to the )?right)\b", r" \1 "),
+    (r"\bpick(?:s|ing|ed)? (?:up )?(?:an?|the|his|her) (?:tea |coffee |water |mobile |smart|wine |cell )?(?:phone|cup|glass|mug|bottle|"
+     r"book|pen|remote|fork|spoon|plate|knife|key|keys|newspaper|magazine|tablet|bag|telephone)\b(?: up)?(?! (?:from|off) the (?:floor|ground))",
+     " reach "),
     (r"\bfrom (?:his|her|its|their) (left|right)(?:[- ]hand)?(?: side)?\b", r" from_own_\1 "),
     (r"\bfrom (?:the |his |her |its |their )?(behind|back|rear|front|left|right)(?:[- ]?hand)?(?: ?side)?\b", r" from_\1 "),
     (r"\bby (?:pushing|supporting|using|leaning|pressing)\b[^,.;]*", " "),
@@ -181,7 +193,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r" (?:out )?((?:his |her |its |their |the |both |left |right |one )*(?:arms?|hands?)) (?:straight |out )*"
      r"(?:forwards?|ahead|to the front|in front of (?:him|her|it|his body|her body|the body|himself|itself))\b",
      r" arms_out \1 forwards "),
-    (r"\bwith (?:(?:his|her|its|their|both) )?(?:arms?|hands?) (?:stretched|spread|extended|held|outstretched)"
+    (r"\bwith (?:(?:his|her|its|their|both|the) )*(?:arms?|hands?) (?:stretched|spread|extended|held|outstretched)"
      r"(?: out)?(?: (?:to (?:the|both|his|her) sides?|sideways|wide|horizontally))\b", " while arms_out "),
     (r"\bwith (?:(?:his|her|its|their|both|the) )*(?:arms?|hands?) (?:raised|lifted|held up) (?:to (?:the|both|his|her|their) sides?|"
      r"sideways|horizontally)\b", " while arms_out "),
