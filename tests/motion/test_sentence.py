@@ -161,7 +161,7 @@ MORE = {
     "walks carrying a box": "walk+carry",
     "opens the door": "open_door",
     "walks to the door": "walk >door",
-    "goes over to the kitchen table and picks up a cup": "walk >table | pick_up",
+    "goes over to the kitchen table and picks up a cup": "walk >table | reach",
     "user seated on couch drinking water": "sit+drink",
     "sits on the couch and drinks": "sit+drink",
     "nods": "nod",

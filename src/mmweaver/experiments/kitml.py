@@ -180,9 +180,8 @@ def main() -> None:
     if arguments.list:
         sentences = sentences_of(arguments.sentences / "kitml_annotations.json")
         readings, texts = understood(sentences), {s.name: s.text for s in sentences}
-        names = drawn(
-            readings, [s for s in sentences if s.is_for_checking], _judgements(arguments.out, "judgements_first")
-        )
+        before = {name for earlier in _before(arguments.out).values() for name in earlier}
+        names = drawn(readings, [s for s in sentences if s.is_for_checking], before)
         json.dump([{"name": n, "text": texts[n], "reading": readings[n]} for n in names], sys.stdout, indent=1)
         return
     run(arguments.out, arguments.sentences)

@@ -98,10 +98,10 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bloses? (?:his |her |its |their |the )?balance\b|\bstumbling\b|\bstumbels?\b|\bstrumbles?\b|\btrips\b",
      " stumbles "),
     (r"\b(left|right)-hand(?:ed)? side\b", r" \1 side "),
-    (r"\bas if (?:[a-z]+ ){0,5}pushed|\b(?:due to|because of|caused by|after|following) (?:an? |the )(?:push|shove|hit)\b", " like "),
+    (r"\bas if (?:[a-z]+ +){0,5}pushed|\b(?:due to|because of|caused by|after|following) (?:an? |the )(?:push|shove|hit)\b", " like "),
     (r"\bfrom (?:in )?front of (?:him|her|it|them|the person)\b|\bfrom in front\b|\bfrom the frontside\b", " from_front "),
     (r"\bfrom (?:the|one|a) side\b", " from_side "),
-    (r"\bpushed (?:a bit |slightly |a little )?backs\b", " pushed backwards "),
+    (r"\bpushed +(?:a bit |slightly |a little )?backs\b", " pushed backwards "),
     (r"\bbow(?:s|ing|ed)? (?:his|her|its|their|the) head\b", " look_around lookdown "),
     (r"\bupper[- ]?body\b|\btorso\b", " torso "),
     (r"\b(wav(?:es?|ing)(?: (?:his|her|its|their|the) (?:left |right )?(?:hands?|arms?))?) (?:from )?(?:left and right|right and left|"
@@ -194,7 +194,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?:forwards?|ahead|to the front|in front of (?:him|her|it|his body|her body|the body|himself|itself))\b",
      r" arms_out \1 forwards "),
     (r"\bwith (?:(?:his|her|its|their|both|the) )*(?:arms?|hands?) (?:stretched|spread|extended|held|outstretched)"
-     r"(?: out)?(?: (?:to (?:the|both|his|her) sides?|sideways|wide|horizontally))\b", " while arms_out "),
+     r"(?: out)?\b(?! (?:up|over|above|forward|forwards|in|ahead|behind|low|high|down|together))"
+     r"(?: (?:to (?:the|both|his|her) sides?|sideways|wide|horizontally))?", " while arms_out "),
     (r"\bwith (?:(?:his|her|its|their|both|the) )*(?:arms?|hands?) (?:raised|lifted|held up) (?:to (?:the|both|his|her|their) sides?|"
      r"sideways|horizontally)\b", " while arms_out "),
     (rf"\b(?:rises|rise|rising|rose) (?=(?:up )?{_OWN}(?:left |right )?(?:arms?|hands?|legs?|foot|feet|knees?)\b)", " raises "),
