@@ -7,7 +7,7 @@ The sentences are split by motion into a half that the lexicon was made on and a
 sentences of the checking half, drawn by a fixed seed, were judged by hand: right if every movement that the sentence
 names is shown in its order, with its side, direction, hand or foot where one is said. The verdicts are kept beside the
 result (results/kitml/judgements.json) with the reading they were given for; a reading that has changed since makes its
-verdict void, and the result says how many are. Two earlier draws (judgements_first.json, judgements_second.json) are
+verdict void, and the result says how many are. Three earlier draws (judgements_first.json and so on) are
 kept as they were judged: their faults were mended, so they are no longer a check.
 """
 
@@ -30,7 +30,7 @@ from mmweaver.motion.sentence import parse
 JUDGED = 200
 Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | wrong), why
 SEED = 2026
-EARLIER = ("first", "second")
+EARLIER = ("first", "second", "third")
 
 
 @dataclass(frozen=True, kw_only=True)

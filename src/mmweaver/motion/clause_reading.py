@@ -1,6 +1,7 @@
 """One clause -> the steps it names: its verbs, and around them direction, hand, speed, count and seat."""
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.clauses import Clause
@@ -164,6 +165,9 @@ def read_clause(clause: Clause) -> Reading:
         reading.about = modifiers(words, clause.text, reading.notes)
         _note_unknown(words, clause, reading, has_verb=False)
         return reading
+    for one, other in pairwise(verbs):  # "a hopping walk"
+        if other == one + 1 and words[one].form == "ing" and words[other].form in ("base", "s"):
+            raise InputError(not_known(clause.text, f"{words[one].text} {words[other].text}"))
     for at in verbs:  # "a chachacha basic step"
         noun = words[at].lemma in ("step", "turn", "jump") and words[at].form in ("base", "s") and at
         if noun and not _is_known(words[at - 1]) and words[at - 1].text[:1].isalpha():

@@ -170,7 +170,8 @@ NOT_HUMAN = _words(
 # Words that make it another movement than the one known, so that leaving them out would be wrong.
 OTHER_MOVEMENT = _words(
     """
-    figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
+    rolling-over
+       figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
        square ellipse oval loop loops number torso trunk defense defence guard defensive gymnastics gymnastic angle
        s-shape s-curve slalom eight figure     break breakdance breakdancing mid-air midair     stairs stair staircase stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail
     railing   trampoline treadmill bike bicycle like allfours diagonally zigzag slalom obstacle hurdle

@@ -41,10 +41,10 @@ def _left_or_right(
     about: Step, text: str, before: str, after: str, words: list[Word], i: int, notes: list[str]
 ) -> Step:
     """Before an arm it names the arm; else it is a direction, the viewer's unless said to be the person's own."""
-    if about.direction == "circle":
-        return replace(about, arc_deg=360.0 if text == "left" else -360.0)
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
+    if about.direction == "circle":
+        return replace(about, arc_deg=360.0 if text == "left" else -360.0)
     bends = ("turn", "rotate", "pivot", "spin")
     if before in OWN and not any(
         word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words
@@ -100,7 +100,8 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
     if (following[:1] and following[0] in ARMS) or following[:1] == ["of"]:
         return about
     counted = any(word == "times" or word == "time" for word in following[:2]) or any(
-        word.is_activity or word.text in ("steps", "repetitions", "reps") for word in words[i + 1 : i + 4]
+        (word.is_activity and word.lemma != "point") or word.text in ("steps", "repetitions", "reps")
+        for word in words[i + 1 : i + 4]
     )
     if not counted or text == "another":
         return about

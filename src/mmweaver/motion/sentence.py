@@ -144,6 +144,8 @@ def _goes_together(before: Reading, reading: Reading) -> bool:
         return True
     compatible = _can_overlay(one, other)
     if reading.link == "and":
+        if one.upper == "raise" and other.upper and {one.hand, other.hand} == {"left", "right"}:
+            return True  # one hand stays up: overlay says that it cannot
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
             return one.lower == "sit" or before.form == reading.form
         return compatible and before.form == reading.form == "ing"

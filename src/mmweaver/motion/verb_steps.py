@@ -178,6 +178,10 @@ def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _leg_step(step: Step, words: list[Word], at: int) -> Step:
+    if step.lower == "march" and step.direction not in ("", "spot", "around"):
+        return _going_step(replace(step, lower="walk"), words, at)
+    if step.lower == "lunge" and step.direction in SIDES and not step.foot:
+        raise InputError(f"{step.clause!r}: lunging is known ahead only; leave the side out")
     return replace(step, direction="", hand="", arc_deg=0.0, turn_deg=0.0, facing=_facing(words))
 
 

@@ -85,6 +85,17 @@ _BODY = r"(?:person|man|woman|human|user|guy|girl|boy|subject|somebody|someone|f
 
 # Replaced in this order, before lexicon.PHRASES: several words that mean one activity become one token.
 ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
+    (r"\bninety\b", " 90 "), (r"\bforty[- ]five\b", " 45 "), (r"\b(?:one |a )?hundred (?:and )?eighty\b", " 180 "),
+    (r"\bform (?=(?:the |his |her )?(?:back|behind|front|left|right)\b)", " from "),
+    (r"\b(?:a|an|one|two|three|four|five|some|few|\d+)(?: (?:few|short))? (?:steps?|seconds?|moments?|meters?|metres?) later\b",
+     " then "),
+    (r"\b(walks?|walking|runs?|running|goes|jogs?|jogging|paces?|strolls?) up and down\b(?! (?:the )?(?:stairs|steps))",
+     r" \1 pacing_to_and_fro "),
+    (r"\b(walks?|walking|runs?|running|goes) (?:a|one|in a) (?:small |big |full )?round\b", r" \1 in_circle "),
+    (r"\bturn(?:s|ing|ed)? over\b|\brolls? over\b", " rolling-over "),
+    (r"\bsteps? (?:to the )?front\b", " step forwards "), (r"\b(jumps?|leaps?|hops?) front\b", r" \1 forwards "),
+    (r"\b(?:(?:in|along|on|through|by|following|making) )*(?:an? |the )?circular (?:path|shape|way|pattern|trajectory|line|motion|route"
+     r"|movement|fashion|motions)\b", " in_circle "),
     (rf"\b(?:an? |the )?(standing|kneeling|sitting|seated|walking|running|jogging|lying) ({_BODY})\b", r" \2 \1 then "),
     (r"\b(?:standing|stands up|gets up|getting up|rises|rising|standing up|stand up|gets back up)"
      r"(?: up| back up)? (?:again )?(?:from|out of) (?:an? |the |his |her |its |their )?"
@@ -98,7 +109,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bloses? (?:his |her |its |their |the )?balance\b|\bstumbling\b|\bstumbels?\b|\bstrumbles?\b|\btrips\b",
      " stumbles "),
     (r"\b(left|right)-hand(?:ed)? side\b", r" \1 side "),
-    (r"\bas if (?:[a-z]+ +){0,5}pushed|\b(?:due to|because of|caused by|after|following) (?:an? |the )(?:push|shove|hit)\b", " like "),
+    (r"\bas if (?:[a-z]+ +){0,5}pushed|\b(?:due to|because of|caused by|after|following) (?:an? |the )?(?:[a-z]+ )?(?:push|shove|hit)\b", " like "),
     (r"\bfrom (?:in )?front of (?:him|her|it|them|the person)\b|\bfrom in front\b|\bfrom the frontside\b", " from_front "),
     (r"\bfrom (?:the|one|a) side\b", " from_side "),
     (r"\bpushed +(?:a bit |slightly |a little )?backs\b", " pushed backwards "),
@@ -254,7 +265,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bclock[- ]?wise\b", " to the right "),
     (r"\bback to (?:the |his |her |its |their )?(?:start(?:ing)?|initial|original|first|old)[a-z ]*"
      r"(?:point|position|place|spot|pose|track|path|trajectory)?\b", " back_to_start "),
-    (r"\bto (?:the|his|her|its) (?:original |starting |initial )(?:position|point|place|spot)\b", " back_to_start "),
+    (r"\bto (?:the|his|her|its) (?:original |starting |initial |start )(?:standing )?(?:position|point|place|spot)\b", " back_to_start "),
 )  # fmt: skip
 
 # What follows a push and only says that it was caught.

@@ -36,7 +36,7 @@ def words_of(text: str) -> list[Word]:
     """The words and punctuation marks of a sentence in lower case, known phrases folded."""
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
     for pattern, replacement in PHRASES:
-        folded = re.sub(pattern, replacement, folded)
+        folded = " ".join(re.sub(pattern, replacement, folded).split())
     return [word_of(token) for token in _TOKEN.findall(folded)]
 
 
