@@ -204,7 +204,8 @@ class Weaver:
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(config),
-            "inputs": room.inputs,
+            "inputs": room.inputs | _motion_input(motion),
+            "placed": {"heading_rad": heading_rad, "height_m": height_m, "as_recorded": as_recorded},
             "camera": room.scene.photo.intrinsics,
             "assumed": list(dict.fromkeys((*room.scene.assumptions, *moved.assumptions, *signal.assumptions))),
             "person": _person(pose),
@@ -214,6 +215,14 @@ class Weaver:
             cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, pose=pose, motion=moved.pose,
             scene=room.scene, meta=meta, stages=stages,
         )  # fmt: skip
+
+
+def _motion_input(motion: MotionClip | None) -> dict[str, Any]:
+    """What meta.json says of a recorded motion."""
+    if motion is None:
+        return {}
+    digest = {} if motion.file is None else file_digest(motion.file)
+    return {"motion": {**digest, "name": motion.label, "fps": motion.fps, "first_frame": motion.first_frame}}
 
 
 def _composed(

@@ -6,7 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, whole
-from mmweaver.cli.own_motion import add_motion_options, check_motion_options, placing_options, read_own_motion
+from mmweaver.cli.own_motion import (
+    add_motion_options,
+    check_motion_options,
+    motion_of_model,
+    placing_options,
+    read_own_motion,
+)
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -98,7 +104,8 @@ def run(arguments: argparse.Namespace) -> int:
             "at": arguments.at,
             "keep_adc": arguments.bin,
         }
-        motion = read_own_motion(arguments)
+        seconds = arguments.frames / arguments.fps if arguments.fps else arguments.frames * radar.frame_period_s
+        motion = read_own_motion(arguments) or motion_of_model(arguments, text, seconds)
         check_request(weaver.radar, text=text, motion=motion, **request)
         request |= placing_options(arguments)
         result = weaver.generate(_read_room(weaver, arguments), text, motion=motion, **request)

@@ -23,6 +23,12 @@ def add_motion_options(parser: Options) -> None:
         metavar="FILE",
         help="a recorded motion instead of --text: .bvh, .npz (AMASS, SMPL, CMU, joints), .npy (22 joints, HumanML3D)",
     )
+    parser.add_argument(
+        "--motion-model",
+        metavar="PATH|NAME",
+        help="a MotionGPT checkpoint (file, folder or name on the Hub) that acts out --text instead of the built-in"
+        " library; needs the extra 'motiongpt'",
+    )
     parser.add_argument("--motion-fps", type=number, metavar="N", help="its frames a second, where the file says none")
     parser.add_argument(
         "--motion-unit", metavar="UNIT", help="its unit: m, cm, mm, inch or metres in one unit (default: by body size)"
@@ -50,6 +56,10 @@ def add_motion_options(parser: Options) -> None:
 
 def check_motion_options(arguments: argparse.Namespace) -> None:
     """Raises InputError for options that contradict each other."""
+    if arguments.motion is not None and arguments.motion_model is not None:
+        raise InputError("--motion is a recorded motion, --motion-model makes one of --text; give one of them")
+    if arguments.motion_model is not None and arguments.text is None and not arguments.demo:
+        raise InputError("--motion-model acts out a text; give --text")
     if arguments.motion is not None:
         if arguments.as_recorded and not (arguments.at is None and arguments.heading is None):
             raise InputError("--as-recorded moves nothing; leave out --at and --heading, or leave out --as-recorded")
@@ -58,7 +68,7 @@ def check_motion_options(arguments: argparse.Namespace) -> None:
     given += ["as_recorded"] if arguments.as_recorded else []
     if given:
         raise InputError(f"--{given[0].replace('_', '-')} is about a recorded motion; give --motion too")
-    if arguments.heading is not None:
+    if arguments.heading is not None and arguments.motion_model is None:
         raise InputError("--heading is for a recorded --motion; with --text say it in the sentence ('facing left')")
 
 
@@ -73,6 +83,15 @@ def read_own_motion(arguments: argparse.Namespace) -> "MotionClip | None":
         clip=arguments.clip, body_model=arguments.body_model,
     )  # fmt: skip
     return clip.after(arguments.motion_start) if arguments.motion_start is not None else clip
+
+
+def motion_of_model(arguments: argparse.Namespace, text: str | None, duration_s: float) -> "MotionClip | None":
+    """What --motion-model makes of the text."""
+    if arguments.motion_model is None:
+        return None
+    from mmweaver.motion.motiongpt.model import MotionGPT
+
+    return MotionGPT.load(arguments.motion_model).generate(text or "", seconds=duration_s, seed=arguments.seed)
 
 
 def placing_options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -28,8 +28,8 @@ NORMALISED_BELOW_M = 0.25  # a root that low on the mean: the features have no m
 def read_npy(path: Path) -> RawMotion:
     """Joints (frame, 22, 3) or (frame, 66), or HumanML3D features (frame, 263). Raises InputError for other shapes."""
     values = open_npy(path)
-    if values.ndim > 2 and values.shape[0] == 1 and values.shape[-1] in (3, NUM_FEATURES):
-        values = values[0]
+    if values.shape[:1] == (1,) and (values.ndim == 4 or values.shape[2:] == (NUM_FEATURES,)):
+        values = values[0]  # a batch of one
     if values.ndim == 2 and values.shape[1] == NUM_FEATURES:
         return _of_features(values, path)
     return RawMotion(names=JOINT_NAMES, places=_of_22(values, path), kind="joints")

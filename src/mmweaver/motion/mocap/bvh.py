@@ -139,7 +139,7 @@ def _places(nodes: list[Node], values: Float[Array, "frame channel"]) -> Float[A
 
 def _shift(node: Node, own: Float[Array, "frame channel"]) -> Float[Array, "frame 3"]:
     """A joint from its parent. Position channels of a root add to its offset; of another joint they mostly replace it
-    (exporters that write six channels everywhere), and add where they are small against it."""
+    (exporters that write six channels everywhere), and add where they are short beside it."""
     shift = np.tile(node.offset, (len(own), 1))
     moved = {POSITIONS[name]: own[:, i] for i, name in enumerate(node.channels) if name in POSITIONS}
     if not moved:
@@ -149,6 +149,6 @@ def _shift(node: Node, own: Float[Array, "frame channel"]) -> Float[Array, "fram
         given[:, axis] = values
     if node.parent < 0:
         return shift + given
-    mean = np.nanmean(given, axis=0) if np.isfinite(given).any() else np.zeros(3)
-    replaces = np.linalg.norm(mean - node.offset) < np.linalg.norm(mean)
+    long = np.linalg.norm(given[np.isfinite(given).all(axis=1)], axis=1)
+    replaces = bool(len(long)) and float(np.median(long)) > 0.5 * float(np.linalg.norm(node.offset))
     return given if replaces else shift + given

@@ -66,7 +66,7 @@ def _bridge(joints: Float[Array, "frame 22 3"], missing: Bool[Array, "frame 22"]
 
 def without_t_pose(
     joints_m: Float[Array, "frame 22 3"], fps: float, source: str
-) -> tuple[Float[Array, "frame 22 3"], tuple[str, ...]]:
+) -> tuple[Float[Array, "left 22 3"], tuple[str, ...]]:
     """A T-pose of up to a second in front is cut off where the motion then jumps; else only noted."""
     spread = is_t_pose(joints_m[: max(int(LONGEST_T_POSE_S * fps), 1) + 1])
     if not spread[0]:
@@ -77,7 +77,7 @@ def without_t_pose(
     jumps = np.flatnonzero(speed > JUMP_MPS)
     if len(jumps) and len(joints_m) - jumps[-1] > 2:
         first = int(jumps[-1]) + 1
-        return joints_m[first:], (f"{_count(first)} of T-pose in front of {source} was cut off",)
+        return joints_m[first:], (f"{_count(first)} of T-pose in front of {source} cut off",)
     return joints_m, (f"{source} begins in a T-pose, which is shown; --motion-start leaves it out",)
 
 
@@ -99,14 +99,20 @@ def is_t_pose(joints_m: Float[Array, "frame 22 3"]) -> Bool[Array, " frame"]:
 
 
 def check_bones(joints: Float[Array, "frame 22 3"], source: str) -> None:
-    """Raises InputError where limbs change their length, as they do when joints are mixed up."""
-    for side in ("left", "right"):
-        for one, other in LIMBS:
+    """Raises InputError where limbs change their length or differ from side to side, as joints that are mixed up do."""
+    for one, other in LIMBS:
+        middles = []
+        for side in ("left", "right"):
             bone = joints[:, joint(f"{side}_{other}")] - joints[:, joint(f"{side}_{one}")]
-            length = np.linalg.norm(bone, axis=-1)
-            low, middle, high = np.percentile(length, [5, 50, 95])
+            low, middle, high = np.percentile(np.linalg.norm(bone, axis=-1), [5, 50, 95])
+            middles.append(float(middle))
             if middle <= 0 or high - low > BONE_SPREAD * middle:
                 raise InputError(
                     f"{source}: the bone from {side} {one} to {side} {other} is {low:.3g} to {high:.3g} units long; the"
                     " joints are not those that are expected there (order: core/skeleton.py)"
                 )
+        if max(middles) > (1 + BONE_SPREAD) * min(middles):
+            raise InputError(
+                f"{source}: from {one} to {other} it is {middles[0]:.3g} units on the left and {middles[1]:.3g} on the"
+                " right; the joints are not those that are expected there (order: core/skeleton.py)"
+            )

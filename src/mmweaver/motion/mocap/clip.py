@@ -1,6 +1,7 @@
 """What a motion file holds: as it was read (RawMotion), and made clear (MotionClip)."""
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float
@@ -40,6 +41,8 @@ class MotionClip:
     label: str  # what it is called in titles and meta.json
     notes: tuple[str, ...] = ()  # sentences on what was assumed
     steady: bool = True  # take marker jitter out (see dense.py)
+    file: Path | None = None  # where it was read from
+    first_frame: int = 0  # of the file, as it begins here
 
     @property
     def duration_s(self) -> float:
@@ -59,7 +62,7 @@ class MotionClip:
                 f"{self.label} lasts {self.duration_s:.2f} s, so it cannot start at {start_s:g} s; choose an earlier"
                 " --motion-start"
             )
-        return replace(self, joints_m=self.joints_m[first:]) if first else self
+        return replace(self, joints_m=self.joints_m[first:], first_frame=self.first_frame + first) if first else self
 
     def scaled_to(self, height_m: float) -> "MotionClip":
         """The same motion of a body of another height; ways grow and shrink with the legs."""

@@ -5,6 +5,7 @@
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -54,7 +55,7 @@ def read_motion(
     else:
         raise InputError(f"{path}: motion is read from {KINDS}, not from {kind or 'a file without an ending'}")
     label = path.name if clip is None else f"{path.name} {clip}"
-    return clear(raw, label, fps=fps, unit=unit, up=up)
+    return replace(clear(raw, label, fps=fps, unit=unit, up=up), file=path)
 
 
 def clear(
@@ -79,9 +80,12 @@ def clear(
     notes.append(note)
     joints_m = turned_up(joints * metres, axis)
     joints_m, mirrored = _as_right_handed(joints_m, label)
-    joints_m, t_pose = without_t_pose(joints_m, rate, label)
+    shown, t_pose = without_t_pose(joints_m, rate, label)
     notes += [*gaps, *mirrored, *t_pose]
-    return MotionClip(joints_m=joints_m, fps=rate, label=label, notes=tuple(note for note in notes if note))
+    return MotionClip(
+        joints_m=shown, fps=rate, label=label, notes=tuple(note for note in notes if note),
+        first_frame=len(joints_m) - len(shown),
+    )  # fmt: skip
 
 
 def _rate(fps: float | None, label: str) -> float:
