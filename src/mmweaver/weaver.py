@@ -27,6 +27,9 @@ from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.methods import METHODS
 from mmweaver.motion.company import MOST_PEOPLE, Place, compose_company
 from mmweaver.motion.compose import Motion
+from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.dense import check_lasts
+from mmweaver.motion.mocap.placing import place_clip
 from mmweaver.motion.resample import resample
 from mmweaver.motion.sentence import parse
 from mmweaver.motion.timing import schedule
@@ -181,15 +184,23 @@ class Weaver:
     def generate(
         self,
         room: Room,
-        text: str | Sequence[str],
+        text: str | Sequence[str] | None = None,
         *,
+        motion: MotionClip | None = None,
         frames: int = 20,
         fps: float | None = None,
         seed: int = 0,
         at: Place | Sequence[Place | None] | None = None,
+        heading_rad: float | None = None,
+        height_m: float | None = None,
+        as_recorded: bool = False,
         keep_adc: bool = True,
     ) -> Generation:
-        """The signal of one person who does in the room what the text says, or of several, one for each text.
+        """The signal of who does in the room what the text says (one text a person), or what a `motion` shows.
+
+        A `motion` comes from `mmweaver.read_motion` or a motion model; a text beside it only names it. `heading_rad`
+        (from +x towards +y) is where its body faces first, `as_recorded` takes its places as the radar's own.
+        `height_m` is the one body's height; a recorded one is scaled to it.
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
@@ -198,32 +209,46 @@ class Weaver:
         InputError for a request that cannot be met.
         """
         needs_adc = keep_adc or self.points == "firmware"
-        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc)
+        config = check_request(
+            self.radar, text=text, motion=motion, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc
+        )
+        duration_s = frames * config.frame_period_s
+        window_m = (float(config.range_m[0]), float(config.range_m[-1]))
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            people = compose_company(
-                texts_of(text), room.scene, duration_s=frames * config.frame_period_s, seed=seed,
-                range_window_m=(float(config.range_m[0]), float(config.range_m[-1])), starts_m=places_of(text, at),
-            )  # fmt: skip
+            if motion is not None:
+                clip = motion if height_m is None else motion.scaled_to(height_m)
+                people: tuple[Motion, ...] = (
+                    place_clip(
+                        clip, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
+                        start_m=places_of(text, at)[0], heading_rad=heading_rad, as_recorded=as_recorded,
+                    ),
+                )  # fmt: skip
+            else:
+                people = compose_company(
+                    texts_of(text), room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
+                    starts_m=places_of(text, at), height_m=height_m,
+                )  # fmt: skip
         motions = tuple(person.pose for person in people)
         signal = self.method(
             room.scene, motions, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
         )
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)
-        poses = tuple(resample(motion, signal.cube.grid.frame_time_s) for motion in motions)
+        poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
         meta = {
             "schema_version": META_VERSION,
             "made_by": "mmweaver generate",
             "version": __version__,
-            "text": text if isinstance(text, str) else list(text),
+            "text": people[0].plan.text if text is None else text if isinstance(text, str) else list(text),
             "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
             "method": self.method_name,
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(config),
-            "inputs": room.inputs,
+            "inputs": room.inputs | _motion_input(motion),
+            "placed": {"heading_rad": heading_rad, "height_m": height_m, "as_recorded": as_recorded},
             "camera": room.scene.photo.intrinsics,
             "assumed": _assumed(room.scene, people, signal.assumptions),
             **_people_meta(poses, people),
@@ -250,6 +275,14 @@ def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) ->
     return {"person": _person(poses[0]), "plan": people[0].plan}
 
 
+def _motion_input(motion: MotionClip | None) -> dict[str, Any]:
+    """What meta.json says of a recorded motion."""
+    if motion is None:
+        return {}
+    digest = {} if motion.file is None else file_digest(motion.file)
+    return {"motion": {**digest, "name": motion.label, "fps": motion.fps, "first_frame": motion.first_frame}}
+
+
 def _person(pose: PoseSequence) -> dict[str, Any]:
     path_m = np.round(pose.joints_m[:, joint("pelvis"), :2], 3)
     return {
@@ -260,15 +293,15 @@ def _person(pose: PoseSequence) -> dict[str, Any]:
     }
 
 
-def texts_of(text: str | Sequence[str]) -> list[str]:
+def texts_of(text: str | Sequence[str] | None) -> list[str]:
     """One text a person. Raises InputError for none or too many."""
-    texts = [text] if isinstance(text, str) else list(text)
+    texts = [text or ""] if text is None or isinstance(text, str) else list(text)
     if not 1 <= len(texts) <= MOST_PEOPLE:
         raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
     return texts
 
 
-def places_of(text: str | Sequence[str], at: Place | Sequence[Place | None] | None) -> list[Place | None]:
+def places_of(text: str | Sequence[str] | None, at: Place | Sequence[Place | None] | None) -> list[Place | None]:
     """Where each person starts, None = chosen. Raises InputError for what is no place, or more places than people."""
     one = at is not None and all(isinstance(value, int | float) for value in at)
     given: list[Any] = [] if at is None else [at] if one else list(at)
@@ -286,7 +319,8 @@ def places_of(text: str | Sequence[str], at: Place | Sequence[Place | None] | No
 def check_request(
     radar: RadarConfig,
     *,
-    text: str | Sequence[str],
+    text: str | Sequence[str] | None = None,
+    motion: MotionClip | None = None,
     frames: int = 20,
     fps: float | None = None,
     seed: int = 0,
@@ -296,7 +330,8 @@ def check_request(
     """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
 
     Raises InputError for texts, frames, fps or a place out of their limits, for a frame rate that the chirps do not
-    fit into, for more samples than memory holds, and for a text that is not understood or does not fit the time.
+    fit into, for more samples than memory holds, for a text that is not understood or does not fit the time, and for a
+    recorded motion that is too short.
     """
     if not 1 <= frames <= MAX_FRAMES:
         raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
@@ -318,6 +353,11 @@ def check_request(
             f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
             f" {most} are made at a time"
         )
-    for one in texts:
-        schedule(parse(one), frames * config.frame_period_s)
+    if motion is not None:
+        if len(texts) > 1:
+            raise InputError("a recorded motion is one person's; give one text with it, or none")
+        check_lasts(motion, frames * config.frame_period_s)
+    else:
+        for one in texts:
+            schedule(parse(one), frames * config.frame_period_s)
     return config

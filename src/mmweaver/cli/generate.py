@@ -6,6 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, whole
+from mmweaver.cli.own_motion import (
+    add_motion_options,
+    check_motion_options,
+    motion_of_model,
+    placing_options,
+    read_own_motion,
+)
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,6 +27,7 @@ EXAMPLES = """examples:
       --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --frames 40 --radar mmmesh --out drink/ --bin
+  mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
 """
 
 
@@ -78,6 +86,7 @@ def add_verb(verbs: Any) -> None:
         help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
         " the first --at is the first one's",
     )
+    add_motion_options(person)
     radar = parser.add_argument_group("the radar")
     radar.add_argument(
         "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
@@ -98,6 +107,7 @@ def add_verb(verbs: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then makes the signal and writes it. Raises InputError."""
     text, out = _check_inputs(arguments)
+    check_motion_options(arguments)
 
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
@@ -117,12 +127,18 @@ def run(arguments: argparse.Namespace) -> int:
             "frames": arguments.frames,
             "fps": arguments.fps,
             "seed": arguments.seed,
-            "at": arguments.at if arguments.at is None or len(arguments.at) > 1 or len(text) > 1 else arguments.at[0],
+            "at": _places(arguments),
             "keep_adc": arguments.bin,
         }
-        texts = text if len(text) > 1 else text[0]
-        check_request(weaver.radar, text=texts, **request)
-        result = weaver.generate(_read_room(weaver, arguments), texts, **request)
+        texts = text if text is None or len(text) > 1 else text[0]
+        seconds = arguments.frames / arguments.fps if arguments.fps else arguments.frames * radar.frame_period_s
+        only = texts if isinstance(texts, str) else None
+        if arguments.motion_model is not None and only is None and text is not None:
+            raise InputError("--motion-model acts out one text; give --text once")
+        motion = read_own_motion(arguments) or motion_of_model(arguments, only, seconds)
+        check_request(weaver.radar, text=texts, motion=motion, **request)
+        request |= placing_options(arguments)
+        result = weaver.generate(_read_room(weaver, arguments), texts, motion=motion, **request)
         meta = result.save(
             out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq"
         )
@@ -130,7 +146,13 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str], Path]:
+def _places(arguments: argparse.Namespace) -> Any:
+    """One place of one person, or a list of several people's."""
+    one = arguments.at is not None and len(arguments.at) == 1 and len(arguments.text or [""]) == 1
+    return arguments.at[0] if one else arguments.at
+
+
+def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
     """The texts and the output folder, once it is clear which room is meant."""
     pictures = (
         arguments.rgb, arguments.depth, arguments.camera, arguments.capture, arguments.depth_model, arguments.classes,
@@ -142,7 +164,8 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str], Path]:
                 "--demo brings its own room; leave out --rgb, --depth, --camera and all else that tells of a room, or"
                 " leave out --demo"
             )
-        return arguments.text or [DEMO_TEXT], arguments.out or Path(DEMO_OUT)
+        text = [DEMO_TEXT] if arguments.text is None and arguments.motion is None else arguments.text
+        return text, arguments.out or Path(DEMO_OUT)
     if arguments.capture is not None:
         if any(given is not None for given in (arguments.depth, arguments.camera, arguments.depth_model)):
             raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")
@@ -162,9 +185,11 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str], Path]:
     return _text_and_out(arguments)
 
 
-def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str], Path]:
-    if arguments.text is None:
-        raise InputError("what does the person do? give --text, for example --text 'a person walks to the left'")
+def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
+    if arguments.text is None and arguments.motion is None:
+        raise InputError(
+            "what does the person do? give --text, for example --text 'a person walks to the left', or --motion"
+        )
     if arguments.out is None:
         raise InputError("where to? give --out, a folder for the results")
     return arguments.text, arguments.out

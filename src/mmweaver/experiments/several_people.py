@@ -26,6 +26,7 @@ from mmweaver.experiments.signals import OTHER_SKIN, sample_scene
 from mmweaver.metrics.scorecard import METRICS, Views
 from mmweaver.motion.company import compose_company
 from mmweaver.simulation.simulator import Simulator
+from mmweaver.simulation.small_motions import STILL
 
 SENTENCES = (
     "a person waves with the left hand", "someone does jumping jacks", "a man claps", "a woman squats",
@@ -69,7 +70,9 @@ def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> P
     one, two = people[0].pose, people[1].pose
 
     def cube(*people: PoseSequence, noise: int = seed, mutual: bool = True) -> RadarCube:
-        return radar_cube(simulator.run(people, num_frames=NUM_FRAMES, seed=noise, mutual_shadows=mutual).adc)
+        return radar_cube(
+            simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL, mutual_shadows=mutual).adc
+        )
 
     skins = [replace(pose, subject=pose.subject + OTHER_SKIN) for pose in (one, two)]
     return Pair(

@@ -28,12 +28,15 @@ def compose_company(
     seed: int,
     range_window_m: tuple[float, float],
     starts_m: Sequence[Place | None] | None = None,
+    height_m: float | None = None,
 ) -> tuple[Motion, ...]:
     """One motion for each sentence, in their order; the first is what it would be alone, wherever that leaves room.
 
     `starts_m`: where each starts, None = chosen. Each person has a body of their own: subjects 0, 1, 2 ..., a height
     drawn from the seed. Raises InputError as `compose` does, and where the people cannot be kept apart.
     """
+    if len(texts) == 1 or height_m is not None:
+        return (_alone(texts, scene, duration_s, seed, range_window_m, starts_m, height_m),)
     starts = [None] * len(texts) if starts_m is None else list(starts_m)
     order = sorted(range(len(texts)), key=lambda index: starts[index] is None)
     crowded = order[0]
@@ -61,6 +64,19 @@ def compose_company(
         f" {texts[crowded]!r}, finds no place beside the others; try fewer people, fewer frames or other places"
         " (--at for each)"
     )
+
+
+def _alone(
+    texts: Sequence[str], scene: Scene, duration_s: float, seed: int, range_window_m: tuple[float, float],
+    starts_m: Sequence[Place | None] | None, height_m: float | None,
+) -> Motion:  # fmt: skip
+    if len(texts) > 1:
+        raise InputError("a body height is for one person; leave it out for several, who draw their own")
+    start = starts_m[0] if starts_m else None
+    return compose(
+        texts[0], scene, duration_s=duration_s, seed=seed, range_window_m=range_window_m, start_m=start,
+        height_m=height_m,
+    )  # fmt: skip
 
 
 def _join(

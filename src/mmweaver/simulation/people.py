@@ -18,12 +18,17 @@ class PeopleEchoes:
     it each is as if alone, so that the whole is the plain sum of the people.
     """
 
-    def __init__(self, room: Room, bodies: list[Body], joints_m: list[np.ndarray], *, mutual: bool = True):
-        """`joints_m`: (frame, node, 22, 3) for each body."""
+    def __init__(
+        self, room: Room, bodies: list[Body], joints_m: list[np.ndarray], chests_m: list[np.ndarray] | None = None,
+        *, mutual: bool = True,
+    ):  # fmt: skip
+        """`joints_m`: (frame, node, 22, 3) for each body; `chests_m`: how far its chest is raised (frame, node)."""
+        chests = chests_m or [None] * len(bodies)
         self.room, self.mutual = room, mutual
         self.hulls = hulls_of(bodies, joints_m) if mutual and bodies else []
         self.each = [
-            BodyEchoes(room, body, own, self.hulls or None) for body, own in zip(bodies, joints_m, strict=True)
+            BodyEchoes(room, body, own, chest, self.hulls or None)
+            for body, own, chest in zip(bodies, joints_m, chests, strict=True)
         ]
 
     def rows(self, frame: int) -> EchoRows:

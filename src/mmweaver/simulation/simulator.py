@@ -9,10 +9,11 @@ from scipy.interpolate import CubicSpline
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
-from mmweaver.simulation.body import DEFAULT_NUM_POINTS, SkinEcho, body_of
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS, Body, SkinEcho, body_of
 from mmweaver.simulation.people import PeopleEchoes
 from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
+from mmweaver.simulation.small_motions import Restlessness, SmallMotions
 from mmweaver.simulation.synthesis import FrameClock, synthesise
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -58,11 +59,21 @@ class Simulator:
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
+        motions: SmallMotions | None = None,
         mutual_shadows: bool = True,
     ) -> Simulation:
-        """ADC samples of the posed people, all frames at once: mind the memory, or take `chunks`."""
+        """ADC samples of the posed people, all frames at once: mind the memory, or take `chunks`.
+
+        They sway, waver and breathe as `motions` says, by default as people do; STILL only holds the joints.
+        """
         chunks = self.chunks(
-            pose, num_frames=num_frames, seed=seed, num_points=num_points, echo=echo, mutual_shadows=mutual_shadows
+            pose,
+            num_frames=num_frames,
+            seed=seed,
+            num_points=num_points,
+            echo=echo,
+            motions=motions,
+            mutual_shadows=mutual_shadows,
         )
         samples = np.concatenate([chunk.samples for chunk in chunks])
         return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
@@ -75,6 +86,7 @@ class Simulator:
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
+        motions: SmallMotions | None = None,
         mutual_shadows: bool = True,
     ) -> Iterator[AdcCube]:
         """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
@@ -88,10 +100,10 @@ class Simulator:
             self._check(one, num_frames)
         bodies = [body_of(one, num_points, echo) for one in poses]
         receiver = Receiver(self.config, self.impairments, seed)
+        restless = [Restlessness(one.subject, seed, motions or SmallMotions()) for one in poses]
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
-            joints_m = [self._joints_at_nodes(one, frames) for one in poses]
-            echoes = PeopleEchoes(self.room, bodies, joints_m, mutual=mutual_shadows)
+            echoes = self._echoes(poses, bodies, restless, frames, mutual_shadows)
             samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
             yield AdcCube(samples=samples, config=self.config, scale=1.0)
 
@@ -102,11 +114,30 @@ class Simulator:
         people = synthesise(echoes.rows(index), self.clock)
         return receiver.receive(people, room, self.room.adc_rate, frame)
 
+    def _echoes(
+        self, poses: tuple[PoseSequence, ...], bodies: list[Body], restless: list[Restlessness], frames: np.ndarray,
+        mutual: bool,
+    ) -> PeopleEchoes:  # fmt: skip
+        time_s = (frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]).ravel()
+        joints_m, chests_m = [], []
+        for pose, unrest in zip(poses, restless, strict=True):
+            joints = self._joints_at_nodes(pose, frames)
+            moved = unrest.moved(joints.reshape(-1, *joints.shape[2:]), time_s, pose.height_m)
+            joints_m.append(moved.reshape(joints.shape))
+            chests_m.append(unrest.chest_m(time_s).reshape(joints.shape[:2]))
+        return PeopleEchoes(self.room, bodies, joints_m, chests_m, mutual=mutual)
+
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
-        """(frame, node, 22, 3): slow time is interpolated, never held."""
+        """(frame, node, 22, 3): slow time is interpolated, never held.
+
+        A frame that begins with the last pose goes on as fast as that pose was: held, it would be a person who freezes.
+        """
         times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
         spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
-        return spline(np.clip(times, pose.time_s[0], pose.time_s[-1]))
+        last_s = pose.time_s[-1]
+        joints = spline(np.clip(times, pose.time_s[0], last_s))
+        beyond_s = np.maximum(times - last_s, 0.0)
+        return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
 
     def _check(self, pose: PoseSequence, num_frames: int) -> None:
         needed_s = (num_frames - 1) * self.config.frame_period_s
