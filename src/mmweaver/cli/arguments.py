@@ -79,7 +79,7 @@ def add_output_options(parser: Options) -> None:
 
 def add_layout_options(parser: Options) -> None:
     """The options that say how a DCA1000 .bin is laid out."""
-    parser.add_argument("--iq-order", choices=("iq", "qi"), default="iq", help="I or Q first in the .bin (default iq)")
+    parser.add_argument("--iq-order", choices=("iq", "qi"), help="I or Q first in the .bin (default iq)")
     parser.add_argument(
         "--tx-order", type=turns, metavar="N,N,N", help="transmitters in their turns (default: the radar's)"
     )

@@ -1,6 +1,6 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md
+python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md docs/several_people.md
 """
 
 import json
@@ -127,6 +127,34 @@ def rooms_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+PEOPLE = (
+    ("nmse_active_db", "error energy, active cells (dB)"), ("nmse_moving_db", "error energy, moving cells (dB)"),
+    ("rd_ssim", "range-Doppler SSIM"), ("ra_ssim", "range-azimuth SSIM"), ("chamfer_m", "Chamfer of the points (m)"),
+    ("hausdorff_m", "Hausdorff of the points (m)"),
+)  # fmt: skip
+
+
+def people_table(folder: Path) -> str:
+    """Plain superposition against mutual shadowing, beside its floor and its ceilings; then what it is about."""
+    (record,) = _records(folder / "several_people")
+    lines = [
+        _line("arrangement (pairs)", "score", "plain sum (95 %)", "without the second", "other noise", "twin"),
+        _line(*["---"] * 6),
+    ]
+    for row in record["rows"]:
+        name = f"{row['dataset']['name']} ({row['n']})"
+        for metric, text in PEOPLE:
+            own = row["metrics"][metric]
+            beside = [_number(own["beside"][who]) for who in ("without_second", "other_noise", "twin")]
+            lines.append(_line(name, text, _with_interval(own), *beside))
+        dimmed, points = row["metrics"]["second_dimmed_db"], row["metrics"]["points_of_second"]
+        lines.append(_line(name, "*the second is dimmed by (dB)*", _with_interval(dimmed), "", "", ""))
+        with_shadows, without = (_number(points["beside"][who]) for who in ("mutual", "without_second"))
+        told = f"{_with_interval(points)}; with mutual shadows {with_shadows}"
+        lines.append(_line(name, "*points a frame at the second*", told, without, "", ""))
+    return "\n".join(lines)
+
+
 def statistics_table(folder: Path) -> str:
     """Recorded beside simulated: one row a number, the simulated ones with their range over seeds."""
     (record,) = _records(folder / "signal_statistics")
@@ -148,6 +176,7 @@ def _with_interval(metric: dict[str, Any]) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
+    "several_people": people_table,
 }  # fmt: skip
 
 

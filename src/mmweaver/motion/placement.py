@@ -1,19 +1,34 @@
 """Where in the room a plan is acted out: many starts are tried, the best way is taken."""
 
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.motion.activities import CLEARANCE_M
+from mmweaver.motion.apart import keeps_clear
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
+from mmweaver.motion.obstacles import Obstacles
 from mmweaver.motion.other_ways import check_floor, is_other, lay_other, turn_by
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
-from mmweaver.motion.seating import STOOL_HEIGHT_M, Sitting, reachable, seats_of, stool_at, stool_fits, stool_note
+from mmweaver.motion.seating import (
+    STOOL_HEIGHT_M,
+    Sitting,
+    preferred,
+    reachable,
+    seats_of,
+    stool_at,
+    stool_fits,
+    stool_note,
+)  # fmt: skip
+from mmweaver.motion.targets import check_targets, start_for, walk_to_target
 from mmweaver.motion.way import (
     NoWay,
     Way,
@@ -27,6 +42,7 @@ from mmweaver.motion.way import (
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
+MOST_MOVED, WORTH_A_NOTE_M = 16, 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,17 +52,20 @@ class Placement:
     path: RootPath
     moves: tuple[tuple[Move, ...], ...]
     seat_height_m: tuple[float, ...]
+    seats_m: tuple[tuple[float, float], ...]  # where the person sits
     assumptions: tuple[str, ...]
 
 
 def place(
-    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None
-) -> Placement:
-    """Finds a way for the whole plan that is free and in view all along.
+    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None,
+    others: tuple[PoseSequence, ...] = (),
+) -> list[Placement]:  # fmt: skip
+    """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
-    `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, or where
-    there is no room, saying what there is.
+    `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, where
+    there is no room, or where the room lacks what a step goes to, saying what there is.
     """
+    check_targets(plan, floor.scene)
     if not floor.walkable.any() and not (seats_of(floor, body) and _starts_seated(plan)):
         raise InputError(_no_floor(floor))
     if start_m is not None:
@@ -55,20 +74,60 @@ def place(
     ways: list[Way] = []
     for _ in range(TRIES):
         try:
-            ways.append(_try(plan, floor, body, rng, start_m))
+            way = _try(plan, floor, body, rng, start_m)
         except NoWay:
             continue
+        if others and not _is_clear_of(way, plan, others):
+            continue
+        ways.append(way)
         if len(ways) >= ENOUGH:
             break
     if not ways:
         raise InputError(_no_room(plan, floor, start_m))
-    best = min(ways, key=lambda way: way.cost)
+    return [_placement(way) for way in sorted(ways, key=lambda way: way.cost)]
+
+
+def clearest(
+    placements: Sequence[Placement], moved: Callable[[Placement], PoseSequence], obstacles: Obstacles
+) -> tuple[Placement, PoseSequence, tuple[str, ...]]:
+    """The first placement whose motion meets nothing, hands and all; else the one that gets in least, and a note."""
+    best: tuple[float, Placement, PoseSequence] | None = None
+    for placement in _varied(placements)[:MOST_MOVED]:
+        pose = moved(placement)
+        deep_m = obstacles.deepest_m(pose, placement.seats_m)
+        if best is None or deep_m < best[0]:
+            best = (deep_m, placement, pose)
+        if deep_m <= 0.0:
+            break
+    assert best is not None
+    note = f"the body gets {100 * best[0]:.0f} cm into furniture or a wall, for the room leaves no better place"
+    return best[1], best[2], (note,) if best[0] > WORTH_A_NOTE_M else ()
+
+
+def _varied(placements: Sequence[Placement]) -> list[Placement]:
+    """The same in their order, but after two of a seat the others of that seat last."""
+    count: Counter[tuple[tuple[float, float], ...]] = Counter()
+    first, later = [], []
+    for placement in placements:
+        count[placement.seats_m] += 1
+        (later if placement.seats_m and count[placement.seats_m] > 2 else first).append(placement)
+    return first + later
+
+
+def _placement(way: Way) -> Placement:
     return Placement(
-        path=best.path(),
-        moves=tuple(tuple(moves) for moves in best.moves),
-        seat_height_m=tuple(best.seat_height_m),
-        assumptions=tuple(dict.fromkeys(best.notes)),
+        path=way.path(),
+        moves=tuple(tuple(moves) for moves in way.moves),
+        seat_height_m=tuple(way.seat_height_m),
+        seats_m=tuple(way.seats_m),
+        assumptions=tuple(dict.fromkeys(way.notes)),
     )
+
+
+def _is_clear_of(way: Way, plan: MotionPlan, others: tuple[PoseSequence, ...]) -> bool:
+    time_s = np.arange(0.0, plan.steps[-1].end_s + 1e-9, 0.05)
+    track_m = way.path().position_m(time_s)
+    return all(keeps_clear(track_m, time_s, other) for other in others)
 
 
 def _starts_seated(plan: MotionPlan) -> bool:
@@ -85,7 +144,8 @@ def _try(
         way.moves.append([])
         following = plan.steps[k + 1] if k + 1 < len(plan.steps) else None
         if step.moves:
-            target = _seat_ahead(way, step, following, seats)
+            wanted_seats = preferred(seats, following.seat if following else step.seat, floor.scene)
+            target = _seat_ahead(way, step, following, wanted_seats)
             _lay_move(way, step, target, first=k == 0, last=following is None)
             sitting = target if following is not None and following.lower == "sit_down" else None
         elif step.lower == "turn" and step.turn_deg:
@@ -98,6 +158,8 @@ def _try(
             sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
             way.turn_to(sitting.facing_rad, step.start_s - 0.3)
         way.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
+        if sitting is not None:
+            way.seats_m.append((float(sitting.seat_m[0]), float(sitting.seat_m[1])))
         if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
             wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
             way.cost += 2.0 * max(0.0, wanted - float(floor.clearance_at(way.place)))
@@ -112,7 +174,7 @@ def _start(
 ) -> tuple[Way, Sitting | None]:  # fmt: skip
     first = plan.steps[0]
     if _starts_seated(plan):
-        return _start_seated(floor, body, rng, start_m, seats)
+        return _start_seated(floor, body, rng, start_m, preferred(seats, first.seat, floor.scene))
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
     if first.facing and first.upper not in ("point", "look_around"):
@@ -125,6 +187,10 @@ def _random_start(
 ) -> Float[Array, "2"]:
     """A cell at random; where a walk shall end at a seat, often one from which it would."""
     first = plan.steps[0]
+    if first.moves and first.target and rng.random() < 0.8:
+        spot = start_for(first, floor, rng)
+        if spot is not None:
+            return spot
     to_seat = first.direction == "seat" or (len(plan.steps) > 1 and plan.steps[1].lower == "sit_down")
     if first.moves and seats and to_seat and rng.random() < 0.7:
         sitting = seats[int(rng.integers(len(seats)))]
@@ -181,6 +247,9 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
 
 
 def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
+    if target is None and step.target:
+        walk_to_target(way, step, first=first)
+        return
     if target is None and is_other(step):
         lay_other(way, step, _direction_rad(way, step), first=first, last=last)
         return

@@ -51,6 +51,7 @@ class Way:
     turns: list[Turn] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     seat_height_m: list[float] = field(default_factory=list)  # by step
+    seats_m: list[tuple[float, float]] = field(default_factory=list)  # where the person sits
     cost: float = 0.0
     last_direction_rad: float | None = None
     from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre

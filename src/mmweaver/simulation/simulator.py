@@ -1,6 +1,6 @@
-"""Scene + poses -> ADC samples. Three steps: the room once, the person's echoes, the receiver."""
+"""Scene + poses -> ADC samples. Three steps: the room once, the people's echoes, the receiver."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
 from mmweaver.simulation.body import DEFAULT_NUM_POINTS, Body, SkinEcho, body_of
-from mmweaver.simulation.echoes import BodyEchoes
+from mmweaver.simulation.people import PeopleEchoes
 from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
 from mmweaver.simulation.small_motions import Restlessness, SmallMotions
@@ -23,6 +23,9 @@ ASSUMPTIONS = (
     " makers' documents; they are not calibrated against a recording",
     "the body is made of capsules with a diffuse skin (albedo 0.18 at 77 GHz); clothes are not modelled",
     "nothing passes through furniture, and waves do not bend around edges",
+)
+SEVERAL_PEOPLE = (
+    "people hide each other, but no wave goes from one person over another to the radar (see docs/several_people.md)"
 )
 
 
@@ -50,59 +53,79 @@ class Simulator:
 
     def run(
         self,
-        pose: PoseSequence,
+        pose: PoseSequence | Sequence[PoseSequence],
         *,
         num_frames: int,
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
         motions: SmallMotions | None = None,
+        mutual_shadows: bool = True,
     ) -> Simulation:
-        """ADC samples of the posed person, all frames at once: mind the memory, or take `chunks`.
+        """ADC samples of the posed people, all frames at once: mind the memory, or take `chunks`.
 
-        The person sways, wavers and breathes as `motions` says, by default as people do; STILL only holds the joints.
+        They sway, waver and breathe as `motions` says, by default as people do; STILL only holds the joints.
         """
-        chunks = list(
-            self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points, echo=echo, motions=motions)
+        chunks = self.chunks(
+            pose,
+            num_frames=num_frames,
+            seed=seed,
+            num_points=num_points,
+            echo=echo,
+            motions=motions,
+            mutual_shadows=mutual_shadows,
         )
         samples = np.concatenate([chunk.samples for chunk in chunks])
         return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
 
     def chunks(
         self,
-        pose: PoseSequence,
+        pose: PoseSequence | Sequence[PoseSequence],
         *,
         num_frames: int,
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
         motions: SmallMotions | None = None,
+        mutual_shadows: bool = True,
     ) -> Iterator[AdcCube]:
         """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
 
-        Raises InputError where the pose does not cover the frames or holds numbers that are none.
+        `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_shadows` the signal is the
+        plain sum of people who do not hide each other. Raises InputError where a pose does not cover the frames or
+        holds numbers that are none.
         """
-        self._check(pose, num_frames)
-        body = body_of(pose, num_points, echo)
+        poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
+        for one in poses:
+            self._check(one, num_frames)
+        bodies = [body_of(one, num_points, echo) for one in poses]
         receiver = Receiver(self.config, self.impairments, seed)
-        restless = Restlessness(pose.subject, seed, motions or SmallMotions())
+        restless = [Restlessness(one.subject, seed, motions or SmallMotions()) for one in poses]
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
-            echoes = self._echoes(pose, body, restless, frames)
+            echoes = self._echoes(poses, bodies, restless, frames, mutual_shadows)
             samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
             yield AdcCube(samples=samples, config=self.config, scale=1.0)
 
-    def _frame(self, echoes: BodyEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
-        room = self.room_adc - static_adc(echoes.shadowed(index), self.config)
-        person = synthesise(echoes.rows(index), self.clock)
-        return receiver.receive(person, room, self.room.adc_rate, frame)
+    def _frame(self, echoes: PeopleEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
+        room = self.room_adc
+        for shadow in echoes.shadowed(index):
+            room = room - static_adc(shadow, self.config)
+        people = synthesise(echoes.rows(index), self.clock)
+        return receiver.receive(people, room, self.room.adc_rate, frame)
 
-    def _echoes(self, pose: PoseSequence, body: Body, restless: Restlessness, frames: np.ndarray) -> BodyEchoes:
-        joints = self._joints_at_nodes(pose, frames)
+    def _echoes(
+        self, poses: tuple[PoseSequence, ...], bodies: list[Body], restless: list[Restlessness], frames: np.ndarray,
+        mutual: bool,
+    ) -> PeopleEchoes:  # fmt: skip
         time_s = (frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]).ravel()
-        moved = restless.moved(joints.reshape(-1, *joints.shape[2:]), time_s, pose.height_m)
-        chest_m = restless.chest_m(time_s)
-        return BodyEchoes(self.room, body, moved.reshape(joints.shape), chest_m.reshape(joints.shape[:2]))
+        joints_m, chests_m = [], []
+        for pose, unrest in zip(poses, restless, strict=True):
+            joints = self._joints_at_nodes(pose, frames)
+            moved = unrest.moved(joints.reshape(-1, *joints.shape[2:]), time_s, pose.height_m)
+            joints_m.append(moved.reshape(joints.shape))
+            chests_m.append(unrest.chest_m(time_s).reshape(joints.shape[:2]))
+        return PeopleEchoes(self.room, bodies, joints_m, chests_m, mutual=mutual)
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
         """(frame, node, 22, 3): slow time is interpolated, never held.
