@@ -23,15 +23,15 @@ if TYPE_CHECKING:
 SENTENCES = {
     "kinect2_living_room": (
         "user seated on couch drinking water", "a person walks towards the radar, then waves with the left hand",
-        "she walks to the right, then sits down on the couch", "someone does jumping jacks", "a man boxes quickly",
-        "he stands up and walks away",
+        "she sits down on the couch", "someone does jumping jacks", "a man boxes quickly",
+        "he stands up",
     ),
     "kinect_dining_room": (
         "a person walks away from the radar", "someone waves with both hands", "she claps",
-        "a man walks towards the radar and stops", "he squats twice", "she raises her right hand",
+        "a man walks towards the radar and stops", "he squats", "she raises her right hand",
     ),
     "redwood_chair_corner": (
-        "a person waves with the right hand", "someone claps", "she squats", "he walks to the left",
+        "a person waves with the right hand", "someone claps", "she squats", "he jumps",
         "a woman raises her left hand", "a man boxes",
     ),
     "tum_office_desk": (
@@ -50,7 +50,14 @@ def draw_room(path: Path, name: str, weaver: Weaver, room: Room, sentences: tupl
 
     refused: list[str] = []
     with matplotlib.rc_context(
-        {**STYLE, "font.size": 7.0, "axes.titlesize": 7.5, "xtick.labelsize": 6, "ytick.labelsize": 6}
+        {
+            **STYLE,
+            "font.size": 7.0,
+            "axes.titlesize": 7.5,
+            "axes.labelsize": 6.5,
+            "xtick.labelsize": 6,
+            "ytick.labelsize": 6,
+        }
     ):
         figure = Figure(figsize=(9.6, 1.95 * len(sentences) + 0.4), layout="constrained")
         FigureCanvasAgg(figure)
@@ -72,7 +79,7 @@ def _say(row: "list[Axes]", text: str, error: str) -> None:
     for axes in row:
         axes.axis("off")
     words = textwrap.fill(f'"{text}" is refused: {error}', 110)
-    row[0].text(0.0, 0.5, words, fontsize=8, transform=row[0].transAxes)
+    row[0].text(0.0, 0.5, words, fontsize=8, transform=row[0].transAxes).set_in_layout(False)
 
 
 def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
@@ -80,7 +87,7 @@ def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
     height, width = photo.rgb.shape[:2]
     row[0].imshow(small(photo.rgb), extent=(-0.5, width - 0.5, height - 0.5, -0.5))
     row[0].set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
-    row[0].set_title(textwrap.shorten(text, 58, placeholder="..."))
+    row[0].set_title(textwrap.shorten(text, 40, placeholder="..."))
     for share, alpha in _POSES:
         skeleton = SkeletonInPhoto(row[0], photo, scene.radar_from_camera, width=1.3)
         index = round(share * (len(result.pose.time_s) - 1))

@@ -40,6 +40,7 @@ from mmweaver.motion.way import (
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
 MOST_MOVED, WORTH_A_NOTE_M = 16, 0.03
+CLOSEST_FEET_M = 0.05
 WANTED_CLEARANCE_M = {
     "jumping_jacks": 0.85, "jump": 0.5, "squat": 0.6, "wave": 0.6, "clap": 0.45, "raise": 0.5, "punch": 0.75,
     "drink": 0.4, "stand": 0.35, "turn": 0.4, "jog": 0.5, "sit": 0.4, "sit_down": 0.5, "stand_up": 0.5, "walk": 0.3,
@@ -162,7 +163,11 @@ def _start(
 ) -> tuple[Way, Sitting | None]:  # fmt: skip
     first = plan.steps[0]
     if _starts_seated(plan):
-        return _start_seated(floor, body, rng, start_m, preferred(seats, first.seat, floor.scene))
+        usable = preferred(seats, first.seat, floor.scene)
+        if any(step.lower not in ("sit", "sit_down") for step in plan.steps):
+            # Who gets up needs room before the seat: not where a table is.
+            usable = [seat for seat in usable if floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+        return _start_seated(floor, body, rng, start_m, usable)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
     if first.facing:
