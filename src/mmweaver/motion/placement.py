@@ -10,9 +10,11 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
+from mmweaver.motion.activities import CLEARANCE_M
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
 from mmweaver.motion.obstacles import Obstacles
+from mmweaver.motion.other_ways import check_floor, is_other, lay_other, turn_by
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
 from mmweaver.motion.seating import (
@@ -25,7 +27,7 @@ from mmweaver.motion.seating import (
     stool_fits,
     stool_note,
 )  # fmt: skip
-from mmweaver.motion.targets import check_targets, start_for, walk_to_target
+from mmweaver.motion.targets import check_targets, goes_to_thing, start_for, walk_to_target
 from mmweaver.motion.way import (
     NoWay,
     Way,
@@ -41,10 +43,6 @@ Array = np.ndarray
 TRIES, ENOUGH = 500, 60
 MOST_MOVED, WORTH_A_NOTE_M = 16, 0.03
 CLOSEST_FEET_M = 0.05
-WANTED_CLEARANCE_M = {
-    "jumping_jacks": 0.85, "jump": 0.5, "squat": 0.6, "wave": 0.6, "clap": 0.45, "raise": 0.5, "punch": 0.75,
-    "drink": 0.4, "stand": 0.35, "turn": 0.4, "jog": 0.5, "sit": 0.4, "sit_down": 0.5, "stand_up": 0.5, "walk": 0.3,
-}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,8 +138,11 @@ def _try(
             target = _seat_ahead(way, step, following, wanted_seats)
             _lay_move(way, step, target, first=k == 0, last=following is None)
             sitting = target if following is not None and following.lower == "sit_down" else None
-        elif step.lower == "turn" or step.facing:
+        elif step.lower == "turn" and step.turn_deg:
+            turn_by(way, step)
+        elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
             _lay_turn(way, step, rng, first=k == 0)
+        check_floor(way, step, body)
         way.from_seat = way.from_seat or step.lower == "stand_up"
         if step.lower == "sit_down" and k:
             sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
@@ -150,7 +151,7 @@ def _try(
         if sitting is not None:
             way.seats_m.append((float(sitting.seat_m[0]), float(sitting.seat_m[1])))
         if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
-            wanted = max(WANTED_CLEARANCE_M[step.lower], WANTED_CLEARANCE_M.get(step.upper, 0.0))
+            wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
             way.cost += 2.0 * max(0.0, wanted - float(floor.clearance_at(way.place)))
             way.cost += float(floor.dislike_at(way.place))
     way.cost += float(rng.uniform(0, 0.5))
@@ -170,7 +171,7 @@ def _start(
         return _start_seated(floor, body, rng, start_m, usable)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
-    if first.facing:
+    if first.facing and first.upper not in ("point", "look_around"):
         facing = _facing_rad(first.facing, spot) + float(rng.normal(0, 0.05))
     return Way(floor=floor, rng=rng, place=spot, heading_rad=facing), None
 
@@ -180,7 +181,7 @@ def _random_start(
 ) -> Float[Array, "2"]:
     """A cell at random; where a walk shall end at a seat, often one from which it would."""
     first = plan.steps[0]
-    if first.moves and first.target and rng.random() < 0.8:
+    if first.moves and goes_to_thing(first) and rng.random() < 0.8:
         spot = start_for(first, floor, rng)
         if spot is not None:
             return spot
@@ -229,7 +230,7 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
         said = _direction_rad(way, step)
         lasts = max(step.end_s - step.start_s - 0.35, 0.1)
         speed = float(np.hypot(*gap)) / lasts
-        fits = 0.45 <= speed <= (1.6 if step.lower == "walk" else 2.6)
+        fits = 0.45 <= speed <= (2.6 if step.lower == "jog" else 1.6)
         if (
             fits
             and (said is None or abs(angle_between(said, towards)) < 0.9)
@@ -240,8 +241,11 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
 
 
 def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
-    if target is None and step.target:
+    if target is None and goes_to_thing(step):
         walk_to_target(way, step, first=first)
+        return
+    if target is None and is_other(step):
+        lay_other(way, step, _direction_rad(way, step), first=first, last=last)
         return
     if target is not None:
         gap = target.feet_m - way.place
