@@ -41,6 +41,7 @@ SENTENCES = (
     "a man boxes quickly",
 )
 RANGE_WINDOW_M, SECONDS = (0.70, 3.48), 3.0
+METHODS = ("depth", "mask")
 SEAT_M, SEAT_HEIGHT_M, MARK_M, FLOOR_M = 0.35, 0.08, 0.6, 0.03
 _SEEN_SHARE = 0.3  # of a seat, for it to be findable
 _ALIKE = {"counter": "table"}
@@ -264,10 +265,11 @@ def _add_share(metrics: dict[str, Any], name: str, values: list[bool], definitio
     metrics[name] = {**metric, "of": len(values), "interval": [round(float(low), 4), round(float(high), 4)]}
 
 
-def run(out: Path, folders: list[Path], number: int) -> list[Path]:
-    """Two files: depth alone (with the real rooms), and with the true mask."""
+def run(out: Path, folders: list[Path], number: int, methods: tuple[str, ...] = METHODS) -> list[Path]:
+    """A file each: depth alone (with the real rooms and placements), and with the true mask."""
     written = []
-    for method, with_mask in (("depth", False), ("mask", True)):
+    for method in methods:
+        with_mask = method == "mask"
         rows = [
             procedural_row(REPORT, number, "report", with_mask=with_mask, place=not with_mask),
             procedural_row(DEVELOP, max(number // 4, 1), "develop", with_mask=with_mask, place=not with_mask),
@@ -283,9 +285,15 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results"))
     parser.add_argument("--rooms", type=Path, default=None, help="folder of the real rooms")
     parser.add_argument("--number", type=int, default=200, help="how many rooms to report on")
+    parser.add_argument("--methods", nargs="*", choices=METHODS, default=METHODS)
     arguments = parser.parse_args()
     folders = [] if arguments.rooms is None else sorted(arguments.rooms.iterdir())
-    run(arguments.out, [folder for folder in folders if (folder / "camera.json").is_file()], arguments.number)
+    run(
+        arguments.out,
+        [folder for folder in folders if (folder / "camera.json").is_file()],
+        arguments.number,
+        tuple(arguments.methods),
+    )
 
 
 if __name__ == "__main__":

@@ -167,6 +167,39 @@ def statistics_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+AFFORDANCES = (
+    ("floor_error_median_m", "floor height, median error", "{:.3f} m"),
+    ("floor_error_p95_m", "95th percentile", "{:.3f} m"),
+    ("floor_within_3_cm", "within 3 cm", "share"), ("seats_found", "seats found", "share"),
+    ("false_seats", "found seats that are none", "share"),
+    ("facing_error_median_deg", "facing, median error", "{:.0f} deg"),
+    ("table_found", "tables and counters found", "share"), ("table_false", "found ones that are none", "share"),
+    ("door_found", "doors found", "share"), ("door_false", "found ones that are none", "share"),
+    ("window_found", "windows found", "share"), ("window_false", "found ones that are none", "share"),
+    ("bed_found", "beds found", "share"), ("bed_false", "found ones that are none", "share"),
+    ("placements_clear", "placements clear of furniture", "share"), ("arms_clear", "arms too", "share"),
+)  # fmt: skip
+
+
+def affordances_table(folder: Path) -> str:
+    """What is found in rooms whose truth is known, one column a set of rooms and an input."""
+    rows = [(record["method"], row) for record in _records(folder / "affordances") for row in record["rows"]]
+    heads = [f"{row['dataset']['name']}, {method} ({row['n']})" for method, row in rows]
+    lines = [_line("what", *heads), _line(*["---"] * (1 + len(rows)))]
+    for name, text, form in AFFORDANCES:
+        lines.append(_line(text, *(_share_cell(row["metrics"].get(name), form) for _, row in rows)))
+    return "\n".join(lines)
+
+
+def _share_cell(metric: dict[str, Any] | None, form: str) -> str:
+    if metric is None:
+        return "-"
+    if form != "share":
+        return form.format(metric["value"])
+    of = f" of {metric['of']}" if "of" in metric else ""
+    return f"{100 * metric['value']:.1f} %{of}"
+
+
 def _with_interval(metric: dict[str, Any]) -> str:
     edges = metric.get("interval")
     value = _number(metric["value"])
@@ -177,6 +210,7 @@ TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
     "several_people": people_table,
+    "affordances": affordances_table,
 }  # fmt: skip
 
 

@@ -41,7 +41,7 @@ class Obstacles:
     @cached_property
     def _tree(self) -> Any:
         """For the nearest point; None where there is none."""
-        from scipy.spatial import cKDTree
+        from scipy.spatial import KDTree
 
         photo = self.scene.photo
         step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
@@ -50,7 +50,7 @@ class Obstacles:
         camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
         points = camera[np.isfinite(depth) & (depth > 0.3)] @ self.scene.radar_from_camera.T
         points = points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
-        return cKDTree(points) if len(points) else None
+        return KDTree(points) if len(points) else None
 
     def deepest_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = ()) -> float:
         """How far the body gets into anything, at worst; 0 where it stays clear.

@@ -28,7 +28,7 @@ from mmweaver.motion.seating import (
     stool_fits,
     stool_note,
 )  # fmt: skip
-from mmweaver.motion.targets import check_targets, start_for, walk_to_target
+from mmweaver.motion.targets import check_targets, goes_to_thing, start_for, walk_to_target
 from mmweaver.motion.way import (
     NoWay,
     Way,
@@ -43,6 +43,7 @@ from mmweaver.motion.way import (
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
 MOST_MOVED, WORTH_A_NOTE_M = 16, 0.03
+CLOSEST_FEET_M = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,7 +175,11 @@ def _start(
 ) -> tuple[Way, Sitting | None]:  # fmt: skip
     first = plan.steps[0]
     if _starts_seated(plan):
-        return _start_seated(floor, body, rng, start_m, preferred(seats, first.seat, floor.scene))
+        usable = preferred(seats, first.seat, floor.scene)
+        if any(step.lower not in ("sit", "sit_down") for step in plan.steps):
+            # Who gets up needs room before the seat: not where a table is.
+            usable = [seat for seat in usable if floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+        return _start_seated(floor, body, rng, start_m, usable)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
     if first.facing and first.upper not in ("point", "look_around"):
@@ -187,7 +192,7 @@ def _random_start(
 ) -> Float[Array, "2"]:
     """A cell at random; where a walk shall end at a seat, often one from which it would."""
     first = plan.steps[0]
-    if first.moves and first.target and rng.random() < 0.8:
+    if first.moves and goes_to_thing(first) and rng.random() < 0.8:
         spot = start_for(first, floor, rng)
         if spot is not None:
             return spot
@@ -247,7 +252,7 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
 
 
 def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
-    if target is None and step.target:
+    if target is None and goes_to_thing(step):
         walk_to_target(way, step, first=first)
         return
     if target is None and is_other(step):

@@ -13,6 +13,7 @@ from mmweaver.motion.way import RAMP_S, TURN_RATE, NoWay, Way, angle_between, fa
 
 Array = np.ndarray
 # A person says table to all of them.
+SEATS = ("couch", "chair", "bench", "stool", "seat")  # these are seats, and seating knows the way to them
 ALIKE = {"table": ("table", "counter"), "desk": ("table",), "counter": ("counter", "table")}
 _SLOWEST_MPS, _FASTEST_MPS = 0.35, {"jog": 2.4}
 _SHORTEST_M, _NEAR_M = 0.35, 0.45
@@ -24,10 +25,15 @@ def kinds_for(target: str) -> tuple[str, ...]:
     return ALIKE.get(target, (target,))
 
 
+def goes_to_thing(step: Step) -> bool:
+    """Whether a step names a thing that is no seat."""
+    return bool(step.target) and step.target not in SEATS
+
+
 def check_targets(plan: MotionPlan, scene: Scene) -> None:
     """Raises InputError where a step goes to something that the room does not show, naming what it has."""
     for step in plan.steps:
-        if step.target and not _marks(scene, step):
+        if step.moves and goes_to_thing(step) and not _marks(scene, step):
             raise InputError(
                 f"for {step.clause or step.target!r}: no {step.target} was found in the photo; {_what_there_is(scene)}"
             )

@@ -35,10 +35,11 @@ def behind_edges(height_map: HeightMap, camera_height_m: float) -> GridMask:
     row, column = np.nonzero(level)
     x, y = height_map.x_m[column], height_map.y_m[row]
     length = np.maximum(np.hypot(x, y), 1e-6)
-    hidden = np.zeros(level.shape, bool)
+    hidden = np.zeros_like(level, dtype=bool)
+    rows, columns = height_map.top_m.shape
     for far in np.arange(CELL_M / 2, _DEPTH_M, CELL_M / 2):
         a = np.floor((x * (1 + far / length) - height_map.x_m[0]) / CELL_M + 0.5).astype(int)
         b = np.floor((y * (1 + far / length) - height_map.y_m[0]) / CELL_M + 0.5).astype(int)
-        inside = (a >= 0) & (a < hidden.shape[1]) & (b >= 0) & (b < hidden.shape[0])
+        inside = (a >= 0) & (a < columns) & (b >= 0) & (b < rows)
         hidden[b[inside], a[inside]] = True
     return hidden
