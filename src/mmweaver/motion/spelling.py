@@ -4,19 +4,38 @@ import re
 from functools import lru_cache
 
 from mmweaver.motion.lexicon import (
-    ARMS, BOTH, DIRECTIONS, FILLERS, GOING, IRREGULAR, LIGHT, MANY, NEGATIONS, NOT_HUMAN, NUMBERS, OTHER_MOVEMENT, RADAR, SEATS,
-    SPEEDS, TARGETS,
+    ARMS,
+    BOTH,
+    DIRECTIONS,
+    FILLERS,
+    GOING,
+    IRREGULAR,
+    LIGHT,
+    MANY,
+    NEGATIONS,
+    NOT_HUMAN,
+    NUMBERS,
+    OTHER_MOVEMENT,
+    RADAR,
+    SEATS,
+    SPEEDS,
+    TARGETS,
 )  # fmt: skip
-from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA, ACTIVITY_PHRASES, RECOVERING
+from mmweaver.motion.phrases import ACTIVITY_PHRASES
+from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
 
 SHORTEST = 6  # letters; shorter words have too many neighbours
 # Words of the language that are one letter away from ours and mean something else.
-OTHER_WORDS = frozenset(
-    "clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands stares staring planks waving weaving jumper walker runner"
-    " turner stepper sitting setting hitting spitting falling calling filling standing landing lifting sifting rolling"
-    " pulling polling pushing rushing wiping piping tipping ripping texting testing resting reading heading leading"
-    " kicking licking picking packing pointing painting printing bending sending lending mending".split()
+OTHER_WORDS = words_in(
+    """
+    clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
+    stares staring planks waving weaving jumper walker runner turner stepper sitting setting hitting spitting
+    falling calling filling standing landing lifting sifting rolling pulling polling pushing rushing wiping piping
+    tipping ripping texting testing resting reading heading leading kicking licking picking packing pointing
+    painting printing bending sending lending mending
+    """
 )
+_MORE = "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward"
 _WORD = re.compile(r"[a-z]+")
 
 
@@ -95,7 +114,5 @@ def _known() -> frozenset[str]:
         known |= set(words)
     for pattern, _ in ACTIVITY_PHRASES:
         known |= set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", pattern)))
-    known |= set(
-        "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward".split()
-    )
+    known |= words_in(_MORE)
     return frozenset(word for word in known if word.isalpha() and word.islower())
