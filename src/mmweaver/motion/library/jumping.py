@@ -142,7 +142,7 @@ def leaping(stage: Stage) -> Controls:
 
 def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    height_m = float(rng.uniform(0.16, 0.32)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
+    height_m = float(rng.uniform(0.18, 0.36)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
