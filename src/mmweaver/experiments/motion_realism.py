@@ -69,7 +69,8 @@ def _smooth(place: Float[Array, "frame 3"]) -> Float[Array, "n 3"]:
 def _is_steady(pelvis: Float[Array, "frame 3"], speeds: tuple[float, float]) -> bool:
     gone = np.linalg.norm(np.diff(pelvis[:, :2], axis=0), axis=1).sum()
     straight = float(np.linalg.norm(pelvis[-1, :2] - pelvis[0, :2]))
-    return straight > 0.95 * gone and straight > 2.0 and speeds[0] < straight / len(pelvis) * RATE_HZ < speeds[1]
+    speed_mps = straight / len(pelvis) * RATE_HZ
+    return bool(straight > 0.95 * gone and straight > 2.0 and speeds[0] < speed_mps < speeds[1])
 
 
 def speed_of(joints: Places) -> float:
@@ -142,7 +143,7 @@ def _speed(place: Float[Array, "frame axis"]) -> Float[Array, " frame"]:
     return np.linalg.norm(np.gradient(place, 1 / RATE_HZ, axis=0), axis=1)
 
 
-def _acceleration(place: Float[Array, "frame 3"]) -> Float[Array, " frame"]:
+def _acceleration(place: Float[Array, "frame 3"]) -> Float[Array, " inner"]:
     return np.linalg.norm(np.gradient(np.gradient(place, 1 / RATE_HZ, axis=0), 1 / RATE_HZ, axis=0), axis=1)[2:-2]
 
 

@@ -55,7 +55,9 @@ def compose(
         plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
         seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
     )  # fmt: skip
-    return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions)
+    return Motion(
+        pose=pose, plan=plan, assumptions=plan.notes + spot_notes + _not_found(plan, scene) + placement.assumptions
+    )
 
 
 def _jogging_without_a_way(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
@@ -68,3 +70,12 @@ def _jogging_without_a_way(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...
     )
     note = ("no direction is said for jogging: the person jogs on the spot",) if any(aimless) else ()
     return replace(plan, steps=steps), note
+
+
+def _not_found(plan: MotionPlan, scene: Scene) -> tuple[str, ...]:
+    """What the sentence goes to and the photo does not show."""
+    known = {landmark.kind for landmark in scene.landmarks}
+    missing = [step.target for step in plan.steps if step.target and not step.seat and step.target not in known]
+    return tuple(
+        f"no {kind} was found in the photo; the way leads where there is room" for kind in dict.fromkeys(missing)
+    )

@@ -28,7 +28,7 @@ SHORTEST = 6  # letters; shorter words have too many neighbours
 # Words of the language that are one letter away from ours and mean something else.
 OTHER_WORDS = words_in(
     """
-    clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
+    singing clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
     stares staring planks waving weaving jumper walker runner turner stepper sitting setting hitting spitting
     falling calling filling standing landing lifting sifting rolling pulling polling pushing rushing wiping piping
     tipping ripping texting testing resting reading heading leading kicking licking picking packing pointing
