@@ -12,3 +12,8 @@ def test_slips_are_mended_and_told():
 def test_other_words_stay_as_they_are():
     for word in ("singing", "showing", "passes", "shaved", "walk", "bakes", "licking"):
         assert mended(word) == ""
+
+
+def test_forms_of_other_verbs_are_no_slips():
+    for word in ("talking", "cooking", "climbing", "wishing", "stirring", "swinging", "slides"):
+        assert mended(word) == ""

@@ -11,7 +11,7 @@ from mmweaver.motion.way import RAMP_S, SLOWEST_MPS, NoWay, Way, face_along, ram
 
 Array = np.ndarray
 SPECIAL = ("sidestep", "stumble", "leap")
-LYING_ROOM_M = 0.28  # free on either side of who lies
+LYING_ROOM_M = 0.22  # free on either side of who lies
 STEP_ASIDE_M = 0.3
 
 
