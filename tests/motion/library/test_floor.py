@@ -36,8 +36,9 @@ def test_forwards_is_on_the_belly_and_otherwise_on_the_back():
     for text, ahead in (("falls forward", True), ("falls", False)):
         pose = act_out(text, duration_s=5.0, seed=1, height_m=1.75).pose
         start, end = pose.joints_m[0], pose.joints_m[-1]
-        to_radar = -start[0, :2] / np.linalg.norm(start[0, :2])
-        gone = (end[joint("head"), :2] - start[0, :2]) @ to_radar
+        across = start[joint("left_hip"), :2] - start[joint("right_hip"), :2]
+        ahead_way = np.array([across[1], -across[0]]) / np.linalg.norm(across)
+        gone = (end[joint("head"), :2] - start[0, :2]) @ ahead_way
         assert (gone > 0.8) if ahead else (gone < -0.4)
 
 
