@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
         ("docs/limits.md", "recorded"),
         ("docs/several_people.md", "side by side"),
         ("docs/rooms.md", "seats found"),
+        ("docs/motion.md", "standing up from the knees"),
     ],
 )
 def test_the_tables_of_the_documentation_are_those_of_the_results(document: str, told: str):

@@ -1,6 +1,6 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md docs/several_people.md
+python -m mmweaver.experiments.tables results README.md docs/*.md
 """
 
 import json
@@ -10,6 +10,7 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 QUESTIONS = (
@@ -211,6 +212,7 @@ TABLES = {
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
     "several_people": people_table,
     "affordances": affordances_table,
+    "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
 }  # fmt: skip
 
 

@@ -43,7 +43,6 @@ STEPPING = GOING | {
     "stumble",
     "pushed",
     "dance",
-    "turn",
     "tumble",
     "stagger",
     "limp",
@@ -70,7 +69,6 @@ LEG_VERBS = {
     "hobble",
     "step",
     "walk",
-    "limp",
 }
 FLOOR_VERBS = {
     "lie",
@@ -177,7 +175,7 @@ def read_clause(clause: Clause) -> Reading:
     _note_unknown(words, clause, reading, has_verb=True)
     reading.form = _form(words, verbs[0])
     # what stands before the first verb belongs to it
-    starts = [0, *(_start_of(words, before, at) for before, at in zip(verbs, verbs[1:], strict=False))]
+    starts = [0, *(_start_of(words, before, at) for before, at in pairwise(verbs))]
     ends = [*starts[1:], len(words)]
     for k, (at, end) in enumerate(zip(verbs, ends, strict=True)):
         begin = starts[k]

@@ -1,25 +1,22 @@
 """The words that a sentence may be made of, and what each says."""
 
-from mmweaver.motion.verbs import ACTIVITY_PHRASES
-
-
-def _words(text: str) -> frozenset[str]:
-    return frozenset(text.split())
-
+from mmweaver.motion.phrases import ACTIVITY_PHRASES
+from mmweaver.motion.verbs import words_in
 
 # Moving somewhere: walking, if the clause says where to (or that it is for a walk).
 GOING = frozenset({"go", "move", "head", "come", "return"})
 # A word for a place to go to -> the kind of landmark that a scene may have.
 TARGETS = {
-    **{kind: kind for kind in ("door", "table", "window", "couch", "chair", "bed", "desk", "shelf", "counter", "wall", "fridge", "tv",
-                               "wardrobe", "sink", "plant", "lamp", "stove", "cabinet")},
-    **dict.fromkeys(("doorway", "exit", "entrance", "doors"), "door"), "sofa": "couch", "settee": "couch", "armchair": "chair",
+    **{kind: kind for kind in ("door", "table", "window", "couch", "chair", "bed", "desk", "shelf", "counter", "wall",
+                               "fridge", "tv", "wardrobe", "sink", "plant", "lamp", "stove", "cabinet")},
+    **dict.fromkeys(("doorway", "exit", "entrance", "doors"), "door"),
+    "sofa": "couch", "settee": "couch", "armchair": "chair",
     "stool": "chair", "bookshelf": "shelf", "bookcase": "shelf", "shelves": "shelf", "worktop": "counter",
     "countertop": "counter", "television": "tv", "refrigerator": "fridge", "closet": "wardrobe", "oven": "stove",
     "cupboard": "cabinet", "windows": "window",
 }  # fmt: skip
 # Verbs that say nothing by themselves: "does squats", "starts walking", "keeps waving".
-LIGHT = _words(
+LIGHT = words_in(
     """
     do perform make take give start begin continue keep proceed execute practice practise have throw land decide
     """
@@ -53,7 +50,8 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\b(?:left and (?:the |his |her |their |its )?right|right and (?:the |his |her |their |its )?left)"
      r"(?= (?:hand|arm|fist|punch|jab|hook|palm))", " both "),
     (r"\b(?:one after the other|alternat\w+)\b", " both "),
-    (r"\bback and forth\b|\bto and fro\b|\bforth and back\b|\bback and forwards?\b|\bup and down the room\b", " pacing_to_and_fro "),
+    (r"\bback and forth\b|\bto and fro\b|\bforth and back\b|\bback and forwards?\b|\bup and down the room\b",
+     " pacing_to_and_fro "),
     (r"\baround (?:the|in the) (?:room|place)\b", " pacing_to_and_fro "),
     (r"\bup and down (?:the |some )?(?:steps|stairs)\b", " stairs "),
     (r"\bup and down\b|\b(?:from )?side to side\b", " "),
@@ -62,8 +60,8 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
      " leading-foot "),
     (r"\ban? ((?:small |big |large |quick |slow |short |long |little |single |fast )?step)\b", r" one \1 "),
     (r"\b((?:(?:counter|anti)[- ]?)?clockwise) ((?:small |big |large |wide )?circles?)\b", r"\2 \1"),
-    (r"\b(?:in|on|along|around)(?: an?| the)?(?: (?:small|big|large|wide|tight|narrow|full|whole|complete|little|slow|fast|quick|"
-     r"huge|single|one|two|three|four|few|very|slightly|his|her|its)){0,2} circles?\b"
+    (r"\b(?:in|on|along|around)(?: an?| the)?(?: (?:small|big|large|wide|tight|narrow|full|whole|complete|little|slow|"
+     r"fast|quick|huge|single|one|two|three|four|few|very|slightly|his|her|its)){0,2} circles?\b"
      r"|\ba (?:full |whole |complete |big |small )?circle\b",
      " in_circle "),
     (r"\b(?:figure|number)[ -](?:of )?(?:an? )?(?:8|eight)\b", " figure-eight "),
@@ -119,75 +117,75 @@ NUMBERS = {
     "another": 1,
 }  # fmt: skip
 TIMES = frozenset({"once", "twice", "thrice"})
-SEATS = _words(
+SEATS = words_in(
     """
     sofa couch chair stool bed bench armchair seat ottoman settee recliner
     """
 )
-ARMS = _words(
+ARMS = words_in(
     """
     hand hands arm arms fist fists palm palms wrist wrists
     """
 )
-RADAR = _words(
+RADAR = words_in(
     """
     radar camera sensor me us viewer observer device photographer lens audience awr1843
     """
 )
-BOTH = _words(
+BOTH = words_in(
     """
     both hands arms fists
     """
 )
-OWN = _words(
+OWN = words_in(
     """
     his her their its my your own
     """
 )
-PRONOUNS = _words(
+PRONOUNS = words_in(
     """
     he she it they i we you who someone somebody
     """
 )
 
-NEGATIONS = _words(
+NEGATIONS = words_in(
     """
     not never no without cannot cant dont doesnt didnt isnt wont wasnt nor neither instead except refuses refuse
     avoids hardly barely nobody none rather
     """
 )
-MANY = _words(
+MANY = words_in(
     """
     people persons men women boys girls children kids couple crowd humans users everyone family pair others group
     team subjects
     """
 )
-NOT_HUMAN = _words(
+NOT_HUMAN = words_in(
     """
     dog cat robot horse bird car animal monkey drone cow elephant fish pet puppy
     """
 )
 # Words that make it another movement than the one known, so that leaving them out would be wrong.
-OTHER_MOVEMENT = _words(
+OTHER_MOVEMENT = words_in(
     """
-    rolling-over
-       figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
-       square ellipse oval loop loops number torso trunk defense defence guard defensive gymnastics gymnastic angle
-       s-shape s-curve slalom eight figure     break breakdance breakdancing mid-air midair     stairs stair staircase stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail
-    railing   trampoline treadmill bike bicycle like allfours diagonally zigzag slalom obstacle hurdle
-    over knees knee leg legs foot tiptoe tiptoes handstand cartwheel floor ground wheelchair swimming flip
-    somersault asleep       crossed spiral triangle rectangle swings   head shoulder shoulders
-    elbow elbows hips hip thigh sit-ups push-ups     plank tennis racket upward downward platform edge
-    curb log bridge bent hunched crouched against reacts   shuffle scooter skateboard grapevine waltz circle
-    circles tango salsa waltzing ballet backflip kata karate fight fighting drums drum piano trumpet flute
-    conductor conducts skiing skating surfing climbing climbs climb vault vaults crawl crawls crawling dog partner
-    someone_else sits_up leap-frog zombie stork sneaks sneaking sneak injured drags dragging half-circle guitar
-    violin golf tightrope toes heel heels heel-toe obstacles hole puddle stones steps_up side_flip headstand
-    diagonal yoga basketball baskeball football soccer volleyball juggles kickboxing air-plane scared
+    rolling-over figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
+    square ellipse oval loop loops number torso trunk defense defence guard defensive gymnastics gymnastic angle
+    s-shape s-curve slalom eight figure break breakdance breakdancing mid-air midair stairs stair staircase
+    stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail railing trampoline
+    treadmill bike bicycle like allfours diagonally zigzag obstacle hurdle over knees knee leg legs foot tiptoe
+    tiptoes handstand cartwheel floor ground wheelchair swimming flip somersault asleep crossed spiral triangle
+    rectangle swings head shoulder shoulders elbow elbows hips hip thigh sit-ups push-ups plank tennis racket
+    upward downward platform edge curb log bridge bent hunched crouched against reacts shuffle scooter skateboard
+    grapevine waltz circle circles tango salsa waltzing ballet backflip kata karate fight fighting drums drum
+    piano trumpet flute conductor conducts skiing skating surfing climbing climbs climb vault vaults crawl crawls
+    crawling dog partner someone_else sits_up leap-frog zombie stork sneaks sneaking sneak injured drags dragging
+    half-circle guitar violin golf tightrope toes heel heels heel-toe obstacles hole puddle stones steps_up
+    side_flip headstand diagonal yoga basketball baskeball football soccer volleyball juggles kickboxing air-plane
+    scared
     """
 )
 # Words that may stand anywhere and change nothing that can be acted out.
-FILLERS = _words(
+FILLERS = words_in(
     """
     a an the this that these there his her their its my your own one's is are was were be been being am has have
     had will would can could should may might shall and or with in on at to for from of by into onto over_to up
@@ -211,12 +209,13 @@ FILLERS = _words(
     seconds minute exercise exercises workout gym set sets repetitions reps fitness jacks steps pairs large-ish
     meters metres meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them
     something anything first about whole complete successive consecutive row close someone's person's man's user's
-    woman's arm's drunk drunken sharp tight careful recovery awkward strong rough starting ending performing doing object thing things ball box book soup pot surface board plate food meal
-    dish bowl door handle screen keyboard computer laptop cloth whiteboard blackboard letter note pen apple sandwich
-    breakfast lunch dinner rope cart plane waist breast breast-high chest-high hair teeth sink mirror newspaper magazine mail email
-    towards_it it's one's reading_glasses order tempo pose posture stance kind sort type_of lot rhythm music song hall
-    quick-ish sudden suddenly normal-speed relatively tiny huge bigger larger smaller greater instrument air imaginary virtual fridge
-    cupboard lamp shoes toilet bath shower bathroom garden street path track way route trajectory pace tempo
-    consecutively successively subsequently than meanwhile both-handed right-handed right-hand
+    woman's arm's drunk drunken sharp tight careful recovery awkward rough starting ending performing doing object
+    thing things ball box book soup pot surface board plate food meal dish bowl handle screen keyboard computer
+    laptop cloth whiteboard blackboard letter note pen apple sandwich breakfast lunch dinner rope cart plane waist
+    breast breast-high chest-high hair teeth sink mirror newspaper magazine mail email towards_it it's
+    reading_glasses tempo pose posture stance kind sort type_of lot music song hall quick-ish sudden suddenly
+    normal-speed relatively tiny huge bigger larger smaller greater instrument virtual fridge cupboard lamp shoes
+    toilet bath shower bathroom garden street path track route trajectory consecutively successively subsequently
+    than meanwhile both-handed right-handed right-hand
     """
 )

@@ -111,7 +111,7 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
 
 
 def _token(about: Step, text: str, texts: set[str]) -> Step:
-    """What verbs.ACTIVITY_PHRASES folded into one word: angles, legs, where a push comes from, lying on what."""
+    """What phrases.ACTIVITY_PHRASES folded into one word: angles, legs, where a push comes from, lying on what."""
     if text in ("left_leg", "right_leg"):
         return replace(about, foot=text.removesuffix("_leg"))
     if text.startswith("arc") and text[3:].isdigit():

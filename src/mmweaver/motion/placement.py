@@ -182,6 +182,8 @@ def _start(
         return _start_seated(floor, body, rng, start_m, usable)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
+    if any(step.posture in ("floor", "knees") for step in plan.steps):
+        facing = float(rng.uniform(-np.pi, np.pi))  # whichever way the floor is free
     if first.facing and first.upper not in ("point", "look_around"):
         facing = _facing_rad(first.facing, spot) + float(rng.normal(0, 0.05))
     return Way(floor=floor, rng=rng, place=spot, heading_rad=facing), None

@@ -12,7 +12,7 @@ from mmweaver.motion.postures import carried_over, with_postures
 from mmweaver.motion.spelling import corrected
 from mmweaver.motion.suggestions import not_known
 from mmweaver.motion.verbs import RECOVERING
-from mmweaver.motion.words import words_of
+from mmweaver.motion.words import Word, words_of
 
 LONGEST_TEXT = 1000
 MOST_STEPS = 24
@@ -33,11 +33,9 @@ def parse(text: str) -> MotionPlan:
     if len(text) > LONGEST_TEXT:
         raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
     text, notes = corrected(text)
-    readings: list[Reading] = []
     words = words_of(text)
-    lemmas = {word.lemma for word in words}
-    if {"jump", "turn"} <= lemmas and {word.text for word in words} & {"air", "during"}:
-        raise InputError(f"{text.strip()!r}: jumping with a turn is not known; say 'jumps, then turns'")
+    _check_turning_jumps(text, words)
+    readings: list[Reading] = []
     for clause in clauses_of(words):
         reading = read_clause(clause)
         notes += reading.notes
@@ -45,9 +43,7 @@ def parse(text: str) -> MotionPlan:
             readings[-1].absorb(reading)
         elif reading.steps and not _is_its_end(readings, reading):
             readings.append(reading)
-        elif reading.steps:
-            continue
-        elif readings and _needs_no_step(readings[-1].steps[-1], reading):
+        elif reading.steps or (readings and _needs_no_step(readings[-1].steps[-1], reading)):
             continue
         elif not reading.is_empty:
             raise InputError(not_known(clause.text))
@@ -71,6 +67,12 @@ def _is_its_end(readings: list[Reading], reading: Reading) -> bool:
     if len(reading.steps) > 1 or before.upper:
         return before.upper == "raise" and now.lower == "put_down" and len(reading.steps) == 1
     return (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
+
+
+def _check_turning_jumps(text: str, words: list[Word]) -> None:
+    lemmas = {word.lemma for word in words}
+    if {"jump", "turn"} <= lemmas and {word.text for word in words} & {"air", "during"}:
+        raise InputError(f"{text.strip()!r}: jumping with a turn is not known; say 'jumps, then turns'")
 
 
 def _needs_no_step(before: Step, reading: Reading) -> bool:

@@ -1,22 +1,58 @@
 """Slips of the keyboard: a long unknown word that is one letter away from a single known one is read as that."""
 
 import re
+from collections.abc import Iterable
 from functools import lru_cache
 
 from mmweaver.motion.lexicon import (
-    ARMS, BOTH, DIRECTIONS, FILLERS, GOING, IRREGULAR, LIGHT, MANY, NEGATIONS, NOT_HUMAN, NUMBERS, OTHER_MOVEMENT, RADAR, SEATS,
-    SPEEDS, TARGETS,
+    ARMS,
+    BOTH,
+    DIRECTIONS,
+    FILLERS,
+    GOING,
+    IRREGULAR,
+    LIGHT,
+    MANY,
+    NEGATIONS,
+    NOT_HUMAN,
+    NUMBERS,
+    OTHER_MOVEMENT,
+    RADAR,
+    SEATS,
+    SPEEDS,
+    TARGETS,
 )  # fmt: skip
-from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA, ACTIVITY_PHRASES, RECOVERING
+from mmweaver.motion.phrases import ACTIVITY_PHRASES
+from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
 
 SHORTEST = 6  # letters; shorter words have too many neighbours
 # Words of the language that are one letter away from ours and mean something else.
-OTHER_WORDS = frozenset(
-    "clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands stares staring planks waving weaving jumper walker runner"
-    " turner stepper sitting setting hitting spitting falling calling filling standing landing lifting sifting rolling"
-    " pulling polling pushing rushing wiping piping tipping ripping texting testing resting reading heading leading"
-    " kicking licking picking packing pointing painting printing bending sending lending mending".split()
+OTHER_WORDS = words_in(
+    """
+    singing clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
+    stares staring planks waving weaving jumper walker runner turner stepper sitting setting hitting spitting
+    falling calling filling standing landing lifting sifting rolling pulling polling pushing rushing wiping piping
+    tipping ripping texting testing resting reading heading leading kicking licking picking packing pointing
+    painting printing bending sending lending mending
+    """
 )
+# Other verbs of the language: their forms are not slips of ours.
+OTHER_VERBS = words_in(
+    """
+    talk cook wash watch wish work warn warm weep whip shout shine shave shoot shop show sing sink slip slap sleep
+    slide smell smile smoke sneeze sniff snore spit split spread squeeze steal sting strike string strip study
+    swear sweep swim swing switch teach tear tell think tickle tie tighten tremble twist unpack vacuum visit wake
+    want wear win wind wink worry yawn yell hide hit hug hurt hum hunt iron join juggle knit laugh lead learn
+    leave lick light listen live load lock look lose love melt mend mix mop mow nail open order pack paint park
+    pass paste pay peel pet pick plan plant play pour pray press print pump punish race rake reply rest ride ring
+    roll row rub sail sew shake sharpen bake bathe beat beg bite blow brake break breathe build burn bury buy call
+    camp care carve catch change charge chase chat check chew chop climb close coach collect cough count cover
+    crash crawl creep cry curl cut dig dive draw dream dress drill drive drop drum dry escape exercise explode
+    fail fan fasten feed fight fill film find fix flap float fly follow fry gather gaze glue grin grip groan guess
+    handle hang wave wag speak stare store stir star strain train trim tap tape taste trade
+    """
+)
+_MORE = "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward"
 _WORD = re.compile(r"[a-z]+")
 
 
@@ -43,7 +79,7 @@ def mended(word: str) -> str:
     ('forwards', '', '')
     """
     known = _known()
-    if len(word) < SHORTEST or word in known or word in OTHER_WORDS:
+    if len(word) < SHORTEST or word in known or word in OTHER_WORDS or word in _other_forms():
         return ""
     near = [other for other in known if other[0] == word[0] and len(other) >= 5 and _one_slip(word, other)]
     return near[0] if len(near) == 1 else ""
@@ -65,18 +101,7 @@ def _known() -> frozenset[str]:
     """Every word that the reading knows in some form."""
     verbs = set(ACTIVITY_OF_LEMMA) | set(GOING) | set(LIGHT)
     known = set(IRREGULAR) | set(RECOVERING)
-    for verb in verbs:
-        if verb.isalpha():
-            stem = verb.removesuffix("e")
-            known |= {
-                verb,
-                verb + "s",
-                verb + "es",
-                stem + "ing",
-                stem + "ed",
-                verb + verb[-1] + "ing",
-                verb + verb[-1] + "ed",
-            }
+    known |= _forms(verbs)
     for words in (
         ARMS,
         BOTH,
@@ -95,7 +120,20 @@ def _known() -> frozenset[str]:
         known |= set(words)
     for pattern, _ in ACTIVITY_PHRASES:
         known |= set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", pattern)))
-    known |= set(
-        "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward".split()
-    )
+    known |= words_in(_MORE)
     return frozenset(word for word in known if word.isalpha() and word.islower())
+
+
+def _forms(verbs: Iterable[str]) -> frozenset[str]:
+    """Verbs with their usual endings."""
+    forms: set[str] = set()
+    for verb in verbs:
+        if verb.isalpha():
+            stem, double = verb.removesuffix("e"), verb + verb[-1]
+            forms |= {verb, f"{verb}s", f"{verb}es", f"{stem}ing", f"{stem}ed", f"{double}ing", f"{double}ed"}
+    return frozenset(forms)
+
+
+@lru_cache(maxsize=1)
+def _other_forms() -> frozenset[str]:
+    return _forms(OTHER_VERBS)

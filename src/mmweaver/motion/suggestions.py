@@ -15,12 +15,12 @@ def not_known(clause_text: str, word: str = "") -> str:
     """One line: what was not understood, the nearest known activity, and how many more there are."""
     which = f" ({word.replace('_', ' ')!r})" if word else ""
     found = nearest(clause_text)
-    guess = f"; did you mean {found[0][1]!r}?" if found and found[0][0] > NEAR else ";"
+    guess = f"did you mean {found[0][1]!r}? " if found and found[0][0] > NEAR else ""
     names = ", ".join(activity.name for activity in BODY[:2]) + f" and {len(BODY) + len(HANDS) - 2} more"
     return (
-        f"the clause {clause_text!r} names no activity that is known{which}{guess} known are {names}, listed by"
+        f"the clause {clause_text!r} names no activity that is known{which}; {guess}known are {names}, listed by"
         " 'mmweaver motions'"
-    ).replace("; known", " known" if guess == ";" else "; known", 1)
+    )
 
 
 def nearest(clause_text: str) -> list[tuple[float, str, str]]:

@@ -30,6 +30,11 @@ def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
     return replace(plan, steps=tuple(steps))
 
 
+def natural_s(plan: MotionPlan) -> float:
+    """How long a plan takes when nobody says how long."""
+    return sum(_limits(step)[1] for step in plan.steps)
+
+
 def _limits(step: Step) -> tuple[float, float]:
     """Least and natural seconds of a step."""
     if step.seconds:

@@ -8,8 +8,8 @@ from mmweaver.motion.plan import Step
 from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.words import Word
 
-LEGS = frozenset("leg legs knee knees foot feet left_leg right_leg".split())
-ON_ONE_LEG = frozenset("leg left_leg right_leg".split())
+LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "right_leg"])
+ON_ONE_LEG = frozenset(["leg", "left_leg", "right_leg"])
 SIDES = {"left": 1.0, "right": -1.0}
 AIMED = ("point", "look_around")
 
@@ -79,7 +79,7 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
     if target and direction in ("towards", "forwards") and not texts & RADAR:
         direction = "" if not step.seat else "seat"
     step = replace(step, direction=direction, hand="", target=target, facing=_facing(words))
-    if "sideways" in texts and step.lower == "walk" or _is_step_aside(step, words, at):
+    if ("sideways" in texts and step.lower == "walk") or _is_step_aside(step, words, at):
         return _sideways_step(replace(step, lower="sidestep"), words, at)
     if direction == "spot":
         return replace(step, lower="march" if step.lower == "walk" else step.lower, arc_deg=0.0, turn_deg=0.0)

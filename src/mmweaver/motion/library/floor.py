@@ -7,7 +7,6 @@ The root stays where the feet stood; somebody on the back lies behind it, on the
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.body import Body
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.limbs import flowing, shift_foot, shift_pelvis
 from mmweaver.motion.library.standing import STAND_STRETCH, upright

@@ -39,6 +39,7 @@ class Style:
     pelvis_yaw_rad: float
     sway_m: float
     uneven: float = 0.0  # share of a step that the right foot's strike is late (early where negative): a limp
+    lopsided: float = 0.0  # how much higher the left foot swings than the right one, as a share
     weave_m: float = 0.0  # how far the whole body sways to the sides of its way
 
 
@@ -56,7 +57,7 @@ def walking_style(stage: Stage, speed_mps: float) -> Style:
         heel_strike_rad=0.28 * share**0.5, toe_off_rad=0.95 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
         arm_swing_rad=0.28 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
         lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.985, pelvis_yaw_rad=0.09 * share,
-        sway_m=0.018,
+        sway_m=0.018, lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
     )  # fmt: skip
 
 
@@ -64,14 +65,17 @@ def jogging_style(stage: Stage, speed_mps: float) -> Style:
     """Short contacts with flight between them; the pelvis bobs so that in flight it falls freely."""
     rng, height_m = stage.rng, stage.body.height_m
     steps_hz = stage.tempo(2.35, 2.6, 2.9, 0.08)
-    share = min(speed_mps / 2.0, 1.2)
+    share = min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
     vigour = np.exp(rng.normal(0, 0.12))
     return Style(
-        steps_hz=steps_hz, double_support=-0.3, half_stance_m=0.036 * height_m, toes_out_rad=0.08,
-        ahead_m=0.05 * share, heel_strike_rad=0.1 * share, toe_off_rad=0.55 + 0.25 * share, lift_m=0.09 + 0.06 * share,
-        spot_lift_m=0.13 * vigour, arm_swing_rad=(0.42 + 0.15 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
-        elbow_swing_rad=0.22, lean_rad=0.05 + 0.07 * share, bob_m=GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
+        steps_hz=steps_hz, double_support=-0.3 - 0.2 * max(share - 0.8, 0.0),
+        half_stance_m=0.036 * height_m, toes_out_rad=0.08,
+        ahead_m=0.05 * share, heel_strike_rad=0.08 * share, toe_off_rad=0.45 + 0.1 * share, lift_m=0.03 + 0.015 * share,
+        spot_lift_m=0.13 * vigour, arm_swing_rad=(0.3 + 0.03 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
+        elbow_swing_rad=0.15, lean_rad=0.05 + 0.05 * share,
+        bob_m=(1.1 + 0.3 * min(share, 1.4)) * GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
         sink=0.945, pelvis_yaw_rad=0.08, sway_m=0.01,
+        lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
     )  # fmt: skip
 
 
@@ -198,14 +202,15 @@ def _write_foot(
         long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
         effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
         u = (t - fall.off_s) / (after.strike_s - fall.off_s)
-        across = travel(np.clip(u, 0, 1), 0.33, 0.36)
+        across = travel(np.clip(u, 0, 1), *((0.34, 0.38) if jog else (0.4, 0.42)))
         controls.foot_m[inside, side, :2] = fall.place_m + across[:, None] * gap
-        high = style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
+        own = 1 + SIDE_SIGN[side] * style.lopsided
+        high = own * style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
         controls.foot_m[inside, side, 2] = high * bump(u)
         controls.foot_rad[inside, side, 0] = fall.yaw_rad + rise(u) * (after.yaw_rad - fall.yaw_rad)
-        pitch = _pitch(t, fall, after, style, came, ahead)
+        pitch = own * _pitch(t, fall, after, style, came, ahead)
         if jog:
-            pitch = pitch + 0.5 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
+            pitch = pitch + 0.2 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
         controls.foot_rad[inside, side, 1] = pitch
         # Weight leaves the foot before its toes do, and comes fully onto it only after the heel has struck: so the
         # knee is never stretched at speed, and the pelvis comes down in time for the foot that is about to land.

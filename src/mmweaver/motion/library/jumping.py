@@ -95,7 +95,34 @@ def hop_all(
 
 def jumping(stage: Stage) -> Controls:
     """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
+    # Whoever jumps on and on mostly hops from the ankles, two a second, with quiet arms.
+    if not stage.step.count and stage.duration_s > 1.8 and stage.rng.random() < 0.5:
+        return hopping(stage)
     return _jumps(stage)[0]
+
+
+def hopping(stage: Stage) -> Controls:
+    """Small quick jumps from the ankles, about two a second, the arms bent and almost still."""
+    controls = upright(stage)
+    bounce(controls, stage, one_leg=False)
+    controls.arm_rad[:, :, 3] += float(stage.rng.uniform(0.0, 1.1))
+    controls.arm_rad[:, :, 0] += 0.1
+    return controls
+
+
+def bounce(controls: Controls, stage: Stage, *, one_leg: bool) -> None:
+    """A row of hops at an even rate over the stage's time."""
+    rate = stage.tempo(1.7, 2.05, 2.35)
+    count = stage.step.count or max(1, round((stage.duration_s - 0.45) * rate))
+    period = float(np.clip((stage.duration_s - 0.45) / count, 0.4, 0.62)) if stage.step.count else 1 / rate
+    high = float(stage.rng.uniform(0.025, 0.085)) * (0.8 if one_leg else 1.0)
+    ground = period - Hop(off_s=0.0, rise_m=high).flight_s
+    first = stage.start_s + 0.3
+    hops = [Hop(off_s=first + k * period, rise_m=high) for k in range(count)]
+    dips = [(first - 0.3, 0.0, 0.0)]
+    dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
+    dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
+    hop_all(controls, stage, hops, dips, ready_m=-0.04, heels=0.8)
 
 
 def leaping(stage: Stage) -> Controls:
@@ -115,7 +142,7 @@ def leaping(stage: Stage) -> Controls:
 
 def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0, 1.1)[stage.step.speed + 1]
+    height_m = float(rng.uniform(0.18, 0.36)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
@@ -129,14 +156,14 @@ def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
     dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
     dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
-    hop_all(controls, stage, hops, dips)
+    hop_all(controls, stage, hops, dips, ready_m=-0.02 - 0.15 * max(height_m - 0.16, 0.0))
     trunk = plateau(time_s, stage.start_s, first + 0.12, crouch_s, push_s + 0.12)
     arms = -0.5 * plateau(time_s, stage.start_s, first + 0.05, crouch_s, push_s + 0.2)
     for hop in hops:
         gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
         after = recover_s if hop is hops[-1] else gap
         trunk = trunk + 0.75 * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
-        arms = arms + 1.3 * plateau(
+        arms = arms + 1.2 * plateau(
             time_s, hop.off_s - 0.25, hop.land_s + gap + 0.3, 0.25 + flight_s / 2, flight_s / 2 + gap + 0.2
         )
     _bend(controls, trunk, 0.45)

@@ -6,9 +6,18 @@ import numpy as np
 
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library import gait
-from mmweaver.motion.library.jumping import Hop, hop_all
+from mmweaver.motion.library.jumping import bounce
 from mmweaver.motion.library.limbs import (
-    OUTWARD, crouched, flowing, lean_over, leg_side, lift_weight, repeats, shift_foot, shift_pelvis, vary,
+    OUTWARD,
+    crouched,
+    flowing,
+    lean_over,
+    leg_side,
+    lift_weight,
+    repeats,
+    shift_foot,
+    shift_pelvis,
+    vary,
 )  # fmt: skip
 from mmweaver.motion.library.standing import upright
 from mmweaver.motion.profiles import plateau, rise
@@ -101,15 +110,6 @@ def on_one_leg(stage: Stage) -> Controls:
     return controls
 
 
-def hopping(stage: Stage) -> Controls:
-    """Small quick jumps from the ankles, about two a second, the arms bent and almost still."""
-    controls = upright(stage)
-    _bounce(controls, stage, one_leg=False)
-    controls.arm_rad[:, :, 3] += 0.9
-    controls.arm_rad[:, :, 0] += 0.1
-    return controls
-
-
 def hopping_on_one_leg(stage: Stage) -> Controls:
     """The other leg stays lifted behind; the body leans over the leg that hops."""
     controls, time_s = upright(stage), stage.time_s
@@ -119,7 +119,7 @@ def hopping_on_one_leg(stage: Stage) -> Controls:
     up = plateau(time_s, start, stage.end_s + 0.6, ready, 0.6) if not stage.last else rise((time_s - start) / ready)
     inner = replace(stage, step=replace(stage.step, start_s=start + ready))
     high = controls.pelvis_m[:, 2].copy()
-    _bounce(controls, inner, one_leg=True)
+    bounce(controls, inner, one_leg=True)
     bob = controls.pelvis_m[:, 2] - high
     back = float(stage.rng.uniform(0.12, 0.2))
     shift_foot(
@@ -132,21 +132,6 @@ def hopping_on_one_leg(stage: Stage) -> Controls:
         controls.arm_rad[:, arm, 1] += 0.45 * up
         controls.arm_rad[:, arm, 3] += 0.5 * up
     return controls
-
-
-def _bounce(controls: Controls, stage: Stage, *, one_leg: bool) -> None:
-    """A row of hops at an even rate over the stage's time."""
-    rate = stage.tempo(1.7, 2.05, 2.35)
-    count = stage.step.count or max(1, round((stage.duration_s - 0.45) * rate))
-    period = float(np.clip((stage.duration_s - 0.45) / count, 0.4, 0.62)) if stage.step.count else 1 / rate
-    high = float(stage.rng.uniform(0.025, 0.06)) * (0.8 if one_leg else 1.0)
-    ground = period - Hop(off_s=0.0, rise_m=high).flight_s
-    first = stage.start_s + 0.3
-    hops = [Hop(off_s=first + k * period, rise_m=high) for k in range(count)]
-    dips = [(first - 0.3, 0.0, 0.0)]
-    dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
-    dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
-    hop_all(controls, stage, hops, dips, ready_m=-0.04, heels=0.8)
 
 
 def lunging(stage: Stage) -> Controls:
@@ -184,7 +169,8 @@ def marching(stage: Stage) -> Controls:
     """High knees on the spot, arms swinging with the other leg."""
     style = gait.walking_style(stage, 1.3)
     style = replace(
-        style, steps_hz=stage.tempo(1.5, 1.85, 2.2), double_support=0.12, spot_lift_m=float(stage.rng.uniform(0.13, 0.2)),
+        style, steps_hz=stage.tempo(1.5, 1.85, 2.2), double_support=0.12,
+        spot_lift_m=float(stage.rng.uniform(0.13, 0.2)),
         arm_swing_rad=float(stage.rng.uniform(0.35, 0.6)), elbow_rad=0.7, bob_m=0.01, sink=0.988,
     )  # fmt: skip
     spot = replace(stage, step=replace(stage.step, direction="spot"))

@@ -7,7 +7,19 @@ import numpy as np
 from mmweaver.core.registry import Registry
 from mmweaver.motion.controls import Controls
 from mmweaver.motion.library import (
-    bending, dancing, floor, gait, gestures, hand_work, jumping, legs, signs, sitting, standing, strength, uneven_gait,
+    bending,
+    dancing,
+    floor,
+    gait,
+    gestures,
+    hand_work,
+    jumping,
+    legs,
+    signs,
+    sitting,
+    standing,
+    strength,
+    uneven_gait,
 )  # fmt: skip
 from mmweaver.motion.stage import Stage
 
@@ -31,7 +43,7 @@ POSTURES: Registry[Callable[[Stage], Controls]] = Registry(
         ("lunge", legs.lunging),
         ("jump", jumping.jumping),
         ("leap", jumping.leaping),
-        ("hop", legs.hopping),
+        ("hop", jumping.hopping),
         ("hop_one_leg", legs.hopping_on_one_leg),
         ("jumping_jacks", jumping.jumping_jacks),
         ("one_leg", legs.on_one_leg),

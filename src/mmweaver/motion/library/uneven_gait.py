@@ -28,7 +28,7 @@ def limping(stage: Stage) -> Controls:
     """Short on the bad leg, the trunk thrown over it, little swing of the arms."""
     style = walking_style(stage, cruise_mps(stage))
     bad = leg_side(stage)
-    lame = float(stage.rng.uniform(0.12, 0.2)) * (1 if bad == RIGHT else -1)
+    lame = float(stage.rng.uniform(0.1, 0.17)) * (1 if bad == RIGHT else -1)
     style = replace(
         style, steps_hz=0.86 * style.steps_hz, uneven=lame, arm_swing_rad=0.5 * style.arm_swing_rad,
         toe_off_rad=0.7 * style.toe_off_rad, lean_rad=style.lean_rad + 0.06, sink=0.978,
