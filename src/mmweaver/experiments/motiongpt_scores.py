@@ -36,7 +36,7 @@ from mmweaver.result_folder import file_digest
 Array = np.ndarray
 CLASSIFIER_SEEDS, TEST_SEEDS = range(3000, 3060), range(7000, 7025)
 RESAMPLES = 2000
-Motions = list[tuple[str, Float[Array, "frame 263"]]]  # asked activity, features
+Motions = list[tuple[str, Array]]  # asked activity, features (frame, 263)
 
 
 def generated(model: MotionGPT, seeds: range, *, held_out_words: bool) -> Motions:
@@ -91,7 +91,9 @@ def bone_spread(motions: Motions) -> float:
     for _, features in motions:
         joints = joints_from_features(features)
         for parent, child in BONES:
-            low, middle, high = np.percentile(np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1), [5, 50, 95])
+            low, middle, high = np.percentile(
+                np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1), [5, 50, 95]
+            )
             spreads.append((high - low) / middle)
     return float(np.mean(spreads))
 
@@ -147,7 +149,7 @@ def score(model_path: Path, data: Path, out: Path) -> Path:
         add("CMU recordings, test clips (walk, run, jump)", lambda: [(e.activity, e.features) for e in real])
     config = {
         "model": model_path.name, "sha256": file_digest(model_path)["sha256"], "activities": ACTIVITIES,
-        "frames": FRAMES, "fps": FPS, "judge": "MLP on mean, spread, least, most of 263 features; library motions alone",
+        "frames": FRAMES, "fps": FPS, "judge": "MLP on mean, spread, least, most of 263 features; library alone",
         "judge_seeds": [CLASSIFIER_SEEDS.start, CLASSIFIER_SEEDS.stop],
     }  # fmt: skip
     return write_result(out, experiment="motiongpt", method=model_path.stem, config=config, rows=rows)
