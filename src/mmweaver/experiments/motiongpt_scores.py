@@ -66,7 +66,7 @@ def random_codes(model: MotionGPT, seeds: range) -> Motions:
     return made
 
 
-def _again(features: Float[Array, "frame 263"]) -> Float[Array, "frame 263"]:
+def _again(features: Float[Array, "frame 263"]) -> Float[Array, "frame_less_one 263"]:
     return features_from_joints(joints_from_features(features))
 
 

@@ -1,6 +1,6 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md
+python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md docs/motiongpt.md
 """
 
 import json
@@ -139,6 +139,19 @@ def statistics_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def motiongpt_table(folder: Path) -> str:
+    """One row a set of motions: how often the classifier's first, and one of its first three, is what was asked."""
+    (record,) = _records(folder / "motiongpt")
+    lines = [_line("motions", "first of 12", "among first 3", "bones stretch"), _line("---", "---", "---", "---")]
+    for row in record["rows"]:
+        first, three, bones = (row["metrics"][name] for name in ("r_precision_1", "r_precision_3", "bone_spread"))
+        cells = [f"{100 * m['value']:.0f} % ({100 * m['interval_95'][0]:.0f} to {100 * m['interval_95'][1]:.0f})"
+                 for m in (first, three)]  # fmt: skip
+        lines.append(_line(row["dataset"]["name"], *cells, f"{100 * bones['value']:.1f} %"))
+    lines.append(_line("chance", f"{100 / 12:.0f} %", "25 %", ""))
+    return "\n".join(lines)
+
+
 def _with_interval(metric: dict[str, Any]) -> str:
     edges = metric.get("interval")
     value = _number(metric["value"])
@@ -148,6 +161,7 @@ def _with_interval(metric: dict[str, Any]) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
+    "motiongpt": motiongpt_table,
 }  # fmt: skip
 
 

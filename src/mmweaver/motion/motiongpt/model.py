@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
 
 Array = np.ndarray
+SMALL_NAME, SMALL_FILE = "small", Path(__file__).with_name("motiongpt_small.safetensors")
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
 FEWEST_FRAMES, MOST_FRAMES = 40, 196  # what MotionGPT was trained on
 RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's is some 25 times off
@@ -62,13 +63,13 @@ class MotionGPT:
         std: str | Path | None = None,
         words: str | Path | None = None,
     ) -> "MotionGPT":
-        """From a checkpoint file, a folder that holds one, or a name on the Hub (owner/name).
+        """From a checkpoint file, a folder that holds one, a name on the Hub (owner/name), or "small", our own.
 
         The published checkpoint needs MotionGPT's own `mean.npy` and `std.npy` (its assets/meta), not HumanML3D's, and
         the words of flan-t5-base; all are looked for beside it. A file of this project (.safetensors) holds everything.
         Raises InputError, one line, for whatever is no such model.
         """
-        place = published_checkpoint(str(path)) if looks_like_hub(str(path)) else _checkpoint_in(Path(path))
+        place = _place_of(path)
         state, notes = read_checkpoint(place)
         vae, spoken = parts_of(state, place)
         tokenizer = MotionTokenizer(tokenizer_config(vae, place))
@@ -158,6 +159,12 @@ def check_std(std: Float[Array, " feature"], place: Path) -> None:
             " MotionGPT needs the std.npy of its own assets/meta, which differs some 25 times in channels 0:4 and"
             " 259:263"
         )
+
+
+def _place_of(path: str | Path) -> Path:
+    if str(path) == SMALL_NAME:
+        return SMALL_FILE
+    return published_checkpoint(str(path)) if looks_like_hub(str(path)) else _checkpoint_in(Path(path))
 
 
 def _checkpoint_in(path: Path) -> Path:
