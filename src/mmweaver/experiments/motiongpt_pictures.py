@@ -45,7 +45,7 @@ def draw_strips(clips: dict[str, Float[np.ndarray, "frame 22 3"]], path: Path) -
         axes.set_axis_off()
         axes.set_title(title, fontsize=8, loc="left", pad=1)
     with atomic_file(path) as temporary:
-        figure.savefig(temporary, dpi=110, format="png")
+        figure.savefig(temporary, dpi=80, format="png", bbox_inches="tight", pad_inches=0.05)
 
 
 def _side(joint_index: int) -> str:
