@@ -225,3 +225,20 @@ def test_public_names_are_few_and_all_there():
     assert set(mmweaver.__all__) <= set(dir(mmweaver))
     with pytest.raises(AttributeError, match="nope"):
         _ = mmweaver.nope
+
+
+def test_a_recorded_motion_instead_of_a_sentence(tmp_path: Path):
+    """The same clip twice gives the same bits; a text beside it only names it."""
+    weaver = Weaver()
+    room = weaver.sample_room()
+    made = weaver.generate(room, "a person waves", frames=4, keep_adc=False)
+    np.savez(tmp_path / "wave.npz", joints=made.motion.joints_m, fps=120.0)
+    clip = weaver.read_motion(tmp_path / "wave.npz")
+    one, same = (weaver.generate(room, "my wave", motion=clip, frames=3, keep_adc=False) for _ in range(2))
+    assert np.array_equal(one.cube.values, same.cube.values)
+    assert one.meta["text"] == "my wave"
+    assert one.meta["inputs"]["motion"]["name"] == "wave.npz"
+    assert one.pose.height_m == pytest.approx(made.pose.height_m, rel=0.03)
+    tall = weaver.generate(room, motion=clip, height_m=1.9, frames=3, keep_adc=False)
+    assert tall.pose.height_m == pytest.approx(1.9)
+    assert weaver.generate(room, "a person waves", height_m=1.5, frames=2, keep_adc=False).pose.height_m == 1.5

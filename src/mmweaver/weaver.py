@@ -30,6 +30,7 @@ from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.dense import check_lasts
 from mmweaver.motion.mocap.placing import place_clip
+from mmweaver.motion.mocap.read import read_motion
 from mmweaver.motion.resample import resample
 from mmweaver.motion.sentence import parse
 from mmweaver.motion.timing import schedule
@@ -176,6 +177,19 @@ class Weaver:
         return self._reconstruct(photo, assumptions, {"sample": "the bundled room"}, stages)
 
     @staticmethod
+    def read_motion(
+        path: str | Path,
+        *,
+        fps: float | None = None,
+        unit: str | float | None = None,
+        up: str | None = None,
+        clip: str | None = None,
+        body_model: str | Path | None = None,
+    ) -> MotionClip:
+        """A recorded motion for `generate`: BVH, AMASS/SMPL, HumanML3D, CMU or joints; see docs/motion_files.md."""
+        return read_motion(path, fps=fps, unit=unit, up=up, clip=clip, body_model=body_model)
+
+    @staticmethod
     def _reconstruct(photo: RgbdPhoto, assumptions: tuple[str, ...], inputs: dict[str, Any], stages: Stages) -> Room:
         with stages("reconstruct the room"):
             scene = reconstruct(photo, assumptions=assumptions)
@@ -198,7 +212,7 @@ class Weaver:
     ) -> Generation:
         """The signal of who does in the room what the text says (one text a person), or what a `motion` shows.
 
-        A `motion` comes from `mmweaver.read_motion` or a motion model; a text beside it only names it. `heading_rad`
+        A `motion` comes from `read_motion` or a motion model; a text beside it only names it. `heading_rad`
         (from +x towards +y) is where its body faces first, `as_recorded` takes its places as the radar's own.
         `height_m` is the one body's height; a recorded one is scaled to it.
 

@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
         ("docs/several_people.md", "side by side"),
         ("docs/rooms.md", "seats found"),
         ("docs/motion.md", "standing up from the knees"),
+        ("docs/motiongpt.md", "ceiling"),
     ],
 )
 def test_the_tables_of_the_documentation_are_those_of_the_results(document: str, told: str):

@@ -1,4 +1,4 @@
-"""Motion files made in the test, of a motion that is known: our own library's walk, under other people's conventions."""
+"""Motion files made in the test, of a motion that is known: our library's walk under other people's conventions."""
 
 from functools import cache
 from pathlib import Path

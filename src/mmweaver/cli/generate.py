@@ -28,6 +28,7 @@ EXAMPLES = """examples:
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --frames 40 --radar mmmesh --out drink/ --bin
   mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
+  mmweaver generate --demo --motion-model small --text "a person waves with the left hand" --out wave/
 """
 
 

@@ -26,8 +26,8 @@ def add_motion_options(parser: Options) -> None:
     parser.add_argument(
         "--motion-model",
         metavar="PATH|NAME",
-        help="a MotionGPT checkpoint (file, folder or name on the Hub) that acts out --text instead of the built-in"
-        " library; needs the extra 'motiongpt'",
+        help="a MotionGPT that acts out --text instead of the built-in library: checkpoint's file, folder or name on"
+        " the Hub, or 'small', which comes along; needs the extra 'motiongpt'",
     )
     parser.add_argument("--motion-fps", type=number, metavar="N", help="its frames a second, where the file says none")
     parser.add_argument(
@@ -46,7 +46,9 @@ def add_motion_options(parser: Options) -> None:
         help="which way the motion faces first: 0 back along the radar's axis, 90 to the picture's right, 180 away"
         " (default: chosen)",
     )
-    parser.add_argument("--height", type=number, metavar="M", help="the person's height (default: by seed, or recorded)")
+    parser.add_argument(
+        "--height", type=number, metavar="M", help="the person's height (default: by seed, or recorded)"
+    )
     parser.add_argument(
         "--as-recorded",
         action="store_true",

@@ -21,8 +21,8 @@ class MotionClassifier:
     mean: Float[Array, " statistic"]
     std: Float[Array, " statistic"]
 
-    def ranks(self, motions: list[Float[Array, "frame 263"]]) -> Int[Array, "motion activity"]:
-        """Indices into ACTIVITIES for each motion, the likeliest first."""
+    def ranks(self, motions: list[Array]) -> Int[Array, "motion activity"]:
+        """Indices into ACTIVITIES for each motion (frame, 263), the likeliest first."""
         seen = (np.stack([statistics_of(motion) for motion in motions]) - self.mean) / self.std
         with torch.inference_mode():
             return self.network(torch.from_numpy(seen).float()).numpy().argsort(axis=1)[:, ::-1].copy()

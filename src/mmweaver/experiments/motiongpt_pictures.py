@@ -1,6 +1,6 @@
 """Skeleton strips of what a MotionGPT makes of twelve sentences.
 
-python -m mmweaver.experiments.motiongpt_pictures --model motiongpt_small.safetensors --out docs/images/motiongpt_small.png
+python -m mmweaver.experiments.motiongpt_pictures --model motiongpt_small.safetensors --out strips.png
 """
 
 import argparse
@@ -35,7 +35,9 @@ def draw_strips(clips: dict[str, Float[np.ndarray, "frame 22 3"]], path: Path) -
             across = ground[:, 0] * np.cos(VIEW_RAD) + ground[:, 1] * np.sin(VIEW_RAD)
             flat = np.stack([across + k * APART_M, pose[:, 2] - floor], axis=1)
             lines = [flat[list(bone)] for bone in BONES]
-            axes.add_collection(LineCollection(lines, colors=[COLOURS[_side(bone[1])] for bone in BONES], linewidths=1.5))
+            axes.add_collection(
+                LineCollection(lines, colors=[COLOURS[_side(bone[1])] for bone in BONES], linewidths=1.5)
+            )
         axes.plot([-0.6, POSES * APART_M], [0, 0], color="#bbbbbb", linewidth=0.8)
         axes.set_xlim(-0.6, POSES * APART_M)
         axes.set_ylim(-0.05, 2.2)
@@ -43,7 +45,7 @@ def draw_strips(clips: dict[str, Float[np.ndarray, "frame 22 3"]], path: Path) -
         axes.set_axis_off()
         axes.set_title(title, fontsize=8, loc="left", pad=1)
     with atomic_file(path) as temporary:
-        figure.savefig(temporary, dpi=110, format="png")
+        figure.savefig(temporary, dpi=80, format="png", bbox_inches="tight", pad_inches=0.05)
 
 
 def _side(joint_index: int) -> str:

@@ -1,6 +1,6 @@
 """A small MotionGPT, trained from nothing on one CPU core: the same architecture with smaller numbers.
 
-python -m mmweaver.experiments.motiongpt_small --data shared/data --work build/motiongpt --weights motiongpt_small.safetensors
+python -m mmweaver.experiments.motiongpt_small --data shared/data --weights motiongpt_small.safetensors
 
 An interrupted training goes on where it stopped. Scores of the result: `python -m
 mmweaver.experiments.motiongpt_scores`.
@@ -8,7 +8,7 @@ mmweaver.experiments.motiongpt_scores`.
 
 import argparse
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -44,8 +44,8 @@ GROUPS = (
 class Recipe:
     """The whole training."""
 
-    tokenizer: TokenizerRecipe = TokenizerRecipe(steps=7000, batch=24, frames=48)
-    language: LanguageRecipe = LanguageRecipe(steps=3500, batch=32)
+    tokenizer: TokenizerRecipe = field(default_factory=lambda: TokenizerRecipe(steps=7000, batch=24, frames=48))
+    language: LanguageRecipe = field(default_factory=lambda: LanguageRecipe(steps=3500, batch=32))
     seeds: range = TRAIN_SEEDS
     shape: TokenizerConfig = SMALL
 
@@ -87,7 +87,8 @@ def train(data: Path, work: Path, recipe: Recipe | None = None) -> dict[str, Any
     language = train_language(pairs, sizes, first, recipe.shape.codes, recipe.language, work / "language.pt")
     return {
         "tokenizer": tokenizer, "language": language, "mean": mean, "std": std, "vocabulary": plain,
-        "cpu_s": time.process_time() - began, "examples": {"library": len(examples) - CMU_COPIES * len(cmu), "cmu": len(cmu)},
+        "cpu_s": time.process_time() - began,
+        "examples": {"library": len(examples) - CMU_COPIES * len(cmu), "cmu": len(cmu)},
     }  # fmt: skip
 
 
@@ -100,7 +101,9 @@ def main() -> None:
     """Trains and writes the weights."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, default=Path("shared/data"), help="folder of real data (CMU's motions)")
-    parser.add_argument("--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training goes on")
+    parser.add_argument(
+        "--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training goes on"
+    )
     parser.add_argument("--weights", type=Path, default=Path("motiongpt_small.safetensors"), help="file to write")
     arguments = parser.parse_args()
     made = train(arguments.data, arguments.work)

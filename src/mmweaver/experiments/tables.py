@@ -201,6 +201,19 @@ def _share_cell(metric: dict[str, Any] | None, form: str) -> str:
     return f"{100 * metric['value']:.1f} %{of}"
 
 
+def motiongpt_table(folder: Path) -> str:
+    """One row a set of motions: how often the classifier's first, and one of its first three, is what was asked."""
+    (record,) = _records(folder / "motiongpt")
+    lines = [_line("motions", "first of 12", "among first 3", "bones stretch"), _line("---", "---", "---", "---")]
+    for row in record["rows"]:
+        first, three, bones = (row["metrics"][name] for name in ("r_precision_1", "r_precision_3", "bone_spread"))
+        cells = [f"{100 * m['value']:.0f} % ({100 * m['interval_95'][0]:.0f} to {100 * m['interval_95'][1]:.0f})"
+                 for m in (first, three)]  # fmt: skip
+        lines.append(_line(row["dataset"]["name"], *cells, f"{100 * bones['value']:.1f} %"))
+    lines.append(_line("chance", f"{100 / 12:.0f} %", "25 %", ""))
+    return "\n".join(lines)
+
+
 def _with_interval(metric: dict[str, Any]) -> str:
     edges = metric.get("interval")
     value = _number(metric["value"])
@@ -213,6 +226,7 @@ TABLES = {
     "several_people": people_table,
     "affordances": affordances_table,
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
+    "motiongpt": motiongpt_table,
 }  # fmt: skip
 
 

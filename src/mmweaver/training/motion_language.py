@@ -40,8 +40,6 @@ def train_language(
     """A T5 trained on (word ids, motion codes); saved on the way and gone on with where `state_file` is given."""
     torch.manual_seed(recipe.seed)
     model = build_t5(sizes).train()
-    with torch.no_grad():
-        model.lm_head.weight.mul_(model.config.d_model**-0.5)  # else it begins far from even odds
     optimiser = torch.optim.AdamW(model.parameters(), lr=recipe.learning_rate, weight_decay=0.01)
     schedule = torch.optim.lr_scheduler.LambdaLR(optimiser, lambda step: _rate(step, recipe))
     work = Resumable(state_file, {"model": model, "optimiser": optimiser, "schedule": schedule})

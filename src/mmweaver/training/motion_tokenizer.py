@@ -35,12 +35,15 @@ class TokenizerRecipe:
 
 
 def train_tokenizer(
-    motions: list[Float[np.ndarray, "frame feature"]],
+    motions: list[np.ndarray],
     config: TokenizerConfig,
     recipe: TokenizerRecipe,
     state_file: Path | None = None,
 ) -> MotionTokenizer:
-    """A trained tokenizer; with `state_file` it is saved on the way and goes on from there. Same seed, same weights."""
+    """A tokenizer trained on motions (frame, feature) of any lengths. Same seed, same weights.
+
+    With `state_file` it is saved on the way, and goes on from there.
+    """
     torch.manual_seed(recipe.seed)
     model = MotionTokenizer(config)
     optimiser = torch.optim.AdamW(model.parameters(), lr=recipe.learning_rate, weight_decay=1e-4)
@@ -115,9 +118,7 @@ class RunningMeans:
         return latents[chosen] + noise
 
 
-def _batch(
-    motions: list[Float[np.ndarray, "frame feature"]], recipe: TokenizerRecipe, step: int
-) -> Float[Tensor, "batch frame feature"]:
+def _batch(motions: list[np.ndarray], recipe: TokenizerRecipe, step: int) -> Float[Tensor, "batch frame feature"]:
     rng = stream(recipe.seed, "motion tokenizer", "batch", step)
     long = [motion for motion in motions if len(motion) >= recipe.frames]
     pieces = []

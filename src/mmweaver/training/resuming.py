@@ -49,7 +49,7 @@ class Resumable:
                 self._save()
                 saved, cpu = time.monotonic(), time.process_time()
 
-    def report(self, **figures: float) -> None:
+    def report(self, **figures: float | int) -> None:
         """Keeps figures of a step now and then."""
         if self.done % REPORT_EVERY == 0:
             self.history.append({"step": self.done, **figures})

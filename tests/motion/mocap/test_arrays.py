@@ -4,12 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mocap_files import walk, y_up
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import JOINT_NAMES, joint
 from mmweaver.motion.mocap.arrays import CMU_NAMES, clips_of, read_npy, read_npz
 from mmweaver.motion.mocap.humanml3d import features_from_joints
-from mocap_files import walk, y_up
 
 
 @pytest.mark.parametrize("shape", ["22x3", "66", "24x3", "1x22x3"])

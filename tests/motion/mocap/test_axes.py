@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from mocap_files import walk
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.mocap.axes import UNITS_M, UPS, is_mirrored, metres_of, turned_up, unit_of, up_of
-from mocap_files import walk
 
 
 @pytest.mark.parametrize("unit", UNITS_M)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mocap_files import walk, write_bvh, y_up
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.mocap.bvh import read_bvh
-from mocap_files import walk, write_bvh, y_up
 
 SMALL = """HIERARCHY
 ROOT Bip01 Hips

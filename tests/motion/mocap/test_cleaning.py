@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from mocap_files import walk
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.mocap.cleaning import check_bones, is_t_pose, without_gaps, without_t_pose
 from mmweaver.motion.mocap.smpl import MEAN_OFFSET_M, forward
-from mocap_files import walk
 
 FPS = 60.0
 
@@ -31,7 +31,11 @@ def test_short_gaps_are_bridged_smoothly(value: float):
 
 @pytest.mark.parametrize(
     ("frames", "message"),
-    [(slice(30, 60), "left_knee is missing for 30 frames"), (slice(0, 3), "from frame 0"), (slice(-2, None), "missing")],
+    [
+        (slice(30, 60), "left_knee is missing for 30 frames"),
+        (slice(0, 3), "from frame 0"),
+        (slice(-2, None), "missing"),
+    ],
 )
 def test_long_gaps_and_gaps_at_an_end_are_refused(frames: slice, message: str):
     holed = walk().copy()

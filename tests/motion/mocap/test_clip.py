@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from mocap_files import walk
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.mocap.clip import MotionClip
-from mocap_files import walk
 
 
 def clip() -> MotionClip:

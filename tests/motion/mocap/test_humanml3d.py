@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mocap_files import walk
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.mocap.humanml3d import (
@@ -12,7 +13,6 @@ from mmweaver.motion.mocap.humanml3d import (
     joints_from_features,
     y_up,
 )
-from mocap_files import walk
 
 
 def test_joints_come_back():

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from mocap_files import walk
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import JOINT_NAMES, joint
 from mmweaver.motion.mocap.clip import RawMotion
 from mmweaver.motion.mocap.joint_names import to_22
-from mocap_files import walk
 
 PELVIS, SPINES, NECK, HEAD = "pelvis", ("spine1", "spine2", "spine3"), "neck", "head"
 LIMBS = ("hip", "knee", "ankle", "foot", "collar", "shoulder", "elbow", "wrist")
@@ -31,18 +31,39 @@ CONVENTIONS = {
        "spine3": "mixamorig:Spine2", "neck": "mixamorig:Neck", "head": "mixamorig:Head"},
     "cmu": sided("{side}{part}", MIXAMO, ("Left", "Right"))
     | {"pelvis": "Hips", "spine1": "LowerBack", "spine2": "Spine", "spine3": "Spine1", "neck": "Neck", "head": "Head"},
-    "unreal": sided("{part}_{side}", ("thigh", "calf", "foot", "ball", "clavicle", "upperarm", "lowerarm", "hand"), ("l", "r"))
-    | {"pelvis": "pelvis", "spine1": "spine_01", "spine2": "spine_02", "spine3": "spine_03", "neck": "neck_01", "head": "head"},
-    "biped": sided("Bip01 {side} {part}", ("Thigh", "Calf", "Foot", "Toe0", "Clavicle", "UpperArm", "Forearm", "Hand"), ("L", "R"))
+    "unreal": sided(
+        "{part}_{side}",
+        ("thigh", "calf", "foot", "ball", "clavicle", "upperarm", "lowerarm", "hand"),
+        ("l", "r"),
+    )
+    | {"pelvis": "pelvis", "spine1": "spine_01", "spine2": "spine_02", "spine3": "spine_03", "neck": "neck_01",
+       "head": "head"},
+    "biped": sided(
+        "Bip01 {side} {part}",
+        ("Thigh", "Calf", "Foot", "Toe0", "Clavicle", "UpperArm", "Forearm", "Hand"),
+        ("L", "R"),
+    )
     | {"pelvis": "Bip01 Pelvis", "spine1": "Bip01 Spine", "spine2": "Bip01 Spine1", "spine3": "Bip01 Spine2",
        "neck": "Bip01 Neck", "head": "Bip01 Head"},
-    "biovision": sided("{side}{part}", ("Hip", "Knee", "Ankle", "Toe", "Collar", "Shoulder", "Elbow", "Wrist"), ("Left", "Right"))
+    "biovision": sided(
+        "{side}{part}",
+        ("Hip", "Knee", "Ankle", "Toe", "Collar", "Shoulder", "Elbow", "Wrist"),
+        ("Left", "Right"),
+    )
     | {"pelvis": "Hips", "spine1": "Chest", "neck": "Neck", "head": "Head"},
-    "xsens": sided("{side}{part}", ("UpperLeg", "LowerLeg", "Foot", "Toe", "Shoulder", "UpperArm", "ForeArm", "Hand"), ("Left", "Right"))
+    "xsens": sided(
+        "{side}{part}",
+        ("UpperLeg", "LowerLeg", "Foot", "Toe", "Shoulder", "UpperArm", "ForeArm", "Hand"),
+        ("Left", "Right"),
+    )
     | {"pelvis": "Hips", "spine1": "L5", "spine2": "L3", "spine3": "T12", "neck": "Neck", "head": "Head"},
     "poser": sided("{side}{part}", ("Thigh", "Shin", "Foot", "Toe", "Collar", "Shldr", "ForeArm", "Hand"), ("l", "r"))
     | {"pelvis": "hip", "spine1": "abdomen", "spine2": "chest", "neck": "neck", "head": "head"},
-    "bandai": sided("{part}_{side}", ("UpperLeg", "LowerLeg", "Foot", "Toes", "Shoulder", "UpperArm", "LowerArm", "Hand"), ("L", "R"))
+    "bandai": sided(
+        "{part}_{side}",
+        ("UpperLeg", "LowerLeg", "Foot", "Toes", "Shoulder", "UpperArm", "LowerArm", "Hand"),
+        ("L", "R"),
+    )
     | {"pelvis": "Hips", "spine1": "Spine", "spine2": "Chest", "neck": "Neck", "head": "Head"},
     "short": sided("{side}{part}", ("hip", "knee", "ankle", "toe", "", "shoulder", "elbow", "wrist"), ("l", "r"))
     | {"pelvis": "pelvis", "neck": "neck", "head": "head"},

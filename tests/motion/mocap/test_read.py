@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mocap_files import walk, write_bvh, y_up
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.mocap.read import read_motion
-from mocap_files import walk, write_bvh, y_up
 
 
 def shape_of(joints: np.ndarray) -> np.ndarray:

@@ -55,7 +55,9 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
     if names is None:
         places, names = _of_22(places, path), JOINT_NAMES
     elif places.ndim != 3 or places.shape[1:] != (len(names), 3):
-        raise InputError(f"{path}: {key} has shape {places.shape}, {len(names)} joint names need (frame, {len(names)}, 3)")
+        raise InputError(
+            f"{path}: {key} has shape {places.shape}, {len(names)} joint names need (frame, {len(names)}, 3)"
+        )
     ours = key == "joints_m"
     return RawMotion(
         names=names, places=places, kind="joints", fps=rate_of(arrays) or _rate_of_times(arrays),
@@ -89,8 +91,8 @@ def _of_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
         values = values[:, :NUM_JOINTS]  # SMPL's two hands come last
     if values.ndim != 3 or values.shape[1:] != (NUM_JOINTS, 3):
         raise InputError(
-            f"{path} has shape {values.shape}; (frame, 22, 3) joints in SMPL order or (frame, 263) HumanML3D features are"
-            " read, other skeletons from .npz with joint_names"
+            f"{path} has shape {values.shape}; (frame, 22, 3) joints in SMPL order or (frame, 263) HumanML3D features"
+            " are read, other skeletons from .npz with joint_names"
         )
     return np.asarray(values, float)
 

@@ -1,7 +1,5 @@
 """Unit, upward axis and handedness of a motion: as said, else read off the body, else asked for."""
 
-import re
-
 import numpy as np
 from jaxtyping import Float
 
@@ -89,10 +87,3 @@ def is_mirrored(joints: Float[Array, "frame 22 3"]) -> bool:
     toes = sum(joints[:, joint(f"{s}_foot"), :2] - joints[:, joint(f"{s}_ankle"), :2] for s in ("left", "right"))
     forwards = np.sum(ahead * np.asarray(toes), axis=-1)
     return bool(np.nanmedian(forwards) < 0 and np.nanmean(forwards < 0) > 0.9)
-
-
-def number_or_name(word: str) -> str:
-    """Whether a word could be a unit; for the command line. Raises ValueError."""
-    if word not in UNITS_M and not re.fullmatch(r"[0-9.eE+-]+", word):
-        raise ValueError(word)
-    return word

@@ -121,7 +121,7 @@ def _places(nodes: list[Node], values: Float[Array, "frame channel"]) -> Float[A
         own = values[:, node.first_channel : node.first_channel + len(node.channels)]
         axes = "".join(ROTATIONS[name] for name in node.channels if name in ROTATIONS)
         angles = own[:, [i for i, name in enumerate(node.channels) if name in ROTATIONS]]
-        missing = ~np.isfinite(angles).all(axis=1)
+        missing = np.asarray(~np.isfinite(angles).all(axis=1))
         matrix = np.tile(np.eye(3), (count, 1, 1))
         if axes:
             matrix = Rotation.from_euler(axes, np.where(missing[:, None], 0.0, angles), degrees=True).as_matrix()

@@ -27,7 +27,7 @@ def without_gaps(
     if len(joints) < 2 or not np.isfinite(joints).any() or np.nanmax(extent) <= 0:
         raise InputError(f"{source} has no motion: {_count(len(joints))}, or nothing but zeros; choose another file")
     joints[extent < 1e-3 * np.nanmedian(extent[extent > 0])] = np.nan  # all joints at one point
-    missing = np.isnan(joints).any(axis=-1)
+    missing = np.asarray(np.isnan(joints).any(axis=-1))
     if not missing.any():
         return joints, ()
     longest, name, at = _longest_gap(missing)

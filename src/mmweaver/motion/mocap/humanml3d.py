@@ -15,6 +15,8 @@ Joints come back from features exactly; features need the next frame, so `n` fra
 Reference: Guo et al., Generating Diverse and Natural 3D Human Motions from Text, CVPR 2022 (its data format).
 """
 
+import itertools
+
 import numpy as np
 from jaxtyping import Float
 
@@ -119,7 +121,7 @@ def _rotations(joints: Float[Array, "frame 22 3"], half: Float[Array, " frame"])
     result = np.zeros((len(joints), NUM_JOINTS - 1, 6))
     for chain in CHAINS:
         above = root
-        for parent, child in zip(chain, chain[1:], strict=False):
+        for parent, child in itertools.pairwise(chain):
             bone = joints[:, child] - joints[:, parent]
             bone = bone / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-12)
             own = _times(above * np.array([1.0, -1.0, -1.0, -1.0]), _between(REST[child], bone))

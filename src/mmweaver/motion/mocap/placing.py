@@ -1,5 +1,6 @@
 """A recorded motion in a scene: feet on its floor, the whole way free and in view, start and heading as asked."""
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -92,9 +93,7 @@ def _way_of(joints_m: Float[Array, "frame 22 3"], time_s: Float[Array, " frame"]
     pelvis = shown[:, 0, :2]
     points = pelvis[np.unique(np.linspace(0, len(pelvis) - 1, WAY_POINTS).astype(int))]
     reach = np.linalg.norm(shown[..., :2] - pelvis[:, None], axis=-1).max(axis=1)
-    return _Way(
-        shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95))
-    )
+    return _Way(shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95)))
 
 
 def _found(
@@ -112,12 +111,14 @@ def _found(
             "there is no free floor in the picture and the radar's window; take a radar with a longer window (--radar),"
             " a photo with more floor, or --as-recorded"
         )
+    if start_m is not None:
+        _check_start(floor, start_m)
     rng = stream(seed, "motion", "placement", "clip")
     starts = np.array([start_m], float) if start_m is not None else _starts(floor, rng)
     headings = TO_RADAR_RAD + 2 * math.pi * np.arange(HEADINGS) / HEADINGS
     if heading_rad is not None:
         headings = np.array([heading_rad])
-    best: tuple[float, Float[Array, "2"], float] | None = None
+    best: tuple[float, Float[Array, 2], float] | None = None
     for heading in headings:
         ways = starts[:, None] + _turned(way.shift_m, heading - way.facing_rad)
         free = np.flatnonzero(floor.can_stand(ways).all(axis=1))
@@ -131,6 +132,17 @@ def _found(
     if best is None:
         raise InputError(_no_room(way, floor, clip, start_m, heading_rad))
     return best[1], best[2]
+
+
+def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
+    spot = np.array(start_m, float)
+    if bool(floor.can_stand(spot)):
+        return
+    near = floor.nearest_place(spot)
+    hint = "" if near is None else f"; the nearest free place is {near[0]:.2f},{near[1]:.2f}"
+    raise InputError(
+        f"the start {spot[0]:g},{spot[1]:g} is not free, or out of the picture or the radar's window{hint}"
+    )
 
 
 def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"]:
@@ -174,7 +186,7 @@ def _posture_note(clip: MotionClip, height_over_floor: Float[Array, "frame 22"])
     """Who sits or lies in a recording has nothing of this room underneath."""
     names = ("hip", "knee", "ankle")
     places = [clip.joints_m[:, joint(f"left_{name}")] for name in names]
-    leg = float(np.median(sum(np.linalg.norm(a - b, axis=-1) for a, b in zip(places, places[1:], strict=False))))
+    leg = float(np.median(sum(np.linalg.norm(a - b, axis=-1) for a, b in itertools.pairwise(places))))
     low = height_over_floor[:, 0] < LOW_PELVIS * leg
     if low.mean() < 0.3:
         return []
@@ -193,8 +205,8 @@ def _no_room(
     free: Bool[Array, "y x"] = floor.walkable
     asked = "" if start_m is None else f" from {start_m[0]:g},{start_m[1]:g}"
     asked += "" if heading_rad is None else " in the heading asked for"
+    size = f"{free.sum() * floor.cell_m**2:.1f} m2 of floor are free in the picture and the radar's window"
     return (
-        f"there is no room for {clip.label}{asked}: its way is {longest:.1f} m across, {free.sum() * floor.cell_m**2:.1f}"
-        " m2 of floor are free in the picture and the radar's window; try fewer --frames, another --motion-start, --at or"
-        " --heading, a smaller --height, or --as-recorded"
+        f"there is no room for {clip.label}{asked}: its way is {longest:.1f} m across, {size}; try fewer --frames,"
+        " another --motion-start, --at or --heading, a smaller --height, or --as-recorded"
     )

@@ -1,7 +1,7 @@
 """SMPL poses (AMASS and its kin): axis-angle rotations of a body -> its 22 joints.
 
-Without a body model the joints hang on the public mean skeleton; shape coefficients (betas) then count for nothing. With
-a model file of the user's own (SMPL, SMPL-H or SMPL-X as .npz) the joints are those of that body.
+Without a body model the joints hang on the public mean skeleton; shape coefficients (betas) then count for nothing.
+With a model file of the user's own (SMPL, SMPL-H or SMPL-X as .npz) the joints are those of that body.
 
 Reference: Loper et al., SMPL, 2015; Mahmood et al., AMASS, 2019.
 """
@@ -66,7 +66,7 @@ def forward(
     """Forward kinematics of axis-angle rotations, each in its parent's frame."""
     from scipy.spatial.transform import Rotation
 
-    missing = ~np.isfinite(rotations).all(axis=(1, 2))
+    missing = np.asarray(~np.isfinite(rotations).all(axis=(1, 2)))
     local = Rotation.from_rotvec(np.where(missing[:, None, None], 0.0, rotations).reshape(-1, 3)).as_matrix()
     local = np.asarray(local).reshape(len(rotations), NUM_JOINTS, 3, 3)
     turned, places = local.copy(), np.zeros((len(rotations), NUM_JOINTS, 3))
@@ -81,7 +81,9 @@ def forward(
 
 def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"]:
     if "pose_body" in arrays and "root_orient" in arrays:
-        parts = [np.asarray(arrays[name], float).reshape(len(arrays[name]), -1) for name in ("root_orient", "pose_body")]
+        parts = [
+            np.asarray(arrays[name], float).reshape(len(arrays[name]), -1) for name in ("root_orient", "pose_body")
+        ]
         poses = np.concatenate(parts, axis=1) if len(parts[0]) == len(parts[1]) else np.zeros((0, 0))
     else:
         given = np.asarray(arrays.get("poses", arrays.get("pose")), float)

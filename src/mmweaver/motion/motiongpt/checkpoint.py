@@ -49,8 +49,8 @@ def _why_unread(path: Path, error: Exception) -> str:
     if "GLOBAL" in text or "Unsupported" in text or "weights_only" in text.lower():
         what = text.split("GLOBAL ")[-1].split(" ")[0] if "GLOBAL " in text else "something"
         return (
-            f"{path} holds {what} besides tensors, which is not opened (it could run code); where you trust it, save its"
-            " state_dict alone with torch.save and give that file"
+            f"{path} holds {what} besides tensors, which is not opened (it could run code); where you trust it, save"
+            " its state_dict alone with torch.save and give that file"
         )
     return f"{path} cannot be read: cut short, damaged, or no torch checkpoint ({text[:80]})"
 

@@ -25,22 +25,31 @@ LONGEST_TEXT_TOKENS = 256
 
 
 def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
-    """A T5 of these sizes, without weights from anywhere."""
+    """A T5 of these sizes, without weights from anywhere.
+
+    `tie_word_embeddings` False gives the output words a matrix of their own, as flan-t5 has it; transformers 5 would
+    share one with the input words whatever the configuration says.
+    """
     try:
         from transformers import T5Config, T5ForConditionalGeneration
     except ImportError:
         raise InputError(EXTRA) from None
-    config = T5Config(**sizes, decoder_start_token_id=0, pad_token_id=0, eos_token_id=1)
-    return T5ForConditionalGeneration(config)
+    special: dict[str, Any] = {"decoder_start_token_id": 0, "pad_token_id": 0, "eos_token_id": 1}
+    config = T5Config(**sizes, **special)
+    model = T5ForConditionalGeneration(config)
+    if not sizes.get("tie_word_embeddings", True) and model.lm_head.weight is model.shared.weight:
+        model.config.tie_word_embeddings = False
+        fresh = torch.empty_like(model.shared.weight)
+        model.lm_head.weight = torch.nn.Parameter(fresh if fresh.is_meta else fresh.normal_(0, fresh.shape[1] ** -0.5))
+    return model
 
 
 def add_motion_tokens(words: "PreTrainedTokenizerBase", codes: int) -> int:
     """Adds the motion tokens behind the words; gives the id of the first."""
     names = [f"<motion_id_{k}>" for k in range(codes + 3)]
     words.add_tokens(names)
-    first = words.convert_tokens_to_ids(names[0])
-    last = words.convert_tokens_to_ids(names[-1])
-    if not isinstance(first, int) or last - first != codes + 2:
+    first, last = words.convert_tokens_to_ids(names[0]), words.convert_tokens_to_ids(names[-1])
+    if not (isinstance(first, int) and isinstance(last, int)) or last - first != codes + 2:
         raise InputError("the text tokenizer already has motion tokens, in another order; give the plain one")
     return first
 
@@ -68,9 +77,10 @@ def sample_codes(
     rules = LogitsProcessorList()
     if tokens is not None:
         rules.append(_exactly(tokens, first_motion_id, codes))  # type: ignore[arg-type]
+    model: Any = t5
     with torch.random.fork_rng(devices=[]), torch.inference_mode():
         torch.manual_seed(seed)
-        said = t5.generate(
+        said = model.generate(
             input_ids=text_ids,
             attention_mask=torch.ones_like(text_ids),
             max_new_tokens=(tokens if tokens is not None else most_tokens) + 3,

@@ -1,6 +1,6 @@
 """The room's door: a MotionGPT checkpoint and a sentence -> MotionClip. Read this file first.
 
-    text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
+text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
 """
 
 from dataclasses import dataclass
@@ -14,6 +14,7 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.humanml3d import CONTACTS, FPS, NUM_FEATURES, joints_from_features
+from mmweaver.motion.motiongpt.bones import with_steady_bones
 from mmweaver.motion.motiongpt.checkpoint import (
     LANGUAGE,
     MEAN,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
 
 Array = np.ndarray
+SMALL_NAME, SMALL_FILE = "small", Path(__file__).with_name("motiongpt_small.safetensors")
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
 FEWEST_FRAMES, MOST_FRAMES = 40, 196  # what MotionGPT was trained on
 RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's is some 25 times off
@@ -61,13 +63,13 @@ class MotionGPT:
         std: str | Path | None = None,
         words: str | Path | None = None,
     ) -> "MotionGPT":
-        """From a checkpoint file, a folder that holds one, or a name on the Hub (owner/name).
+        """From a checkpoint file, a folder that holds one, a name on the Hub (owner/name), or "small", our own.
 
         The published checkpoint needs MotionGPT's own `mean.npy` and `std.npy` (its assets/meta), not HumanML3D's, and
         the words of flan-t5-base; all are looked for beside it. A file of this project (.safetensors) holds everything.
         Raises InputError, one line, for whatever is no such model.
         """
-        place = published_checkpoint(str(path)) if looks_like_hub(str(path)) else _checkpoint_in(Path(path))
+        place = _place_of(path)
         state, notes = read_checkpoint(place)
         vae, spoken = parts_of(state, place)
         tokenizer = MotionTokenizer(tokenizer_config(vae, place))
@@ -86,7 +88,9 @@ class MotionGPT:
                 f"{place} knows {language.config.vocab_size} tokens, its words and {tokenizer.config.codes + 3} motion"
                 f" tokens are {first + tokenizer.config.codes + 3}; the words are of another model"
             )
-        tokenizer.load_state_dict({name: value.float() for name, value in vae.items() if name in tokenizer.state_dict()})
+        tokenizer.load_state_dict(
+            {name: value.float() for name, value in vae.items() if name in tokenizer.state_dict()}
+        )
         return cls(
             tokenizer=tokenizer.eval(), language=language, words=plain, mean=mean_values.astype(float),
             std=std_values.astype(float), first_motion_id=first, name=place.name,
@@ -123,7 +127,7 @@ class MotionGPT:
         if odd:
             notes.append(f"the motion model has never seen: {', '.join(odd)}")
         z_up = np.stack([joints[..., 0], -joints[..., 2], joints[..., 1]], axis=-1)
-        return MotionClip(joints_m=z_up, fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes))
+        return MotionClip(joints_m=with_steady_bones(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes))
 
     def features_of(self, codes: list[int]) -> Float[Array, "frame 263"]:
         """HumanML3D features of motion codes, four frames each."""
@@ -140,7 +144,9 @@ class MotionGPT:
     def _ids(self, text: str) -> list[int]:
         ids: Any = self.words(text.strip()).input_ids
         if len(ids) > LONGEST_TEXT_TOKENS:
-            raise InputError(f"the text has {len(ids)} pieces, the motion model reads {LONGEST_TEXT_TOKENS}; say it shorter")
+            raise InputError(
+                f"the text has {len(ids)} pieces, the motion model reads {LONGEST_TEXT_TOKENS}; say it shorter"
+            )
         return list(ids)
 
 
@@ -149,9 +155,16 @@ def check_std(std: Float[Array, " feature"], place: Path) -> None:
     low, high = RAW_CONTACT_STD
     if low < float(np.mean(std[CONTACTS])) < high:
         raise InputError(
-            f"the std beside {place.name} is HumanML3D's own (foot contacts vary by {np.mean(std[CONTACTS]):.2f}); MotionGPT"
-            " needs the std.npy of its own assets/meta, which differs some 25 times in channels 0:4 and 259:263"
+            f"the std beside {place.name} is HumanML3D's own (foot contacts vary by {np.mean(std[CONTACTS]):.2f});"
+            " MotionGPT needs the std.npy of its own assets/meta, which differs some 25 times in channels 0:4 and"
+            " 259:263"
         )
+
+
+def _place_of(path: str | Path) -> Path:
+    if str(path) == SMALL_NAME:
+        return SMALL_FILE
+    return published_checkpoint(str(path)) if looks_like_hub(str(path)) else _checkpoint_in(Path(path))
 
 
 def _checkpoint_in(path: Path) -> Path:
@@ -185,7 +198,8 @@ def _statistic(given: str | Path | None, place: Path, name: str, features: int) 
         values = np.load(path, allow_pickle=False)
     except OSError:
         raise InputError(
-            f"{path} is missing: the checkpoint needs MotionGPT's own {name}.npy (assets/meta of its repository) beside it"
+            f"{path} is missing: the checkpoint needs MotionGPT's own {name}.npy (assets/meta of its repository) beside"
+            " it"
         ) from None
     except ValueError:
         raise InputError(f"{path} is no .npy array of numbers") from None

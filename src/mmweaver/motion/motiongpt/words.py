@@ -25,7 +25,8 @@ def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
     except Exception:
         where = folder if folder is not None else f"the Hub ({HUB_WORDS})"
         raise InputError(
-            f"the text tokenizer cannot be read from {where}; put the tokenizer.json of {HUB_WORDS} beside the checkpoint"
+            f"the text tokenizer cannot be read from {where}; put the tokenizer.json of {HUB_WORDS} beside the"
+            " checkpoint"
         ) from None
 
 
