@@ -22,10 +22,14 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     summary = json.loads(capsys.readouterr().out)
     assert summary["bytes"] == out.stat().st_size <= 3000
     assert summary["frames"] == 3
+    assert -60 < summary["signal_error_db"] <= summary["all_error_db"] < -10
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "3000"]) == 2
     assert "--overwrite" in capsys.readouterr().err
     assert main(["compress", str(recording), "-o", str(out), "--quality", "15", "--overwrite"]) == 0
-    assert "times fewer" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "times fewer" in told
+    assert "dB in cells with signal" in told
+    assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--keep-noise", "--overwrite"]) == 0
 
 
 def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -9,7 +9,7 @@ from typing import Any
 from mmweaver.cli.arguments import add_layout_options, number, whole
 from mmweaver.core.errors import InputError
 
-NUM_STAGES = 3
+NUM_STAGES = 4
 EXAMPLES = """examples:
   mmweaver compress walk/radar.npz -o walk.mmw --bytes 10000
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmw --quality 30
@@ -31,6 +31,9 @@ def add_verb(verbs: Any) -> None:
     rate.add_argument("--bytes", type=whole, metavar="N", help="size of the file at most")
     rate.add_argument("--quality", type=number, metavar="DB", help="signal over error in the cells that hold signal")
     parser.add_argument(
+        "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
+    )
+    parser.add_argument(
         "--radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: that beside .npz)"
     )
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
@@ -51,22 +54,27 @@ def run(arguments: argparse.Namespace) -> int:
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read the recording")
         cube = read_any_cube(arguments)
-        from mmweaver.fields.codec.mmw import compressed
+        from mmweaver.fields.codec.mmw import compressed, errors_db
 
-        data = compressed(cube, num_bytes=arguments.bytes, quality_db=arguments.quality, progress=bar)
+        data = compressed(
+            cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise, progress=bar
+        )
+        bar("check")
+        errors = errors_db(data, cube)
         with atomic_file(arguments.out) as temporary:
             temporary.write_bytes(data)
     before = cube.values.size * 8
     summary = {
         "out": str(arguments.out), "bytes": len(data), "cube_bytes": before, "ratio": round(before / len(data), 1),
-        "frames": len(cube.values), "seconds": round(time.monotonic() - start, 2),
+        "frames": len(cube.values), "seconds": round(time.monotonic() - start, 2), **errors,
     }  # fmt: skip
     if arguments.json:
         print(json.dumps(summary, indent=2))
     elif not arguments.quiet:
         print(
             f"wrote {arguments.out}: {len(data):,} bytes for {len(cube.values)} frames, {summary['ratio']:,} times"
-            f" fewer than complex64, in {summary['seconds']:.1f} s"
+            f" fewer than complex64, in {summary['seconds']:.1f} s; error {errors['signal_error_db']:.1f} dB in cells"
+            f" with signal, {errors['all_error_db']:.1f} dB in all"
         )
     return 0
 
