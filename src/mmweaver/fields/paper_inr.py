@@ -68,21 +68,17 @@ def _gauss(z: torch.Tensor) -> torch.Tensor:
     return _Gauss.apply(z)  # pyright: ignore[reportReturnType]
 
 
-def _relu_in_place(z: torch.Tensor) -> torch.Tensor:
-    """As bits: what is negative as a bfloat16 is negative as an int16, whose maximum takes a sixth of the time."""
-    if z.dtype != torch.bfloat16:
-        return z.relu_()
-    z.view(torch.int16).clamp_min_(0)
-    return z
+ACTIVATIONS: dict[str, Callable[[torch.Tensor], torch.Tensor]] = {"relu": torch.relu, "gauss": _gauss}
 
 
-def _gauss_in_place(z: torch.Tensor) -> torch.Tensor:
-    return z.square_().mul_(-0.5 / GAUSS_WIDTH**2).exp_()
-
-
-Activation = Callable[[torch.Tensor], torch.Tensor]
-ACTIVATIONS: dict[str, Activation] = {"relu": torch.relu, "gauss": _gauss}
-IN_PLACE: dict[str, Activation] = {"relu": _relu_in_place, "gauss": _gauss_in_place}
+def _activate(activation: str, z: torch.Tensor) -> None:
+    """In place. What is negative as a bfloat16 is negative as an int16, whose maximum takes a sixth of the time."""
+    if activation == "relu" and z.dtype == torch.bfloat16:
+        z.view(torch.int16).clamp_min_(0)
+    elif activation == "relu":
+        z.relu_()
+    else:
+        z.copy_(ACTIVATIONS[activation](z))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,16 +220,16 @@ class _FrameDecoder:
         out: IqPoints,
     ) -> None:
         """One frame into `out`."""
-        act, dtype = IN_PLACE[self.shape.activation], self.dtype
+        act, dtype = self.shape.activation, self.dtype
         (_, first_bias), *inner, (last_weight, last_bias) = self.shape.layers(self.theta)
         h, free = self.buffers
         whole = h.view(len(self.first), -1, HIDDEN_WIDTH)
         torch.add(gamma[0] * self.first, gamma[0] * (self.rest + first_bias) + beta[0], out=whole)
-        act(h)
+        _activate(act, h)
         for at, (weight, bias) in enumerate(inner, start=1):
             folded = (gamma[at][:, None] * weight).T.to(dtype)
             torch.addmm((gamma[at] * bias + beta[at]).to(dtype), h, folded, out=free)
-            act(free)
+            _activate(act, free)
             h, free = free, h
         iq = torch.addmm(last_bias.to(dtype), h, last_weight.T.to(dtype)).float()
         if turn is None:

@@ -20,6 +20,7 @@ from mmweaver.formats.mmw_file import MmwFile, MmwHeader, packed_mmw, unpacked_m
 CHUNK_FRAMES = 20
 BYTES_A_POINT = 6.0  # fewer and well fitted ones say more than many: what is left has a coder of its own
 POINTS_A_FRAME = 50
+FIT_STAGES, LEAST_GAIN = 20, 12.0
 LEAST_BYTES = 256
 FINEST_STEP, COARSEST_STEP = 1e-7, 0.5
 TRIALS = 9
@@ -197,7 +198,9 @@ def _encoder(cube: RadarCube, peak: float, wanted: float | None, keep_noise: boo
     most = POINTS_A_FRAME * frames
     num_points = most if wanted is None else min(most, int(wanted / BYTES_A_POINT))
     # one frame cannot tell what stands still from what moves slowly
-    recipe = FitRecipe(num_points=num_points, with_static=frames > 1, with_calibration=True)
+    recipe = FitRecipe(
+        num_points=num_points, with_static=frames > 1, with_calibration=True, stages=FIT_STAGES, least_gain=LEAST_GAIN
+    )
     return ChunkEncoder(target, stretch, fitted(target, stretch, recipe), peak, keep_noise=keep_noise)
 
 
