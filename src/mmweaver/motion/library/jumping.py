@@ -1,6 +1,6 @@
 """Jumping, jumping jacks and squats: the legs drive the pelvis up and down, in flight it falls freely."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -8,6 +8,7 @@ from jaxtyping import Float
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.standing import STAND_STRETCH, home_feet, upright
 from mmweaver.motion.profiles import plateau, rise, through
+from mmweaver.motion.root_path import RootPath
 from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
@@ -64,7 +65,7 @@ class Hop:
         return up - half - down
 
 
-def _hop_all(
+def hop_all(
     controls: Controls,
     stage: Stage,
     hops: list[Hop],
@@ -94,6 +95,25 @@ def _hop_all(
 
 def jumping(stage: Stage) -> Controls:
     """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
+    return _jumps(stage)[0]
+
+
+def leaping(stage: Stage) -> Controls:
+    """Jumps that lead somewhere: the way of the step is gone in the air, in equal parts."""
+    time_s, path = stage.time_s, stage.path
+    ends = np.array([stage.start_s - 0.001, stage.end_s])
+    start, heading = path.position_m(ends)[0], float(path.facing_rad(ends)[0])
+    here = RootPath(start_m=(float(start[0]), float(start[1])), heading_rad=heading)
+    controls, hops = _jumps(replace(stage, path=here))
+    feet = sum(rise((time_s - hop.off_s) / hop.flight_s) for hop in hops) / len(hops)
+    body = sum(rise((time_s - hop.off_s + 0.16) / (hop.flight_s + 0.34)) for hop in hops) / len(hops)
+    way = path.position_m(ends)[1] - start
+    controls.pelvis_m[:, :2] += np.asarray(body)[:, None] * way
+    controls.foot_m[:, :, :2] += np.asarray(feet)[:, None, None] * way
+    return controls
+
+
+def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
     height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0, 1.1)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
@@ -109,7 +129,7 @@ def jumping(stage: Stage) -> Controls:
     dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
     dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
     dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips)
+    hop_all(controls, stage, hops, dips)
     trunk = plateau(time_s, stage.start_s, first + 0.12, crouch_s, push_s + 0.12)
     arms = -0.5 * plateau(time_s, stage.start_s, first + 0.05, crouch_s, push_s + 0.2)
     for hop in hops:
@@ -122,7 +142,7 @@ def jumping(stage: Stage) -> Controls:
     _bend(controls, trunk, 0.45)
     controls.arm_rad[:, :, 0] += arms[:, None]
     controls.arm_rad[:, :, 3] += 0.5 * np.maximum(trunk, 0)[:, None]
-    return controls
+    return controls, hops
 
 
 def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> None:
@@ -152,7 +172,7 @@ def jumping_jacks(stage: Stage) -> Controls:
     dips = [(stage.start_s - 0.2, 0.0, 0.0)]
     dips += [(hop.off_s - ground_s / 2, 0.08, 5.0) for hop in hops]
     dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
+    hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0
