@@ -14,11 +14,13 @@ from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.shapes import Array, PerFrame, PerIndex
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.cube import radar_cube, tdm_compensation
 from mmweaver.dsp.detection import check_points, detect
 from mmweaver.formats.capture_std import PACKETS, RADAR, read_radar_capture
 from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.dca_packets import PacketReport
+from mmweaver.formats.npz_files import read_radar_npz
+from mmweaver.formats.peer_arrays import LAYOUTS, read_hupr, read_mmmesh, read_rf_genesis, recognised
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.pictures.view import View
@@ -169,3 +171,47 @@ def _capture_assumptions(report: PacketReport, config: RadarConfig) -> list[str]
     if report.bytes_after_last_frame:
         sentences.append(f"{report.bytes_after_last_frame} bytes of an unfinished last frame were left out")
     return sentences
+
+
+def read_any_cube(
+    path: str | Path,
+    radar: str | Path | RadarConfig | None = None,
+    *,
+    layout: str | None = None,
+    axes: str | None = None,
+    iq_order: str = "iq",
+    tx_order: tuple[int, ...] | None = None,
+) -> RadarCube:
+    """The cube of a recording in any of the files that are understood.
+
+    A radar.npz (its radar.json beside it, unless `radar` is given); an adc_data.bin; a .npy of ADC samples with its
+    `axes`, or a .npy in another project's `layout`: "hupr" (also a folder of its frames; recognised by its shape),
+    "mmmesh" or "rf_genesis", whose radar is the preset of that name unless one is given. Raises InputError where the
+    file cannot be read so.
+    """
+    path = Path(path)
+    if layout is not None and (layout not in LAYOUTS or axes is not None):
+        raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {axes!r}")
+    is_array = path.suffix == ".npy" or path.is_dir() or layout is not None
+    if is_array and axes is None:
+        layout = layout or recognised(path)
+    config = radar if isinstance(radar, RadarConfig) else load_radar(str(radar)) if radar is not None else None
+    if path.suffix == ".npz":
+        return read_radar_npz(path, config)
+    config = config or (load_radar(layout) if layout is not None else None)
+    if config is None:
+        raise InputError(f"{path}: say which radar recorded it, for example --radar awr1843")
+    if tx_order is not None:
+        config = replace(config, tx_order=tx_order)
+    if layout is not None:
+        return _peer_cube(path, config, layout)
+    return radar_cube(read_adc_npy(path, config, axes) if axes else read_bin(path, config, iq_order=iq_order))
+
+
+def _peer_cube(path: Path, config: RadarConfig, layout: str) -> RadarCube:
+    if layout == "hupr":
+        cube = read_hupr(path, config)
+        return replace(cube, values=cube.values * tdm_compensation(config))
+    if layout == "mmmesh":
+        return radar_cube(read_mmmesh(path, config))
+    return radar_cube(read_rf_genesis(path, config), compensate_tdm=False)

@@ -54,8 +54,13 @@ def from_coefficients(
     return np.moveaxis(np.tensordot(beams.conj(), values, axes=(0, 0)), 0, 3)
 
 
+def still_bins(num_doppler: int) -> slice:
+    """Doppler cells that a resting scene fills."""
+    middle = num_doppler // 2
+    return slice(max(0, middle - STILL), middle + STILL + 1)
+
+
 def _still_turned(values: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    middle = values.shape[3] // 2
-    still = slice(max(0, middle - STILL), middle + STILL + 1)
+    still = still_bins(values.shape[3])
     values[..., still] = np.einsum("ts,bsrd->btrd", matrix, values[..., still], optimize=True)
     return values
