@@ -29,7 +29,10 @@ Fitter = Callable[[RadarCube], tuple[SignalField, float]]
 def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
     """Fits a field to one signal and scores it: what it stores, in which type, against the same frames in theirs."""
     field, seconds = make(signal.cube)
-    card = scorecard(field.cube(), signal.cube, twin=signal.twin)
+    metrics = scorecard(field.cube(), signal.cube, twin=signal.twin).as_json()
+    if signal.noise_free is not None:
+        for name, entry in scorecard(signal.noise_free, signal.cube).as_json().items():
+            metrics[name]["noise_free"] = entry["value"]
     return {
         "dataset": {
             "name": signal.name,
@@ -43,7 +46,7 @@ def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[
         "interval": None,
         "seconds": {"fit": round(seconds, 2)},
         "size": size_of(field),
-        "metrics": card.as_json(),
+        "metrics": metrics,
     }
 
 

@@ -31,17 +31,20 @@ SENTENCES = {
     "sitting": "a person sits down on a chair",
 }
 ALONE = "_alone"
+NOISE_FREE = replace(IDEAL, leakage_db=Impairments().leakage_db)
 OTHER_SKIN = 1_000  # added to the subject: the same pose, other skin points and micro-phases
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExperimentSignal:
-    """A cube to work on, and its twin where one can be made (same pose and room, other micro-phases of the skin)."""
+    """A cube to work on; where they can be made its twin (same pose and room, other micro-phases of the skin) and the
+    same without noise, which no field that leaves the noise alone can be nearer to."""
 
     name: str
     origin: str  # simulated | recorded | recorded, with a simulated person
     cube: RadarCube
     twin: RadarCube | None
+    noise_free: RadarCube | None = None
 
     @property
     def digest(self) -> str:
@@ -87,11 +90,14 @@ def simulated(
     scene = sample_scene()
     if is_alone:
         scene, impairments = without_room(scene), replace(impairments, leakage_db=None)
-    simulator = Simulator(scene, AWR1843, impairments)
-    skins = (pose, replace(pose, subject=pose.subject + OTHER_SKIN))
-    cube, twin = (radar_cube(simulator.run(skin, num_frames=num_frames, seed=seed).adc) for skin in skins)
+    quiet = replace(NOISE_FREE, leakage_db=impairments.leakage_db)
+    other = replace(pose, subject=pose.subject + OTHER_SKIN)
+    cube, twin, noise_free = (
+        radar_cube(Simulator(scene, AWR1843, receiver).run(skin, num_frames=num_frames, seed=seed).adc)
+        for skin, receiver in ((pose, impairments), (other, impairments), (pose, quiet))
+    )
     name = activity + (ALONE if is_alone else "")
-    return ExperimentSignal(name=name, origin="simulated", cube=cube, twin=twin)
+    return ExperimentSignal(name=name, origin="simulated", cube=cube, twin=twin, noise_free=noise_free)
 
 
 def two_people_radar(num_loops: int = 32) -> RadarConfig:
@@ -145,16 +151,20 @@ def walking_in_recording(data: Path, seed: int = 0) -> ExperimentSignal:
     gain = np.sqrt(_strongest_moving(two_people(data).cube) / _strongest_moving(radar_cube(walkers[0])))
     shape = (*walkers[0].samples.shape, 2)
     noise = stream(seed, "walking_in_recording noise").standard_normal(shape, dtype=np.float32).view(np.complex64)
-    around = frame.samples.mean(axis=1, keepdims=True) + noise[..., 0] * np.sqrt(_sample_noise_power(frame) / 2)
-    cube, twin = (
-        radar_cube(
-            AdcCube(samples=(around + gain * adc.samples).astype(np.complex64), config=config, scale=float("nan"))
+    hiss = noise[..., 0] * np.sqrt(_sample_noise_power(frame) / 2)
+    still = frame.samples.mean(axis=1, keepdims=True)
+    cube, twin, noise_free = (
+        radar_cube(AdcCube(samples=samples.astype(np.complex64), config=config, scale=float("nan")))
+        for samples in (
+            still + gain * walkers[0].samples + hiss,
+            still + gain * walkers[1].samples + hiss,
+            still + gain * walkers[0].samples,
         )
-        for adc in walkers
     )
     return ExperimentSignal(
-        name="walking_in_recording", origin="recorded, with a simulated person", cube=cube, twin=twin
-    )
+        name="walking_in_recording", origin="recorded, with a simulated person", cube=cube, twin=twin,
+        noise_free=noise_free,
+    )  # fmt: skip
 
 
 def _strongest_moving(cube: RadarCube) -> float:

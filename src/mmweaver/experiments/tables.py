@@ -12,9 +12,10 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
+FINER, RADII = (1.5, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
 QUESTIONS = (
-    ("own_cells", 1.0), ("between_bins", 2.0), ("between_bins", 4.0), ("drawn_places", 2.0),
-    ("more_bandwidth", 2.0), ("more_bandwidth", 4.0), ("more_loops", 2.0), ("more_loops", 4.0), ("more_antennas", 2.0),
+    ("own_cells", (1.0,)), ("between_bins", FINER), ("drawn_places", RADII), ("more_bandwidth", FINER),
+    ("more_loops", FINER), ("more_antennas", FINER),
 )  # fmt: skip
 PHYSICS = (
     ("command_wall_s", "`mmweaver generate --demo`, imports and pictures included, wall", "{:.1f} s"),
@@ -46,8 +47,9 @@ def fidelity_table(folder: Path) -> str:
         for floor in ("zeros", "static_mean"):
             scores = [metrics[metric]["floor"][floor] for metric in SHOWN]
             lines.append(_line(name, f"*{floor}*", "", "", *map(_number, scores)))
-        if "twin" in metrics["nmse_db"]:
-            lines.append(_line(name, "*twin*", "", "", *(_number(metrics[metric]["twin"]) for metric in SHOWN)))
+        for other in ("twin", "noise_free"):
+            if other in metrics["nmse_db"]:
+                lines.append(_line(name, f"*{other}*", "", "", *(_number(metrics[metric][other]) for metric in SHOWN)))
         for record in records:
             own = record["rows"][at]
             scores = [_number(own["metrics"][metric]["value"]) for metric in SHOWN]
@@ -93,17 +95,18 @@ def _pair(score: tuple[float | None, float | None], best: tuple[float | None, fl
 
 
 def super_resolution_table(folder: Path) -> str:
-    """NMSE in dB, one row a method, one column a question; all zeros have 0 dB in each."""
-    lines = [
-        _line("method", *(f"{truth} {factor:g}" for truth, factor in QUESTIONS)),
-        _line(*["---"] * (1 + len(QUESTIONS))),
-    ]
-    for record in _records(folder / "super_resolution"):
-        scores = {
+    """NMSE in dB, one row a question, one column a method; all zeros have 0 dB in each."""
+    scores = {
+        record["method"]: {
             (row["dataset"]["truth"], row["dataset"]["factor"]): row["metrics"]["nmse_db"]["value"]
             for row in record["rows"]
         }
-        lines.append(_line(record["method"], *(_number(scores[question]) for question in QUESTIONS)))
+        for record in _records(folder / "super_resolution")
+    }
+    lines = [_line("truth", "times finer, or radius", *scores), _line(*["---"] * (2 + len(scores)))]
+    for truth, factors in QUESTIONS:
+        for factor in factors:
+            lines.append(_line(truth, f"{factor:g}", *(_number(own.get((truth, factor))) for own in scores.values())))
     return "\n".join(lines)
 
 

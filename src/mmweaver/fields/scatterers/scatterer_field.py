@@ -129,13 +129,15 @@ class ScattererField(SignalField):
         noise = spectrum * (self.peak * math.sqrt(self._cell_noise() / power))
         return replace(cube, values=(cube.values + noise).astype(np.complex64))
 
-    def for_radar(self, config: RadarConfig, num_frames: int | None = None) -> RadarCube:
+    def for_radar(self, config: RadarConfig, num_frames: int | None = None, *, first_frame_s: float = 0.0) -> RadarCube:
         """What another radar (bandwidth, chirps, array) at the same place would have seen; nothing is fitted again.
 
-        The static layer becomes points first. Learned gains belong to this array and stay behind.
+        Its first frame starts `first_frame_s` after the field's. The static layer becomes points first. Learned gains
+        belong to this array and stay behind.
         """
         num_frames = num_frames or max(1, round(self._span_s() / config.frame_period_s))
         grid = CubeGrid.of(config, num_frames)
+        grid = replace(grid, frame_time_s=grid.frame_time_s + first_frame_s)
         response = PointResponse(config)
         axes = response.axes()
         time_s = grid.frame_time_s - self.grid.frame_time_s[0]
