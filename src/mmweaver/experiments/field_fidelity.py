@@ -82,7 +82,7 @@ def scatterer_recipe(cube: RadarCube) -> ScattererRecipe:
     )
 
 
-def fit_scatterers(cube: RadarCube) -> tuple[SignalField, float]:
+def fit_scatterers(cube: RadarCube) -> tuple[ScattererField, float]:
     """Scatterers over a static layer, in no more values than the paper's INR."""
     start = time.perf_counter()
     field = ScattererField.fit(cube, scatterer_recipe(cube))

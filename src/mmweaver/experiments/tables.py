@@ -142,6 +142,21 @@ def statistics_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def noise_table(folder: Path) -> str:
+    """One row a signal: rendered without noise / with noise (the capture's own where it is not zero or the same)."""
+    (record,) = _records(folder / "rendered_noise")
+    names = list(record["rows"][0]["metrics"])
+    lines = [_line("signal", *names), _line(*["---"] * (1 + len(names)))]
+    for row in record["rows"]:
+        cells = []
+        for name in names:
+            metric = row["metrics"][name]
+            both = f"{_number(metric['floor']['without_noise'])} / {_number(metric['value'])}"
+            cells.append(f"{both} ({_number(metric['capture'])})" if metric["capture"] else both)
+        lines.append(_line(row["dataset"]["name"], *cells))
+    return "\n".join(lines)
+
+
 def _with_interval(metric: dict[str, Any]) -> str:
     edges = metric.get("interval")
     value = _number(metric["value"])
@@ -151,6 +166,7 @@ def _with_interval(metric: dict[str, Any]) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
+    "rendered_noise": noise_table,
 }  # fmt: skip
 
 
