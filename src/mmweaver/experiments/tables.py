@@ -41,7 +41,7 @@ BEGIN, END = "<!-- table: {} -->", "<!-- end -->"
 def fidelity_table(folder: Path) -> str:
     """One row a method and signal, after the rows of the signal's floors and twin."""
     records = _records(folder / "field_fidelity")
-    lines = [_line("signal", "method", "values", "fit s", *SHOWN), _line(*["---"] * (4 + len(SHOWN)))]
+    lines = [_line("signal", "method", "values", "fit CPU s", *SHOWN), _line(*["---"] * (4 + len(SHOWN)))]
     for at, row in enumerate(records[0]["rows"]):
         name, metrics = row["dataset"]["name"], row["metrics"]
         for floor in ("zeros", "static_mean"):
@@ -142,6 +142,20 @@ def statistics_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def tracks_table(folder: Path) -> str:
+    """One row a shape of track, beside free points in as many numbers."""
+    (record,) = _records(folder / "scatterer_tracks")
+    lines = [
+        _line("frames", "numbers a track", "nmse_db, tracks", "nmse_db, free points", "CPU s of all"),
+        _line(*["---"] * 5),
+    ]
+    for row in record["rows"]:
+        metric = row["metrics"]["nmse_db"]
+        cells = (_number(metric["value"]), _number(metric["free_points"]), f"{row['seconds']['all']:.0f}")
+        lines.append(_line(str(row["frames"]), str(row["values_of_track"]), *cells))
+    return "\n".join(lines)
+
+
 def noise_table(folder: Path) -> str:
     """One row a signal: rendered without noise / with noise (the capture's own where it is not zero or the same)."""
     (record,) = _records(folder / "rendered_noise")
@@ -167,6 +181,7 @@ TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
     "rendered_noise": noise_table,
+    "scatterer_tracks": tracks_table,
 }  # fmt: skip
 
 

@@ -90,7 +90,7 @@ class Fit:
     """A fitted field and what it cost."""
 
     field: SignalField
-    seconds: float
+    seconds: float  # of CPU
     last_loss: float  # mean squared error of the last tenth of the steps, in units of the network
 
 
@@ -99,14 +99,14 @@ def fit(cube: RadarCube, recipe: FitRecipe, *, seed: int = 0, device: str = "cpu
 
     The same seed gives the same bits on one machine. Raises InputError where the cube is all zeros or not finite.
     """
-    start = time.perf_counter()
+    start = time.process_time()
     target = centred(cube) if recipe.is_centred else cube
     amplitude = _amplitude(target.values, recipe.peak_is_one)
     network = _Network(cube, recipe, seed, device)
     losses = network.train(target.values / np.float32(amplitude), _Draw(cube, recipe, seed))
     return Fit(
         field=network.field(cube, amplitude),
-        seconds=time.perf_counter() - start,
+        seconds=time.process_time() - start,
         last_loss=float(np.mean(losses[-max(1, recipe.steps // 10) :])),
     )
 
