@@ -13,9 +13,10 @@ from mmweaver.core.errors import InputError
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
+FINER, RADII = (1.5, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
 QUESTIONS = (
-    ("own_cells", 1.0), ("between_bins", 2.0), ("between_bins", 4.0), ("drawn_places", 2.0),
-    ("more_bandwidth", 2.0), ("more_bandwidth", 4.0), ("more_loops", 2.0), ("more_loops", 4.0), ("more_antennas", 2.0),
+    ("own_cells", (1.0,)), ("between_bins", FINER), ("drawn_places", RADII), ("more_bandwidth", FINER),
+    ("more_loops", FINER), ("more_antennas", FINER),
 )  # fmt: skip
 PHYSICS = (
     ("command_wall_s", "`mmweaver generate --demo`, imports and pictures included, wall", "{:.1f} s"),
@@ -42,14 +43,15 @@ BEGIN, END = "<!-- table: {} -->", "<!-- end -->"
 def fidelity_table(folder: Path) -> str:
     """One row a method and signal, after the rows of the signal's floors and twin."""
     records = _records(folder / "field_fidelity")
-    lines = [_line("signal", "method", "values", "fit s", *SHOWN), _line(*["---"] * (4 + len(SHOWN)))]
+    lines = [_line("signal", "method", "values", "fit CPU s", *SHOWN), _line(*["---"] * (4 + len(SHOWN)))]
     for at, row in enumerate(records[0]["rows"]):
         name, metrics = row["dataset"]["name"], row["metrics"]
         for floor in ("zeros", "static_mean"):
             scores = [metrics[metric]["floor"][floor] for metric in SHOWN]
             lines.append(_line(name, f"*{floor}*", "", "", *map(_number, scores)))
-        if "twin" in metrics["nmse_db"]:
-            lines.append(_line(name, "*twin*", "", "", *(_number(metrics[metric]["twin"]) for metric in SHOWN)))
+        for other in ("twin", "noise_free"):
+            if other in metrics["nmse_db"]:
+                lines.append(_line(name, f"*{other}*", "", "", *(_number(metrics[metric][other]) for metric in SHOWN)))
         for record in records:
             own = record["rows"][at]
             scores = [_number(own["metrics"][metric]["value"]) for metric in SHOWN]
@@ -132,17 +134,18 @@ def _pair(score: tuple[float | None, float | None], best: tuple[float | None, fl
 
 
 def super_resolution_table(folder: Path) -> str:
-    """NMSE in dB, one row a method, one column a question; all zeros have 0 dB in each."""
-    lines = [
-        _line("method", *(f"{truth} {factor:g}" for truth, factor in QUESTIONS)),
-        _line(*["---"] * (1 + len(QUESTIONS))),
-    ]
-    for record in _records(folder / "super_resolution"):
-        scores = {
+    """NMSE in dB, one row a question, one column a method; all zeros have 0 dB in each."""
+    scores = {
+        record["method"]: {
             (row["dataset"]["truth"], row["dataset"]["factor"]): row["metrics"]["nmse_db"]["value"]
             for row in record["rows"]
         }
-        lines.append(_line(record["method"], *(_number(scores[question]) for question in QUESTIONS)))
+        for record in _records(folder / "super_resolution")
+    }
+    lines = [_line("truth", "times finer, or radius", *scores), _line(*["---"] * (2 + len(scores)))]
+    for truth, factors in QUESTIONS:
+        for factor in factors:
+            lines.append(_line(truth, f"{factor:g}", *(_number(own.get((truth, factor))) for own in scores.values())))
     return "\n".join(lines)
 
 
@@ -252,6 +255,35 @@ def motiongpt_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def tracks_table(folder: Path) -> str:
+    """One row a shape of track, beside free points in as many numbers."""
+    (record,) = _records(folder / "scatterer_tracks")
+    lines = [
+        _line("frames", "numbers a track", "nmse_db, tracks", "nmse_db, free points", "CPU s of all"),
+        _line(*["---"] * 5),
+    ]
+    for row in record["rows"]:
+        metric = row["metrics"]["nmse_db"]
+        cells = (_number(metric["value"]), _number(metric["free_points"]), f"{row['seconds']['all']:.0f}")
+        lines.append(_line(str(row["frames"]), str(row["values_of_track"]), *cells))
+    return "\n".join(lines)
+
+
+def noise_table(folder: Path) -> str:
+    """One row a signal: rendered without noise / with noise (the capture's own where it is not zero or the same)."""
+    (record,) = _records(folder / "rendered_noise")
+    names = list(record["rows"][0]["metrics"])
+    lines = [_line("signal", *names), _line(*["---"] * (1 + len(names)))]
+    for row in record["rows"]:
+        cells = []
+        for name in names:
+            metric = row["metrics"][name]
+            both = f"{_number(metric['floor']['without_noise'])} / {_number(metric['value'])}"
+            cells.append(f"{both} ({_number(metric['capture'])})" if metric["capture"] else both)
+        lines.append(_line(row["dataset"]["name"], *cells))
+    return "\n".join(lines)
+
+
 def _with_interval(metric: dict[str, Any]) -> str:
     edges = metric.get("interval")
     value = _number(metric["value"])
@@ -266,6 +298,8 @@ TABLES = {
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
     "motiongpt": motiongpt_table,
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
+    "rendered_noise": noise_table,
+    "scatterer_tracks": tracks_table,
 }  # fmt: skip
 
 

@@ -29,7 +29,6 @@ from mmweaver.fields.positional_encoding import (
     OCTAVES,
     Frequencies,
     encode_axis,
-    encoded_size,
     normalised,
     positional_encoding,
 )
@@ -68,7 +67,14 @@ def _gauss(z: torch.Tensor) -> torch.Tensor:
     return _Gauss.apply(z)  # pyright: ignore[reportReturnType]
 
 
-ACTIVATIONS: dict[str, Callable[[torch.Tensor], torch.Tensor]] = {"relu": torch.relu, "gauss": _gauss}
+SINE_TURNS = 30.0  # omega_0 of Sitzmann et al., "Implicit neural representations with periodic activation functions"
+
+
+def _sine(z: torch.Tensor) -> torch.Tensor:
+    return torch.sin(SINE_TURNS * z)
+
+
+ACTIVATIONS: dict[str, Callable[[torch.Tensor], torch.Tensor]] = {"relu": torch.relu, "gauss": _gauss, "sine": _sine}
 
 
 def _activate(activation: str, z: torch.Tensor) -> None:
@@ -95,7 +101,12 @@ class InrShape:
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        return (encoded_size(self.num_axes), *[HIDDEN_WIDTH] * NUM_HIDDEN, NUM_OUTPUTS)
+        return (sum(self.axis_sizes), *[HIDDEN_WIDTH] * NUM_HIDDEN, NUM_OUTPUTS)
+
+    @property
+    def axis_sizes(self) -> tuple[int, ...]:
+        """Encoded values of each axis; an axis without frequencies is its raw coordinate."""
+        return tuple(1 + 2 * len(frequencies) for frequencies in self.axis_frequencies)
 
     @property
     def num_weights(self) -> int:
@@ -116,10 +127,13 @@ class InrShape:
         return layers
 
     def fresh(self, generator: np.random.Generator) -> Weights:
-        """Weights as torch's Linear draws them: even in +-1 / sqrt(fan in), biases too."""
+        """Weights as torch's Linear draws them: even in +-1 / sqrt(fan in), biases too; for sines as SIREN does."""
         parts = []
-        for fan_in, fan_out in zip(self.sizes, self.sizes[1:], strict=False):
-            parts.append(generator.uniform(-1, 1, (fan_in + 1) * fan_out) / np.sqrt(fan_in))
+        for at, (fan_in, fan_out) in enumerate(zip(self.sizes, self.sizes[1:], strict=False)):
+            reach = 1 / np.sqrt(fan_in)
+            if self.activation == "sine":
+                reach = 1 / fan_in if at == 0 else np.sqrt(6 / fan_in) / SINE_TURNS
+            parts.append(generator.uniform(-1, 1, (fan_in + 1) * fan_out) * reach)
         return torch.from_numpy(np.concatenate(parts).astype(np.float32))
 
 
@@ -153,7 +167,7 @@ def evaluate(
 def first_layer_terms(shape: InrShape, theta: Weights, axes_norm: list[torch.Tensor]) -> list[torch.Tensor]:
     """The first layer without its bias as one term an axis, each (cell, 32); their sum over a grid is the layer."""
     weight, _ = shape.layers(theta)[0]
-    parts = weight.split(encoded_size(1), dim=1)
+    parts = weight.split(list(shape.axis_sizes), dim=1)
     each = zip(axes_norm, shape.axis_frequencies, parts, strict=True)
     return [encode_axis(axis, frequencies) @ part.T for axis, frequencies, part in each]
 
