@@ -1,0 +1,71 @@
+"""Which activity a window shows: two kinds of decision trees, trained on features of labelled windows, their votes
+averaged."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+
+Features = Float[np.ndarray, "window feature"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClassifierSettings:
+    """How the trees grow; equal settings, seed and data give equal trees."""
+
+    num_trees: int = 400
+    leaf_size: int = 3
+    feature_share: float = 0.25
+    boosting_rounds: int = 150
+    learning_rate: float = 0.08
+    leaves: int = 15
+    seed: int = 0
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+class ActivityClassifier:
+    """Extremely randomised trees and gradient boosting. `classes` are the labels in the order of the columns."""
+
+    def __init__(self, settings: ClassifierSettings | None = None):
+        self.settings = settings or ClassifierSettings()
+        self.classes: tuple[str, ...] = ()
+        self._models: list[Any] = []
+
+    def fit(self, features: Features, labels: np.ndarray, weights: np.ndarray | None = None) -> "ActivityClassifier":
+        """Learns from one row a window (nan = not known); weights default to 1. Returns itself.
+
+        Raises InputError where scikit-learn is missing.
+        """
+        try:
+            from sklearn.ensemble import ExtraTreesClassifier, HistGradientBoostingClassifier
+        except ImportError:
+            raise InputError("recognising activities needs scikit-learn; pip install 'mmweaver[evaluate]'") from None
+        chosen = self.settings
+        self._models = [
+            ExtraTreesClassifier(
+                chosen.num_trees, min_samples_leaf=chosen.leaf_size, max_features=chosen.feature_share,
+                class_weight="balanced", random_state=chosen.seed, n_jobs=1,
+            ),
+            HistGradientBoostingClassifier(
+                max_iter=chosen.boosting_rounds, learning_rate=chosen.learning_rate, max_leaf_nodes=chosen.leaves,
+                max_features=chosen.feature_share, class_weight="balanced", early_stopping=False,
+                random_state=chosen.seed,
+            ),
+        ]  # fmt: skip
+        for model in self._models:
+            model.fit(features, labels, sample_weight=weights)
+        self.classes = tuple(str(name) for name in self._models[0].classes_)
+        return self
+
+    def probabilities(self, features: Features) -> Float[np.ndarray, "window activity"]:
+        """Mean vote of both kinds, (window, activity)."""
+        return np.mean([model.predict_proba(features) for model in self._models], axis=0)
+
+    def predict(self, features: Features) -> np.ndarray:
+        """The activity with most votes, one a window."""
+        return np.array(self.classes)[np.argmax(self.probabilities(features), axis=1)]

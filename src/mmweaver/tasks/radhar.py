@@ -1,0 +1,26 @@
+"""The five activities of the RadHAR recordings in words, and the board that recorded them."""
+
+from mmweaver.core.firmware_settings import FIRMWARE
+from mmweaver.core.presets import IWR1443_RADHAR
+from mmweaver.tasks.generation import Recipe
+
+ACTIVITIES = {
+    "boxing": (
+        "a person punches", "a person punches quickly", "a person punches slowly",
+        "a person punches with the left hand", "a person punches with the right hand",
+    ),
+    "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
+    "jump": ("a person jumps", "a person jumps quickly", "a person jumps slowly"),
+    "squats": ("a person squats", "a person squats quickly", "a person squats slowly"),
+    "walk": (
+        "a person walks back and forth", "a person walks towards the radar", "a person walks away",
+        "a person walks slowly back and forth", "a person walks quickly back and forth", "a person walks in a circle",
+        "a person walks to the left", "a person walks to the right",
+        "a person walks slowly towards the radar", "a person walks slowly away",
+    ),
+}  # fmt: skip
+
+
+def radhar_recipe() -> Recipe:
+    """The IWR1443 at 30 frames a second and its five activities."""
+    return Recipe(activities=ACTIVITIES, radar=IWR1443_RADHAR, firmware=FIRMWARE["iwr1443_radhar"])
