@@ -46,17 +46,17 @@ class ActivityClassifier:
         except ImportError:
             raise InputError("recognising activities needs scikit-learn; pip install 'mmweaver[evaluate]'") from None
         chosen = self.settings
+        shared: dict[str, Any] = {
+            "max_features": chosen.feature_share, "class_weight": "balanced", "random_state": chosen.seed
+        }  # fmt: skip
+        grown: dict[str, Any] = {"min_samples_leaf": chosen.leaf_size, "n_jobs": 1}
+        boosted: dict[str, Any] = {"max_leaf_nodes": chosen.leaves, "early_stopping": False}
         self._models = [
-            ExtraTreesClassifier(
-                chosen.num_trees, min_samples_leaf=chosen.leaf_size, max_features=chosen.feature_share,
-                class_weight="balanced", random_state=chosen.seed, n_jobs=1,
-            ),
+            ExtraTreesClassifier(chosen.num_trees, **grown, **shared),
             HistGradientBoostingClassifier(
-                max_iter=chosen.boosting_rounds, learning_rate=chosen.learning_rate, max_leaf_nodes=chosen.leaves,
-                max_features=chosen.feature_share, class_weight="balanced", early_stopping=False,
-                random_state=chosen.seed,
+                max_iter=chosen.boosting_rounds, learning_rate=chosen.learning_rate, **boosted, **shared
             ),
-        ]  # fmt: skip
+        ]
         for model in self._models:
             model.fit(features, labels, sample_weight=weights)
         self.classes = tuple(str(name) for name in self._models[0].classes_)

@@ -131,7 +131,8 @@ def _places(points: _Moving) -> Row:
     for axis, value in axes.items():  # where the fast ones are beside the slow ones
         slow, quick = value[groups["slow"]], value[groups["quick"]]
         both = len(slow) >= FEWEST and len(quick) >= FEWEST
-        row[f"{axis}_quick_less_slow"] = float(quick.mean() - slow.mean()) if both else np.nan
+        gap_m = float(quick.mean() - slow.mean()) if both else np.nan
+        row[f"{axis}_quick_less_slow"] = abs(gap_m) if axis == "across" else gap_m
         row[f"{axis}_within_frame"] = _within_frame(points, value)
     row["up_mean"] = float(points.up_m.mean()) if len(points) else np.nan
     row["up_median_fast"] = float(np.median(points.up_m[groups["fast"]])) if groups["fast"].sum() >= FEWEST else np.nan
