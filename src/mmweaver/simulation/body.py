@@ -32,6 +32,11 @@ class SkinEcho:
     exponent: float = 2.0
 
     @property
+    def least_cos(self) -> float:
+        """Skin turned further away than this returns under -60 dB of what facing skin does, and is left out."""
+        return max(1e-6 ** (1 / self.exponent), 0.02)
+
+    @property
     def strength(self) -> float:
         """Cross section of one square metre that faces the radar."""
         return 4 * self.albedo * (self.exponent + 1) / 3

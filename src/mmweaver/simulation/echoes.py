@@ -96,7 +96,7 @@ class BodyEchoes:
         return np.flatnonzero((unit[0] @ axis > opening) | (unit[1] @ axis > opening))
 
     def _visible(self) -> np.ndarray:
-        facing = self.cos > 0.02
+        facing = self.cos > self.body.echo.least_cos
         facing &= self.room.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
 

@@ -26,7 +26,6 @@ from mmweaver.tasks.variation import Draw, Variation, draw
 
 LEAD_S = 0.75  # of the motion's own time that is left out at the start at least: nobody is recorded from rest
 SLOWEST_MPS = 0.35  # slower, somebody who should go somewhere has arrived
-SHARPEST_FOR_800_POINTS = 100.0  # sharper skin needs more points, or hardly any faces the radar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,7 +164,7 @@ def _observed(recipe: Recipe, now: Draw, pose: PoseSequence, label: str, name: s
     wall_m = None if now.wall_m is None else max(now.wall_m, nearest_wall_m)
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
     echo = SkinEcho(albedo=SkinEcho().albedo * 10 ** (now.albedo_db / 10), exponent=now.skin_exponent)
-    points = 800 if now.skin_exponent < SHARPEST_FOR_800_POINTS else 2000
+    points = recipe.variation.skin_points
     run = Simulator(scene, radar).run(
         pose, num_frames=recipe.frames, seed=person, num_points=points, echo=echo
     )  # fmt: skip

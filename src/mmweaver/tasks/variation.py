@@ -31,6 +31,7 @@ class Variation:
     gain_db: Span = (-16.0, 4.0)
     albedo_db: Span = (-6.0, 4.0)
     skin_exponents: tuple[float, ...] = (2.0, 20.0, 60.0, 400.0)
+    skin_points: int = 800
     wall_m: Span = (2.9, 5.4)
     wall_share: float = 0.8
     most_panels: int = 5
