@@ -87,7 +87,7 @@ CAPSULES: tuple[Capsule, ...] = (
     *_both_sides("ankle", "foot", (0.038, 0.035), FRONT, 0.05),
     *_both_sides("shoulder", "elbow", (0.05, 0.042), ARM),
     *_both_sides("elbow", "wrist", (0.042, 0.03), ARM),
-    *_both_sides("wrist", "wrist", (0.035, 0.03), ARM, 0.13),
+    *_both_sides("wrist", "wrist", (0.042, 0.04), ARM, 0.12),
 )
 TORSO_WIDTH_FRONT = 1.25  # the trunk is wider than deep: its cross-section is an ellipse
 TORSO = {"pelvis", "spine1", "spine2", "spine3"}

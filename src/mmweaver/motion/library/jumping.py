@@ -94,8 +94,10 @@ def _hop_all(
 
 def jumping(stage: Stage) -> Controls:
     """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
+    if stage.step.speed > 0:
+        return hopping(stage)
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0, 1.1)[stage.step.speed + 1]
+    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
@@ -122,6 +124,23 @@ def jumping(stage: Stage) -> Controls:
     _bend(controls, trunk, 0.45)
     controls.arm_rad[:, :, 0] += arms[:, None]
     controls.arm_rad[:, :, 3] += 0.5 * np.maximum(trunk, 0)[:, None]
+    return controls
+
+
+def hopping(stage: Stage) -> Controls:
+    """Small jumps, one at once after the other: ankles and knees drive them, the trunk stays upright."""
+    controls, rng = upright(stage), stage.rng
+    height_m = float(rng.uniform(0.04, 0.09))
+    flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
+    ground_s = float(rng.uniform(0.24, 0.3))
+    count = stage.step.count or max(1, int((stage.duration_s - ground_s) / (flight_s + ground_s)))
+    first = stage.start_s + 0.7 * ground_s
+    hops = [Hop(off_s=first + k * (flight_s + ground_s), rise_m=height_m) for k in range(count)]
+    dips = [(stage.start_s - 0.2, 0.0, 0.0), (first - ground_s / 2, 0.09, 6.0)]
+    dips += [(hop.off_s - ground_s / 2, 0.09, 6.0) for hop in hops[1:]]
+    dips += [(hops[-1].land_s + ground_s / 2, 0.08, 5.0), (hops[-1].land_s + ground_s / 2 + 0.35, 0.0, 0.0)]
+    _hop_all(controls, stage, hops, dips, ready_m=-0.045)
+    controls.arm_rad[:, :, 3] += float(rng.uniform(0.1, 0.6))
     return controls
 
 
@@ -163,7 +182,7 @@ def jumping_jacks(stage: Stage) -> Controls:
     top = float(rng.uniform(2.55, 2.85))
     controls.arm_rad[:, :, 1] += (top * lift)[:, None]
     controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
-    controls.arm_rad[:, :, 0] += 0.12
+    controls.arm_rad[:, :, 0] += float(rng.uniform(0.0, 0.35)) + (float(rng.uniform(-0.1, 0.3)) * lift)[:, None]
     return controls
 
 
@@ -188,8 +207,9 @@ def squatting(stage: Stage) -> Controls:
     for k in range(count):
         begin = stage.start_s + k * period
         down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
-    knee = np.radians(rng.uniform(98, 112))
-    back = 0.125 * body.height_m
+    knee = np.radians(rng.uniform(75, 112))
+    back = float(rng.uniform(0.085, 0.125)) * body.height_m
+    lean = float(rng.uniform(0.6, 1.1))
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
     low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + body.hip_below_pelvis_m * 0.95
     stand = body.pelvis_height_m(STAND_STRETCH)
@@ -198,10 +218,11 @@ def squatting(stage: Stage) -> Controls:
     shift = (back + 0.022 * body.height_m) * down
     controls.pelvis_m[:, 0] -= shift * np.cos(heading)
     controls.pelvis_m[:, 1] -= shift * np.sin(heading)
-    controls.pelvis_rad[:, 1] += 0.42 * down
-    controls.spine_rad[:, 1] += 0.3 * down
+    controls.pelvis_rad[:, 1] += 0.42 * lean * down
+    controls.spine_rad[:, 1] += 0.3 * lean * down
     controls.head_rad[:, 0] -= 0.45 * down
     controls.knee_out_rad[:] += (0.2 * down)[:, None]
-    controls.arm_rad[:, :, 0] += (float(rng.uniform(1.5, 1.9)) * down)[:, None]
+    lift_rad = float(rng.choice([rng.uniform(0.0, 0.5), rng.uniform(1.2, 1.9)]))  # arms left hanging, or for balance
+    controls.arm_rad[:, :, 0] += (lift_rad * down)[:, None]
     controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]
     return controls
