@@ -21,7 +21,7 @@ from mmweaver.motion.sentence import parse
 from mmweaver.simulation.body import SkinEcho
 from mmweaver.simulation.simulator import Simulator
 from mmweaver.tasks.open_room import open_room
-from mmweaver.tasks.point_recording import PointRecording, chosen
+from mmweaver.tasks.point_recording import PointRecording
 from mmweaver.tasks.variation import Draw, Variation, draw
 
 LEAD_S = 0.75  # of the motion's own time that is left out at the start at least: nobody is recorded from rest
@@ -170,8 +170,17 @@ def _observed(recipe: Recipe, now: Draw, pose: PoseSequence, label: str, name: s
     )  # fmt: skip
     cloud = firmware_points(run.adc, _less_sensitive(recipe.firmware, now.threshold_db, recipe.radar.num_antennas))
     return PointRecording(
-        name=name, cloud=chosen(cloud, np.arange(len(cloud.frame))), num_frames=recipe.frames,
+        name=name, cloud=_tilted(cloud, np.radians(now.tilt_deg)), num_frames=recipe.frames,
         frame_rate_hz=1 / recipe.radar.frame_period_s, label=label,
+    )  # fmt: skip
+
+
+def _tilted(cloud: PointCloud, angle_rad: float) -> PointCloud:
+    """The points as a radar has them that looks down by so much: they seem higher."""
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    return PointCloud(
+        frame=cloud.frame, x_m=cloud.x_m, y_m=cos * cloud.y_m - sin * cloud.z_m,
+        z_m=sin * cloud.y_m + cos * cloud.z_m, radial_velocity_mps=cloud.radial_velocity_mps, snr_db=cloud.snr_db,
     )  # fmt: skip
 
 

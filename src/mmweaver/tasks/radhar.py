@@ -6,17 +6,16 @@ from mmweaver.tasks.generation import Recipe
 
 ACTIVITIES = {
     "boxing": (
-        "a person punches", "a person punches quickly", "a person punches slowly",
+        "a person punches", "a person punches quickly",
         "a person punches with the left hand", "a person punches with the right hand",
     ),
     "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
-    "jump": ("a person jumps", "a person jumps quickly", "a person jumps slowly"),
+    "jump": ("a person jumps quickly", "a person hops quickly", "a person quickly jumps", "a person jumps"),
     "squats": ("a person squats", "a person squats quickly", "a person squats slowly"),
     "walk": (
-        "a person walks back and forth", "a person walks towards the radar", "a person walks away",
-        "a person walks slowly back and forth", "a person walks quickly back and forth", "a person walks in a circle",
-        "a person walks to the left", "a person walks to the right",
-        "a person walks slowly towards the radar", "a person walks slowly away",
+        "a person walks slowly back and forth", "a person walks back and forth", "a person walks slowly",
+        "a person walks slowly towards the radar", "a person walks towards the radar", "a person walks slowly away", "a person walks slowly in a circle",
+        "a person walks slowly to the left", "a person walks slowly to the right",
     ),
 }  # fmt: skip
 

@@ -14,26 +14,28 @@ class Variation:
     """Spans that a recording draws from, evenly (`tempo` evenly in its logarithm).
 
     `tempo` speeds a motion up; `vigour` scales how far joints leave their mean place; `turn_deg` is the standard
-    deviation of how far someone who stays in place is turned away from the radar. What ends in `_db` changes the
+    deviation of how far someone who stays in place is turned away from the radar. `tilt_deg` turns the reported points
+    about the radar, up where positive. What ends in `_db` changes the
     radar's own noise figure, its CFAR's threshold, its receiver's gain, and the skin's albedo.
     """
 
-    tempo: Span = (0.65, 1.6)
+    tempo: Span = (0.7, 1.6)
     vigour: Span = (0.75, 1.1)
     turn_deg: float = 25.0
-    distance_m: Span = (0.9, 2.6)
+    distance_m: Span = (1.2, 2.5)
     azimuth_deg: Span = (-22.0, 22.0)
     height_m: Span = (1.5, 1.95)
-    radar_height_m: Span = (0.6, 1.4)
-    elevation_beamwidth_deg: Span = (18.0, 36.0)
-    noise_db: Span = (-3.0, 12.0)
-    threshold_db: Span = (-5.0, 4.0)
+    radar_height_m: Span = (1.05, 1.5)
+    tilt_deg: Span = (-8.0, 8.0)
+    elevation_beamwidth_deg: Span = (14.0, 28.0)
+    noise_db: Span = (6.0, 22.0)
+    threshold_db: Span = (-4.0, 2.0)
     gain_db: Span = (-16.0, 4.0)
     albedo_db: Span = (-6.0, 4.0)
-    skin_exponents: tuple[float, ...] = (2.0, 20.0, 60.0, 400.0)
-    skin_points: int = 800
+    skin_exponents: tuple[float, ...] = (60.0, 200.0, 400.0)
+    skin_points: int = 6000
     wall_m: Span = (2.9, 5.4)
-    wall_share: float = 0.8
+    wall_share: float = 0.3
     most_panels: int = 5
 
 
@@ -48,6 +50,7 @@ class Draw:
     azimuth_deg: float
     height_m: float
     radar_height_m: float
+    tilt_deg: float
     elevation_beamwidth_deg: float
     noise_db: float
     threshold_db: float
@@ -78,6 +81,7 @@ def draw(variation: Variation, rng: np.random.Generator) -> Draw:
         azimuth_deg=of(variation.azimuth_deg),
         height_m=of(variation.height_m),
         radar_height_m=of(variation.radar_height_m),
+        tilt_deg=of(variation.tilt_deg),
         elevation_beamwidth_deg=of(variation.elevation_beamwidth_deg),
         noise_db=of(variation.noise_db),
         threshold_db=of(variation.threshold_db),
