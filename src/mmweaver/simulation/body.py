@@ -26,10 +26,13 @@ class SkinEcho:
     """How skin returns a wave that meets it at an angle: 4 albedo cos^exponent of its area, 2 being Lambert's law.
 
     Other exponents are scaled to return as much over all angles, so a larger one is a flash where skin faces the radar.
+    `arms_db` and `legs_db` make these brighter or fainter than the rest.
     """
 
     albedo: float = ALBEDO
     exponent: float = 2.0
+    arms_db: float = 0.0
+    legs_db: float = 0.0
 
     @property
     def least_cos(self) -> float:
@@ -123,6 +126,8 @@ class Body:
         self.angle_rad = rng.uniform(0, 2 * np.pi, num_points)
         self.micro_phase = np.exp(2j * np.pi * rng.random(num_points))
         self.area_m2 = area.sum() * self.scale**2 / num_points
+        limb_db = [_limb_db(capsule, self.echo) for capsule in CAPSULES]
+        self.brightness = 10 ** (np.array(limb_db)[self.part] / 10)  # (point,) in power
 
     @staticmethod
     def _side_area(capsule: Capsule) -> float:
@@ -217,6 +222,14 @@ def _cap_shares(capsule: Capsule) -> tuple[float, float]:
     share = capsule.end_radius_m / _length_m(capsule) if capsule.extend_m else 0.0
     is_lump = capsule.start == capsule.end and capsule.start not in CONTINUES
     return (share if is_lump else 0.0, share)
+
+
+def _limb_db(capsule: Capsule, echo: SkinEcho) -> float:
+    """How much brighter than the trunk a capsule is."""
+    start, end = (name.rsplit("_", 1)[-1] for name in (capsule.start, capsule.end))
+    if end in ("elbow", "wrist"):
+        return echo.arms_db
+    return echo.legs_db if end in ("knee", "ankle", "foot") and start != end else 0.0
 
 
 def _torso_rotation(joints_m: np.ndarray) -> np.ndarray:

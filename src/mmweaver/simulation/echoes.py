@@ -103,6 +103,7 @@ class BodyEchoes:
     def _direct(self) -> "Rows":
         echo = self.body.echo
         cross_section = echo.strength * np.maximum(self.cos, 0) ** echo.exponent * self.body.area_m2
+        cross_section *= self.body.brightness
         amplitude = self.gain * self._pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return Rows(
             None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible, False
@@ -113,7 +114,7 @@ class BodyEchoes:
         count = len(self.body.micro_phase)
         chosen = np.unique(np.linspace(0, count - 1, min(GHOST_POINTS, count)).astype(int))
         place, normal = self.posed.place_m[:, chosen], self.posed.normal[:, chosen]
-        area_m2 = self.body.area_m2 * count / len(chosen)
+        area_m2 = self.body.area_m2 * self.body.brightness[chosen] * count / len(chosen)
         image = mirror.image(place)
         way_m = np.linalg.norm(image, axis=-1)
         corner = mirror.crossing(np.zeros(3), image)

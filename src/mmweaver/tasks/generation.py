@@ -25,7 +25,7 @@ from mmweaver.tasks.point_recording import PointRecording
 from mmweaver.tasks.variation import Draw, Variation, draw
 
 LEAD_S = 0.75  # of the motion's own time that is left out at the start at least: nobody is recorded from rest
-SLOWEST_MPS = 0.35  # slower, somebody who should go somewhere has arrived
+SLOWEST_MPS = 0.2  # slower, somebody who should go somewhere has arrived
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -163,7 +163,10 @@ def _observed(recipe: Recipe, now: Draw, pose: PoseSequence, label: str, name: s
     nearest_wall_m = float(pose.joints_m[..., 1].max()) + 0.3
     wall_m = None if now.wall_m is None else max(now.wall_m, nearest_wall_m)
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
-    echo = SkinEcho(albedo=SkinEcho().albedo * 10 ** (now.albedo_db / 10), exponent=now.skin_exponent)
+    echo = SkinEcho(
+        albedo=SkinEcho().albedo * 10 ** (now.albedo_db / 10), exponent=now.skin_exponent,
+        arms_db=now.arms_db, legs_db=now.legs_db,
+    )  # fmt: skip
     points = recipe.variation.skin_points
     run = Simulator(scene, radar).run(
         pose, num_frames=recipe.frames, seed=person, num_points=points, echo=echo

@@ -6,16 +6,19 @@ from mmweaver.tasks.generation import Recipe
 
 ACTIVITIES = {
     "boxing": (
-        "a person punches", "a person punches quickly",
-        "a person punches with the left hand", "a person punches with the right hand",
+        "a person punches", "a person punches quickly", "a person punches with the right hand",
+        "a person walks slowly back and forth while punching", "a person walks back and forth while punching quickly",
+        "a person walks slowly towards the radar while punching", "a person walks slowly away while punching",
     ),
     "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
-    "jump": ("a person jumps quickly", "a person hops quickly", "a person quickly jumps", "a person jumps"),
+    "jump": ("a person jumps quickly", "a person hops quickly", "a person quickly jumps", "a person quickly hops",
+        "a person jumps"),
     "squats": ("a person squats", "a person squats quickly", "a person squats slowly"),
     "walk": (
         "a person walks slowly back and forth", "a person walks back and forth", "a person walks slowly",
-        "a person walks slowly towards the radar", "a person walks towards the radar", "a person walks slowly away", "a person walks slowly in a circle",
-        "a person walks slowly to the left", "a person walks slowly to the right",
+        "a person walks slowly towards the radar", "a person walks towards the radar",
+        "a person slowly walks towards the radar", "a person walks slowly away",
+        "a person walks slowly in a circle", "a person walks slowly to the left", "a person walks slowly to the right",
     ),
 }  # fmt: skip
 

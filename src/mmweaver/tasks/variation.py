@@ -16,10 +16,11 @@ class Variation:
     `tempo` speeds a motion up; `vigour` scales how far joints leave their mean place; `turn_deg` is the standard
     deviation of how far someone who stays in place is turned away from the radar. `tilt_deg` turns the reported points
     about the radar, up where positive. What ends in `_db` changes the
-    radar's own noise figure, its CFAR's threshold, its receiver's gain, and the skin's albedo.
+    radar's own noise figure, its CFAR's threshold, its receiver's gain, the
+    skin's albedo, and how bright arms and legs are beside the trunk.
     """
 
-    tempo: Span = (0.7, 1.6)
+    tempo: Span = (0.6, 1.6)
     vigour: Span = (0.75, 1.1)
     turn_deg: float = 25.0
     distance_m: Span = (1.2, 2.5)
@@ -33,6 +34,8 @@ class Variation:
     gain_db: Span = (-16.0, 4.0)
     albedo_db: Span = (-6.0, 4.0)
     skin_exponents: tuple[float, ...] = (60.0, 200.0, 400.0)
+    arms_db: Span = (-2.0, 6.0)
+    legs_db: Span = (-16.0, -2.0)
     skin_points: int = 6000
     wall_m: Span = (2.9, 5.4)
     wall_share: float = 0.3
@@ -57,6 +60,8 @@ class Draw:
     gain_db: float
     albedo_db: float
     skin_exponent: float
+    arms_db: float
+    legs_db: float
     wall_m: float | None
     panels: tuple[Panel, ...]
 
@@ -88,6 +93,8 @@ def draw(variation: Variation, rng: np.random.Generator) -> Draw:
         gain_db=of(variation.gain_db),
         albedo_db=of(variation.albedo_db),
         skin_exponent=float(rng.choice(variation.skin_exponents)),
+        arms_db=of(variation.arms_db),
+        legs_db=of(variation.legs_db),
         wall_m=of(variation.wall_m) if rng.random() < variation.wall_share else None,
         panels=tuple(_panel(rng) for _ in range(int(rng.integers(variation.most_panels + 1)))),
     )

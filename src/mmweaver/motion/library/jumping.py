@@ -141,6 +141,12 @@ def hopping(stage: Stage) -> Controls:
     dips += [(hops[-1].land_s + ground_s / 2, 0.08, 5.0), (hops[-1].land_s + ground_s / 2 + 0.35, 0.0, 0.0)]
     _hop_all(controls, stage, hops, dips, ready_m=-0.045)
     controls.arm_rad[:, :, 3] += float(rng.uniform(0.1, 0.6))
+    # the trunk swings a little to and fro with each hop
+    turn = 2 * np.pi * (stage.time_s - first) / (flight_s + ground_s) + rng.uniform(0, 2 * np.pi)
+    ahead = float(rng.uniform(0.0, 0.018)) * np.sin(turn)
+    controls.pelvis_m[:, 0] += ahead * np.cos(controls.heading_rad)
+    controls.pelvis_m[:, 1] += ahead * np.sin(controls.heading_rad)
+    controls.spine_rad[:, 1] += float(rng.uniform(0.0, 0.02)) * (1 + np.sin(turn))
     return controls
 
 
@@ -207,9 +213,9 @@ def squatting(stage: Stage) -> Controls:
     for k in range(count):
         begin = stage.start_s + k * period
         down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
-    knee = np.radians(rng.uniform(75, 112))
+    knee = np.radians(rng.uniform(94, 112))
     back = float(rng.uniform(0.085, 0.125)) * body.height_m
-    lean = float(rng.uniform(0.6, 1.1))
+    lean = float(rng.uniform(0.4, 1.3))
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
     low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + body.hip_below_pelvis_m * 0.95
     stand = body.pelvis_height_m(STAND_STRETCH)
