@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
     from mmweaver.formats.npz_files import read_radar_npz
     from mmweaver.formats.radar_file import load_radar
+    from mmweaver.motion.mocap.read import read_motion
     from mmweaver.recording import Recording, process_recording
     from mmweaver.weaver import Generation, Weaver
 
@@ -32,6 +33,7 @@ _HOME = {
     "Weaver": "weaver",
     "load_radar": "formats.radar_file",
     "process_recording": "recording",
+    "read_motion": "motion.mocap.read",
     "read_radar_npz": "formats.npz_files",
 }
 
@@ -50,6 +52,7 @@ __all__ = [
     "__version__",
     "load_radar",
     "process_recording",
+    "read_motion",
     "read_radar_npz",
 ]
 

@@ -26,7 +26,10 @@ from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.methods import METHODS
-from mmweaver.motion.compose import compose
+from mmweaver.motion.compose import Motion, compose
+from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.dense import check_lasts
+from mmweaver.motion.mocap.placing import place_clip
 from mmweaver.motion.resample import resample
 from mmweaver.motion.sentence import parse
 from mmweaver.motion.timing import schedule
@@ -146,15 +149,23 @@ class Weaver:
     def generate(
         self,
         room: Room,
-        text: str,
+        text: str | None = None,
         *,
+        motion: MotionClip | None = None,
         frames: int = 20,
         fps: float | None = None,
         seed: int = 0,
         at: tuple[float, float] | None = None,
+        heading_rad: float | None = None,
+        height_m: float | None = None,
+        as_recorded: bool = False,
         keep_adc: bool = True,
     ) -> Generation:
-        """The signal of one person who does in the room what the text says.
+        """The signal of one person who does in the room what the text says, or what a recorded `motion` shows.
+
+        A `motion` comes from `mmweaver.read_motion` or a motion model; a text beside it only names it. `heading_rad`
+        (from +x towards +y) is where its body faces first, `as_recorded` takes its places as the radar's own.
+        `height_m` is the body's height; a recorded one is scaled to it.
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given. Without `keep_adc` the raw samples are
@@ -162,39 +173,70 @@ class Weaver:
         InputError for a request that cannot be met.
         """
         needs_adc = keep_adc or self.points == "firmware"
-        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc)
+        config = check_request(
+            self.radar, text=text, motion=motion, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc
+        )
+        duration_s = frames * config.frame_period_s
+        window_m = (float(config.range_m[0]), float(config.range_m[-1]))
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            motion = compose(
-                text, room.scene, duration_s=frames * config.frame_period_s, seed=seed,
-                range_window_m=(float(config.range_m[0]), float(config.range_m[-1])), start_m=at,
-            )  # fmt: skip
+            if motion is not None:
+                clip = motion if height_m is None else motion.scaled_to(height_m)
+                moved = place_clip(
+                    clip, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m, start_m=at,
+                    heading_rad=heading_rad, as_recorded=as_recorded,
+                )  # fmt: skip
+            else:
+                moved = _composed(text, room.scene, duration_s, seed, window_m, at, height_m)
         signal = self.method(
-            room.scene, motion.pose, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
+            room.scene, moved.pose, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
         )
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)
-        pose = resample(motion.pose, signal.cube.grid.frame_time_s)
+        pose = resample(moved.pose, signal.cube.grid.frame_time_s)
         meta = {
             "schema_version": META_VERSION,
             "made_by": "mmweaver generate",
             "version": __version__,
-            "text": text, "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
+            "text": text if text is not None else moved.plan.text, "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
             "method": self.method_name,
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(config),
-            "inputs": room.inputs,
+            "inputs": room.inputs | _motion_input(motion),
+            "placed": {"heading_rad": heading_rad, "height_m": height_m, "as_recorded": as_recorded},
             "camera": room.scene.photo.intrinsics,
-            "assumed": list(dict.fromkeys((*room.scene.assumptions, *motion.assumptions, *signal.assumptions))),
+            "assumed": list(dict.fromkeys((*room.scene.assumptions, *moved.assumptions, *signal.assumptions))),
             "person": _person(pose),
-            "plan": motion.plan,
+            "plan": moved.plan,
         }  # fmt: skip
         return Generation(
-            cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, pose=pose, motion=motion.pose,
+            cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, pose=pose, motion=moved.pose,
             scene=room.scene, meta=meta, stages=stages,
         )  # fmt: skip
+
+
+def _motion_input(motion: MotionClip | None) -> dict[str, Any]:
+    """What meta.json says of a recorded motion."""
+    if motion is None:
+        return {}
+    digest = {} if motion.file is None else file_digest(motion.file)
+    return {"motion": {**digest, "name": motion.label, "fps": motion.fps, "first_frame": motion.first_frame}}
+
+
+def _composed(
+    text: str | None,
+    scene: Scene,
+    duration_s: float,
+    seed: int,
+    window_m: tuple[float, float],
+    at: tuple[float, float] | None,
+    height_m: float | None,
+) -> Motion:
+    return compose(
+        text or "", scene, duration_s=duration_s, seed=seed, range_window_m=window_m, start_m=at, height_m=height_m
+    )
 
 
 def _person(pose: PoseSequence) -> dict[str, Any]:
@@ -210,7 +252,8 @@ def _person(pose: PoseSequence) -> dict[str, Any]:
 def check_request(
     radar: RadarConfig,
     *,
-    text: str,
+    text: str | None = None,
+    motion: MotionClip | None = None,
     frames: int = 20,
     fps: float | None = None,
     seed: int = 0,
@@ -220,7 +263,8 @@ def check_request(
     """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
 
     Raises InputError for frames, fps or a place out of their limits, for a frame rate that the chirps do not fit into,
-    for more samples than memory holds, and for a text that is not understood or does not fit the time.
+    for more samples than memory holds, for a text that is not understood or does not fit the time, and for a recorded
+    motion that is too short.
     """
     if not 1 <= frames <= MAX_FRAMES:
         raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
@@ -242,5 +286,8 @@ def check_request(
             f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
             f" {most} are made at a time"
         )
-    schedule(parse(text), frames * config.frame_period_s)
+    if motion is not None:
+        check_lasts(motion, frames * config.frame_period_s)
+    else:
+        schedule(parse(text or ""), frames * config.frame_period_s)
     return config

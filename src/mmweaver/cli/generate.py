@@ -6,6 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, whole
+from mmweaver.cli.own_motion import (
+    add_motion_options,
+    check_motion_options,
+    motion_of_model,
+    placing_options,
+    read_own_motion,
+)
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,6 +27,7 @@ EXAMPLES = """examples:
       --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --frames 40 --radar mmmesh --out drink/ --bin
+  mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
 """
 
 
@@ -52,6 +60,7 @@ def add_verb(verbs: Any) -> None:
         metavar="X,Y",
         help="where the person starts: metres right of and ahead of the radar (default: chosen)",
     )
+    add_motion_options(person)
     radar = parser.add_argument_group("the radar")
     radar.add_argument(
         "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
@@ -72,6 +81,7 @@ def add_verb(verbs: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then makes the signal and writes it. Raises InputError."""
     text, out = _check_inputs(arguments)
+    check_motion_options(arguments)
 
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
@@ -94,20 +104,23 @@ def run(arguments: argparse.Namespace) -> int:
             "at": arguments.at,
             "keep_adc": arguments.bin,
         }
-        check_request(weaver.radar, text=text, **request)
-        result = weaver.generate(_read_room(weaver, arguments), text, **request)
+        seconds = arguments.frames / arguments.fps if arguments.fps else arguments.frames * radar.frame_period_s
+        motion = read_own_motion(arguments) or motion_of_model(arguments, text, seconds)
+        check_request(weaver.radar, text=text, motion=motion, **request)
+        request |= placing_options(arguments)
+        result = weaver.generate(_read_room(weaver, arguments), text, motion=motion, **request)
         meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order)
     print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
 
 
-def _check_inputs(arguments: argparse.Namespace) -> tuple[str, Path]:
+def _check_inputs(arguments: argparse.Namespace) -> tuple[str | None, Path]:
     """The text and the output folder, once it is clear which room is meant."""
     pictures = (arguments.rgb, arguments.depth, arguments.camera)
     if arguments.demo:
         if any(picture is not None for picture in pictures):
             raise InputError("--demo brings its own room; leave out --rgb, --depth and --camera, or leave out --demo")
-        text = DEMO_TEXT if arguments.text is None else arguments.text
+        text = DEMO_TEXT if arguments.text is None and arguments.motion is None else arguments.text
         return text, arguments.out or Path(DEMO_OUT)
     if arguments.rgb is None and arguments.depth is None:
         raise InputError("which room? give --rgb and --depth, or try --demo")
@@ -115,8 +128,10 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[str, Path]:
         raise InputError("--rgb needs --depth too: the room is built from the distance of each pixel")
     if arguments.rgb is None:
         raise InputError("--depth needs --rgb too: the colour picture of the same view")
-    if arguments.text is None:
-        raise InputError("what does the person do? give --text, for example --text 'a person walks to the left'")
+    if arguments.text is None and arguments.motion is None:
+        raise InputError(
+            "what does the person do? give --text, for example --text 'a person walks to the left', or --motion"
+        )
     if arguments.out is None:
         raise InputError("where to? give --out, a folder for the results")
     return arguments.text, arguments.out

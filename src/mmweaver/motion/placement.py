@@ -7,8 +7,10 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
+from mmweaver.motion.activities import CLEARANCE_M
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
+from mmweaver.motion.other_ways import check_floor, is_other, lay_other, turn_by
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
 from mmweaver.motion.seating import STOOL_HEIGHT_M, Sitting, reachable, seats_of, stool_at, stool_fits, stool_note
@@ -25,10 +27,6 @@ from mmweaver.motion.way import (
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
-WANTED_CLEARANCE_M = {
-    "jumping_jacks": 0.85, "jump": 0.5, "squat": 0.6, "wave": 0.6, "clap": 0.45, "raise": 0.5, "punch": 0.75,
-    "drink": 0.4, "stand": 0.35, "turn": 0.4, "jog": 0.5, "sit": 0.4, "sit_down": 0.5, "stand_up": 0.5, "walk": 0.3,
-}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,15 +88,18 @@ def _try(
             target = _seat_ahead(way, step, following, seats)
             _lay_move(way, step, target, first=k == 0, last=following is None)
             sitting = target if following is not None and following.lower == "sit_down" else None
-        elif step.lower == "turn" or step.facing:
+        elif step.lower == "turn" and step.turn_deg:
+            turn_by(way, step)
+        elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
             _lay_turn(way, step, rng, first=k == 0)
+        check_floor(way, step, body)
         way.from_seat = way.from_seat or step.lower == "stand_up"
         if step.lower == "sit_down" and k:
             sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
             way.turn_to(sitting.facing_rad, step.start_s - 0.3)
         way.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
         if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
-            wanted = max(WANTED_CLEARANCE_M[step.lower], WANTED_CLEARANCE_M.get(step.upper, 0.0))
+            wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
             way.cost += 2.0 * max(0.0, wanted - float(floor.clearance_at(way.place)))
             way.cost += float(floor.dislike_at(way.place))
     way.cost += float(rng.uniform(0, 0.5))
@@ -114,7 +115,7 @@ def _start(
         return _start_seated(floor, body, rng, start_m, seats)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
-    if first.facing:
+    if first.facing and first.upper not in ("point", "look_around"):
         facing = _facing_rad(first.facing, spot) + float(rng.normal(0, 0.05))
     return Way(floor=floor, rng=rng, place=spot, heading_rad=facing), None
 
@@ -169,7 +170,7 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
         said = _direction_rad(way, step)
         lasts = max(step.end_s - step.start_s - 0.35, 0.1)
         speed = float(np.hypot(*gap)) / lasts
-        fits = 0.45 <= speed <= (1.6 if step.lower == "walk" else 2.6)
+        fits = 0.45 <= speed <= (2.6 if step.lower == "jog" else 1.6)
         if (
             fits
             and (said is None or abs(angle_between(said, towards)) < 0.9)
@@ -180,6 +181,9 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
 
 
 def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
+    if target is None and is_other(step):
+        lay_other(way, step, _direction_rad(way, step), first=first, last=last)
+        return
     if target is not None:
         gap = target.feet_m - way.place
         direction = float(np.arctan2(gap[1], gap[0]))

@@ -94,6 +94,8 @@ CAPSULES: tuple[Capsule, ...] = (
 )
 TORSO_WIDTH_FRONT = 1.25  # the trunk is wider than deep: its cross-section is an ellipse
 TORSO = {"pelvis", "spine1", "spine2", "spine3"}
+CHEST = {"pelvis": 0.3, "spine1": 0.7, "spine2": 1.0, "spine3": 0.8}  # how far each part of the trunk breathes
+CHEST_BACK = 0.15  # and its back, of its front
 # A part that ends at its own start continues the bone before it: the hand the forearm, the crown the neck.
 CONTINUES = {"head": "neck", "left_wrist": "left_elbow", "right_wrist": "right_elbow"}
 
@@ -164,8 +166,15 @@ class Body:
             rotations.append(_shortest_turn(torso, np.asarray(capsule.rest), unit))
         return np.stack(starts, 1), np.stack(axes, 1), np.stack(rotations, 1)
 
-    def skin(self, joints_m: np.ndarray) -> Skin:
-        """Skin points for joints (time, 22, 3)."""
+    @cached_property
+    def _breathes(self) -> np.ndarray:
+        """How far each point follows the chest's front: all of it in front, a little at the sides and back."""
+        share = np.array([CHEST.get(capsule.start, 0.0) for capsule in CAPSULES])[self.part]
+        front = np.maximum(np.sin(self.angle_rad), 0.0)
+        return share * (CHEST_BACK + (1 - CHEST_BACK) * front)
+
+    def skin(self, joints_m: np.ndarray, chest_m: np.ndarray | None = None) -> Skin:
+        """Skin points for joints (time, 22, 3); `chest_m` (time,) is how far the chest's front stands out."""
         starts, axes, rotations = self.frames(joints_m)
         part, radii = self.part, self._radii
         along = np.clip(self.along, 0.0, 1.0)
@@ -180,7 +189,11 @@ class Body:
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         turn = rotations[:, part]
         place = starts[:, part] + axes[:, part] * along[None, :, None] + np.einsum("tpij,pj->tpi", turn, offset)
-        return Skin(place_m=place, normal=np.einsum("tpij,pj->tpi", turn, normal))
+        outward = np.einsum("tpij,pj->tpi", turn, normal)
+        if chest_m is not None:
+            trunk = np.flatnonzero(self._breathes)
+            place[:, trunk] += outward[:, trunk] * (chest_m[:, None] * self._breathes[trunk])[..., None]
+        return Skin(place_m=place, normal=outward)
 
     def hull(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Low-poly hull of all capsules for shadows: vertices (time, vertex, 3) and faces (face, 3)."""

@@ -29,10 +29,10 @@ class BodyAtFrames:
     hulls: list[RayCaster]  # one a frame
 
     @classmethod
-    def of(cls, body: Body, joints_m: np.ndarray) -> "BodyAtFrames":
-        """Joints (frame, node, 22, 3); the middle node counts as the frame's middle."""
+    def of(cls, body: Body, joints_m: np.ndarray, chest_m: np.ndarray | None) -> "BodyAtFrames":
+        """Joints (frame, node, 22, 3), chest (frame, node); the middle node counts as the frame's middle."""
         frames, nodes = joints_m.shape[:2]
-        skin = body.skin(joints_m.reshape(-1, 22, 3))
+        skin = body.skin(joints_m.reshape(-1, 22, 3), None if chest_m is None else chest_m.ravel())
         places = skin.place_m.reshape(frames, nodes, -1, 3)
         normals = skin.normal.reshape(frames, nodes, -1, 3)
         vertices, faces = body.hull(joints_m[:, nodes // 2])
@@ -56,9 +56,9 @@ class BodyAtFrames:
 class BodyEchoes:
     """Echo rows of one person in one room, frame by frame."""
 
-    def __init__(self, room: Room, body: Body, joints_m: np.ndarray):
+    def __init__(self, room: Room, body: Body, joints_m: np.ndarray, chest_m: np.ndarray | None = None):
         self.room, self.body, self.config = room, body, room.config
-        self.posed = BodyAtFrames.of(body, joints_m)
+        self.posed = BodyAtFrames.of(body, joints_m, chest_m)
         self.num_frames = len(joints_m)
         self.distance_m = np.linalg.norm(self.posed.place_m, axis=-1)
         self.towards = -self.posed.place_m / np.maximum(self.distance_m, 1e-6)[..., None]

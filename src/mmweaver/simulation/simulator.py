@@ -9,10 +9,11 @@ from scipy.interpolate import CubicSpline
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
-from mmweaver.simulation.body import DEFAULT_NUM_POINTS, SkinEcho, body_of
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS, Body, SkinEcho, body_of
 from mmweaver.simulation.echoes import BodyEchoes
 from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
+from mmweaver.simulation.small_motions import Restlessness, SmallMotions
 from mmweaver.simulation.synthesis import FrameClock, synthesise
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -55,9 +56,15 @@ class Simulator:
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
+        motions: SmallMotions | None = None,
     ) -> Simulation:
-        """ADC samples of the posed person, all frames at once: mind the memory, or take `chunks`."""
-        chunks = list(self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points, echo=echo))
+        """ADC samples of the posed person, all frames at once: mind the memory, or take `chunks`.
+
+        The person sways, wavers and breathes as `motions` says, by default as people do; STILL only holds the joints.
+        """
+        chunks = list(
+            self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points, echo=echo, motions=motions)
+        )
         samples = np.concatenate([chunk.samples for chunk in chunks])
         return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
 
@@ -69,6 +76,7 @@ class Simulator:
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
+        motions: SmallMotions | None = None,
     ) -> Iterator[AdcCube]:
         """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
 
@@ -77,9 +85,10 @@ class Simulator:
         self._check(pose, num_frames)
         body = body_of(pose, num_points, echo)
         receiver = Receiver(self.config, self.impairments, seed)
+        restless = Restlessness(pose.subject, seed, motions or SmallMotions())
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
-            echoes = BodyEchoes(self.room, body, self._joints_at_nodes(pose, frames))
+            echoes = self._echoes(pose, body, restless, frames)
             samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
             yield AdcCube(samples=samples, config=self.config, scale=1.0)
 
@@ -88,11 +97,24 @@ class Simulator:
         person = synthesise(echoes.rows(index), self.clock)
         return receiver.receive(person, room, self.room.adc_rate, frame)
 
+    def _echoes(self, pose: PoseSequence, body: Body, restless: Restlessness, frames: np.ndarray) -> BodyEchoes:
+        joints = self._joints_at_nodes(pose, frames)
+        time_s = (frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]).ravel()
+        moved = restless.moved(joints.reshape(-1, *joints.shape[2:]), time_s, pose.height_m)
+        chest_m = restless.chest_m(time_s)
+        return BodyEchoes(self.room, body, moved.reshape(joints.shape), chest_m.reshape(joints.shape[:2]))
+
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
-        """(frame, node, 22, 3): slow time is interpolated, never held."""
+        """(frame, node, 22, 3): slow time is interpolated, never held.
+
+        A frame that begins with the last pose goes on as fast as that pose was: held, it would be a person who freezes.
+        """
         times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
         spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
-        return spline(np.clip(times, pose.time_s[0], pose.time_s[-1]))
+        last_s = pose.time_s[-1]
+        joints = spline(np.clip(times, pose.time_s[0], last_s))
+        beyond_s = np.maximum(times - last_s, 0.0)
+        return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
 
     def _check(self, pose: PoseSequence, num_frames: int) -> None:
         needed_s = (num_frames - 1) * self.config.frame_period_s

@@ -11,8 +11,9 @@ ACTIVITIES = {
         "a person walks slowly towards the radar while punching", "a person walks slowly away while punching",
     ),
     "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
-    "jump": ("a person jumps quickly", "a person hops quickly", "a person quickly jumps", "a person quickly hops",
-        "a person jumps"),
+    "jump": (
+        "a person hops", "a person hops quickly", "a person hops slowly", "a person hops on the spot", "a person jumps",
+    ),
     "squats": ("a person squats", "a person squats quickly", "a person squats slowly"),
     "walk": (
         "a person walks slowly back and forth", "a person walks back and forth", "a person walks slowly",

@@ -1,6 +1,7 @@
 """Walking, jogging and turning: feet planted along the root's path, the rest following the phase of the steps."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +38,8 @@ class Style:
     sink: float  # stretch of the legs that the pelvis is carried at
     pelvis_yaw_rad: float
     sway_m: float
+    uneven: float = 0.0  # share of a step that the right foot's strike is late (early where negative): a limp
+    weave_m: float = 0.0  # how far the whole body sways to the sides of its way
 
 
 def walking_style(stage: Stage, speed_mps: float) -> Style:
@@ -83,11 +86,11 @@ class Footfall:
 
 
 def walking(stage: Stage) -> Controls:
-    return stepping(stage, walking_style(stage, _cruise_mps(stage)), jog=False)
+    return stepping(stage, walking_style(stage, max(cruise_mps(stage), 0.7)), jog=False)
 
 
 def jogging(stage: Stage) -> Controls:
-    return stepping(stage, jogging_style(stage, _cruise_mps(stage)), jog=True)
+    return stepping(stage, jogging_style(stage, cruise_mps(stage)), jog=True)
 
 
 def turning(stage: Stage) -> Controls:
@@ -95,7 +98,8 @@ def turning(stage: Stage) -> Controls:
     return stepping(stage, walking_style(stage, 0.9), jog=False)
 
 
-def _cruise_mps(stage: Stage) -> float:
+def cruise_mps(stage: Stage) -> float:
+    """The fastest that the step's way is gone, between its ramps."""
     return max((move.speed_mps for move in stage.moves), default=0.0)
 
 
@@ -103,12 +107,13 @@ def stepping(stage: Stage, style: Style, *, jog: bool) -> Controls:
     """Steps along the root's path. A foot whose next place is its old one stays where it is, unless jogging."""
     controls = upright(stage)
     time_s = stage.time_s
-    strikes = _clock(stage, style)
     first_side = int(stage.rng.integers(2))
+    strikes = _clock(stage, style, first_side)
+    aside = _weave(controls, stage, style)
     moving = _moving(stage, time_s, jog)
     for side in (LEFT, RIGHT):
         own = [k for k in range(len(strikes) - 2) if (k + first_side) % 2 == side]
-        falls = [_footfall(stage, style, strikes, k, side) for k in own]
+        falls = [_footfall(stage, style, strikes, k, side, aside) for k in own]
         _write_foot(controls, time_s, falls, side, style, jog)
     from scipy.interpolate import CubicSpline
 
@@ -117,7 +122,7 @@ def stepping(stage: Stage, style: Style, *, jog: bool) -> Controls:
     return controls
 
 
-def _clock(stage: Stage, style: Style) -> Float[Array, " k"]:
+def _clock(stage: Stage, style: Style, first_side: int) -> Float[Array, " k"]:
     """Times of the foot strikes, alternating feet, from well before the stage to well after it."""
     period = 1 / style.steps_hz
     # After standing, the first foot leaves the floor at once; under way already, any phase will do.
@@ -126,10 +131,30 @@ def _clock(stage: Stage, style: Style) -> Float[Array, " k"]:
     anchor = stage.start_s + lead
     low = int(np.floor((begin - anchor) / period)) - 4
     high = int(np.ceil((end - anchor) / period)) + 5
-    return anchor + np.arange(low, high) * period
+    strikes = anchor + np.arange(low, high) * period
+    right = (np.arange(len(strikes)) + first_side) % 2 == RIGHT
+    return strikes + style.uneven * period * right
 
 
-def _footfall(stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, side: int) -> Footfall:
+def _weave(controls: Controls, stage: Stage, style: Style) -> Callable[[Float[Array, " k"]], Float[Array, " k"]]:
+    """Sways the pelvis to the sides; returns how far, to the left, so that the feet come along."""
+    phase, rate = stage.rng.uniform(0, 2 * np.pi, 2), stage.rng.uniform(0.35, 0.6)
+
+    def aside(time_s: Float[Array, " k"]) -> Float[Array, " k"]:
+        slow = np.sin(2 * np.pi * rate * time_s + phase[0]) + 0.5 * np.sin(4.4 * np.pi * rate * time_s + phase[1])
+        return style.weave_m * slow
+
+    if style.weave_m:
+        left = aside(stage.time_s)
+        controls.pelvis_m[:, 0] -= left * np.sin(controls.heading_rad)
+        controls.pelvis_m[:, 1] += left * np.cos(controls.heading_rad)
+    return aside
+
+
+def _footfall(
+    stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, side: int,
+    weave: Callable[[Float[Array, " k"]], Float[Array, " k"]],
+) -> Footfall:  # fmt: skip
     period = float(strikes[k + 1] - strikes[k])
     stance = (1 + style.double_support) * period
     middle = np.array([strikes[k] + stance / 2])
@@ -138,6 +163,7 @@ def _footfall(stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, s
     share = float(rise(path.speed_mps(middle) / 0.6)[0])
     height_m = stage.body.height_m
     aside = SIDE_SIGN[side] * (HALF_STANCE * height_m * (1 - share) + style.half_stance_m * share)
+    aside = aside + float(weave(middle)[0])
     velocity = path.position_m(middle + 0.01)[0] - path.position_m(middle - 0.01)[0]
     back = np.sign(velocity @ np.array([np.cos(heading), np.sin(heading)])) if share > 0 else 1.0
     behind = -ANKLE_BEHIND * height_m - style.ahead_m * share * back
@@ -154,7 +180,7 @@ def _moving(stage: Stage, time_s: Float[Array, " n"], jog: bool) -> Float[Array,
         end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
         return np.asarray(start * end)
     turning = np.abs(stage.path.facing_rad(time_s + 1e-3) - stage.path.facing_rad(time_s - 1e-3)) / 2e-3
-    going = stage.path.speed_mps(time_s) / max(0.8 * _cruise_mps(stage), 0.7)
+    going = stage.path.speed_mps(time_s) / max(0.8 * cruise_mps(stage), 0.7)
     return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
 
 
@@ -218,7 +244,9 @@ def _write_trunk_and_arms(
     controls.pelvis_rad[:, 0] -= 0.05 * right_stance
     controls.pelvis_rad[:, 1] += 0.4 * style.lean_rad * moving
     controls.pelvis_rad[:, 2] -= style.pelvis_yaw_rad * left_ahead
-    controls.spine_rad[:, 0] += 0.05 * right_stance
+    lame = 0.7 * style.uneven * np.maximum(np.sign(style.uneven) * right_stance, 0) ** 3  # over the bad leg
+    controls.spine_rad[:, 0] += 0.05 * right_stance + lame
+    controls.pelvis_m[:, 2] -= 0.12 * np.abs(lame)
     controls.spine_rad[:, 1] += 0.6 * style.lean_rad * moving
     controls.spine_rad[:, 2] += 1.9 * style.pelvis_yaw_rad * left_ahead
     controls.head_rad[:, 1] -= 0.9 * style.pelvis_yaw_rad * left_ahead

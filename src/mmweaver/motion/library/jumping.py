@@ -1,6 +1,6 @@
 """Jumping, jumping jacks and squats: the legs drive the pelvis up and down, in flight it falls freely."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -8,6 +8,7 @@ from jaxtyping import Float
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.standing import STAND_STRETCH, home_feet, upright
 from mmweaver.motion.profiles import plateau, rise, through
+from mmweaver.motion.root_path import RootPath
 from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
@@ -64,7 +65,7 @@ class Hop:
         return up - half - down
 
 
-def _hop_all(
+def hop_all(
     controls: Controls,
     stage: Stage,
     hops: list[Hop],
@@ -94,10 +95,27 @@ def _hop_all(
 
 def jumping(stage: Stage) -> Controls:
     """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
-    if stage.step.speed > 0:
-        return hopping(stage)
+    return _jumps(stage)[0]
+
+
+def leaping(stage: Stage) -> Controls:
+    """Jumps that lead somewhere: the way of the step is gone in the air, in equal parts."""
+    time_s, path = stage.time_s, stage.path
+    ends = np.array([stage.start_s - 0.001, stage.end_s])
+    start, heading = path.position_m(ends)[0], float(path.facing_rad(ends)[0])
+    here = RootPath(start_m=(float(start[0]), float(start[1])), heading_rad=heading)
+    controls, hops = _jumps(replace(stage, path=here))
+    feet = sum(rise((time_s - hop.off_s) / hop.flight_s) for hop in hops) / len(hops)
+    body = sum(rise((time_s - hop.off_s + 0.16) / (hop.flight_s + 0.34)) for hop in hops) / len(hops)
+    way = path.position_m(ends)[1] - start
+    controls.pelvis_m[:, :2] += np.asarray(body)[:, None] * way
+    controls.foot_m[:, :, :2] += np.asarray(feet)[:, None, None] * way
+    return controls
+
+
+def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0)[stage.step.speed + 1]
+    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0, 1.1)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
@@ -111,7 +129,7 @@ def jumping(stage: Stage) -> Controls:
     dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
     dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
     dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips)
+    hop_all(controls, stage, hops, dips)
     trunk = plateau(time_s, stage.start_s, first + 0.12, crouch_s, push_s + 0.12)
     arms = -0.5 * plateau(time_s, stage.start_s, first + 0.05, crouch_s, push_s + 0.2)
     for hop in hops:
@@ -124,30 +142,7 @@ def jumping(stage: Stage) -> Controls:
     _bend(controls, trunk, 0.45)
     controls.arm_rad[:, :, 0] += arms[:, None]
     controls.arm_rad[:, :, 3] += 0.5 * np.maximum(trunk, 0)[:, None]
-    return controls
-
-
-def hopping(stage: Stage) -> Controls:
-    """Small jumps, one at once after the other: ankles and knees drive them, the trunk stays upright."""
-    controls, rng = upright(stage), stage.rng
-    height_m = float(rng.uniform(0.04, 0.09))
-    flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
-    ground_s = float(rng.uniform(0.24, 0.3))
-    count = stage.step.count or max(1, int((stage.duration_s - ground_s) / (flight_s + ground_s)))
-    first = stage.start_s + 0.7 * ground_s
-    hops = [Hop(off_s=first + k * (flight_s + ground_s), rise_m=height_m) for k in range(count)]
-    dips = [(stage.start_s - 0.2, 0.0, 0.0), (first - ground_s / 2, 0.09, 6.0)]
-    dips += [(hop.off_s - ground_s / 2, 0.09, 6.0) for hop in hops[1:]]
-    dips += [(hops[-1].land_s + ground_s / 2, 0.08, 5.0), (hops[-1].land_s + ground_s / 2 + 0.35, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips, ready_m=-0.045)
-    controls.arm_rad[:, :, 3] += float(rng.uniform(0.1, 0.6))
-    # the trunk swings a little to and fro with each hop
-    turn = 2 * np.pi * (stage.time_s - first) / (flight_s + ground_s) + rng.uniform(0, 2 * np.pi)
-    ahead = float(rng.uniform(0.0, 0.018)) * np.sin(turn)
-    controls.pelvis_m[:, 0] += ahead * np.cos(controls.heading_rad)
-    controls.pelvis_m[:, 1] += ahead * np.sin(controls.heading_rad)
-    controls.spine_rad[:, 1] += float(rng.uniform(0.0, 0.02)) * (1 + np.sin(turn))
-    return controls
+    return controls, hops
 
 
 def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> None:
@@ -177,7 +172,7 @@ def jumping_jacks(stage: Stage) -> Controls:
     dips = [(stage.start_s - 0.2, 0.0, 0.0)]
     dips += [(hop.off_s - ground_s / 2, 0.08, 5.0) for hop in hops]
     dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
+    hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0

@@ -1,0 +1,244 @@
+"""Where the furniture stands: groups are tried at walls and in the middle until nothing overlaps and one can walk.
+
+Room frame: x along the wall that the radar looks at, y towards it, z up; origin in the corner behind the radar's left.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.shapes import Array
+from mmweaver.scene.procedural import things
+from mmweaver.scene.procedural.groups import BACK, MIDDLE, Group
+from mmweaver.scene.procedural.kinds import Kind
+from mmweaver.scene.procedural.palette import Palette
+from mmweaver.scene.procedural.parts import Boxes, Piece, Placed, outlines_of
+
+HEAD_M, STEP_OVER_M = 1.9, 0.03  # what stands between these heights is in a walker's way
+BODY_RADIUS_M = 0.25
+WINDOW_M = (0.7, 3.45)  # ground distance, of the radar's range bins
+HALF_VIEW_RAD = float(np.deg2rad(38))
+MIN_FREE_M2, MIN_WALKABLE_M2 = 2.0, 0.8
+CELL_M = 0.05
+_DRAWS, _ENOUGH, _TRIES = 60, 5, 60
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shell:
+    """The empty room: its inner size, what is fixed to it, and the radar's place (z = 0 on the floor)."""
+
+    size_m: tuple[float, float, float]
+    openings: tuple[Piece, ...]  # door and windows
+    fixed: tuple[Placed, ...]  # lamps and, once placed, doors and windows
+    radar_m: tuple[float, float, float]
+    radar_yaw_rad: float  # from +y towards -x
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreeFloor:
+    """Squares of the floor in the room's frame, and which are free; those in view hold the radar's window."""
+
+    x_m: Float[Array, " x"]
+    y_m: Float[Array, " y"]
+    is_free: Bool[Array, "y x"]
+    in_view: Bool[Array, "y x"]
+
+    @property
+    def free_m2(self) -> float:
+        """Free floor in the radar's window and the picture."""
+        return float((self.is_free & self.in_view).sum() * CELL_M**2)
+
+    @property
+    def walkable_m2(self) -> float:
+        """The largest connected part of it where a body's middle may be."""
+        from scipy import ndimage
+
+        inner = np.asarray(ndimage.distance_transform_edt(np.pad(self.is_free, 1)))[1:-1, 1:-1] * CELL_M > BODY_RADIUS_M
+        labels = np.asarray(ndimage.label(inner & self.in_view)[0])  # type: ignore[index]
+        return float(np.bincount(labels.ravel())[1:].max(initial=0) * CELL_M**2)
+
+
+def draw_shell(kind: Kind, palette: Palette, rng: np.random.Generator, layout: np.random.Generator) -> Shell:
+    """Size, door and windows belong to the room; the radar's place and turn, and theirs in the walls, to the layout."""
+    behind = float(rng.uniform(0.3, 1.4))
+    size = (float(rng.uniform(*kind.width_m)), behind + float(rng.uniform(*kind.back_m)), float(rng.uniform(2.4, 2.8)))
+    openings = [things.door(palette, rng, float(rng.uniform(0.8, 0.95)))]
+    openings += [things.window(palette, rng, float(rng.uniform(1.1, 1.7))) for _ in range(kind.num_windows)]
+    narrow = size[0] < 2.6
+    across = layout.uniform(0.42, 0.58) if narrow else layout.uniform(0.32, 0.68)
+    turn = layout.uniform(-5, 5) if narrow else layout.uniform(-14, 14)
+    lamps = (0.3, 0.75)
+    return Shell(
+        size_m=size,
+        openings=tuple(openings),
+        fixed=tuple(
+            Placed(piece=things.ceiling_lamp(palette), x_m=size[0] / 2, y_m=y * size[1], z_m=size[2]) for y in lamps
+        ),
+        radar_m=(size[0] * float(across), behind, float(layout.uniform(0.5, 1.5))),
+        radar_yaw_rad=float(np.deg2rad(turn)),
+    )
+
+
+def with_openings(shell: Shell, rng: np.random.Generator) -> Shell:
+    """The shell with its door and windows put into walls; one that finds no place is left out."""
+    width, depth, _ = shell.size_m
+    fixed = list(shell.fixed)
+    for piece in shell.openings:
+        for _ in range(_DRAWS):
+            wall = ("left", "right", "back")[int(rng.choice(3, p=(0.35, 0.35, 0.3)))]
+            nearest = shell.radar_m[1] + 0.9
+            along = float(rng.uniform(0.5, width - 0.5) if wall == "back" else rng.uniform(nearest, depth - 0.5))
+            there = _at_wall((Placed(piece=piece, x_m=0.0, y_m=0.0),), wall, along, shell.size_m)
+            if (
+                _fits(outlines_of(there), shell.size_m)
+                and not outlines_of(there).overlap(outlines_of(fixed), -0.15).any()
+            ):
+                fixed += there
+                break
+    return replace(shell, fixed=tuple(fixed))
+
+
+def arrange(
+    kind: Kind, shell: Shell, wanted: Sequence[tuple[Group, bool]], rng: np.random.Generator
+) -> tuple[Shell, tuple[Placed, ...], FreeFloor]:
+    """Puts in door and windows, then the groups, those marked True always, so that enough floor stays free.
+
+    Raises RuntimeError where no try of many works out, which a test keeps from happening.
+    """
+    for attempt in range(_TRIES):
+        there = with_openings(shell, rng)
+        placed = _once(there, wanted, rng, leave_out=attempt / _TRIES)
+        if placed is None or not _in_window(there, placed):
+            continue
+        floor = free_floor(there, placed)
+        if floor.free_m2 >= MIN_FREE_M2 and floor.walkable_m2 >= MIN_WALKABLE_M2:
+            return there, placed, floor
+    raise RuntimeError(f"no arrangement of a {kind.name} leaves room to walk")
+
+
+def free_floor(shell: Shell, placed: Sequence[Placed]) -> FreeFloor:
+    """Squares where nothing stands up to head height, more than half a metre from the radar."""
+    width, depth, _ = shell.size_m
+    x_m = np.arange(CELL_M / 2, width, CELL_M)
+    y_m = np.arange(CELL_M / 2, depth, CELL_M)
+    is_free = ~covered(outlines_of([*shell.fixed, *placed]), x_m, y_m)
+    x, y = np.meshgrid(x_m - shell.radar_m[0], y_m - shell.radar_m[1])
+    distance = np.hypot(x, y)
+    bearing = np.arctan2(-x, y) - shell.radar_yaw_rad
+    in_view = (distance > WINDOW_M[0]) & (distance < WINDOW_M[1]) & (np.abs(bearing) < HALF_VIEW_RAD)
+    return FreeFloor(x_m=x_m, y_m=y_m, is_free=is_free & (distance > 0.5), in_view=in_view)
+
+
+def covered(boxes: Boxes, x_m: Float[Array, " x"], y_m: Float[Array, " y"]) -> Bool[Array, "y x"]:
+    """Squares over which something stands that stops a walker."""
+    low, high = boxes.centre_m[:, 2] - boxes.half_m[:, 2], boxes.centre_m[:, 2] + boxes.half_m[:, 2]
+    stops = (high > STEP_OVER_M) & (low < HEAD_M)
+    x, y = np.meshgrid(x_m, y_m)
+    taken = np.zeros(x.shape, bool)
+    reach = CELL_M / 2
+    for centre, half, yaw in zip(boxes.centre_m[stops], boxes.half_m[stops], boxes.yaw_rad[stops], strict=True):
+        cosine, sine = np.cos(yaw), np.sin(yaw)
+        a, b = x - centre[0], y - centre[1]
+        taken |= (np.abs(cosine * a + sine * b) < half[0] + reach) & (np.abs(cosine * b - sine * a) < half[1] + reach)
+    return taken
+
+
+def _once(
+    shell: Shell, wanted: Sequence[tuple[Group, bool]], rng: np.random.Generator, leave_out: float
+) -> tuple[Placed, ...] | None:
+    """One try: the pieces; None where a group that must stand found no place."""
+    placed: list[Placed] = []
+    taken = _joined(outlines_of(shell.fixed), _kept_free(shell))
+    for group, is_needed in wanted:
+        if not is_needed and rng.random() < leave_out:
+            continue
+        found = _best_place(shell, group, taken, rng)
+        if found is None and is_needed:
+            return None
+        if found is not None:
+            taken = _joined(taken, outlines_of(found))
+            placed += found
+    return tuple(placed)
+
+
+def _best_place(shell: Shell, group: Group, taken: Boxes, rng: np.random.Generator) -> tuple[Placed, ...] | None:
+    """Of the first few places without overlap the one that the radar sees best."""
+    best, found = None, 0
+    for _ in range(_DRAWS):
+        there = _candidate(shell, group, rng)
+        boxes = outlines_of(there)
+        if not _fits(boxes, shell.size_m) or boxes.overlap(taken, -0.01).any():
+            continue
+        middle = boxes.centre_m[:, :2].mean(axis=0) - shell.radar_m[:2]
+        bearing = np.arctan2(-middle[0], middle[1]) - shell.radar_yaw_rad
+        score = abs(float(bearing)) + max(0.0, float(np.hypot(*middle)) - 3.2) + float(rng.uniform(0, 0.5))
+        if best is None or score < best[0]:
+            best = (score, there)
+        found += 1
+        if found >= _ENOUGH:
+            break
+    return None if best is None else best[1]
+
+
+def _candidate(shell: Shell, group: Group, rng: np.random.Generator) -> tuple[Placed, ...]:
+    width, depth, _ = shell.size_m
+    if group.site == MIDDLE:
+        turn = float(rng.integers(4)) * np.pi / 2 + float(rng.normal(0, 0.05))
+        x, y = float(rng.uniform(0.3, width - 0.3)), float(rng.uniform(shell.radar_m[1] + 0.6, depth - 0.3))
+        return tuple(item.moved(x, y, turn) for item in group.items)
+    sites = ("back",) if group.site == BACK else ("back", "left", "right")
+    wall = sites[int(rng.integers(len(sites)))]
+    along = float(rng.uniform(0.0, width) if wall == "back" else rng.uniform(shell.radar_m[1] + 0.5, depth))
+    return tuple(_at_wall(group.items, wall, along, shell.size_m))
+
+
+def _at_wall(
+    items: Sequence[Placed], wall: str, along_m: float, size_m: tuple[float, float, float]
+) -> tuple[Placed, ...]:
+    x, y, turn = {
+        "back": (along_m, size_m[1], 0.0),
+        "left": (0.0, along_m, np.pi / 2),
+        "right": (size_m[0], along_m, -np.pi / 2),
+    }[wall]
+    return tuple(item.moved(x, y, float(turn)) for item in items)
+
+
+def _fits(boxes: Boxes, size_m: tuple[float, float, float]) -> bool:
+    corners = boxes.corners_m()
+    inside = (corners > -1e-6).all() and (corners[..., 0] < size_m[0] + 1e-6).all()
+    top = (boxes.centre_m[:, 2] + boxes.half_m[:, 2]).max()
+    return bool(inside and (corners[..., 1] < size_m[1] + 1e-6).all() and top < size_m[2])
+
+
+def _kept_free(shell: Shell) -> Boxes:
+    """Before doors, and about and before the radar."""
+    zones = [(shell.radar_m[0], shell.radar_m[1] + 0.35, 0.45, 0.85, 0.0)]
+    for item in shell.fixed:
+        if item.piece.landmark == "door":
+            ahead = item.points(np.array([[0.0, -0.42, 0.0]]))[0]
+            zones.append((float(ahead[0]), float(ahead[1]), 0.45, 0.33, item.yaw_rad))
+    return Boxes(
+        centre_m=np.array([(x, y, 1.03) for x, y, _, _, _ in zones]),
+        half_m=np.array([(a, b, 0.97) for _, _, a, b, _ in zones]),
+        yaw_rad=np.array([turn for *_, turn in zones], float),
+    )
+
+
+def _in_window(shell: Shell, placed: Sequence[Placed]) -> bool:
+    """Whether some furniture stands where the radar looks."""
+    for item in placed:
+        x, y = item.x_m - shell.radar_m[0], item.y_m - shell.radar_m[1]
+        bearing = np.arctan2(-x, y) - shell.radar_yaw_rad
+        if not item.piece.on_wall and np.hypot(x, y) < 3.2 and abs(bearing) < HALF_VIEW_RAD:
+            return True
+    return False
+
+
+def _joined(one: Boxes, other: Boxes) -> Boxes:
+    return Boxes(
+        centre_m=np.concatenate([one.centre_m, other.centre_m]),
+        half_m=np.concatenate([one.half_m, other.half_m]),
+        yaw_rad=np.concatenate([one.yaw_rad, other.yaw_rad]),
+    )

@@ -1,0 +1,286 @@
+"""Furniture that belongs together. Origin of a group: on the floor at the wall behind it, its front towards -y.
+
+Groups for the middle of a room have their origin at their own middle.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.scene.procedural import seating, storage, tables, things
+from mmweaver.scene.procedural.palette import Palette
+from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, Placed, outlines_of
+
+WALL, BACK, SIDE, MIDDLE = "wall", "back", "side", "middle"
+_DRAWS = 20
+GAP_M = 0.02  # between furniture and the wall behind it
+
+
+@dataclass(frozen=True, kw_only=True)
+class Group:
+    """Pieces in the group's own frame, and where in a room it may stand."""
+
+    items: tuple[Placed, ...]
+    site: str = WALL  # wall (any), back, side, middle
+
+
+Maker = Callable[[Palette, np.random.Generator], Group]
+
+
+def at(piece: Piece, x: float | int, y: float | int, z: float = 0.0, turn_deg: float = 0.0) -> Placed:
+    """A piece at a place of its group."""
+    return Placed(piece=piece, x_m=float(x), y_m=float(y), z_m=float(z), yaw_rad=float(np.deg2rad(turn_deg)))
+
+
+def at_wall(piece: Piece, x: float = 0.0) -> Placed:
+    """With its back close to the wall."""
+    return at(piece, x, -float(piece.high_m[1]) - GAP_M)
+
+
+def _top_m(piece: Piece, lowest: float = 0.0) -> float:
+    """Height of the surface one puts things on: the highest top of at least 0.2 m2."""
+    areas = [
+        part.high_m[2]
+        for part in piece.parts
+        if (part.high_m[0] - part.low_m[0]) * (part.high_m[1] - part.low_m[1]) > 0.1 and part.shape == "box"
+    ]
+    return max(top for top in areas if top > lowest)
+
+
+def drawn(make: Maker, palette: Palette, rng: np.random.Generator) -> Group:
+    """A group whose own pieces do not cut into each other; drawn again until they do not."""
+    for _ in range(_DRAWS):
+        group = make(palette, rng)
+        boxes = outlines_of(group.items)
+        piece = np.array(boxes.piece)
+        if not (boxes.overlap(boxes, OVERLAP_M) & (piece[:, None] != piece[None, :])).any():
+            return group
+    raise RuntimeError(f"the pieces of {group.items[0].piece.name!r} always overlap")
+
+
+# Work ---------------------------------------------------------------------------------------------------------------
+def desk_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """Desk, monitor, keyboard, a cup, a chair drawn back from it."""
+    desk = tables.desk(palette, rng, float(rng.uniform(1.2, 1.6)))
+    wall = at_wall(desk)
+    top, half = _top_m(desk), float(desk.high_m[0])
+    items = [wall, at(things.monitor(palette, rng), rng.uniform(-0.1, 0.2), wall.y_m + 0.14, top)]
+    items.append(at(things.keyboard(palette, rng), items[-1].x_m, wall.y_m - 0.16, top))
+    items.append(at(things.cup(palette, rng), -half + 0.18, wall.y_m - 0.05, top))
+    if rng.random() < 0.5:
+        items.append(at(things.books(palette, rng), half - 0.22, wall.y_m + 0.05, top))
+    away = float(-desk.low_m[1]) + rng.uniform(0.22, 0.42)
+    items.append(
+        at(
+            seating.office_chair(palette, rng),
+            rng.uniform(-0.08, 0.12),
+            wall.y_m - away,
+            0.0,
+            180 + rng.uniform(-35, 35),
+        )
+    )
+    return Group(items=tuple(items))
+
+
+def laptop_desk(palette: Palette, rng: np.random.Generator) -> Group:
+    """Desk with a laptop and a lamp, a plain chair."""
+    desk = tables.desk(palette, rng, float(rng.uniform(1.0, 1.25)))
+    wall, top = at_wall(desk), _top_m(desk)
+    away = float(-desk.low_m[1]) + rng.uniform(0.24, 0.4)
+    items = (
+        wall,
+        at(things.laptop(palette, rng), 0.0, wall.y_m - 0.08, top),
+        at(things.table_lamp(palette, rng), float(desk.low_m[0]) + 0.16, wall.y_m + 0.12, top),
+        at(seating.chair(palette, rng), rng.uniform(-0.1, 0.1), wall.y_m - away, 0.0, 180 + rng.uniform(-15, 15)),
+    )
+    return Group(items=items)
+
+
+def bench_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """A laboratory's bench with instruments and a stool."""
+    made = tables.lab_bench(palette, rng, float(rng.uniform(1.5, 2.1)))
+    wall, half = at_wall(made), float(made.high_m[0])
+    items = [wall, at(things.instrument(palette, rng), -half + 0.4, wall.y_m - 0.05, 0.90)]
+    items.append(at(things.monitor(palette, rng), half - 0.45, wall.y_m + 0.02, 0.90))
+    items.append(at(seating.stool(palette, rng), rng.uniform(-0.4, 0.4), wall.y_m - 0.62, 0.0, rng.uniform(0, 40)))
+    return Group(items=tuple(items))
+
+
+def workbench_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """Workbench, a carton on it, a stool."""
+    made = tables.workbench(palette, rng, float(rng.uniform(1.4, 1.8)))
+    wall = at_wall(made)
+    top = float(made.parts[4].high_m[2])
+    items = [wall, at(things.carton(palette, rng), -0.3, wall.y_m - 0.03, top)]
+    items.append(at(seating.stool(palette, rng), rng.uniform(0.0, 0.4), wall.y_m - 0.62))
+    return Group(items=tuple(items))
+
+
+def meeting_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """A long table with chairs on both sides, laptops on it."""
+    length = float(rng.uniform(1.5, 1.9))
+    made = tables.table(palette, rng, (length, float(rng.uniform(0.8, 0.95))), name="meeting table")
+    items = [at(made, 0, 0), at(things.laptop(palette, rng), -0.3, -0.15, _top_m(made))]
+    out = float(made.high_m[1]) + 0.30
+    for x in (-length / 4, length / 4):
+        for side, turn in ((-1, 180.0), (1, 0.0)):
+            y = side * (out + rng.uniform(0.0, 0.1))
+            items.append(at(seating.office_chair(palette, rng), x, y, 0.0, turn + rng.uniform(-15, 15)))
+    return Group(items=tuple(items), site=MIDDLE)
+
+
+def pupils(palette: Palette, rng: np.random.Generator) -> Group:
+    """A school table for two with two chairs; its pupils look at the wall behind it."""
+    made = tables.table(palette, rng, (1.3, 0.55), name="school table")
+    items = [at(made, 0, 0), at(things.books(palette, rng), -0.3, 0.0, _top_m(made))]
+    for x in (-0.33, 0.33):
+        items.append(at(seating.chair(palette, rng), x, -0.52 - rng.uniform(0, 0.1), 0.0, 180 + rng.uniform(-12, 12)))
+    return Group(items=tuple(items), site=MIDDLE)
+
+
+def teacher(palette: Palette, rng: np.random.Generator) -> Group:
+    """A whiteboard with a desk before it."""
+    made = tables.desk(palette, rng, 1.3)
+    y = -1.25
+    items = (
+        at(things.whiteboard(palette, rng, 2.0), 0, 0),
+        at(made, 0.9, y, 0.0, 180.0),
+        at(things.laptop(palette, rng), 0.9, y, _top_m(made), 180.0),
+        at(seating.chair(palette, rng), 0.9, y + 0.68),
+    )
+    return Group(items=items, site=BACK)
+
+
+def board(palette: Palette, rng: np.random.Generator) -> Group:
+    """A whiteboard alone."""
+    return Group(items=(at(things.whiteboard(palette, rng, float(rng.uniform(1.2, 1.8))), 0, 0),))
+
+
+# Home ---------------------------------------------------------------------------------------------------------------
+def sofa_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """Sofa, a low table before it on a rug, a lamp beside it."""
+    made = seating.sofa(palette, rng, 2 + int(rng.random() < 0.45))
+    wall = at_wall(made)
+    front = wall.y_m + float(made.low_m[1])
+    low = tables.coffee_table(palette, rng)
+    y = front - 0.42 - float(low.high_m[1])
+    items = [wall, at(low, rng.uniform(-0.2, 0.2), y)]
+    items.append(at(things.books(palette, rng), items[1].x_m + 0.1, y, _top_m(low)))
+    if rng.random() < 0.7:
+        side = 1 if rng.random() < 0.5 else -1
+        items.append(at(things.floor_lamp(palette, rng), side * (float(made.high_m[0]) + 0.26), -0.30))
+    return Group(items=tuple(items))
+
+
+def sofa_alone(palette: Palette, rng: np.random.Generator) -> Group:
+    """A sofa with nothing before it."""
+    return Group(items=(at_wall(seating.sofa(palette, rng, 2)),))
+
+
+def armchair_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """An armchair, a little turned."""
+    made = seating.armchair(palette, rng)
+    return Group(items=(at(made, 0, -0.62, 0.0, rng.uniform(-20, 20)),))
+
+
+def television_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """A low sideboard with a television."""
+    made = storage.cabinet(palette, rng, (float(rng.uniform(1.3, 1.7)), 0.40, 0.48), name="sideboard")
+    wall = at_wall(made)
+    return Group(items=(wall, at(things.television(palette, rng), 0, wall.y_m + 0.02, 0.48)))
+
+
+def television_on_wall(palette: Palette, rng: np.random.Generator) -> Group:
+    """Flat on the wall."""
+    return Group(items=(at(things.television(palette, rng, on_wall=True), 0, 0),))
+
+
+def bed_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """Bed and nightstands with lamps."""
+    made = seating.bed(palette, rng)
+    items = [at_wall(made)]
+    for side in (-1, 1):
+        if side > 0 or rng.random() < 0.6:
+            stand = storage.nightstand(palette, rng)
+            x = side * (float(made.high_m[0]) + 0.25)
+            wall = at_wall(stand, x)
+            items += [wall, at(things.table_lamp(palette, rng), x, wall.y_m, 0.48)]
+    return Group(items=tuple(items))
+
+
+def dining_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """A table laid, with four chairs."""
+    size = (float(rng.uniform(1.2, 1.5)), float(rng.uniform(0.8, 0.95)))
+    made = tables.table(palette, rng, size, name="dining table")
+    items = [at(made, 0, 0), at(things.bowl(palette, rng), rng.uniform(-0.2, 0.2), 0.0, _top_m(made))]
+    for x in (-0.33, 0.33):
+        for side, turn in ((-1, 180.0), (1, 0.0)):
+            y = side * (size[1] / 2 + rng.uniform(0.17, 0.34))
+            items.append(at(seating.chair(palette, rng), x, y, 0.0, turn + rng.uniform(-8, 8)))
+    return Group(items=tuple(items), site=MIDDLE)
+
+
+def small_dining(palette: Palette, rng: np.random.Generator) -> Group:
+    """A small table and two chairs."""
+    made = tables.table(palette, rng, (0.8, 0.75), name="dining table")
+    items = [at(made, 0, 0), at(things.cup(palette, rng), 0.15, 0.1, _top_m(made))]
+    for side, turn in ((-1, 90.0), (1, -90.0)):
+        x = side * (0.4 + rng.uniform(0.2, 0.36))
+        items.append(at(seating.chair(palette, rng), x, rng.uniform(-0.1, 0.1), 0.0, turn + rng.uniform(-20, 20)))
+    return Group(items=tuple(items), site=MIDDLE)
+
+
+def kitchen_row(palette: Palette, rng: np.random.Generator) -> Group:
+    """Counter, cooker, refrigerator, cabinets above."""
+    width = float(rng.uniform(1.4, 1.9))
+    made, cooker, cold = tables.counter(palette, rng, width), storage.oven(palette, rng), storage.fridge(palette, rng)
+    left = -(width + 0.6 + 0.62) / 2
+    wall = at_wall(made, left + width / 2)
+    items = [wall, at_wall(cooker, left + width + 0.31), at_wall(cold, left + width + 0.62 + 0.31)]
+    items.append(at(things.wall_cabinet(palette, rng, width - 0.2), wall.x_m, 0))
+    sink = made.parts[3]
+    away = 0.28 - width / 2 if sink.low_m[0] + sink.high_m[0] > 0 else width / 2 - 0.28  # the end without the sink
+    items.append(at(things.microwave(palette, rng), wall.x_m + away, -0.22, 0.91))
+    return Group(items=tuple(items))
+
+
+def kitchen_counter(palette: Palette, rng: np.random.Generator) -> Group:
+    """A counter alone, cabinets above."""
+    width = float(rng.uniform(1.2, 1.6))
+    wall = at_wall(tables.counter(palette, rng, width))
+    return Group(items=(wall, at(things.wall_cabinet(palette, rng, width), 0, 0)))
+
+
+# One piece at a wall -------------------------------------------------------------------------------------------------
+def single(make: Callable[[Palette, np.random.Generator], Piece], site: str = WALL) -> Maker:
+    """One thing with its back at the wall."""
+    return lambda palette, rng: Group(items=(at_wall(make(palette, rng)),), site=site)
+
+
+def hung(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
+    """One thing on a wall."""
+    return lambda palette, rng: Group(items=(at(make(palette, rng), 0, 0),))
+
+
+def standing(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
+    """One thing in the open."""
+    return lambda palette, rng: Group(items=(at(make(palette, rng), 0, 0),), site=MIDDLE)
+
+
+def shelves(count: int) -> Maker:
+    """A row of bookcases."""
+
+    def make(palette: Palette, rng: np.random.Generator) -> Group:
+        width = float(rng.uniform(0.75, 0.95))
+        height = float(rng.uniform(1.7, 2.1))
+        cases = [storage.bookcase(palette, rng, width, height) for _ in range(count)]
+        start = -(count - 1) * (width + 0.005) / 2
+        return Group(items=tuple(at_wall(case, start + k * (width + 0.005)) for k, case in enumerate(cases)))
+
+    return make
+
+
+def treadmill_place(palette: Palette, rng: np.random.Generator) -> Group:
+    """With its front into the room."""
+    return Group(items=(at(things.treadmill(palette, rng), 0, -0.85),))

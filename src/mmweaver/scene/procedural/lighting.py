@@ -1,0 +1,170 @@
+"""Light of several times of day, and how much of it falls on what the camera sees."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.registry import Registry
+from mmweaver.core.shapes import Array, Points
+from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.scene.procedural.parts import Colour, Placed
+
+Light = Float[Array, "point 3"]
+Picture = Float[Array, "row column 3"]
+_SAMPLES, _OCCLUSION_M = 2, 0.9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lighting:
+    """How strongly windows, ceiling lamps and small lamps shine, in which colour; what comes from all sides."""
+
+    name: str
+    window: Colour
+    ceiling: Colour
+    lamp: Colour
+    ambient: Colour
+    exposure: float = 1.0
+
+
+LIGHTINGS: Registry[Lighting] = Registry(
+    "lighting",
+    [
+        (one.name, one)
+        for one in (
+            Lighting(
+                name="day",
+                window=(5.0, 5.5, 6.2),
+                ceiling=(0.6, 0.6, 0.6),
+                lamp=(0.3, 0.25, 0.2),
+                ambient=(0.40, 0.42, 0.45),
+            ),
+            Lighting(
+                name="lamps",
+                window=(0.4, 0.5, 0.8),
+                ceiling=(6.5, 5.9, 4.9),
+                lamp=(5.0, 3.9, 2.5),
+                ambient=(0.36, 0.33, 0.28),
+            ),
+            Lighting(
+                name="evening",
+                window=(0.9, 0.6, 0.5),
+                ceiling=(1.6, 1.25, 0.8),
+                lamp=(9.0, 6.6, 3.8),
+                ambient=(0.24, 0.19, 0.14),
+                exposure=1.5,
+            ),
+            Lighting(
+                name="tubes",
+                window=(2.5, 2.8, 3.2),
+                ceiling=(6.0, 6.4, 6.6),
+                lamp=(0.5, 0.5, 0.4),
+                ambient=(0.42, 0.44, 0.45),
+            ),
+        )
+    ],
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lamp:
+    """A rectangle that shines to one side; in the room's frame."""
+
+    corner_m: Float[Array, "3"]
+    edges_m: Float[Array, "2 3"]
+    normal: Float[Array, "3"]
+    light: Float[Array, "3"]
+
+
+def lamps_of(placed: tuple[Placed, ...], lighting: Lighting) -> list[Lamp]:
+    """The windows, ceiling lamps and lamp shades of a room."""
+    lamps = []
+    for item in placed:
+        name, low, high = item.piece.name, item.piece.low_m, item.piece.high_m
+        if name == "window":
+            pane = item.piece.parts[0]
+            corners = [
+                (pane.low_m[0], -0.06, pane.low_m[2]),
+                (pane.high_m[0], -0.06, pane.low_m[2]),
+                (pane.low_m[0], -0.06, pane.high_m[2]),
+            ]
+            lamps.append(_lamp(item, corners, (0.0, -1.0, 0.0), lighting.window))
+        elif name == "ceiling lamp":
+            corners = [(low[0], low[1], -0.05), (high[0], low[1], -0.05), (low[0], high[1], -0.05)]
+            lamps.append(_lamp(item, corners, (0.0, 0.0, -1.0), lighting.ceiling))
+        elif name in ("floor lamp", "table lamp"):
+            top, wide = float(high[2]) + 0.01, 0.14
+            corners = [(-wide, -wide, top), (wide, -wide, top), (-wide, wide, top)]
+            lamps.append(_lamp(item, corners, (0.0, 0.0, 0.0), lighting.lamp))
+    return lamps
+
+
+def _lamp(item: Placed, corners: list, normal: Colour, light: Colour) -> Lamp:
+    points = item.points(np.array(corners, float))
+    ends = item.points(np.array([normal, (0.0, 0.0, 0.0)], float))
+    return Lamp(
+        corner_m=points[0],
+        edges_m=np.stack([points[1] - points[0], points[2] - points[0]]),
+        normal=ends[0] - ends[1],
+        light=np.array(light, float),
+    )
+
+
+def light_on(
+    caster: RayCaster, lamps: list[Lamp], lighting: Lighting, points: Points, normals: Points, rng: np.random.Generator
+) -> Light:
+    """Light that falls on points: from the lamps, and from all sides where corners do not take it."""
+    total = np.zeros_like(points)
+    for lamp in lamps:
+        area = float(np.linalg.norm(np.cross(*lamp.edges_m)))
+        for turn in range(_SAMPLES):
+            u, v = (turn + rng.random(len(points))) / _SAMPLES, rng.random(len(points))
+            place = lamp.corner_m + u[:, None] * lamp.edges_m[0] + v[:, None] * lamp.edges_m[1]
+            between = place - points
+            distance = np.linalg.norm(between, axis=1)
+            towards = between / distance[:, None]
+            received = np.clip((towards * normals).sum(axis=1), 0, None)
+            sent = np.clip(-(towards @ lamp.normal), 0, None) if lamp.normal.any() else np.full(len(points), 0.5)
+            share = received * sent * area / (np.pi * np.maximum(distance, 0.3) ** 2)
+            lit = np.flatnonzero(share > 2e-4)
+            clear = caster.is_clear(points[lit] + 2e-3 * normals[lit], place[lit], 0.01)
+            total[lit[clear]] += (share[lit[clear]] / _SAMPLES)[:, None] * lamp.light
+    return total + _openness(caster, points, normals, rng)[:, None] * np.array(lighting.ambient)
+
+
+def _openness(caster: RayCaster, points: Points, normals: Points, rng: np.random.Generator) -> np.ndarray:
+    """1 in the open, less in corners: how far two rays over the hemisphere go."""
+    total = np.zeros(len(points))
+    for turn in range(2):
+        height = np.sqrt((turn + rng.random(len(points))) / 2)
+        angle = 2 * np.pi * rng.random(len(points))
+        helper = np.where(np.abs(normals[:, :1]) > 0.8, np.array([[0.0, 1, 0]]), np.array([[1.0, 0, 0]]))
+        tangent = np.cross(normals, helper)
+        tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+        flat = np.cos(angle)[:, None] * tangent + np.sin(angle)[:, None] * np.cross(normals, tangent)
+        way = np.sqrt(1 - height**2)[:, None] * flat + height[:, None] * normals
+        reach = caster.distance_m(points + 2e-3 * normals, way)
+        total += np.clip(reach / _OCCLUSION_M, 0.25, 1.0)
+    return total / 2
+
+
+def smoothed(light: Picture, points: Picture, normals: Picture) -> Picture:
+    """Light averaged along surfaces: an a-trous filter that stops where the place or the direction jumps.
+
+    Reference: Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform (2010).
+    """
+    light, points, normals = (part.astype(np.float32) for part in (light, points, normals))
+    for step in (1, 2, 4):
+        total, weights = light.copy(), np.ones(light.shape[:2], np.float32)
+        for row, column in ((-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)):
+            away = (row * step, column * step)
+            place, facing = np.roll(points, away, (0, 1)), np.roll(normals, away, (0, 1))
+            between = place - points
+            same = np.abs((between * normals).sum(axis=-1)) < 0.02
+            same &= (facing * normals).sum(axis=-1) > 0.9
+            same &= (between * between).sum(axis=-1) < 0.2**2
+            weight = same * np.float32(0.7 if row and column else 0.85)
+            total += weight[..., None] * np.roll(light, away, (0, 1))
+            weights += weight
+        light = total / weights[..., None]
+    return light

@@ -1,0 +1,202 @@
+"""What furniture is built of: boxes, rounded boxes and cylinders with a look; and how pieces are put into a room."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.shapes import Array
+
+Colour = tuple[float, float, float]
+Point = tuple[float, float, float]
+_MANY_PARTS = 24
+OVERLAP_M = 0.0005  # less is touching
+SHAPES = ("box", "rounded", "cylinder", "cone")
+
+
+@dataclass(frozen=True)
+class Look:
+    """Colour in linear light, pattern, what it is made of and what COCO-Stuff calls it."""
+
+    colour: Colour
+    material: str
+    coco: str
+    pattern: str = "plain"  # a name in textures.PATTERNS
+    glow: float = 0.0  # light of its own
+    is_glass: bool = False  # depth cameras measure nothing there
+
+
+@dataclass(frozen=True)
+class Part:
+    """One body of a piece, inscribed in the box from `low_m` to `high_m` of the piece's own frame."""
+
+    low_m: Point
+    high_m: Point
+    look: Look
+    shape: str = "box"  # one of SHAPES
+
+
+@dataclass(frozen=True)
+class LocalSeat:
+    """A place to sit on a piece, looking to the piece's front (-y)."""
+
+    x_m: float
+    y_m: float
+    height_m: float
+    width_m: float
+    depth_m: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """A thing as it comes from the shop. Own frame: origin on the floor, front towards -y, z up."""
+
+    name: str
+    parts: tuple[Part, ...]
+    seats: tuple[LocalSeat, ...] = ()
+    landmark: str = ""  # the Landmark.kind, if it is one
+    on_wall: bool = False  # hangs at y = 0, its front towards -y
+
+    @property
+    def low_m(self) -> Float[Array, "3"]:
+        return np.min([part.low_m for part in self.parts], axis=0)
+
+    @property
+    def high_m(self) -> Float[Array, "3"]:
+        return np.max([part.high_m for part in self.parts], axis=0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Placed:
+    """A piece in the room: its origin there, and its turn about the vertical."""
+
+    piece: Piece
+    x_m: float
+    y_m: float
+    z_m: float = 0.0
+    yaw_rad: float = 0.0
+
+    def moved(self, x_m: float, y_m: float, yaw_rad: float) -> "Placed":
+        """The same, carried along when its group's origin is put to (x, y) and turned."""
+        cosine, sine = float(np.cos(yaw_rad)), float(np.sin(yaw_rad))
+        return Placed(
+            piece=self.piece,
+            x_m=x_m + cosine * self.x_m - sine * self.y_m,
+            y_m=y_m + sine * self.x_m + cosine * self.y_m,
+            z_m=self.z_m,
+            yaw_rad=self.yaw_rad + yaw_rad,
+        )
+
+    def points(self, local_m: Float[Array, "*point 3"]) -> Float[Array, "*point 3"]:
+        """Points of the piece's own frame in the room's."""
+        cosine, sine = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
+        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        return local_m @ turn.T + np.array([self.x_m, self.y_m, self.z_m])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Boxes:
+    """Upright boxes, one row each: turned about the vertical only."""
+
+    centre_m: Float[Array, "box 3"]
+    half_m: Float[Array, "box 3"]
+    yaw_rad: Float[Array, " box"]
+    names: tuple[str, ...] = field(default=())  # of the pieces they belong to
+    piece: tuple[int, ...] = field(default=())  # which piece of the room
+
+    def __len__(self) -> int:
+        return len(self.centre_m)
+
+    def corners_m(self) -> Float[Array, "box 4 2"]:
+        """Of the footprints."""
+        signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+        local = signs * self.half_m[:, None, :2]
+        cosine, sine = np.cos(self.yaw_rad)[:, None], np.sin(self.yaw_rad)[:, None]
+        x = cosine * local[..., 0] - sine * local[..., 1]
+        y = sine * local[..., 0] + cosine * local[..., 1]
+        return np.stack([x, y], axis=-1) + self.centre_m[:, None, :2]
+
+    def overlap(self, other: "Boxes", slack_m: float = 0.0) -> Bool[Array, "box other"]:
+        """Which boxes cut into which by more than the slack (less than touching, if it is negative)."""
+        gap = np.abs(self.centre_m[:, None, 2] - other.centre_m[None, :, 2])
+        apart = gap >= self.half_m[:, None, 2] + other.half_m[None, :, 2] - slack_m
+        here, there = self.corners_m(), other.corners_m()
+        for axes in (_axes(self.yaw_rad)[:, None], _axes(other.yaw_rad)[None, :]):
+            for k in range(2):
+                axis = axes[..., k, :]
+                one = np.einsum("acx,abx->abc", here, np.broadcast_to(axis, (len(self), len(other), 2)))
+                two = np.einsum("bcx,abx->abc", there, np.broadcast_to(axis, (len(self), len(other), 2)))
+                apart |= one.max(-1) - slack_m <= two.min(-1)
+                apart |= two.max(-1) - slack_m <= one.min(-1)
+        return ~apart
+
+    def distance_m(self, points_m: Float[Array, "point 3"]) -> Float[Array, "point box"]:
+        """From each point to each box's skin; negative inside."""
+        away = points_m[:, None] - self.centre_m[None]
+        cosine, sine = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
+        local = np.stack(
+            [cosine * away[..., 0] + sine * away[..., 1], cosine * away[..., 1] - sine * away[..., 0], away[..., 2]], -1
+        )
+        beyond = np.abs(local) - self.half_m
+        return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0)
+
+
+def _axes(yaw_rad: Float[Array, " box"]) -> Float[Array, "box 2 2"]:
+    cosine, sine = np.cos(yaw_rad), np.sin(yaw_rad)
+    return np.stack([np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)], axis=1)
+
+
+def boxes_of(placed: Sequence[Placed], first: int = 0) -> Boxes:
+    """The boxes of all parts of some pieces; `first` numbers the first piece."""
+    low, high, yaw, names, index, origin = [], [], [], [], [], []
+    for number, item in enumerate(placed, start=first):
+        for part in item.piece.parts:
+            low.append(part.low_m)
+            high.append(part.high_m)
+            yaw.append(item.yaw_rad)
+            origin.append((item.x_m, item.y_m, item.z_m))
+            names.append(item.piece.name)
+            index.append(number)
+    low_m, high_m = np.array(low, float).reshape(-1, 3), np.array(high, float).reshape(-1, 3)
+    turn, local = np.array(yaw, float), (low_m + high_m) / 2
+    x = np.cos(turn) * local[:, 0] - np.sin(turn) * local[:, 1]
+    y = np.sin(turn) * local[:, 0] + np.cos(turn) * local[:, 1]
+    return Boxes(
+        centre_m=np.stack([x, y, local[:, 2]], axis=1) + np.array(origin, float).reshape(-1, 3),
+        half_m=(high_m - low_m) / 2,
+        yaw_rad=turn,
+        names=tuple(names),
+        piece=tuple(index),
+    )
+
+
+def outlines_of(placed: Sequence[Placed]) -> Boxes:
+    """The same, but of pieces with very many parts (shelves full of books) only the one box about them."""
+    whole = []
+    for item in placed:
+        piece = item.piece
+        if len(piece.parts) > _MANY_PARTS:
+            low, high = (tuple(float(v) for v in end) for end in (piece.low_m, piece.high_m))
+            piece = replace(piece, parts=(Part(low, high, piece.parts[0].look),))  # type: ignore[arg-type]
+        whole.append(replace(item, piece=piece))
+    return boxes_of(whole)
+
+
+# Shorthands of the furniture files -----------------------------------------------------------------------------------
+def block(
+    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], look: Look, shape: str = "box"
+) -> Part:
+    """A part from its three extents."""
+    return Part((x[0], y[0], z[0]), (x[1], y[1], z[1]), look, shape)
+
+
+def legs(
+    x: tuple[float, float], y: tuple[float, float], height_m: float, thick_m: float, look: Look, shape: str = "box"
+) -> tuple[Part, ...]:
+    """Four legs at the corners of a rectangle, inside it."""
+    return tuple(
+        block((a, a + thick_m), (b, b + thick_m), (0.0, height_m), look, shape)
+        for a in (x[0], x[1] - thick_m)
+        for b in (y[0], y[1] - thick_m)
+    )

@@ -1,0 +1,140 @@
+"""The photo of a procedural room: what each pixel meets, its colour under a lighting, its depth and its class."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from mmweaver.core.records import CameraIntrinsics, ClassMask
+from mmweaver.core.seeding import stream
+from mmweaver.core.shapes import Array, DepthPixels, RgbPixels, Rotation, Vec3
+from mmweaver.geometry.pinhole import unproject
+from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.scene.procedural.lighting import LIGHTINGS, Lighting, lamps_of, light_on, smoothed
+from mmweaver.scene.procedural.meshing import Mesh
+from mmweaver.scene.procedural.parts import Placed
+from mmweaver.scene.procedural.textures import albedo
+
+_SENSOR_NOISE = 0.008
+
+
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """What each pixel sees, in the room's frame."""
+
+    face: Int[Array, "row column"]
+    depth_m: DepthPixels  # along the optical axis
+    points_m: Float[Array, "row column 3"]
+    normals: Float[Array, "row column 3"]  # towards the camera
+
+
+def look_at(mesh: Mesh, caster: RayCaster, camera: CameraIntrinsics, room_from_camera: Rotation, eye_m: Vec3) -> View:
+    """Casts a ray through the middle of every pixel."""
+    rays = unproject(np.ones((camera.height, camera.width)), camera).reshape(-1, 3) @ room_from_camera.T
+    length = np.linalg.norm(rays, axis=1)
+    distance, face = caster.first_hit(np.broadcast_to(eye_m, rays.shape), rays / length[:, None])
+    if (face < 0).any():
+        # A ray may slip through the seam of two walls; its neighbour's answer will do.
+        hit = np.flatnonzero(face >= 0)
+        lost = np.flatnonzero(face < 0)
+        other = hit[np.minimum(np.searchsorted(hit, lost), len(hit) - 1)]
+        distance[lost], face[lost] = distance[other], face[other]
+    normals = _normals(mesh)[face]
+    normals = np.where((normals * rays).sum(axis=1)[:, None] > 0, -normals, normals)
+    depth = distance / length
+    shape = (camera.height, camera.width)
+    return View(
+        face=face.reshape(shape),
+        depth_m=depth.reshape(shape),
+        points_m=(eye_m + depth[:, None] * rays).reshape(*shape, 3),
+        normals=normals.reshape(*shape, 3),
+    )
+
+
+def developed(
+    mesh: Mesh, caster: RayCaster, view: View, placed: tuple[Placed, ...], lighting: str, seed: int
+) -> RgbPixels:
+    """The colour picture under a named lighting."""
+    light = LIGHTINGS[lighting]
+    look = mesh.look[view.face]
+    colour, glow = _colours(mesh, view, look, light)
+    half = (slice(0, None, 2), slice(0, None, 2))
+    points, normals = view.points_m[half], view.normals[half]
+    rng = stream(seed, "procedural", "light")
+    received = light_on(
+        caster, lamps_of(placed, light), light, points.reshape(-1, 3), normals.reshape(-1, 3), rng
+    ).reshape(points.shape)  # fmt: skip
+    received = _widened(smoothed(received, points, normals), view)
+    radiance = colour * (1.15 * received + 0.02) + glow
+    value = 1.7 * light.exposure * radiance
+    value = value * (1 + value / 9) / (1 + 0.75 * value)
+    value = np.clip(value + _SENSOR_NOISE * rng.standard_normal(value.shape, dtype=np.float32), 0, 1)
+    value = np.where(value < 0.0031308, 12.92 * value, 1.055 * np.maximum(value, 1e-9) ** (1 / 2.4) - 0.055)
+    return np.round(255 * value).astype(np.uint8)
+
+
+def class_mask(mesh: Mesh, view: View) -> ClassMask:
+    """The COCO-Stuff class of every pixel; all classes of the room's looks are named, in alphabetical order."""
+    names = ("unlabeled", *sorted({look.coco for look in mesh.looks}))
+    index = np.array([names.index(look.coco) for look in mesh.looks], np.uint8)
+    return ClassMask(index=index[mesh.look[view.face]], names=names)
+
+
+def _normals(mesh: Mesh) -> Float[Array, "face 3"]:
+    corners = mesh.vertices_m[mesh.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-15)[:, None]
+
+
+def _colours(mesh: Mesh, view: View, look: np.ndarray, light: Lighting) -> tuple[np.ndarray, np.ndarray]:
+    """Colour and light of its own of every pixel."""
+    flat_look = look.ravel()
+    points, normals = view.points_m.reshape(-1, 3), view.normals.reshape(-1, 3)
+    colour, glow = np.zeros(points.shape, np.float32), np.zeros(points.shape, np.float32)
+    order = np.argsort(flat_look, kind="stable")
+    bounds = np.searchsorted(flat_look[order], np.arange(len(mesh.looks) + 1))
+    for index, one in enumerate(mesh.looks):
+        chosen = order[bounds[index] : bounds[index + 1]]
+        if not len(chosen):
+            continue
+        plane = _flat(points[chosen], normals[chosen])
+        colour[chosen] = albedo(one, plane.astype(np.float32))
+        if one.glow:
+            glow[chosen] = one.glow * colour[chosen] * _own_light(one.pattern, light)
+    return colour.reshape(*look.shape, 3), glow.reshape(*look.shape, 3)
+
+
+def _own_light(pattern: str, light: Lighting) -> np.ndarray:
+    """How bright a pane, a ceiling panel, a lamp shade or a screen is under a lighting."""
+    if pattern == "sky":
+        return np.minimum(np.array(light.window) / 5, 1.5)
+    if pattern == "panel":
+        return np.minimum(np.array(light.ceiling) / 3.5, 1.2)
+    return np.ones(3) if pattern == "screen" else np.minimum(np.array(light.lamp) / 4, 1.5)
+
+
+def _flat(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """The two coordinates along the surface: those that the normal points along least; heights come second."""
+    drop = np.argmax(np.abs(normals), axis=1)
+    kept = np.array([[1, 2], [0, 2], [0, 1]])[drop]
+    return np.take_along_axis(points, kept, axis=1)
+
+
+def _widened(light: np.ndarray, view: View) -> np.ndarray:
+    """Light of every second pixel -> of every pixel, from those of four neighbours that lie on the same surface."""
+    rows, columns = view.depth_m.shape
+    low_row, low_column = np.arange(rows) // 2, np.arange(columns) // 2
+    points, normals = view.points_m.astype(np.float32), view.normals.astype(np.float32)
+    total = np.zeros((rows, columns, 3), np.float32)
+    weights = np.zeros((rows, columns), np.float32)
+    last_row, last_column = light.shape[0] - 1, light.shape[1] - 1
+    for row in (0, 1):
+        for column in (0, 1):
+            at_row = np.minimum(low_row + row * (np.arange(rows) % 2), last_row)
+            at_column = np.minimum(low_column + column * (np.arange(columns) % 2), last_column)
+            full = np.ix_(2 * at_row, 2 * at_column)
+            off = np.abs(((points[full] - points) * normals).sum(axis=-1))
+            weight = 1e-4 + (off < 0.02) * np.clip((normals[full] * normals).sum(axis=-1), 0, 1)
+            total += weight[..., None] * light[np.ix_(at_row, at_column)]
+            weights += weight
+    return total / weights[..., None]

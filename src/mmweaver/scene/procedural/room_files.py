@@ -1,0 +1,98 @@
+"""A procedural room as files: what `mmweaver generate` reads, the class mask, and the truth."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import ClassMask, RgbdPhoto
+from mmweaver.geometry.rotations import pitch_and_roll_rad
+from mmweaver.scene.procedural.room import ProceduralRoom
+
+DEPTH_UNIT_M = 0.0002  # 16 bits reach 13 m, the step is far below a sensor's noise
+TRUTH_VERSION = 1
+
+
+def write_room(folder: Path, room: ProceduralRoom, photo: RgbdPhoto, lighting: str) -> None:
+    """Writes rgb.png, depth.png, camera.json, classes.png, classes.json and truth.json into a folder that exists."""
+    from PIL import Image
+
+    Image.fromarray(photo.rgb).save(folder / "rgb.png")
+    counts = np.nan_to_num(np.round(photo.depth_m / DEPTH_UNIT_M), nan=0.0)
+    Image.fromarray(np.clip(counts, 0, 65534).astype(np.uint16)).save(folder / "depth.png")
+    camera = {**vars(photo.intrinsics), "depth_unit_m": DEPTH_UNIT_M}
+    (folder / "camera.json").write_text(json.dumps(camera, indent=1) + "\n", encoding="utf-8")
+    if photo.classes is not None:
+        Image.fromarray(photo.classes.index).save(folder / "classes.png")
+        names = {"names": list(photo.classes.names)}
+        (folder / "classes.json").write_text(json.dumps(names, indent=1) + "\n", encoding="utf-8")
+    (folder / "truth.json").write_text(json.dumps(truth_of(room, lighting), indent=1) + "\n", encoding="utf-8")
+
+
+def read_classes(folder: Path) -> ClassMask:
+    """The mask that `write_room` wrote: classes.png holds indices into the names of classes.json.
+
+    Raises InputError where the two do not fit together.
+    """
+    from PIL import Image
+
+    try:
+        names = json.loads((folder / "classes.json").read_text(encoding="utf-8"))["names"]
+        index = np.array(Image.open(folder / "classes.png"))
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(
+            f"{folder} holds no class mask that can be read ({error}); make it with mmweaver rooms"
+        ) from error
+    if index.dtype != np.uint8 or index.ndim != 2 or not isinstance(names, list) or index.max() >= len(names):
+        raise InputError(f"{folder}: classes.png has values that classes.json does not name; make both again")
+    return ClassMask(index=index, names=tuple(str(name) for name in names))
+
+
+def truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
+    """What is true of a room, for JSON; metres in the radar's frame (x right, y away, z up), radians."""
+    pitch, roll = pitch_and_roll_rad(room.radar_from_camera)
+    boxes = room.boxes
+    return {
+        "schema_version": TRUTH_VERSION,
+        "kind": room.kind,
+        "layout": room.layout,
+        "seed": room.seed,
+        "lighting": lighting,
+        "floor_z_m": _short(room.floor_z_m),
+        "camera_pitch_rad": _short(pitch),
+        "camera_roll_rad": _short(roll),
+        "radar_from_camera": np.round(room.radar_from_camera, 6).tolist(),
+        "free_floor_m2": _short(room.free_m2),
+        "walkable_m2": _short(room.walkable_m2),
+        "seats": [
+            {"position_m": _short(s.position_m), "facing_rad": _short(s.facing_rad), "size_m": _short(s.size_m)}
+            for s in room.seats
+        ],
+        "landmarks": [
+            {
+                "kind": mark.kind,
+                "position_m": _short(mark.position_m),
+                "approach_m": _short(mark.approach_m),
+                "facing_rad": _short(mark.facing_rad),
+            }
+            for mark in room.landmarks
+        ],
+        "boxes": [
+            {
+                "name": name,
+                "piece": piece,
+                "centre_m": _short(centre),
+                "half_size_m": _short(half),
+                "yaw_rad": _short(yaw),
+            }
+            for name, piece, centre, half, yaw in zip(
+                boxes.names, boxes.piece, boxes.centre_m, boxes.half_m, boxes.yaw_rad, strict=True
+            )
+        ],
+    }
+
+
+def _short(value: Any) -> Any:
+    return np.round(np.asarray(value, float), 4).tolist()

@@ -1,0 +1,40 @@
+"""mmweaver rooms, and its rooms through mmweaver generate."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from mmweaver.cli.main import main
+
+
+def test_rooms_are_written_and_generated_from(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    out = tmp_path / "rooms"
+    assert main(["rooms", str(out), "--kinds", "living_room,corridor", "--layouts", "2", "--seed", "1", "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert made["rooms"] == ["living_room_00", "living_room_01", "corridor_00", "corridor_01"]
+    for name in made["rooms"]:
+        files = {path.name for path in (out / name).iterdir()}
+        assert files == {"rgb.png", "depth.png", "camera.json", "classes.png", "classes.json", "truth.json"}
+    room = out / "living_room_00"
+    words = ["generate", "--rgb", room / "rgb.png", "--depth", room / "depth.png", "--camera", room / "camera.json"]
+    words += ["--text", "a person waves", "--out", tmp_path / "wave", "--frames", "2", "--quiet"]
+    assert main([str(word) for word in words]) == 0
+    assert (tmp_path / "wave" / "radar.npz").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["--kinds", "castle"], "known: office"),
+        (["--layouts", "0"], "--layouts"),
+        (["--lighting", "moon"], "known: day"),
+        (["--seed", "-1"], "seed"),
+    ],
+)
+def test_bad_requests_leave_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], complaint: str
+):
+    assert main(["rooms", str(tmp_path / "rooms"), *words]) == 2
+    assert complaint in capsys.readouterr().err
+    assert not (tmp_path / "rooms").exists()
