@@ -46,9 +46,7 @@ def add_motion_options(parser: Options) -> None:
         help="which way the motion faces first: 0 back along the radar's axis, 90 to the picture's right, 180 away"
         " (default: chosen)",
     )
-    parser.add_argument(
-        "--height", type=number, metavar="M", help="the person's height (default: by seed, or recorded)"
-    )
+    parser.add_argument("--height", type=number, metavar="M", help="the person's height (default: by seed, or recorded)")
     parser.add_argument(
         "--as-recorded",
         action="store_true",

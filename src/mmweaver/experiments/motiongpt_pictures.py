@@ -35,9 +35,7 @@ def draw_strips(clips: dict[str, Float[np.ndarray, "frame 22 3"]], path: Path) -
             across = ground[:, 0] * np.cos(VIEW_RAD) + ground[:, 1] * np.sin(VIEW_RAD)
             flat = np.stack([across + k * APART_M, pose[:, 2] - floor], axis=1)
             lines = [flat[list(bone)] for bone in BONES]
-            axes.add_collection(
-                LineCollection(lines, colors=[COLOURS[_side(bone[1])] for bone in BONES], linewidths=1.5)
-            )
+            axes.add_collection(LineCollection(lines, colors=[COLOURS[_side(bone[1])] for bone in BONES], linewidths=1.5))
         axes.plot([-0.6, POSES * APART_M], [0, 0], color="#bbbbbb", linewidth=0.8)
         axes.set_xlim(-0.6, POSES * APART_M)
         axes.set_ylim(-0.05, 2.2)

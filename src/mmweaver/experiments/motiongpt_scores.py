@@ -91,9 +91,7 @@ def bone_spread(motions: Motions) -> float:
     for _, features in motions:
         joints = joints_from_features(features)
         for parent, child in BONES:
-            low, middle, high = np.percentile(
-                np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1), [5, 50, 95]
-            )
+            low, middle, high = np.percentile(np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1), [5, 50, 95])
             spreads.append((high - low) / middle)
     return float(np.mean(spreads))
 

@@ -100,9 +100,7 @@ def main() -> None:
     """Trains and writes the weights."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, default=Path("shared/data"), help="folder of real data (CMU's motions)")
-    parser.add_argument(
-        "--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training goes on"
-    )
+    parser.add_argument("--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training goes on")
     parser.add_argument("--weights", type=Path, default=Path("motiongpt_small.safetensors"), help="file to write")
     arguments = parser.parse_args()
     made = train(arguments.data, arguments.work)

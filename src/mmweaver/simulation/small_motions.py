@@ -116,3 +116,4 @@ def _along_limbs(own: np.ndarray) -> np.ndarray:
         for name in ("ankle", "foot"):
             total[:, joint(f"{side}_{name}")] = 0.0
     return total
+

@@ -31,11 +31,7 @@ def test_short_gaps_are_bridged_smoothly(value: float):
 
 @pytest.mark.parametrize(
     ("frames", "message"),
-    [
-        (slice(30, 60), "left_knee is missing for 30 frames"),
-        (slice(0, 3), "from frame 0"),
-        (slice(-2, None), "missing"),
-    ],
+    [(slice(30, 60), "left_knee is missing for 30 frames"), (slice(0, 3), "from frame 0"), (slice(-2, None), "missing")],
 )
 def test_long_gaps_and_gaps_at_an_end_are_refused(frames: slice, message: str):
     holed = walk().copy()

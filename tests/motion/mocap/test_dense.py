@@ -14,9 +14,7 @@ TRUTH_FPS = 120.0
 
 def clip(fps: float, seconds: float = 2.0, noise_m: float = 0.0) -> MotionClip:
     joints = walk(fps, seconds)
-    return MotionClip(
-        joints_m=joints + noise_m * np.random.default_rng(0).normal(size=joints.shape), fps=fps, label="walk"
-    )
+    return MotionClip(joints_m=joints + noise_m * np.random.default_rng(0).normal(size=joints.shape), fps=fps, label="walk")
 
 
 def figures(joints: np.ndarray) -> tuple[float, float]:
@@ -26,9 +24,7 @@ def figures(joints: np.ndarray) -> tuple[float, float]:
     return float(speed.max()), float(acceleration.max())
 
 
-@pytest.mark.parametrize(
-    ("fps", "error_m"), [(20.0, 0.025), (30.0, 0.012), (60.0, 0.006), (100.0, 0.006), (240.0, 0.006)]
-)
+@pytest.mark.parametrize(("fps", "error_m"), [(20.0, 0.025), (30.0, 0.012), (60.0, 0.006), (100.0, 0.006), (240.0, 0.006)])
 def test_the_motion_is_kept_at_any_rate(fps: float, error_m: float):
     time_s, joints = densely(clip(fps), 1.8)
     assert time_s[0] < 0 < 1.8 < time_s[-1]

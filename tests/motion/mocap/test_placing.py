@@ -22,7 +22,9 @@ def clip(lifted_m: float = 0.0) -> MotionClip:
 
 
 def placed(scene: Scene, recorded: MotionClip | None = None, seed: int = 0, **options) -> np.ndarray:
-    motion = place_clip(recorded or clip(), scene, duration_s=SECONDS, seed=seed, range_window_m=WINDOW_M, **options)
+    motion = place_clip(
+        recorded or clip(), scene, duration_s=SECONDS, seed=seed, range_window_m=WINDOW_M, **options
+    )
     time_s, joints_m = motion.pose.time_s, motion.pose.joints_m
     return joints_m[(time_s >= -1e-9) & (time_s <= SECONDS + 1e-9)]
 
@@ -87,7 +89,9 @@ def test_no_room_is_said_with_what_there_is():
 
 def test_as_recorded_moves_nothing():
     recorded = MotionClip(joints_m=walk(60.0, 2.0) + np.array([0.0, 2.0, -1.1]), fps=60.0, label="walk", steady=False)
-    motion = place_clip(recorded, room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M, as_recorded=True)
+    motion = place_clip(
+        recorded, room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M, as_recorded=True
+    )
     k = int(np.argmin(np.abs(motion.pose.time_s)))
     np.testing.assert_allclose(motion.pose.joints_m[k], recorded.joints_m[0], atol=1e-9)
     assert "as they are" in motion.assumptions[-1]

@@ -55,9 +55,7 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
     if names is None:
         places, names = _of_22(places, path), JOINT_NAMES
     elif places.ndim != 3 or places.shape[1:] != (len(names), 3):
-        raise InputError(
-            f"{path}: {key} has shape {places.shape}, {len(names)} joint names need (frame, {len(names)}, 3)"
-        )
+        raise InputError(f"{path}: {key} has shape {places.shape}, {len(names)} joint names need (frame, {len(names)}, 3)")
     ours = key == "joints_m"
     return RawMotion(
         names=names, places=places, kind="joints", fps=rate_of(arrays) or _rate_of_times(arrays),

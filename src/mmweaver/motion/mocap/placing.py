@@ -92,7 +92,9 @@ def _way_of(joints_m: Float[Array, "frame 22 3"], time_s: Float[Array, " frame"]
     pelvis = shown[:, 0, :2]
     points = pelvis[np.unique(np.linspace(0, len(pelvis) - 1, WAY_POINTS).astype(int))]
     reach = np.linalg.norm(shown[..., :2] - pelvis[:, None], axis=-1).max(axis=1)
-    return _Way(shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95)))
+    return _Way(
+        shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95))
+    )
 
 
 def _found(

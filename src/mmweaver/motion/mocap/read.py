@@ -1,7 +1,7 @@
 """The door: a motion file of any kind that is known -> MotionClip. Read this file first.
 
-BVH, .npy, .npz --bvh, arrays, smpl--> RawMotion (own names, unit, axes)
-    --joint_names--> 22 joints --cleaning--> no gaps --axes--> metres, z up --cleaning--> MotionClip
+    BVH, .npy, .npz --bvh, arrays, smpl--> RawMotion (own names, unit, axes)
+        --joint_names--> 22 joints --cleaning--> no gaps --axes--> metres, z up --cleaning--> MotionClip
 """
 
 import math

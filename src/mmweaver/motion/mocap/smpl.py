@@ -81,9 +81,7 @@ def forward(
 
 def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"]:
     if "pose_body" in arrays and "root_orient" in arrays:
-        parts = [
-            np.asarray(arrays[name], float).reshape(len(arrays[name]), -1) for name in ("root_orient", "pose_body")
-        ]
+        parts = [np.asarray(arrays[name], float).reshape(len(arrays[name]), -1) for name in ("root_orient", "pose_body")]
         poses = np.concatenate(parts, axis=1) if len(parts[0]) == len(parts[1]) else np.zeros((0, 0))
     else:
         given = np.asarray(arrays.get("poses", arrays.get("pose")), float)

@@ -1,6 +1,6 @@
 """The room's door: a MotionGPT checkpoint and a sentence -> MotionClip. Read this file first.
 
-text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
+    text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
 """
 
 from dataclasses import dataclass
@@ -86,9 +86,7 @@ class MotionGPT:
                 f"{place} knows {language.config.vocab_size} tokens, its words and {tokenizer.config.codes + 3} motion"
                 f" tokens are {first + tokenizer.config.codes + 3}; the words are of another model"
             )
-        tokenizer.load_state_dict(
-            {name: value.float() for name, value in vae.items() if name in tokenizer.state_dict()}
-        )
+        tokenizer.load_state_dict({name: value.float() for name, value in vae.items() if name in tokenizer.state_dict()})
         return cls(
             tokenizer=tokenizer.eval(), language=language, words=plain, mean=mean_values.astype(float),
             std=std_values.astype(float), first_motion_id=first, name=place.name,
@@ -142,9 +140,7 @@ class MotionGPT:
     def _ids(self, text: str) -> list[int]:
         ids: Any = self.words(text.strip()).input_ids
         if len(ids) > LONGEST_TEXT_TOKENS:
-            raise InputError(
-                f"the text has {len(ids)} pieces, the motion model reads {LONGEST_TEXT_TOKENS}; say it shorter"
-            )
+            raise InputError(f"the text has {len(ids)} pieces, the motion model reads {LONGEST_TEXT_TOKENS}; say it shorter")
         return list(ids)
 
 
