@@ -1,6 +1,6 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md
+python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md docs/zero_shot.md
 """
 
 import json
@@ -10,6 +10,7 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 QUESTIONS = (
@@ -148,6 +149,7 @@ def _with_interval(metric: dict[str, Any]) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
+    "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 
 

@@ -108,11 +108,12 @@ def generate_windows(
 # the person ---------------------------------------------------------------------------------------------------------
 def _pose(recipe: Recipe, now: Draw, sentence: str, person: int, rng: np.random.Generator) -> PoseSequence:
     """A stretch from the middle of the motion, at the tempo, vigour and heading drawn; time 0 is the first frame."""
-    lasts_s = (recipe.frames * recipe.radar.frame_period_s + 0.1) * now.tempo  # of the motion's own time
+    moves = any(step.moves for step in parse(sentence).steps)
+    tempo = now.tempo * (recipe.variation.way_tempo if moves else 1.0)
+    lasts_s = (recipe.frames * recipe.radar.frame_period_s + 0.1) * tempo  # of the motion's own time
     lead_s = LEAD_S + float(rng.uniform(0.0, 1.5))
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
     window = (0.55, 3.1)
-    moves = any(step.moves for step in parse(sentence).steps)
     start_m = None if moves and rng.random() < 0.5 else now.start_m
     pose = compose(
         sentence, scene, duration_s=lead_s + lasts_s + 0.5, seed=person, range_window_m=window, start_m=start_m,
@@ -124,7 +125,7 @@ def _pose(recipe: Recipe, now: Draw, sentence: str, person: int, rng: np.random.
     if not moves:
         joints_m = _turned(joints_m, np.radians(now.turn_deg))
     return replace(
-        pose, time_s=(pose.time_s - lead_s) / now.tempo, joints_m=joints_m, subject=person % 1000,
+        pose, time_s=(pose.time_s - lead_s) / tempo, joints_m=joints_m, subject=person % 1000,
     )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """How well a recogniser does on recordings: windows, longer windows, whole recordings, with intervals."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,10 @@ class Judged:
     @property
     def guess(self) -> Int[np.ndarray, " window"]:
         return np.argmax(self.votes, axis=1)
+
+    def part(self, which: np.ndarray) -> "Judged":
+        """Some of the windows, by mask."""
+        return replace(self, votes=self.votes[which], truth=self.truth[which], recording=self.recording[which])
 
     def pooled(self, group: np.ndarray) -> "Judged":
         """One row a group: the mean vote of its windows."""

@@ -13,7 +13,7 @@ Span = tuple[float, float]
 class Variation:
     """Spans that a recording draws from, evenly (`tempo` evenly in its logarithm).
 
-    `tempo` speeds a motion up; `vigour` scales how far joints leave their mean place; `turn_deg` is the standard
+    `tempo` speeds a motion up, times `way_tempo` where the person goes somewhere (slowly, in a small room); `vigour` scales how far joints leave their mean place; `turn_deg` is the standard
     deviation of how far someone who stays in place is turned away from the radar. `tilt_deg` turns the reported points
     about the radar, up where positive. What ends in `_db` changes the
     radar's own noise figure, its CFAR's threshold, its receiver's gain, the
@@ -21,6 +21,7 @@ class Variation:
     """
 
     tempo: Span = (0.6, 1.6)
+    way_tempo: float = 0.7
     vigour: Span = (0.75, 1.1)
     turn_deg: float = 25.0
     distance_m: Span = (1.2, 2.5)
@@ -33,9 +34,9 @@ class Variation:
     threshold_db: Span = (-4.0, 2.0)
     gain_db: Span = (-16.0, 4.0)
     albedo_db: Span = (-6.0, 4.0)
-    skin_exponents: tuple[float, ...] = (60.0, 200.0, 400.0)
+    skin_exponents: tuple[float, ...] = (120.0, 200.0, 400.0)
     arms_db: Span = (-2.0, 6.0)
-    legs_db: Span = (-16.0, -2.0)
+    legs_db: Span = (-18.0, -5.0)
     skin_points: int = 6000
     wall_m: Span = (2.9, 5.4)
     wall_share: float = 0.3
