@@ -25,7 +25,7 @@ from mmweaver.tasks.point_recording import PointRecording
 from mmweaver.tasks.variation import Draw, Variation, draw
 
 LEAD_S = 0.75  # of the motion's own time that is left out at the start at least: nobody is recorded from rest
-SLOWEST_MPS = 0.2  # slower, somebody who should go somewhere has arrived
+SLOWEST_MPS = 0.3  # slower, somebody who should go somewhere has arrived
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +120,7 @@ def _pose(recipe: Recipe, now: Draw, sentence: str, person: int, rng: np.random.
         height_m=now.height_m,
     ).pose  # fmt: skip
     joints_m = _vigorous(pose.joints_m, now.vigour)
-    if moves and _speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
+    if moves and tempo * _speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
         raise InputError("the way ends before the window does")
     if not moves:
         joints_m = _turned(joints_m, np.radians(now.turn_deg))

@@ -13,11 +13,11 @@ Span = tuple[float, float]
 class Variation:
     """Spans that a recording draws from, evenly (`tempo` evenly in its logarithm).
 
-    `tempo` speeds a motion up, times `way_tempo` where the person goes somewhere (slowly, in a small room); `vigour` scales how far joints leave their mean place; `turn_deg` is the standard
-    deviation of how far someone who stays in place is turned away from the radar. `tilt_deg` turns the reported points
-    about the radar, up where positive. What ends in `_db` changes the
-    radar's own noise figure, its CFAR's threshold, its receiver's gain, the
-    skin's albedo, and how bright arms and legs are beside the trunk.
+    `tempo` speeds a motion up, times `way_tempo` where the person goes somewhere (slowly, in a small room); `vigour`
+    scales how far joints leave their mean place; `turn_deg` is the standard deviation of how far someone who stays in
+    place is turned away from the radar. `tilt_deg` turns the reported points about the radar, up where positive. What
+    ends in `_db` changes the radar's own noise figure, its CFAR's threshold, its receiver's gain, the skin's albedo,
+    and how bright arms and legs are beside the trunk.
     """
 
     tempo: Span = (0.6, 1.6)
@@ -37,7 +37,7 @@ class Variation:
     skin_exponents: tuple[float, ...] = (120.0, 200.0, 400.0)
     arms_db: Span = (-2.0, 6.0)
     legs_db: Span = (-18.0, -5.0)
-    skin_points: int = 6000
+    skin_points: int = 3000
     wall_m: Span = (2.9, 5.4)
     wall_share: float = 0.3
     most_panels: int = 5
