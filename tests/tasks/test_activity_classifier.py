@@ -5,6 +5,7 @@ import pytest
 
 pytest.importorskip("sklearn")
 
+from mmweaver.core.errors import InputError
 from mmweaver.tasks.activity_classifier import ActivityClassifier, ClassifierSettings
 
 SMALL = ClassifierSettings(num_trees=30, boosting_rounds=20)
@@ -38,3 +39,12 @@ def test_training_again_gives_the_same_votes():
     features, _ = data(1)
     votes = [ActivityClassifier(SMALL).fit(*data(0)).probabilities(features) for _ in range(2)]
     assert np.array_equal(votes[0], votes[1])
+
+
+def test_columns_without_values_do_no_harm():
+    features, labels = data(0)
+    features[:, 3], features[:, 4] = np.nan, 7.0
+    model = ActivityClassifier(SMALL).fit(features, labels)
+    assert np.mean(model.predict(features) == labels) > 0.8
+    with pytest.raises(InputError, match="alike"):
+        ActivityClassifier(SMALL).fit(features[:, 3:], labels)

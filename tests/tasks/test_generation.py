@@ -52,7 +52,7 @@ def test_a_cache_gives_back_what_was_made(tmp_path):
 
 
 def test_more_noise_gives_no_more_points_of_a_body():
-    loud = replace(RECIPE, variation=replace(QUIET, noise_db=(40.0, 40.5)))
+    loud = replace(RECIPE, variation=replace(QUIET, noise_db=(55.0, 55.5)))
     moving = [np.abs(generate_window(one, "walk", 0, 3).cloud.radial_velocity_mps) > 0.1 for one in (RECIPE, loud)]
     assert moving[1].sum() < 0.3 * moving[0].sum()
 

@@ -21,12 +21,13 @@ from mmweaver.core.seeding import stream
 from mmweaver.experiments.results import commit, write_result
 from mmweaver.tasks.activity_classifier import ClassifierSettings
 from mmweaver.tasks.frozen_activity import load_frozen, save_frozen
-from mmweaver.tasks.generation import Recipe, generate_window, write_window
+from mmweaver.tasks.generation import Recipe, generate_window, read_window, write_window
 from mmweaver.tasks.radhar import radhar_recipe
 from mmweaver.tasks.recording_files import read_recordings
 from mmweaver.tasks.scoring import Judged, balanced_accuracy, judge, report
 from mmweaver.tasks.variation import Draw, draw
-from mmweaver.tasks.zero_shot import TrainingSet, training_set
+from mmweaver.tasks.window_features import feature_matrix
+from mmweaver.tasks.zero_shot import TrainingSet, own_cache, training_set
 
 METRICS = {
     "window": "balanced accuracy of windows of 2 s, one after the other",
@@ -126,17 +127,36 @@ def digest(folder: Path) -> str:
     return total.hexdigest()
 
 
-def freeze(name: str, recipe: Recipe, made: TrainingSet, *, each: int, seed: int) -> None:
-    """Writes the frozen files of the package."""
-    settings = {
-        "recipe": json.loads(recipe.as_json()), "classifier": asdict(ClassifierSettings()), "each": each, "seed": seed,
-        "commit": commit(),
-    }  # fmt: skip
-    save_frozen(name, made, settings)
+def freeze(name: str, caches: list[Path]) -> None:
+    """Pools all windows of the caches and writes the frozen files of the package, with where each came from."""
+    made, sources = [], []
+    for cache in caches:
+        recipe = radhar_recipe()
+        files = sorted(cache.glob("*_*_*.npz"))
+        windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
+        features, names = feature_matrix(windows)
+        labels = np.array([window.label for window in windows])
+        made.append(TrainingSet(features=features, labels=labels, names=names))
+        sources.append(
+            {
+                "commit": (cache / "commit.txt").read_text(encoding="utf-8").strip(),
+                "seed": int(files[0].stem.split("_")[1]),
+                "windows": len(files),
+                "recipe": json.loads((cache / "recipe.json").read_text(encoding="utf-8")),
+            }
+        )
+    pooled = TrainingSet(
+        features=np.concatenate([one.features for one in made]),
+        labels=np.concatenate([one.labels for one in made]),
+        names=made[0].names,
+    )
+    save_frozen(name, pooled, {"classifier": asdict(ClassifierSettings()), "sources": sources})
 
 
 def generate(recipe: Recipe, cache: Path, *, each: int, seed: int, part: int = 0, parts: int = 1) -> None:
-    """Fills a cache; several processes may share one, each with its part."""
+    """Fills a cache; several processes may share one, each with its part. Says in it what made it."""
+    own_cache(cache, recipe)
+    (cache / "commit.txt").write_text(f"{commit()}\n", encoding="utf-8")
     for index in range(part, each, parts):
         for label in recipe.activities:
             path = cache / f"{label}_{seed}_{index}.npz"
@@ -150,6 +170,7 @@ def main() -> None:
     parser.add_argument("what", choices=("generate", "validate", "freeze", "score"))
     parser.add_argument("name", nargs="?", default="development", help="name of the frozen recogniser")
     parser.add_argument("--cache", type=Path, help="folder of generated windows")
+    parser.add_argument("--caches", type=Path, nargs="+", help="folders to freeze together")
     parser.add_argument("--each", type=int, default=300, help="windows of each activity")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--part", type=int, default=0)
@@ -164,12 +185,12 @@ def main() -> None:
     if given.what == "generate":
         generate(recipe, given.cache, each=given.each, seed=given.seed, part=given.part, parts=given.parts)
         return
-    made = training_set(recipe, each=given.each, seed=given.seed, cache=given.cache)
     if given.what == "freeze":
-        freeze(given.name, recipe, made, each=given.each, seed=given.seed)
-    else:
-        for split, value in validate(made, first_draws(recipe, given.each, given.seed)).items():
-            print(f"{split:24s} {value:.3f}")  # noqa: T201
+        freeze(given.name, given.caches)
+        return
+    made = training_set(recipe, each=given.each, seed=given.seed, cache=given.cache)
+    for split, value in validate(made, first_draws(recipe, given.each, given.seed)).items():
+        print(f"{split:24s} {value:.3f}")  # noqa: T201
 
 
 if __name__ == "__main__":

@@ -35,6 +35,7 @@ class ActivityClassifier:
         self.settings = settings or ClassifierSettings()
         self.classes: tuple[str, ...] = ()
         self._models: list[Any] = []
+        self._used = np.zeros(0, bool)
 
     def fit(self, features: Features, labels: np.ndarray, weights: np.ndarray | None = None) -> "ActivityClassifier":
         """Learns from one row a window (nan = not known); weights default to 1. Returns itself.
@@ -57,15 +58,24 @@ class ActivityClassifier:
                 max_iter=chosen.boosting_rounds, learning_rate=chosen.learning_rate, **boosted, **shared
             ),
         ]
+        self._used = _varied(features)
+        if not self._used.any():
+            raise InputError("the features of all windows are alike; is anything detected at all?")
         for model in self._models:
-            model.fit(features, labels, sample_weight=weights)
+            model.fit(features[:, self._used], labels, sample_weight=weights)
         self.classes = tuple(str(name) for name in self._models[0].classes_)
         return self
 
     def probabilities(self, features: Features) -> Float[np.ndarray, "window activity"]:
         """Mean vote of both kinds, (window, activity)."""
-        return np.mean([model.predict_proba(features) for model in self._models], axis=0)
+        return np.mean([model.predict_proba(features[:, self._used]) for model in self._models], axis=0)
 
     def predict(self, features: Features) -> np.ndarray:
         """The activity with most votes, one a window."""
         return np.array(self.classes)[np.argmax(self.probabilities(features), axis=1)]
+
+
+def _varied(features: Features) -> np.ndarray:
+    """Columns with more than one known value; trees cannot take others."""
+    filled = [column[np.isfinite(column)] for column in features.T]
+    return np.array([len(column) > 0 and bool(np.ptp(column) > 0) for column in filled])

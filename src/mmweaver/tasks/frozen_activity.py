@@ -25,7 +25,7 @@ class Frozen:
     made: TrainingSet
     classifier: ClassifierSettings
     window_s: float
-    provenance: dict[str, Any]  # commit, seed and number of generated windows
+    provenance: dict[str, Any]  # commits and seeds of what was generated, and how many windows
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -47,13 +47,17 @@ def load_frozen(name: str) -> Frozen:
     return Frozen(
         made=made,
         classifier=ClassifierSettings(**held["classifier"]),
-        window_s=held["recipe"]["window_s"],
-        provenance={"commit": held["commit"], "seed": held["seed"], "generated_windows": len(made.labels)},
+        window_s=held["sources"][0]["recipe"]["window_s"],
+        provenance={
+            "commits": [source["commit"] for source in held["sources"]],
+            "seeds": [source["seed"] for source in held["sources"]],
+            "generated_windows": len(made.labels),
+        },
     )
 
 
 def save_frozen(name: str, made: TrainingSet, settings: dict[str, Any], folder: Path = FOLDER) -> None:
-    """Writes both files; `settings` holds recipe, classifier, seed, windows of each activity and commit."""
+    """Writes both files; `settings` holds the classifier's, and for each source its commit, seed and recipe."""
     write_training_set(folder / f"{name}.npz", made)
     with atomic_file(folder / f"{name}.json") as temporary:
         temporary.write_text(json.dumps(settings, indent=1) + "\n", encoding="utf-8")

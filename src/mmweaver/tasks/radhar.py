@@ -8,10 +8,12 @@ ACTIVITIES = {
     "boxing": (
         "a person punches", "a person punches quickly", "a person punches with the right hand",
         "a person walks slowly back and forth while punching", "a person walks back and forth while punching quickly",
+        "a person walks slowly towards the radar while punching",
     ),
     "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
     "jump": (
-        "a person hops", "a person hops quickly", "a person hops slowly", "a person hops on the spot", "a person jumps",
+        "a person hops", "a person hops quickly", "a person hops slowly", "a person hops on the spot",
+        "a person hops", "a person jumps",
     ),
     "squats": ("a person squats", "a person squats quickly", "a person squats slowly"),
     "walk": (

@@ -41,13 +41,14 @@ def training_set(
     different recipes, and says so.
     """
     if cache is not None:
-        _own_cache(Path(cache), recipe)
+        own_cache(Path(cache), recipe)
     windows = generate_windows(recipe, each=each, seed=seed, cache=cache, report=report)
     features, names = feature_matrix(windows)
     return TrainingSet(features=features, labels=np.array([window.label for window in windows]), names=names)
 
 
-def _own_cache(cache: Path, recipe: Recipe) -> None:
+def own_cache(cache: Path, recipe: Recipe) -> None:
+    """Writes the recipe into a cache, or checks that it is the one there. Raises InputError for another's."""
     note = cache / "recipe.json"
     text = recipe.as_json()
     if note.exists() and note.read_text(encoding="utf-8") != text:
