@@ -8,7 +8,7 @@ ACTIVITIES = {
     "boxing": (
         "a person punches", "a person punches quickly", "a person punches with the right hand",
         "a person walks slowly back and forth while punching", "a person walks back and forth while punching quickly",
-        "a person walks slowly towards the radar while punching",
+        "a person walks slowly towards the radar while punching", "a person walks slowly away while punching",
     ),
     "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
     "jump": (

@@ -21,7 +21,7 @@ class Variation:
     """
 
     tempo: Span = (0.6, 1.6)
-    way_tempo: float = 0.8
+    way_tempo: float = 0.85
     vigour: Span = (0.75, 1.1)
     turn_deg: float = 25.0
     distance_m: Span = (1.2, 2.5)
@@ -34,9 +34,9 @@ class Variation:
     threshold_db: Span = (-4.0, 2.0)
     gain_db: Span = (-16.0, 4.0)
     albedo_db: Span = (-6.0, 4.0)
-    skin_exponents: tuple[float, ...] = (60.0, 120.0, 200.0, 400.0)
+    skin_exponents: tuple[float, ...] = (60.0, 200.0, 400.0)
     arms_db: Span = (-2.0, 6.0)
-    legs_db: Span = (-18.0, -4.0)
+    legs_db: Span = (-16.0, -2.0)
     skin_points: int = 4000
     wall_m: Span = (2.9, 5.4)
     wall_share: float = 0.3

@@ -210,7 +210,7 @@ def squatting(stage: Stage) -> Controls:
         down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
     knee = np.radians(rng.uniform(94, 112))
     back = float(rng.uniform(0.085, 0.125)) * body.height_m
-    lean = float(rng.uniform(0.8, 1.5))
+    lean = float(rng.uniform(0.4, 1.3))
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
     low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + body.hip_below_pelvis_m * 0.95
     stand = body.pelvis_height_m(STAND_STRETCH)
