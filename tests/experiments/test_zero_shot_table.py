@@ -22,7 +22,7 @@ def test_rows_are_recognisers_and_groups(tmp_path):
         (tmp_path / "zero_shot" / f"{method}.json").write_text(json.dumps({"rows": rows}))
     table = zero_shot_table(tmp_path)
     assert "| blind | 7 | 0.500 (0.400 to 0.600)" in table
-    assert "| *confirm* | 7 | 0.880" in table
+    assert "| *kept aside* | 7 | 0.880" in table
     assert "| a | 3 | 1 |" in table
 
 

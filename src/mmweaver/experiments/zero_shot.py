@@ -45,9 +45,11 @@ def validate(made: TrainingSet, draws: list[Draw]) -> dict[str, float]:
     of = {key: np.array([getattr(one, key) or 9.0 for one in draws], float) for key in VARIED}
     tests = {"every_third": number // len(set(made.labels)) % 3 == 0}
     for key, value in of.items():
-        tests[f"{key}_low"], tests[f"{key}_high"] = value < np.quantile(value, 0.3), value > np.quantile(value, 0.7)
+        tests[f"{key}_low"], tests[f"{key}_high"] = value <= np.quantile(value, 0.3), value >= np.quantile(value, 0.7)
     scores: dict[str, float] = {}
     for name, test in tests.items():
+        if test.all():
+            continue  # nothing is left to train on: this was not varied
         model = TrainingSet(features=made.features[~test], labels=made.labels[~test], names=made.names).train()
         truth, guess = (
             np.unique(made.labels).searchsorted(labels)

@@ -11,13 +11,13 @@ def zero_shot_table(folder: Path) -> str:
     """One row a recogniser and group of recordings, then what the windows were taken for."""
     lines = [_line(*HEADER), _line(*["---"] * len(HEADER))]
     last: dict[str, Any] = {}
-    for method, names in (("blind", ("blind",)), ("development", ("all", "development", "confirm"))):
+    for method, names in (("blind", ("blind",)), ("development", ("development", "looked at", "kept aside"))):
         for name, row in zip(names, _record(folder, method)["rows"], strict=False):
             metrics = row["metrics"]
             scores = [_with_interval(metrics[key]) for key in ("window", "three_windows", "recording")]
-            title = method if name in (method, "all") else f"*{name}*"
+            title = method if name == method else f"*{name}*"
             lines.append(_line(title, str(row["dataset"]["recordings"]), *scores, f"{metrics['window']['floor']:.2f}"))
-            last = row if name in ("blind", "all") else last
+            last = row if name == method else last
     kinds = last["classes"]
     lines += ["", "Windows of 2 s after development, true in rows, recognised in columns:", ""]
     lines += [_line("", *kinds), _line(*["---"] * (1 + len(kinds)))]
