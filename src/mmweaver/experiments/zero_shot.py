@@ -20,7 +20,7 @@ import numpy as np
 from mmweaver.core.seeding import stream
 from mmweaver.experiments.results import commit, write_result
 from mmweaver.tasks.activity_classifier import ClassifierSettings
-from mmweaver.tasks.frozen_activity import load_frozen, save_frozen
+from mmweaver.tasks.frozen_activity import FOLDER, load_frozen, save_frozen
 from mmweaver.tasks.generation import Recipe, generate_window, read_window, write_window
 from mmweaver.tasks.radhar import radhar_recipe
 from mmweaver.tasks.recording_files import read_recordings
@@ -129,8 +129,11 @@ def digest(folder: Path) -> str:
     return total.hexdigest()
 
 
-def freeze(name: str, caches: list[Path]) -> None:
-    """Pools all windows of the caches and writes the frozen files of the package, with where each came from."""
+def freeze(name: str, caches: list[Path], out: Path) -> Path:
+    """Pools all windows of the caches and writes the frozen files of the package, with where each came from.
+
+    results/zero_shot/frozen.json says the same, with the digest of the features.
+    """
     made, sources = [], []
     for cache in caches:
         recipe = radhar_recipe()
@@ -153,6 +156,15 @@ def freeze(name: str, caches: list[Path]) -> None:
         names=made[0].names,
     )
     save_frozen(name, pooled, {"classifier": asdict(ClassifierSettings()), "sources": sources})
+    return tell_frozen(name, out)
+
+
+def tell_frozen(name: str, out: Path) -> Path:
+    """results/zero_shot/frozen.json: settings and sources of a frozen recogniser, and the digest of its features."""
+    settings = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    features = hashlib.sha256((FOLDER / f"{name}.npz").read_bytes()).hexdigest()
+    config = {"frozen": name, "features_sha256": features, **settings}
+    return write_result(out, experiment="zero_shot", method="frozen", config=config, rows=[])
 
 
 def generate(recipe: Recipe, cache: Path, *, each: int, seed: int, part: int = 0, parts: int = 1) -> None:
@@ -188,7 +200,7 @@ def main() -> None:
         generate(recipe, given.cache, each=given.each, seed=given.seed, part=given.part, parts=given.parts)
         return
     if given.what == "freeze":
-        freeze(given.name, given.caches)
+        freeze(given.name, given.caches, given.out)
         return
     made = training_set(recipe, each=given.each, seed=given.seed, cache=given.cache)
     for split, value in validate(made, first_draws(recipe, given.each, given.seed)).items():
