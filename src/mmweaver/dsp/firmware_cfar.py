@@ -24,13 +24,13 @@ class DetectionMatrix:
 def counts_per_db(device: str, num_antennas: int) -> float:
     """How many counts of a threshold one dB is.
 
-    >>> round(15 * counts_per_db("xwr16xx", 8) / 5120, 2), round(15 * counts_per_db("xwr14xx", 8) / 1280, 2)
-    (1.0, 1.0)
+    >>> round(1280 / counts_per_db("xwr14xx", 8), 1), round(1280 / counts_per_db("xwr14xx", 12), 1)
+    (15.1, 20.1)
     """
     octave = (
         256.0 * num_antennas if device == "xwr16xx" else 512.0 * num_antennas / 2 ** (num_antennas - 1).bit_length()
     )
-    return octave / DB_PER_OCTAVE
+    return float(octave / DB_PER_OCTAVE)
 
 
 def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"], device: str) -> DetectionMatrix:

@@ -124,8 +124,9 @@ def drinking(stage: Stage, controls: Controls) -> Controls:
 def _sway(controls: Controls, stage: Stage, lunge_m: PerTime) -> None:
     """A boxer's trunk is never at rest: it goes with each blow and sways between them, over feet that stay."""
     rng, time_s = stage.rng, stage.time_s
-    ahead = lunge_m + float(rng.uniform(0.015, 0.075)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.5)
-    aside = float(rng.uniform(0.02, 0.07)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.2)
+    calm = 0.3 if stage.step.hand in ("left", "right") else 1.0  # one hand alone is shown, not a fight
+    ahead = lunge_m + calm * float(rng.uniform(0.015, 0.075)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.5)
+    aside = calm * float(rng.uniform(0.02, 0.07)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.2)
     cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
     controls.pelvis_m[:, 0] += ahead * cos - aside * sin
     controls.pelvis_m[:, 1] += ahead * sin + aside * cos
@@ -154,7 +155,7 @@ def punching(stage: Stage, controls: Controls) -> Controls:
     _sway(controls, stage, float(rng.uniform(0.02, 0.06)) * (out[RIGHT] + out[LEFT]))
     guard = np.array([rng.uniform(0.13, 0.175), rng.uniform(0.04, 0.09), rng.uniform(0.06, 0.15)])
     hook = float(rng.choice([0.0, 0.0, rng.uniform(0.04, 0.12)]))  # round the side rather than straight
-    restless = float(rng.uniform(0.004, 0.02)) * (stage.step.count == 0)
+    restless = float(rng.uniform(0.004, 0.02)) * (stage.step.count == 0 and len(arms) == 2)
     for side in (LEFT, RIGHT):
         aim = np.array([rng.uniform(0.25, 0.29), 0.035, 0.08 + rng.normal(0, 0.03)])
         target = guard + out[side][:, None] * (aim - guard)

@@ -149,7 +149,7 @@ def _bounce(controls: Controls, stage: Stage, *, one_leg: bool) -> None:
     hop_all(controls, stage, hops, dips, ready_m=-0.04, heels=0.8)
     # nobody hops quite straight: the trunk swings to and fro with each
     turn = 2 * np.pi * (stage.time_s - first) / period + stage.rng.uniform(0, 2 * np.pi)
-    shift_pelvis(controls, float(stage.rng.uniform(0.005, 0.035)) * np.sin(turn), 0.0, 0.0)
+    shift_pelvis(controls, float(stage.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
 
 
 def lunging(stage: Stage) -> Controls:
