@@ -77,3 +77,19 @@ def test_a_sharper_skin_returns_as_much_over_all_angles():
     over_all = [(SkinEcho(exponent=n).strength * np.cos(angle) ** n * ring).sum() for n in (2.0, 8.0, 20.0)]
     assert max(over_all) < 1.001 * min(over_all)
     assert SkinEcho().strength == pytest.approx(4 * ALBEDO)
+
+
+def test_arms_and_legs_have_a_brightness_of_their_own():
+    plain, dim = Body(0, 1.75), Body(0, 1.75, echo=SkinEcho(arms_db=3.0, legs_db=-10.0))
+    assert np.all(plain.brightness == 1)
+    names = np.array([capsule.end.rsplit("_", 1)[-1] for capsule in CAPSULES])[dim.part]
+    assert np.allclose(dim.brightness[np.isin(names, ["elbow", "wrist"])], 10**0.3)
+    assert np.allclose(dim.brightness[np.isin(names, ["knee", "ankle", "foot"])], 0.1)
+    assert np.all(dim.brightness[np.isin(names, ["head", "neck", "spine1", "hip", "shoulder"])] == 1)
+
+
+def test_only_skin_that_returns_nothing_is_left_out():
+    assert SkinEcho().least_cos == 0.02
+    for exponent in (20.0, 200.0):
+        sharp = SkinEcho(exponent=exponent)
+        assert np.isclose(sharp.least_cos**exponent, 1e-6)

@@ -11,6 +11,7 @@ from typing import Any
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
+from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FINER, RADII = (1.5, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
@@ -300,6 +301,7 @@ TABLES = {
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
+    "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 
 

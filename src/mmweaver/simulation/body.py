@@ -26,10 +26,18 @@ class SkinEcho:
     """How skin returns a wave that meets it at an angle: 4 albedo cos^exponent of its area, 2 being Lambert's law.
 
     Other exponents are scaled to return as much over all angles, so a larger one is a flash where skin faces the radar.
+    `arms_db` and `legs_db` make these brighter or fainter than the rest.
     """
 
     albedo: float = ALBEDO
     exponent: float = 2.0
+    arms_db: float = 0.0
+    legs_db: float = 0.0
+
+    @property
+    def least_cos(self) -> float:
+        """Skin turned further away than this returns under -60 dB of what facing skin does, and is left out."""
+        return max(1e-6 ** (1 / self.exponent), 0.02)
 
     @property
     def strength(self) -> float:
@@ -82,7 +90,7 @@ CAPSULES: tuple[Capsule, ...] = (
     *_both_sides("ankle", "foot", (0.038, 0.035), FRONT, 0.05),
     *_both_sides("shoulder", "elbow", (0.05, 0.042), ARM),
     *_both_sides("elbow", "wrist", (0.042, 0.03), ARM),
-    *_both_sides("wrist", "wrist", (0.035, 0.03), ARM, 0.13),
+    *_both_sides("wrist", "wrist", (0.042, 0.04), ARM, 0.12),
 )
 TORSO_WIDTH_FRONT = 1.25  # the trunk is wider than deep: its cross-section is an ellipse
 TORSO = {"pelvis", "spine1", "spine2", "spine3"}
@@ -120,6 +128,8 @@ class Body:
         self.angle_rad = rng.uniform(0, 2 * np.pi, num_points)
         self.micro_phase = np.exp(2j * np.pi * rng.random(num_points))
         self.area_m2 = area.sum() * self.scale**2 / num_points
+        limb_db = [_limb_db(capsule, self.echo) for capsule in CAPSULES]
+        self.brightness = 10 ** (np.array(limb_db)[self.part] / 10)  # (point,) in power
 
     @staticmethod
     def _side_area(capsule: Capsule) -> float:
@@ -225,6 +235,14 @@ def _cap_shares(capsule: Capsule) -> tuple[float, float]:
     share = capsule.end_radius_m / _length_m(capsule) if capsule.extend_m else 0.0
     is_lump = capsule.start == capsule.end and capsule.start not in CONTINUES
     return (share if is_lump else 0.0, share)
+
+
+def _limb_db(capsule: Capsule, echo: SkinEcho) -> float:
+    """How much brighter than the trunk a capsule is."""
+    start, end = (name.rsplit("_", 1)[-1] for name in (capsule.start, capsule.end))
+    if end in ("elbow", "wrist"):
+        return echo.arms_db
+    return echo.legs_db if end in ("knee", "ankle", "foot") and start != end else 0.0
 
 
 def _torso_rotation(joints_m: np.ndarray) -> np.ndarray:

@@ -116,13 +116,14 @@ class BodyEchoes:
         return np.flatnonzero((unit[0] @ axis > opening) | (unit[1] @ axis > opening))
 
     def _visible(self) -> np.ndarray:
-        facing = self.cos > 0.02
+        facing = self.cos > self.body.echo.least_cos
         facing &= self.room.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
 
     def _direct(self) -> "Rows":
         echo = self.body.echo
         cross_section = echo.strength * np.maximum(self.cos, 0) ** echo.exponent * self.body.area_m2
+        cross_section *= self.body.brightness
         amplitude = self.gain * self._pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return Rows(
             None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible, False
@@ -133,7 +134,7 @@ class BodyEchoes:
         count = len(self.body.micro_phase)
         chosen = np.unique(np.linspace(0, count - 1, min(GHOST_POINTS, count)).astype(int))
         place, normal = self.posed.place_m[:, chosen], self.posed.normal[:, chosen]
-        area_m2 = self.body.area_m2 * count / len(chosen)
+        area_m2 = self.body.area_m2 * self.body.brightness[chosen] * count / len(chosen)
         image = mirror.image(place)
         way_m = np.linalg.norm(image, axis=-1)
         corner = mirror.crossing(np.zeros(3), image)

@@ -11,7 +11,7 @@ from mmweaver.motion.arm_reach import reach
 from mmweaver.motion.body import Body
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.limbs import cycles, mix_arm, sides
-from mmweaver.motion.profiles import plateau, rise
+from mmweaver.motion.profiles import plateau, rise, wander
 from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
@@ -121,6 +121,19 @@ def drinking(stage: Stage, controls: Controls) -> Controls:
     return controls
 
 
+def _sway(controls: Controls, stage: Stage, lunge_m: PerTime) -> None:
+    """A boxer's trunk is never at rest: it goes with each blow and sways between them, over feet that stay."""
+    rng, time_s = stage.rng, stage.time_s
+    calm = 0.3 if stage.step.hand in ("left", "right") else 1.0  # one hand alone is shown, not a fight
+    ahead = lunge_m + calm * float(rng.uniform(0.015, 0.075)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.5)
+    aside = calm * float(rng.uniform(0.02, 0.07)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.2)
+    cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
+    controls.pelvis_m[:, 0] += ahead * cos - aside * sin
+    controls.pelvis_m[:, 1] += ahead * sin + aside * cos
+    controls.spine_rad[:, 1] += 2.0 * ahead
+    controls.spine_rad[:, 0] -= 1.5 * aside
+
+
 def punching(stage: Stage, controls: Controls) -> Controls:
     """Fists before the face; one after the other shoots forward at shoulder height and comes back."""
     time_s, rng, body = stage.time_s, stage.rng, stage.body
@@ -130,19 +143,25 @@ def punching(stage: Stage, controls: Controls) -> Controls:
     arms = sides(stage) if stage.step.hand in ("left", "right") else (LEFT, RIGHT)
     first = int(rng.integers(2))
     out = [np.zeros_like(time_s), np.zeros_like(time_s)]
-    strike = float(np.clip(0.75 * period, 0.42, 0.62))
+    strike = float(np.clip(0.75 * period, 0.34, 0.62))
     for k in range(max(count, 1)):
         begin = stage.start_s + 0.06 + k * period
         side = arms[(k + first) % len(arms)]
         out[side] += plateau(time_s, begin, begin + strike, 0.48 * strike, 0.52 * strike)
-    twist = 0.38 * (out[RIGHT] - out[LEFT])
+    twist = float(rng.uniform(0.35, 0.7)) * (out[RIGHT] - out[LEFT])
     controls.spine_rad[:, 2] += twist
     controls.head_rad[:, 1] -= 0.8 * twist
     controls.spine_rad[:, 1] += 0.06
-    guard = np.array([rng.uniform(0.15, 0.175), rng.uniform(0.05, 0.065), rng.uniform(0.12, 0.15)])
+    _sway(controls, stage, float(rng.uniform(0.02, 0.06)) * (out[RIGHT] + out[LEFT]))
+    guard = np.array([rng.uniform(0.13, 0.175), rng.uniform(0.04, 0.09), rng.uniform(0.06, 0.15)])
+    hook = float(rng.choice([0.0, 0.0, rng.uniform(0.04, 0.12)]))  # round the side rather than straight
+    restless = float(rng.uniform(0.004, 0.02)) * (stage.step.count == 0 and len(arms) == 2)
     for side in (LEFT, RIGHT):
-        aim = np.array([0.285, 0.035, 0.1 + rng.normal(0, 0.01)])
-        target = (guard + out[side][:, None] * (aim - guard)) * body.height_m
-        arm = reach(body, target, elbow=(-0.15, 0.45, -1.0))
+        aim = np.array([rng.uniform(0.25, 0.29), 0.035, 0.08 + rng.normal(0, 0.03)])
+        target = guard + out[side][:, None] * (aim - guard)
+        target[:, 1] += hook * 4 * out[side] * (1 - out[side])
+        for axis in range(3):  # fists are never at rest in the guard
+            target[:, axis] += restless * wander(time_s, rng, slow_hz=0.8, fast_hz=2.2) * (1 - out[side])
+        arm = reach(body, target * body.height_m, elbow=(-0.15, 0.45 + 3 * hook, -1.0))
         mix_arm(controls, side, arm, np.ones_like(time_s))
     return controls

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.library.limbs import shift_pelvis
 from mmweaver.motion.library.standing import STAND_STRETCH, home_feet, upright
 from mmweaver.motion.profiles import plateau, rise, through
 from mmweaver.motion.root_path import RootPath
@@ -123,6 +124,9 @@ def bounce(controls: Controls, stage: Stage, *, one_leg: bool) -> None:
     dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
     dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
     hop_all(controls, stage, hops, dips, ready_m=-0.04, heels=0.8)
+    # nobody hops quite straight: the trunk swings to and fro with each
+    turn = 2 * np.pi * (stage.time_s - first) / period + stage.rng.uniform(0, 2 * np.pi)
+    shift_pelvis(controls, float(stage.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
 
 
 def leaping(stage: Stage) -> Controls:
@@ -210,7 +214,7 @@ def jumping_jacks(stage: Stage) -> Controls:
     top = float(rng.uniform(2.55, 2.85))
     controls.arm_rad[:, :, 1] += (top * lift)[:, None]
     controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
-    controls.arm_rad[:, :, 0] += 0.12
+    controls.arm_rad[:, :, 0] += float(rng.uniform(0.0, 0.35)) + (float(rng.uniform(-0.1, 0.3)) * lift)[:, None]
     return controls
 
 
@@ -235,8 +239,9 @@ def squatting(stage: Stage) -> Controls:
     for k in range(count):
         begin = stage.start_s + k * period
         down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
-    knee = np.radians(rng.uniform(98, 112))
-    back = 0.125 * body.height_m
+    knee = np.radians(rng.uniform(94, 112))
+    back = float(rng.uniform(0.085, 0.125)) * body.height_m
+    lean = float(rng.uniform(0.4, 1.3))
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
     low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + body.hip_below_pelvis_m * 0.95
     stand = body.pelvis_height_m(STAND_STRETCH)
@@ -245,10 +250,11 @@ def squatting(stage: Stage) -> Controls:
     shift = (back + 0.022 * body.height_m) * down
     controls.pelvis_m[:, 0] -= shift * np.cos(heading)
     controls.pelvis_m[:, 1] -= shift * np.sin(heading)
-    controls.pelvis_rad[:, 1] += 0.42 * down
-    controls.spine_rad[:, 1] += 0.3 * down
+    controls.pelvis_rad[:, 1] += 0.42 * lean * down
+    controls.spine_rad[:, 1] += 0.3 * lean * down
     controls.head_rad[:, 0] -= 0.45 * down
     controls.knee_out_rad[:] += (0.2 * down)[:, None]
-    controls.arm_rad[:, :, 0] += (float(rng.uniform(1.5, 1.9)) * down)[:, None]
+    lift_rad = float(rng.choice([rng.uniform(0.0, 0.5), rng.uniform(1.2, 1.9)]))  # arms left hanging, or for balance
+    controls.arm_rad[:, :, 0] += (lift_rad * down)[:, None]
     controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]
     return controls
