@@ -14,6 +14,7 @@ from mmweaver.simulation.materials import MATERIALS, reflection
 from mmweaver.simulation.mirrors import mirrors_of, specular_paths
 from mmweaver.simulation.receiver import IDEAL, Impairments
 from mmweaver.simulation.simulator import Simulator
+from mmweaver.simulation.skin import LAMBERT
 from mmweaver.simulation.small_motions import STILL, SmallMotions
 from mmweaver.simulation.synthesis import EchoRows, FrameClock, synthesise
 
@@ -56,7 +57,10 @@ def test_reciprocity_transmitters_and_receivers_may_change_places():
 
 
 def test_amplitude_falls_with_the_square_of_the_range():
-    """A person glided from 3 m to 6 m before a radar without a beam: a quarter of the amplitude, 12 dB."""
+    """A person glided from 3 m to 6 m before a radar without a beam: a quarter of the amplitude, 12 dB.
+
+    With a skin that has no lobe: further away, more of a body faces the radar.
+    """
     everywhere = replace(AWR1843, azimuth_beamwidth_deg=1e4, elevation_beamwidth_deg=1e4)
     simulator = Simulator(scene_of((floor(-50.0),)), everywhere, IDEAL)
     power = []
@@ -64,7 +68,7 @@ def test_amplitude_falls_with_the_square_of_the_range():
         total = 0.0
         for subject in range(60):  # speckle averages out
             pose = replace(standing_person((0.0, distance_m, -0.9)), subject=subject)
-            adc = simulator.run(pose, num_frames=1, seed=0).adc.samples[0, :1, :1]
+            adc = simulator.run(pose, num_frames=1, seed=0, echo=LAMBERT).adc.samples[0, :1, :1]
             total += float((np.abs(adc - simulator.room_adc[:1]) ** 2).sum())
         power.append(total)
     assert 10 * np.log10(power[0] / power[1]) == pytest.approx(12.04, abs=1.0)
@@ -99,6 +103,23 @@ def test_the_last_frame_moves_as_the_others_do():
     adc = simulator.run(person, num_frames=2, seed=0, motions=STILL).adc.samples
     speeds = [AWR1843.radial_velocity_mps[np.argmax(loop_spectrum(frame))] for frame in adc]
     assert speeds == pytest.approx([-1.0, -1.0], abs=0.3)
+
+
+def test_a_board_keeps_its_channel_errors():
+    """Each channel is off by one factor, the same in all frames and for all seeds; another board has others."""
+    person = standing_person((0.2, 2.0, -1.2))
+    ideal = Simulator(scene_of((back_wall(),)), AWR1843, IDEAL).run(person, num_frames=2, seed=0).adc.samples
+    factors = []
+    for board in (1, 1, 2):
+        off = replace(IDEAL, channel_gain_db=0.5, channel_phase_rad=0.3, board=board)
+        simulator = Simulator(scene_of((back_wall(),)), AWR1843, off)
+        factor = simulator.run(person, num_frames=2, seed=0).adc.samples / ideal
+        assert np.allclose(factor, factor[:1, :1, :, :, :1], atol=1e-3)
+        factors.append(factor[0, 0, :, :, 0])
+    assert np.array_equal(factors[0], factors[1])
+    assert 0.1 < np.angle(factors[0] / factors[2]).std() < 1.2
+    between_tx = factors[0] / factors[0][:1]
+    assert np.allclose(between_tx, between_tx[:, :1], atol=1e-3)  # a transmitter's error is common to the receivers
 
 
 def test_jitter_lets_resting_clutter_leak_into_doppler():

@@ -149,8 +149,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _places(arguments: argparse.Namespace) -> Any:
     """One place of one person, or a list of several people's."""
-    one = arguments.at is not None and len(arguments.at) == 1 and len(arguments.text or [""]) == 1
-    return arguments.at[0] if one else arguments.at
+    at = arguments.at
+    return at[0] if at is not None and len(at) == 1 and len(arguments.text or [""]) == 1 else at
 
 
 def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:

@@ -96,7 +96,7 @@ def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
     row[1].set_title("from above (m)")
     view = View(
         title="", cube=result.cube, points=result.points, photo=photo, radar_from_camera=scene.radar_from_camera,
-        pose=result.pose, motion=result.motion,
+        poses=result.poses, motions=result.motions,
     )  # fmt: skip
     draw_range_time(row[2], view)
     draw_doppler_time(row[3], view)

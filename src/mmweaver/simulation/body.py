@@ -12,37 +12,11 @@ import numpy as np
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
+from mmweaver.simulation.skin import SkinEcho
 
 REFERENCE_HEIGHT_M = 1.75
 DEFAULT_NUM_POINTS = 800
-# Share of the incident power that skin and clothes return diffusely; published 77 GHz averages (about -5 to -8 dBsm
-# seen from the front) ask for 0.15 to 0.2.
-ALBEDO = 0.18
 RING = 6  # corners of a capsule's low-poly hull
-
-
-@dataclass(frozen=True, kw_only=True)
-class SkinEcho:
-    """How skin returns a wave that meets it at an angle: 4 albedo cos^exponent of its area, 2 being Lambert's law.
-
-    Other exponents are scaled to return as much over all angles, so a larger one is a flash where skin faces the radar.
-    `arms_db` and `legs_db` make these brighter or fainter than the rest.
-    """
-
-    albedo: float = ALBEDO
-    exponent: float = 2.0
-    arms_db: float = 0.0
-    legs_db: float = 0.0
-
-    @property
-    def least_cos(self) -> float:
-        """Skin turned further away than this returns under -60 dB of what facing skin does, and is left out."""
-        return max(1e-6 ** (1 / self.exponent), 0.02)
-
-    @property
-    def strength(self) -> float:
-        """Cross section of one square metre that faces the radar."""
-        return 4 * self.albedo * (self.exponent + 1) / 3
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -121,9 +121,7 @@ class BodyEchoes:
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
 
     def _direct(self) -> "Rows":
-        echo = self.body.echo
-        cross_section = echo.strength * np.maximum(self.cos, 0) ** echo.exponent * self.body.area_m2
-        cross_section *= self.body.brightness
+        cross_section = self.body.echo.back(self.cos) * self.body.area_m2 * self.body.brightness
         amplitude = self.gain * self._pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return Rows(
             None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible, False
@@ -150,11 +148,11 @@ class BodyEchoes:
         over = self.gain * self._pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / way_m * coefficient
         micro = self.body.micro_phase[chosen]
         direct = self._pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]
-        echo = self.body.echo
-        share = echo.exponent / 4  # of each of the two directions, in amplitude
-        skin = np.sqrt(echo.strength * area_m2) * np.maximum(cos, 0) ** share
-        mixed = over * direct * skin * np.maximum(self.cos[:, chosen], 0) ** share * micro
-        double = over**2 / self.gain * skin * np.maximum(cos, 0) ** share * micro
+        half = to_corner + self.towards[:, chosen]
+        cos_half = (normal * half).sum(-1) / np.maximum(np.linalg.norm(half, axis=-1), 1e-6)
+        skin = self.body.echo
+        mixed = over * direct * np.sqrt(skin.over(self.cos[:, chosen], cos, cos_half) * area_m2) * micro
+        double = over**2 / self.gain * np.sqrt(skin.back(cos) * area_m2) * micro
         ghosts = [
             Rows(None, mirror, chosen, mixed, seen & self.visible[:, chosen], True),
             Rows(mirror, mirror, chosen, double, seen, False),

@@ -9,10 +9,11 @@ from scipy.interpolate import CubicSpline
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
-from mmweaver.simulation.body import DEFAULT_NUM_POINTS, Body, SkinEcho, body_of
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS, Body, body_of
 from mmweaver.simulation.people import PeopleEchoes
 from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
+from mmweaver.simulation.skin import SkinEcho
 from mmweaver.simulation.small_motions import Restlessness, SmallMotions
 from mmweaver.simulation.synthesis import FrameClock, synthesise
 
@@ -21,7 +22,9 @@ CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
 ASSUMPTIONS = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
     " makers' documents; they are not calibrated against a recording",
-    "the body is made of capsules with a diffuse skin (albedo 0.18 at 77 GHz); clothes are not modelled",
+    "the body is made of capsules with a wrinkled skin that glints where it faces the radar (reflectivity 0.14, slope"
+    " 0.10); clothes are in that figure and not modelled",
+    "who stands or sits still sways, trembles and breathes by typical amounts",
     "nothing passes through furniture, and waves do not bend around edges",
 )
 SEVERAL_PEOPLE = (

@@ -1,8 +1,8 @@
-"""What a body does while it holds still: it sways over its feet, its limbs waver and tremble, its chest breathes and beats.
+"""What a body does while it holds still: it sways over its feet, its limbs waver and tremble, its chest breathes.
 
 Millimetres, and yet what a radar sees of somebody who stands: clutter removal takes away only what truly rests.
-Amplitudes are those of posturography (centre of mass 3 to 5 mm rms to and fro, 2 to 3 mm sideways, 4 to 6 mm/s),
-of physiological tremor (8 to 12 Hz, some 0.1 mm at the hand) and of chest-wall displacement (4 to 12 mm at 0.2 to 0.33 Hz
+Amplitudes are those of posturography (centre of mass 3 to 5 mm rms to and fro, 2 to 3 mm sideways, 4 to 6 mm/s), of
+physiological tremor (8 to 12 Hz, some 0.1 mm at the hand) and of the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
 breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4.
 """
 
@@ -116,4 +116,3 @@ def _along_limbs(own: np.ndarray) -> np.ndarray:
         for name in ("ankle", "foot"):
             total[:, joint(f"{side}_{name}")] = 0.0
     return total
-

@@ -18,8 +18,8 @@ from mmweaver.dsp.firmware import firmware_points
 from mmweaver.dsp.firmware_cfar import counts_per_db
 from mmweaver.motion.compose import compose
 from mmweaver.motion.sentence import parse
-from mmweaver.simulation.body import SkinEcho
 from mmweaver.simulation.simulator import Simulator
+from mmweaver.simulation.skin import LAMBERT, SkinEcho
 from mmweaver.tasks.open_room import open_room
 from mmweaver.tasks.point_recording import PointRecording
 from mmweaver.tasks.variation import Draw, Variation, draw
@@ -164,10 +164,7 @@ def _observed(recipe: Recipe, now: Draw, pose: PoseSequence, label: str, name: s
     nearest_wall_m = float(pose.joints_m[..., 1].max()) + 0.3
     wall_m = None if now.wall_m is None else max(now.wall_m, nearest_wall_m)
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
-    echo = SkinEcho(
-        albedo=SkinEcho().albedo * 10 ** (now.albedo_db / 10), exponent=now.skin_exponent,
-        arms_db=now.arms_db, legs_db=now.legs_db,
-    )  # fmt: skip
+    echo = _skin(now)
     points = recipe.variation.skin_points
     run = Simulator(scene, radar).run(
         pose, num_frames=recipe.frames, seed=person, num_points=points, echo=echo
@@ -215,3 +212,12 @@ def read_window(path: Path, label: str, recipe: Recipe) -> PointRecording:
         name=path.stem, cloud=cloud, num_frames=recipe.frames, frame_rate_hz=1 / recipe.radar.frame_period_s,
         label=label,
     )  # fmt: skip
+
+
+def _skin(now: Draw) -> SkinEcho:
+    """A lobe as wide as cos^exponent that returns as much over all angles as Lambert's skin of that albedo."""
+    exponent = now.skin_exponent
+    reflectivity = 8 / 3 * (exponent + 1) / exponent * LAMBERT.albedo * 10 ** (now.albedo_db / 10)
+    return SkinEcho(
+        reflectivity=reflectivity, slope=exponent**-0.5, albedo=0.0, arms_db=now.arms_db, legs_db=now.legs_db
+    )
