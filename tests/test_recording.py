@@ -8,8 +8,13 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import BGT60
+from mmweaver.core.records import CameraIntrinsics
 from mmweaver.core.seeding import stream
-from mmweaver.recording import process_recording
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.recording import process_capture, process_recording
+from mmweaver.simulation.simulator import Simulator
+from tests.captures import counts, packets_of, radar_of_cfg, write_camera, write_radar
+from tests.rooms import back_wall, floor, scene_of, standing_person
 
 
 @pytest.fixture
@@ -43,3 +48,40 @@ def test_a_folder_is_written_once(samples: Path, tmp_path: Path):
     with pytest.raises(InputError, match="--overwrite"):
         recording.save(tmp_path / "out")
     recording.save(tmp_path / "out", overwrite=True)
+
+
+def test_a_simulated_sequence_in_a_capture_folder_comes_back_bit_by_bit(tmp_path: Path):
+    """What the simulator made, sent as packets of a DCA1000 beside a RealSense, read as `process` reads it."""
+    config = radar_of_cfg(tmp_path)
+    adc = Simulator(scene_of((floor(), back_wall())), config).run(
+        standing_person((0.1, 2.0, -1.2), (0.0, -0.5, 0.0)), num_frames=3, seed=0
+    ).adc  # fmt: skip
+    whole = replace(adc, samples=np.round(adc.samples / config.adc_count_sqrt_mw).astype(np.complex64))
+    write_radar(tmp_path / "capture_00000" / "iwr1843", whole)
+    lens = CameraIntrinsics(fx=60.0, fy=60.0, cx=31.5, cy=23.5, width=64, height=48)
+    write_camera(
+        tmp_path / "capture_00000" / "realsense", lens, [np.full((48, 64), 2.0)], [np.zeros((48, 64, 3), np.uint8)]
+    )
+    recording = process_capture(tmp_path / "capture_00000")
+    assert np.array_equal(recording.adc.samples, whole.samples)
+    assert np.array_equal(recording.cube.values, radar_cube(replace(whole, scale=float("nan"))).values)
+    meta = recording.save(tmp_path / "out")
+    assert meta["iq_order"] == "qi"
+    assert meta["packets"]["lost"] == 0
+    assert meta["photo_of_frame"] == [0, 1, 3]  # photos 20 ms later, every 67 ms; frames every 100 ms
+    assert meta["photo_minus_frame_s"] == pytest.approx([0.02, -0.0133, 0.02], abs=2e-3)
+    assert np.diff(meta["frame_clock_s"]) == pytest.approx([0.1, 0.1], abs=2e-3)
+
+
+def test_lost_packets_are_told(tmp_path: Path):
+    config = radar_of_cfg(tmp_path)
+    packets = packets_of(tmp_path, counts(config))
+    write_radar(tmp_path / "iwr1843", counts(config), packets[:5] + packets[7:])
+    recording = process_capture(tmp_path / "iwr1843")
+    assert any("2 packets were lost" in sentence for sentence in recording.meta["assumed"])
+    assert "photo_of_frame" not in recording.meta
+
+
+def test_a_recording_that_is_no_capture_needs_a_radar(tmp_path: Path):
+    with pytest.raises(InputError, match="--radar"):
+        process_recording(tmp_path / "adc.bin", None)

@@ -15,7 +15,7 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Sc
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.firmware import firmware_points
-from mmweaver.formats.npz_files import read_npz, read_points_npz, read_pose_npz, read_radar_npz
+from mmweaver.formats.npz_files import read_npz, read_points_npz, read_pose_npz, read_poses_npz, read_radar_npz
 from mmweaver.methods import METHODS, Signal
 from mmweaver.weaver import MAX_FRAMES, Room, Weaver, check_request
 
@@ -131,10 +131,32 @@ def test_a_listener_hears_every_stage():
     assert heard == list(result.stages.seconds)
 
 
+def test_several_people_each_with_a_body_and_a_place(weaver: Weaver, room: Room, tmp_path: Path):
+    texts = ["a person walks towards the radar", "a woman sits and drinks", "a man claps"]
+    result = weaver.generate(room, texts, frames=6, seed=1, at=[None, None, (0.6, 2.2)])
+    assert [pose.subject for pose in result.poses] == [0, 1, 2]
+    assert len({pose.height_m for pose in result.poses}) == 3
+    assert result.poses[2].joints_m[0, 0, :2] == pytest.approx([0.6, 2.2], abs=0.15)
+    pelvises_m = np.array([motion.joints_m[:, 0, :2] for motion in result.motions])
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        assert np.linalg.norm(pelvises_m[one] - pelvises_m[other], axis=1).min() >= 0.5
+    meta = result.save(tmp_path / "out")
+    assert meta["text"] == texts
+    assert "person" not in meta
+    assert [person["height_m"] for person in meta["people"]] == [pose.height_m for pose in result.poses]
+    assert any("from one person over another" in sentence for sentence in meta["assumed"])
+    saved = read_poses_npz(tmp_path / "out" / "pose.npz")
+    assert np.array([pose.joints_m for pose in saved]) == pytest.approx(
+        np.array([pose.joints_m for pose in result.poses]), abs=1e-5
+    )
+    with pytest.raises(InputError, match="3 people"):
+        read_pose_npz(tmp_path / "out" / "pose.npz")
+
+
 def test_another_method_plugs_in(room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     def ones(
-        scene: Scene, pose: PoseSequence, config: mmweaver.RadarConfig, *, num_frames: int, seed: int, keep_adc: bool,
-        stages: Stages,
+        scene: Scene, poses: tuple[PoseSequence, ...], config: mmweaver.RadarConfig, *, num_frames: int, seed: int,
+        keep_adc: bool, stages: Stages,
     ) -> Signal:  # fmt: skip
         grid = CubeGrid.of(config, num_frames)
         cube = RadarCube(values=np.ones(grid.shape, np.complex64), grid=grid, config=config, scale=1.0)
@@ -164,6 +186,12 @@ def test_another_method_plugs_in(room: Room, tmp_path: Path, monkeypatch: pytest
         ({"fps": 0.1, "frames": 100}, "600 s"),
         ({"seed": -1}, "seed"),
         ({"at": (float("nan"), 1.0)}, "two numbers"),
+        ({"at": [(0.0, 1.0), (0.5, 1.0)]}, "at most 1 places"),
+        ({"text": []}, "1 to 8 texts"),
+        ({"text": [TEXT] * 9}, "1 to 8 texts"),
+        ({"text": [TEXT, "a person photosynthesises"]}, "walk"),
+        ({"text": [TEXT, TEXT], "at": (0.0, 1.0)}, "list of at most 2 places"),
+        ({"text": [TEXT, TEXT], "at": [None, (0.0, float("inf"))]}, "two numbers"),
     ],
 )
 def test_a_bad_request_is_refused_before_any_work(request_: dict, says: str):
@@ -197,3 +225,20 @@ def test_public_names_are_few_and_all_there():
     assert set(mmweaver.__all__) <= set(dir(mmweaver))
     with pytest.raises(AttributeError, match="nope"):
         _ = mmweaver.nope
+
+
+def test_a_recorded_motion_instead_of_a_sentence(tmp_path: Path):
+    """The same clip twice gives the same bits; a text beside it only names it."""
+    weaver = Weaver()
+    room = weaver.sample_room()
+    made = weaver.generate(room, "a person waves", frames=4, keep_adc=False)
+    np.savez(tmp_path / "wave.npz", joints=made.motion.joints_m, fps=120.0)
+    clip = weaver.read_motion(tmp_path / "wave.npz")
+    one, same = (weaver.generate(room, "my wave", motion=clip, frames=3, keep_adc=False) for _ in range(2))
+    assert np.array_equal(one.cube.values, same.cube.values)
+    assert one.meta["text"] == "my wave"
+    assert one.meta["inputs"]["motion"]["name"] == "wave.npz"
+    assert one.pose.height_m == pytest.approx(made.pose.height_m, rel=0.03)
+    tall = weaver.generate(room, motion=clip, height_m=1.9, frames=3, keep_adc=False)
+    assert tall.pose.height_m == pytest.approx(1.9)
+    assert weaver.generate(room, "a person waves", height_m=1.5, frames=2, keep_adc=False).pose.height_m == 1.5

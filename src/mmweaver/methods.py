@@ -1,4 +1,4 @@
-"""The ways from a scene and a moving person to the radar signal, by name."""
+"""The ways from a scene and the people moving in it to the radar signal, by name."""
 
 import math
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Sc
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.simulation.simulator import ASSUMPTIONS, Simulator
+from mmweaver.simulation.simulator import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,7 +25,7 @@ class Signal:
 
 
 class Method(Protocol):
-    """A way from a scene and a moving person to the signal; physics now, a network later.
+    """A way from a scene and the people moving in it to the signal; physics now, a network later.
 
     ADC samples are given where the method has them and `keep_adc` asks for them.
     """
@@ -33,7 +33,7 @@ class Method(Protocol):
     def __call__(
         self,
         scene: Scene,
-        pose: PoseSequence,
+        poses: tuple[PoseSequence, ...],
         config: RadarConfig,
         *,
         num_frames: int,
@@ -52,7 +52,7 @@ class Physics:
     def __call__(
         self,
         scene: Scene,
-        pose: PoseSequence,
+        poses: tuple[PoseSequence, ...],
         config: RadarConfig,
         *,
         num_frames: int,
@@ -67,7 +67,7 @@ class Physics:
         samples = np.empty(_adc_shape(config, num_frames if keep_adc else 0), np.complex64)
         scale, done = math.nan, 0
         with stages("simulate"):
-            for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed):
+            for chunk in simulator.chunks(poses, num_frames=num_frames, seed=seed):
                 part = slice(done, done + len(chunk.samples))
                 values[part] = radar_cube(chunk).values
                 if keep_adc:
@@ -76,7 +76,7 @@ class Physics:
         return Signal(
             cube=RadarCube(values=values, grid=grid, config=config, scale=scale),
             adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
-            assumptions=ASSUMPTIONS,
+            assumptions=ASSUMPTIONS if len(poses) < 2 else (*ASSUMPTIONS, SEVERAL_PEOPLE),
         )
 
     def _simulator(self, scene: Scene, config: RadarConfig) -> Simulator:

@@ -23,7 +23,7 @@ from mmweaver.pictures.view import View
 META_VERSION = 1
 FILES = {
     "radar.npz": "the cube, complex64 (frame, range, doppler, antenna), and its axes in m, m/s and s",
-    "pose.npz": "22 joints of the person at each frame, in metres, in the radar's frame",
+    "pose.npz": "22 joints of each person at each frame, in metres, in the radar's frame",
     "points.npz": "point cloud: frame, x, y, z in metres, radial velocity in m/s, SNR in dB",
     "adc_data.bin": "raw ADC samples as a DCA1000 writes them, int16",
     "radar.json": "the radar: chirp, array and frame; --radar reads it",
@@ -54,8 +54,8 @@ def save_results(
         with stages("write files"):
             write_radar_npz(stage / "radar.npz", view.cube)
             write_points_npz(stage / "points.npz", view.points)
-            if view.pose is not None:
-                write_pose_npz(stage / "pose.npz", view.pose)
+            if view.poses:
+                write_pose_npz(stage / "pose.npz", *view.poses)
             if adc is not None:
                 # Simulated samples are whole counts of the radar's own converter: written so, nothing is lost.
                 own = None if math.isnan(adc.scale) else adc.scale / adc.config.adc_count_sqrt_mw

@@ -2,15 +2,14 @@
 
     photo + depth --scene--> Scene --------------------+
                                |                       +--method--> RadarCube --dsp--> PointCloud
-    sentence ------motion--> PoseSequence, placed -----+
+    sentences -----motion--> PoseSequences, placed ----+
 
 Only this file knows the order of the rooms; they exchange the records of `core/records.py` and nothing else.
 """
 
-import dataclasses
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,13 +25,20 @@ from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.methods import METHODS
-from mmweaver.motion.compose import compose
+from mmweaver.motion.company import MOST_PEOPLE, Place, compose_company
+from mmweaver.motion.compose import Motion
+from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.dense import check_lasts
+from mmweaver.motion.mocap.placing import place_clip
+from mmweaver.motion.mocap.read import read_motion
 from mmweaver.motion.resample import resample
 from mmweaver.motion.sentence import parse
 from mmweaver.motion.timing import schedule
 from mmweaver.pictures.view import View
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
-from mmweaver.scene.photo import read_photo
+from mmweaver.scene.capture_photo import read_capture_photo
+from mmweaver.scene.panes import with_panes
+from mmweaver.scene.photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
 
@@ -54,16 +60,26 @@ class Room:
 
 @dataclass(frozen=True, kw_only=True)
 class Generation:
-    """One generated sequence. `pose` holds the joints at the radar's frames, `motion` the same densely in time."""
+    """One generated sequence. `poses` hold each person's joints at the radar's frames, `motions` densely in time."""
 
     cube: RadarCube
     points: PointCloud
     adc: AdcCube | None
-    pose: PoseSequence
-    motion: PoseSequence
+    poses: tuple[PoseSequence, ...]
+    motions: tuple[PoseSequence, ...]
     scene: Scene
     meta: dict[str, Any]
     stages: Stages = field(repr=False)
+
+    @property
+    def pose(self) -> PoseSequence:
+        """The first person's joints at the radar's frames."""
+        return self.poses[0]
+
+    @property
+    def motion(self) -> PoseSequence:
+        """The first person's joints densely in time."""
+        return self.motions[0]
 
     @property
     def photo(self) -> RgbdPhoto:
@@ -82,9 +98,9 @@ class Generation:
                 "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
             )
         view = View(
-            title=f"{self.meta['text']}   ({self.cube.config.name}, seed {self.meta['seed']})",
+            title=f"{' | '.join(texts_of(self.meta['text']))}   ({self.cube.config.name}, seed {self.meta['seed']})",
             cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
-            pose=self.pose, motion=self.motion,
+            poses=self.poses, motions=self.motions,
         )  # fmt: skip
         return save_results(
             out, view, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order, overwrite=overwrite,
@@ -121,14 +137,37 @@ class Weaver:
             firmware = FirmwareSettings() if isinstance(radar, RadarConfig) else load_firmware(str(radar))
         self.firmware = firmware
 
-    def read_room(self, rgb: str | Path, depth: str | Path, camera: str | Path | None = None) -> Room:
-        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON."""
+    def read_room(
+        self, rgb: str | Path, depth: str | Path | None = None, camera: str | Path | None = None, **seen: Any
+    ) -> Room:
+        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON.
+
+        `seen`: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or `segmenter` and
+        `sam` (models) say what is what, so that materials follow from it. See `scene.photo.read_photo`.
+        """
         stages = Stages(self._listener)
         with stages("read the photo"):
-            photo, assumptions = read_photo(rgb, depth, camera)
-            given = {"rgb": rgb, "depth": depth, "camera": camera}
-            inputs = {name: file_digest(path) for name, path in given.items() if path is not None}
+            photo, assumptions = read_photo(rgb, depth, camera, **seen)
+            files = {"rgb": rgb, "depth": depth, "camera": camera, "classes": seen.get("classes")}
+            inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
+            models = ("depth_model", "segmenter", "sam")
+            inputs |= {name: str(seen[name]) for name in models if seen.get(name) is not None}
         return self._reconstruct(photo, assumptions, inputs, stages)
+
+    def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None, **seen: Any) -> Room:
+        """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
+
+        `rgb`: a picture that takes the place of the frame of color.avi, where that cannot be decoded. `seen`:
+        `classes`, `segmenter` and `sam` as in `read_room`.
+        """
+        stages = Stages(self._listener)
+        with stages("read the photo"):
+            found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
+            given = {"depth": found.folder / "depth.zst", "rgb": rgb or found.folder / "color.avi"}
+            inputs = {"photo": photo, **{name: file_digest(path) for name, path in given.items()}}
+            inputs |= {name: str(source) for name, source in seen.items() if source is not None}
+            whole, closed = with_panes(replace(found.photo, classes=classes_of(found.photo, **seen)))
+        return self._reconstruct(whole, (*found.assumptions, *closed), inputs, stages)
 
     def sample_room(self) -> Room:
         """The room that comes with the project."""
@@ -136,6 +175,19 @@ class Weaver:
         with stages("read the photo"):
             photo, assumptions = sample_photo()
         return self._reconstruct(photo, assumptions, {"sample": "the bundled room"}, stages)
+
+    @staticmethod
+    def read_motion(
+        path: str | Path,
+        *,
+        fps: float | None = None,
+        unit: str | float | None = None,
+        up: str | None = None,
+        clip: str | None = None,
+        body_model: str | Path | None = None,
+    ) -> MotionClip:
+        """A recorded motion for `generate`: BVH, AMASS/SMPL, HumanML3D, CMU or joints; see docs/motion_files.md."""
+        return read_motion(path, fps=fps, unit=unit, up=up, clip=clip, body_model=body_model)
 
     @staticmethod
     def _reconstruct(photo: RgbdPhoto, assumptions: tuple[str, ...], inputs: dict[str, Any], stages: Stages) -> Room:
@@ -146,55 +198,103 @@ class Weaver:
     def generate(
         self,
         room: Room,
-        text: str,
+        text: str | Sequence[str] | None = None,
         *,
+        motion: MotionClip | None = None,
         frames: int = 20,
         fps: float | None = None,
         seed: int = 0,
-        at: tuple[float, float] | None = None,
+        at: Place | Sequence[Place | None] | None = None,
+        heading_rad: float | None = None,
+        height_m: float | None = None,
+        as_recorded: bool = False,
         keep_adc: bool = True,
     ) -> Generation:
-        """The signal of one person who does in the room what the text says.
+        """The signal of who does in the room what the text says (one text a person), or what a `motion` shows.
+
+        A `motion` comes from `read_motion` or a motion model; a text beside it only names it. `heading_rad`
+        (from +x towards +y) is where its body faces first, `as_recorded` takes its places as the radar's own.
+        `height_m` is the one body's height; a recorded one is scaled to it.
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
-        y away from the radar) in metres, chosen if not given. Without `keep_adc` the raw samples are
+        y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
+        half a metre apart. Without `keep_adc` the raw samples are
         dropped as soon as they are processed, for long sequences. The same seed gives the same bits. Raises
         InputError for a request that cannot be met.
         """
         needs_adc = keep_adc or self.points == "firmware"
-        config = check_request(self.radar, text=text, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc)
+        config = check_request(
+            self.radar, text=text, motion=motion, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc
+        )
+        duration_s = frames * config.frame_period_s
+        window_m = (float(config.range_m[0]), float(config.range_m[-1]))
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            motion = compose(
-                text, room.scene, duration_s=frames * config.frame_period_s, seed=seed,
-                range_window_m=(float(config.range_m[0]), float(config.range_m[-1])), start_m=at,
-            )  # fmt: skip
+            if motion is not None:
+                clip = motion if height_m is None else motion.scaled_to(height_m)
+                people: tuple[Motion, ...] = (
+                    place_clip(
+                        clip, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
+                        start_m=places_of(text, at)[0], heading_rad=heading_rad, as_recorded=as_recorded,
+                    ),
+                )  # fmt: skip
+            else:
+                people = compose_company(
+                    texts_of(text), room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
+                    starts_m=places_of(text, at), height_m=height_m,
+                )  # fmt: skip
+        motions = tuple(person.pose for person in people)
         signal = self.method(
-            room.scene, motion.pose, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
+            room.scene, motions, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
         )
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)
-        pose = resample(motion.pose, signal.cube.grid.frame_time_s)
+        poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
         meta = {
             "schema_version": META_VERSION,
             "made_by": "mmweaver generate",
             "version": __version__,
-            "text": text, "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
+            "text": people[0].plan.text if text is None else text if isinstance(text, str) else list(text),
+            "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
             "method": self.method_name,
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(config),
-            "inputs": room.inputs,
+            "inputs": room.inputs | _motion_input(motion),
+            "placed": {"heading_rad": heading_rad, "height_m": height_m, "as_recorded": as_recorded},
             "camera": room.scene.photo.intrinsics,
-            "assumed": list(dict.fromkeys((*room.scene.assumptions, *motion.assumptions, *signal.assumptions))),
-            "person": _person(pose),
-            "plan": motion.plan,
+            "assumed": _assumed(room.scene, people, signal.assumptions),
+            **_people_meta(poses, people),
         }  # fmt: skip
         return Generation(
-            cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, pose=pose, motion=motion.pose,
-            scene=room.scene, meta=meta, stages=stages,
+            cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, poses=poses,
+            motions=motions, scene=room.scene, meta=meta, stages=stages,
         )  # fmt: skip
+
+
+def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...]) -> list[str]:
+    of_motion = (
+        sentence if len(people) == 1 else f"person {number}: {sentence}"
+        for number, person in enumerate(people, 1) for sentence in person.assumptions
+    )  # fmt: skip
+    return list(dict.fromkeys((*scene.assumptions, *of_motion, *of_method)))
+
+
+def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) -> dict[str, Any]:
+    """`person` and `plan` of one; `people`, a list of both, of several."""
+    described = [{**_person(pose), "plan": person.plan} for pose, person in zip(poses, people, strict=True)]
+    if len(described) > 1:
+        return {"people": described}
+    return {"person": _person(poses[0]), "plan": people[0].plan}
+
+
+def _motion_input(motion: MotionClip | None) -> dict[str, Any]:
+    """What meta.json says of a recorded motion."""
+    if motion is None:
+        return {}
+    digest = {} if motion.file is None else file_digest(motion.file)
+    return {"motion": {**digest, "name": motion.label, "fps": motion.fps, "first_frame": motion.first_frame}}
 
 
 def _person(pose: PoseSequence) -> dict[str, Any]:
@@ -207,20 +307,45 @@ def _person(pose: PoseSequence) -> dict[str, Any]:
     }
 
 
+def texts_of(text: str | Sequence[str] | None) -> list[str]:
+    """One text a person. Raises InputError for none or too many."""
+    texts = [text or ""] if text is None or isinstance(text, str) else list(text)
+    if not 1 <= len(texts) <= MOST_PEOPLE:
+        raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
+    return texts
+
+
+def places_of(text: str | Sequence[str] | None, at: Place | Sequence[Place | None] | None) -> list[Place | None]:
+    """Where each person starts, None = chosen. Raises InputError for what is no place, or more places than people."""
+    one = at is not None and all(isinstance(value, int | float) for value in at)
+    given: list[Any] = [] if at is None else [at] if one else list(at)
+    texts = texts_of(text)
+    if len(given) > len(texts) or (one and len(texts) > 1):
+        raise InputError(f"{len(texts)} people need a list of at most {len(texts)} places to start, not {at}")
+    for place in given:
+        if place is not None and not (len(place) == 2 and all(math.isfinite(value) for value in place)):
+            raise InputError(f"the place to start must be two numbers, x and y in metres, not {place}")
+    return [(float(place[0]), float(place[1])) if place else None for place in given] + [None] * (
+        len(texts) - len(given)
+    )
+
+
 def check_request(
     radar: RadarConfig,
     *,
-    text: str,
+    text: str | Sequence[str] | None = None,
+    motion: MotionClip | None = None,
     frames: int = 20,
     fps: float | None = None,
     seed: int = 0,
-    at: tuple[float, float] | None = None,
+    at: Place | Sequence[Place | None] | None = None,
     keep_adc: bool = True,
 ) -> RadarConfig:
     """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
 
-    Raises InputError for frames, fps or a place out of their limits, for a frame rate that the chirps do not fit into,
-    for more samples than memory holds, and for a text that is not understood or does not fit the time.
+    Raises InputError for texts, frames, fps or a place out of their limits, for a frame rate that the chirps do not
+    fit into, for more samples than memory holds, for a text that is not understood or does not fit the time, and for a
+    recorded motion that is too short.
     """
     if not 1 <= frames <= MAX_FRAMES:
         raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
@@ -228,9 +353,9 @@ def check_request(
         raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {fps:g}")
     if seed < 0:
         raise InputError(f"the seed must be 0 or above, not {seed}")
-    if at is not None and not (len(at) == 2 and all(math.isfinite(value) for value in at)):
-        raise InputError(f"the place to start must be two numbers, x and y in metres, not {at}")
-    config = radar if fps is None else dataclasses.replace(radar, frame_period_s=1 / fps)
+    texts = texts_of(text)
+    places_of(text, at)
+    config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
     if frames * config.frame_period_s > MAX_SECONDS:
         raise InputError(
             f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"
@@ -242,5 +367,11 @@ def check_request(
             f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
             f" {most} are made at a time"
         )
-    schedule(parse(text), frames * config.frame_period_s)
+    if motion is not None:
+        if len(texts) > 1:
+            raise InputError("a recorded motion is one person's; give one text with it, or none")
+        check_lasts(motion, frames * config.frame_period_s)
+    else:
+        for one in texts:
+            schedule(parse(one), frames * config.frame_period_s)
     return config

@@ -22,10 +22,14 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     summary = json.loads(capsys.readouterr().out)
     assert summary["bytes"] == out.stat().st_size <= 3000
     assert summary["frames"] == 3
+    assert -60 < summary["signal_error_db"] <= summary["all_error_db"] < -10
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "3000"]) == 2
     assert "--overwrite" in capsys.readouterr().err
     assert main(["compress", str(recording), "-o", str(out), "--quality", "15", "--overwrite"]) == 0
-    assert "times fewer" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    assert "times fewer" in told
+    assert "dB in cells with signal" in told
+    assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--keep-noise", "--overwrite"]) == 0
 
 
 def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
@@ -35,13 +39,33 @@ def test_raw_samples_need_their_radar(tmp_path: Path, capsys: pytest.CaptureFixt
     (tmp_path / "radar.json").write_text(SMALL.to_json())
     words = ["compress", str(tmp_path / "adc.npy"), "-o", str(tmp_path / "a.mmw"), "--bytes", "4000"]
     assert main(words) == 2
-    assert "--radar" in capsys.readouterr().err
-    words += ["--radar", str(tmp_path / "radar.json")]
-    assert main(words) == 2
     assert "--axes" in capsys.readouterr().err
-    assert main([*words, "--axes", "frame,loop,tx,rx,sample", "--quiet"]) == 0
+    words += ["--axes", "frame,loop,tx,rx,sample"]
+    assert main(words) == 2
+    assert "--radar" in capsys.readouterr().err
+    assert main([*words, "--radar", str(tmp_path / "radar.json"), "--quiet"]) == 0
     assert capsys.readouterr().out == ""
     assert (tmp_path / "a.mmw").stat().st_size <= 4000
+
+
+def test_an_array_of_another_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """HuPR's shape is known; mmMesh's is also RF-Genesis's, so it must be named."""
+    from tests.formats.test_peer_arrays import hupr_array, simulated_frame
+
+    np.save(tmp_path / "000000001.npy", hupr_array(simulated_frame()))
+    words = ["compress", str(tmp_path / "000000001.npy"), "-o", str(tmp_path / "a.mmw"), "--bytes", "9000", "--json"]
+    assert main(words) == 0
+    assert json.loads(capsys.readouterr().out)["cube_bytes"] == 64 * 64 * 12 * 8
+    np.save(tmp_path / "frame.npy", np.zeros((3, 4, 128, 256), np.complex64))
+    words = ["compress", str(tmp_path / "frame.npy"), "-o", str(tmp_path / "b.mmw"), "--bytes", "9000"]
+    assert main(words) == 2
+    assert "--layout mmmesh or rf_genesis" in capsys.readouterr().err
+    assert main([*words, "--layout", "nobody"]) == 2
+    assert main([*words, "--layout", "hupr"]) == 2
+    message = capsys.readouterr().err.splitlines()
+    assert len(message) == 2
+    assert "HuPR's are complex" in message[1]
+    assert not (tmp_path / "b.mmw").exists()
 
 
 @pytest.mark.parametrize(

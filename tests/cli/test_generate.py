@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from tests.captures import write_camera
 
 from mmweaver import result_folder
 from mmweaver.cli.main import main
@@ -44,6 +45,31 @@ def test_the_demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
     assert "--overwrite" in capsys.readouterr().err
     assert main(["generate", "--demo", "--overwrite", "--frames", "2", "--text", WALK, "--quiet"]) == 0
     assert capsys.readouterr().out == ""
+
+
+def test_the_photo_of_a_capture_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    photo, _ = sample_photo()
+    write_camera(tmp_path / "realsense", photo.intrinsics, [photo.depth_m] * 2, [photo.rgb] * 2)
+    argv = ["generate", "--capture", str(tmp_path), "--photo", "1", "--text", WALK, "--out", str(tmp_path / "out")]
+    assert main([*argv, "--frames", "2"]) == 0
+    capsys.readouterr()
+    meta = json.loads((tmp_path / "out" / "meta.json").read_text())
+    assert set(meta["inputs"]) == {"photo", "depth", "rgb"}
+    assert any("Photo 1 of the capture" in sentence for sentence in meta["assumed"])
+    assert main([*argv[:-1], str(tmp_path / "no"), "--depth", "depth.png"]) == 2
+    assert main([*argv[:3], "--photo", "7", *argv[5:-1], str(tmp_path / "no")]) == 2
+    assert capsys.readouterr().err.count("\n") == 2
+    assert not (tmp_path / "no").exists()
+
+
+def test_two_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    argv = ["generate", "--demo", "--text", WALK, "--text", "a man claps", "--frames", "3", "--out"]
+    assert main([*argv, str(tmp_path / "two"), "--at=-0.6,2.2", "--at", "0.5,2.0"]) == 0
+    assert capsys.readouterr().out.count("person: ") == 2
+    assert read_npz(tmp_path / "two" / "pose.npz")["joints_m"].shape == (2, 3, 22, 3)
+    assert main([*argv, str(tmp_path / "no"), *["--at", "0.5,2.0"] * 3]) == 2
+    assert "at most 2 places" in capsys.readouterr().err
+    assert not (tmp_path / "no").exists()
 
 
 @pytest.mark.parametrize("depth", ["depth.png", "depth.npy"])
@@ -120,7 +146,7 @@ def bad_pictures(folder: Path, good: Path) -> None:
     for name in ("rgb.png", "depth.png", "camera.json"):
         (folder / name).write_bytes((good / name).read_bytes())
     depth = np.asarray(Image.open(good / "depth.png"))
-    Image.fromarray(depth[::2, ::2]).save(folder / "small.png")
+    Image.fromarray(depth[::2, ::3]).save(folder / "small.png")
     Image.fromarray(np.zeros_like(depth)).save(folder / "zero.png")
     Image.fromarray((depth // 40).astype(np.uint8)).save(folder / "eight_bit.png")
     metres = depth / 1000.0

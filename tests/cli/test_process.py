@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.captures import counts, radar_of_cfg, write_radar
 
 from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
@@ -97,6 +98,13 @@ def test_the_summary_for_machines(recording: Path, tmp_path: Path, capsys: pytes
     assert all(Path(path).is_file() for path in summary["files"].values())
 
 
+def test_a_capture_folder_needs_no_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    write_radar(tmp_path / "capture_00000" / "iwr1843", counts(radar_of_cfg(tmp_path)))
+    assert main(["process", str(tmp_path / "capture_00000"), "--out", str(tmp_path / "out"), "--json"]) == 0
+    assert "radar.npz" in " ".join(json.loads(capsys.readouterr().out)["files"])
+    assert read_radar_npz(tmp_path / "out" / "radar.npz").values.shape[0] == 3
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
@@ -113,6 +121,10 @@ def test_the_summary_for_machines(recording: Path, tmp_path: Path, capsys: pytes
         (["whole.bin", "--radar", "bgt60", "--points", "firmware"], "--points cfar"),
         (["whole.bin", "--radar", "awr1843", "--points", "lidar"], "firmware"),
         (["whole.bin", "--radar", "bare.cfg", "--points", "firmware"], "cfarCfg"),
+        (["whole.bin"], "--radar"),
+        (["capture_00000", "--radar", "awr1843"], "leave out --radar"),
+        (["capture_00000", "--iq-order", "iq"], "leave out --iq-order"),
+        (["capture_00001"], "folder"),
         (["whole.npy", "--radar", "awr1843"], "--axes"),
         (["whole.npy", "--radar", "awr1843", "--axes", "frame,loop"], "axes"),
         (["whole.npy", "--radar", "awr1843", "--axes", "frame,fish"], "fish"),
@@ -133,6 +145,8 @@ def test_bad_input_is_one_line_and_writes_nothing(
     (tmp_path / "lines.cfg").write_text("sensorStop\nflushCfg\n")
     (tmp_path / "whole.npy").write_bytes((recording / "adc.npy").read_bytes())
     np.save(tmp_path / "objects.npy", np.array([{}], dtype=object))
+    write_radar(tmp_path / "capture_00000" / "iwr1843", counts(radar_of_cfg(tmp_path), num_frames=1))
+    (tmp_path / "capture_00001").mkdir()
     before = sorted(file.name for file in tmp_path.iterdir())
     monkeypatch.chdir(tmp_path)
     assert main(["process", *words, "--out", "capture"]) == 2

@@ -49,7 +49,7 @@ def test_the_chains_and_variants_differ(pieces: list[Stretch]):
     }  # fmt: skip
     assert most["grouped"] < most["plain"]
     assert most["ours"] > 0
-    fainter = simulate(pieces[:1], HERE, Variant(albedo_db=-20.0))
+    fainter = simulate(pieces[:1], HERE, Variant(brighter_db=-20.0))
     assert not np.array_equal(fainter[0].samples, adcs[0].samples)
     again = simulate(pieces[:1], HERE, Variant())
     assert np.array_equal(again[0].samples, adcs[0].samples)

@@ -17,8 +17,8 @@ def test_a_person_elsewhere_is_told_from_one_in_place():
     shift = [0.0, 1.5, 0.0]
     moved = replace(
         result,
-        pose=replace(result.pose, joints_m=result.pose.joints_m + shift),
-        motion=replace(result.motion, joints_m=result.motion.joints_m + shift),
+        poses=(replace(result.pose, joints_m=result.pose.joints_m + shift),),
+        motions=(replace(result.motion, joints_m=result.motion.joints_m + shift),),
     )
     elsewhere = agreement(moved)
     assert elsewhere.right / max(elsewhere.moving, 1) < 0.3

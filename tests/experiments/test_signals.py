@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
 from mmweaver.experiments.signals import SIGNALS, sample_scene, simulated, without_room
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.scorecard import scorecard
@@ -19,6 +19,8 @@ def test_the_walking_person_moves_and_the_twin_is_a_twin():
     scores = scorecard(signal.twin, signal.cube)
     assert scores.prediction["nmse_db"] > 1  # another phase: worse than zeros
     assert scores.prediction["rd_ssim"] > scores.floors["static_mean"]["rd_ssim"]
+    assert signal.noise_free is not None
+    assert scorecard(signal.noise_free, signal.cube).prediction["nmse_active_db"] < -30
     again = simulated("walking", is_alone=True, num_frames=4)
     assert again.digest == signal.digest
     assert replace(signal, cube=signal.twin).digest != signal.digest
@@ -36,6 +38,8 @@ def test_recordings_need_their_folder():
         SIGNALS["two_people"](None)
     with pytest.raises(InputError, match="unknown signal"):
         SIGNALS["dancing"](None)
+    with pytest.raises(InputError, match="--data"):
+        SIGNALS["walking_in_recording"](None)
 
 
 def test_the_real_two_people_are_as_measured(real_data):
@@ -56,3 +60,18 @@ def test_the_breathing_person_is_read(real_data):
     cube = SIGNALS["breathing"](real_data).cube
     assert cube.grid.shape == (20, 32, 8, 3)
     assert np.isfinite(cube.values).all()
+
+
+def test_a_walker_in_a_recording_has_its_clutter_its_noise_and_the_peoples_strength(real_data):
+    signal, people = SIGNALS["walking_in_recording"](real_data), SIGNALS["two_people"](real_data)
+    assert signal.cube.grid.shape == people.cube.grid.shape
+    powers = [range_doppler_power(one.cube) for one in (signal, people)]
+    fast = [power[:, :, moving_doppler(people.cube)].max() for power in powers]
+    floor = [np.median(power[:, :, :4]) for power in powers]
+    assert 10 * np.log10(fast[0] / fast[1]) == pytest.approx(0.0, abs=0.3)
+    assert 10 * np.log10(floor[0] / floor[1]) == pytest.approx(0.0, abs=1.5)
+    still = [cube.values[:, 40:, 16].mean(axis=0).ravel() for cube in (signal.cube, people.cube)]  # behind the people
+    likeness = abs(np.vdot(still[0], still[1])) / np.linalg.norm(still[0]) / np.linalg.norm(still[1])
+    assert likeness > 0.9
+    assert signal.twin is not None
+    assert scorecard(signal.twin, signal.cube).prediction["nmse_moving_db"] > 0.5

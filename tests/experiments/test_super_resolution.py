@@ -11,7 +11,7 @@ from mmweaver.experiments import super_resolution
 def rivals(tmp_path_factory) -> dict[str, dict[tuple[str, float], float]]:
     folder = tmp_path_factory.mktemp("results")
     scores = {}
-    for path in super_resolution.run(folder, (), factors=(1.5, 2.0)):
+    for path in super_resolution.run(folder, (), factors=(2.0, 4.0)):
         rows = json.loads(path.read_text())["rows"]
         scores[path.stem] = {
             (row["dataset"]["truth"], row["dataset"]["factor"]): row["metrics"]["nmse_db"]["value"] for row in rows
@@ -35,3 +35,13 @@ def test_no_sampling_of_a_coarse_radar_is_a_finer_radar(rivals):
             assert -5 < rivals[name][kind, 2.0] < 0
             assert rivals[name][kind, 4.0] > 0
         assert rivals[name]["more_antennas", 2.0] < -13
+
+
+def test_scatterers_rendered_for_the_finer_radar_are_nearer_to_it_than_zero_padding(rivals):
+    """Sampled more finely they end where zero padding ends, for the response stays the coarse radar's."""
+    for kind in ("more_bandwidth", "more_loops"):
+        padded = rivals["zero_padding"][kind, 2.0]
+        assert abs(rivals["scatterers"][kind, 2.0] - padded) < 0.5
+        assert rivals["scatterers_rendered"][kind, 2.0] < padded - 8
+    assert rivals["scatterers"]["between_bins", 2.0] < -30
+    assert rivals["scatterers_rendered"]["more_antennas", 2.0] < -30

@@ -10,10 +10,19 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.mark.parametrize(
     ("document", "told"),
-    [("docs/fields.md", "inr_paper"), ("README.md", "person in place"), ("docs/limits.md", "recorded")],
+    [
+        ("docs/fields.md", "inr_paper"),
+        ("README.md", "person in place"),
+        ("docs/limits.md", "recorded"),
+        ("docs/several_people.md", "side by side"),
+        ("docs/rooms.md", "seats found"),
+        ("docs/motion.md", "standing up from the knees"),
+        ("docs/motiongpt.md", "ceiling"),
+        ("docs/zero_shot.md", "blind"),
+    ],
 )
 def test_the_tables_of_the_documentation_are_those_of_the_results(document: str, told: str):
-    """If this fails: python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md"""
+    """If this fails: python -m mmweaver.experiments.tables results README.md docs/*.md"""
     text = (ROOT / document).read_text(encoding="utf-8")
     assert with_tables(text, ROOT / "results") == text
     assert told in text

@@ -70,7 +70,7 @@ def make_view() -> View:
     return View(
         title="awr1843: a stick person nears the radar",
         cube=make_cube(pose), points=points, photo=make_photo(), radar_from_camera=RADAR_FROM_CAMERA,
-        pose=pose, motion=motion,
+        poses=(pose,), motions=(motion,),
     )  # fmt: skip
 
 

@@ -26,7 +26,7 @@ def test_what_stands_behind_the_block_is_hidden(view: View):
 
 
 def test_bones_begin_and_end_at_the_joints(view: View):
-    joints_m = view.pose.joints_m[0]
+    joints_m = view.poses[0].joints_m[0]
     pieces, hidden = bone_pieces(joints_m, view.photo, view.radar_from_camera)
     assert len(pieces) == len(hidden) > 21
     ends = pieces.reshape(-1, 2)
@@ -43,12 +43,12 @@ def test_the_skeleton_lies_in_the_picture_where_the_projection_says(view: View):
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
     axes.set_axis_off()
-    SkeletonInPhoto(axes, view.photo, view.radar_from_camera).show(view.pose.joints_m[0], (1.0, 0.0, 0.0))
+    SkeletonInPhoto(axes, view.photo, view.radar_from_camera).show(view.poses[0].joints_m[0], (1.0, 0.0, 0.0))
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     drawn = np.asarray(canvas.buffer_rgba())
     red = np.argwhere((drawn[:, :, 0] > 150) & (drawn[:, :, 1] < 110))
     for name in ("pelvis", "left_wrist", "right_knee", "neck"):
-        column, row, _ = project(view.pose.joints_m[0][[joint(name)]], view.photo, view.radar_from_camera)[0]
+        column, row, _ = project(view.poses[0].joints_m[0][[joint(name)]], view.photo, view.radar_from_camera)[0]
         assert np.abs(red - [row, column]).max(axis=1).min() <= 2, name
     assert np.ptp(red[:, 1]) < 0.4 * width  # and nowhere else

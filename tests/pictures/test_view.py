@@ -51,8 +51,8 @@ def test_long_sequences_are_thinned_out(view: View):
 
 
 def test_the_moving_maps_see_the_walker_and_the_full_maps_the_standing_target(view: View):
-    pelvis_m = np.linalg.norm(view.pose.joints_m[:, 0], axis=1)
-    extent_m = np.linalg.norm(view.pose.joints_m, axis=2)
+    pelvis_m = np.linalg.norm(view.poses[0].joints_m[:, 0], axis=1)
+    extent_m = np.linalg.norm(view.poses[0].joints_m, axis=2)
     range_m = view.cube.grid.range_m
     moving_m = range_m[view.range_doppler_moving.sum(axis=2).argmax(axis=1)]
     assert (moving_m > extent_m.min(axis=1) - 0.1).all()

@@ -226,3 +226,103 @@ def test_missing_keys_are_named(files: Files):
     assert "JSON object" in files.error()
     files.camera.write_bytes(b"\xff\xfe\x00")
     assert "not a JSON file" in files.error()
+
+
+# sizes, depths and formats of other cameras ----------------------------------------------------------------------
+def test_a_coarse_depth_picture_is_enlarged_by_whole_pixels(files: Files):
+    """As phones have it: the colour picture several times as large."""
+    ramp = (1500 + 10 * np.arange(96)[None, :] + np.zeros((72, 1))).astype(np.uint16)
+    Image.fromarray(ramp).save(files.depth)
+    Image.new("RGB", (960, 720), (10, 200, 30)).save(files.rgb)
+    files.set_camera(fx=800.0, fy=800.0, cx=479.5, cy=359.5)
+    photo, assumptions = files.read()
+    assert photo.rgb.shape == (504, 672, 3)
+    assert photo.depth_m.shape == (504, 672)
+    assert np.unique(photo.depth_m) == pytest.approx(ramp[0] / 1000)
+    assert photo.intrinsics.fx == pytest.approx(560.0)
+    assert photo.intrinsics.cx == pytest.approx(335.5)
+    assert "960 x 720" in assumptions[0]
+    assert "96 x 72" in assumptions[0]
+
+
+def test_a_fine_depth_picture_keeps_its_pixels(files: Files):
+    Image.fromarray(np.full((144, 192), 2500, np.uint16)).save(files.depth)
+    photo, _ = files.read()
+    assert photo.rgb.shape == (144, 192, 3)
+    assert (photo.intrinsics.fx, photo.intrinsics.width) == (160.0, 192)
+
+
+def test_float_tiff_and_whole_number_tiff(files: Files):
+    files.depth = files.depth.with_suffix(".tiff")
+    for values in (np.full((72, 96), 2.5, np.float32), np.full((72, 96), 2500, np.int32), DEPTH):
+        Image.fromarray(values).save(files.depth)
+        assert files.read()[0].depth_m[3, 3] == pytest.approx(2.5)
+    metres = np.full((72, 96), 2.5, np.float32)
+    metres[:5] = np.nan
+    Image.fromarray(metres).save(files.depth)
+    assert np.isnan(files.read()[0].depth_m[:5]).all()
+
+
+def test_openexr_is_named(files: Files):
+    files.depth = files.depth.with_suffix(".exr")
+    files.depth.write_bytes(b"v/1\x01\x02\0\0\0" + bytes(100))
+    assert "OpenEXR" in files.error()
+    assert "TIFF" in files.error()
+
+
+def test_sixteen_bits_a_channel(files: Files):
+    """A PNG of 48 bits a pixel, as raw converters write them."""
+    import struct
+    import zlib
+
+    def chunk(name: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+    row = b"\0" + np.array([40000, 20000, 10000], ">u2").tobytes() * 96
+    header = struct.pack(">IIBBBBB", 96, 72, 16, 2, 0, 0, 0)
+    files.rgb.write_bytes(
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(row * 72)) + chunk(b"IEND", b"")
+    )
+    np.testing.assert_allclose(files.read()[0].rgb[5, 5], (156, 78, 39), atol=1)
+
+
+def test_nine_holes_in_ten_are_the_most(files: Files):
+    kept = np.random.default_rng(0).permutation(72 * 96).reshape(72, 96)
+    Image.fromarray(np.where(kept < 0.101 * kept.size, DEPTH, 0).astype(np.uint16)).save(files.depth)
+    photo, assumptions = files.read()
+    assert np.isfinite(photo.depth_m).mean() > 0.9
+    assert "Only 10 % of the pixels" in assumptions[0]
+    Image.fromarray(np.where(kept < 0.09 * kept.size, DEPTH, 0).astype(np.uint16)).save(files.depth)
+    assert "only 9.0 %" in files.error()
+
+
+def test_a_photo_without_depth_says_what_to_do(files: Files):
+    with pytest.raises(InputError, match="--depth-model"):
+        read_photo(files.rgb)
+
+
+def test_what_says_the_classes(files: Files, tmp_path: Path):
+    Image.fromarray(np.full((72, 96), 62, np.uint8)).save(tmp_path / "classes.png")
+    photo, _ = read_photo(files.rgb, files.depth, files.camera, classes=tmp_path / "classes.png")
+    assert photo.classes is not None
+    assert (photo.classes.index == photo.classes.names.index("couch")).all()
+    with pytest.raises(InputError, match="leave out --segmenter"):
+        read_photo(files.rgb, files.depth, classes=tmp_path / "classes.png", segmenter="any")
+    with pytest.raises(InputError, match="give --segmenter too"):
+        read_photo(files.rgb, files.depth, sam="any")
+    with pytest.raises(InputError, match="--classes"):
+        read_photo(files.rgb, files.depth, classes=tmp_path / "none.png")
+
+
+def test_a_model_takes_the_place_of_depth_and_of_classes(files: Files, tmp_path: Path):
+    pytest.importorskip("transformers")
+    from tests.scene import models
+
+    Image.new("RGB", (96, 72), (120, 90, 40)).save(files.rgb)
+    photo, assumptions = read_photo(
+        files.rgb, camera=files.camera, depth_model=models.depth_anything(tmp_path / "depth"),
+        segmenter=models.segformer(tmp_path / "segmenter"),
+    )  # fmt: skip
+    assert photo.depth_m.shape == (72, 96)
+    assert photo.classes is not None
+    assert any("estimated from the colours" in sentence for sentence in assumptions)

@@ -5,6 +5,7 @@ from typing import Any, NoReturn
 
 from mmweaver.core.errors import InputError
 
+SIGNED = ("--at", "--heading", "--motion-up")  # options whose values may begin with a minus
 Options = argparse.ArgumentParser | argparse._ArgumentGroup
 
 
@@ -20,15 +21,15 @@ class Parser(argparse.ArgumentParser):
 
 
 def glued(argv: list[str]) -> list[str]:
-    """Joins `--at -0.5,2` into one word: argparse would take the minus for an option.
+    """Joins `--at -0.5,2` into one word: argparse would take the minus for an option (so with --heading, --motion-up).
 
     >>> glued(["generate", "--at", "-0.5,2", "--frames", "5"])
     ['generate', '--at=-0.5,2', '--frames', '5']
     """
     words: list[str] = []
     for word in argv:
-        if words and words[-1] == "--at" and word[:1] == "-" and word[1:2] in "0123456789.":
-            words[-1] = f"--at={word}"
+        if words and words[-1] in SIGNED and word[:1] == "-" and word[1:2] in "0123456789.xyz":
+            words[-1] = f"{words[-1]}={word}"
         else:
             words.append(word)
     return words
@@ -78,7 +79,7 @@ def add_output_options(parser: Options) -> None:
 
 def add_layout_options(parser: Options) -> None:
     """The options that say how a DCA1000 .bin is laid out."""
-    parser.add_argument("--iq-order", choices=("iq", "qi"), default="iq", help="I or Q first in the .bin (default iq)")
+    parser.add_argument("--iq-order", choices=("iq", "qi"), help="I or Q first in the .bin (default iq)")
     parser.add_argument(
         "--tx-order", type=turns, metavar="N,N,N", help="transmitters in their turns (default: the radar's)"
     )

@@ -9,10 +9,12 @@ from typing import Any
 from mmweaver.cli.arguments import add_layout_options, number, whole
 from mmweaver.core.errors import InputError
 
-NUM_STAGES = 3
+NUM_STAGES = 4
 EXAMPLES = """examples:
   mmweaver compress walk/radar.npz -o walk.mmw --bytes 10000
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmw --quality 30
+  mmweaver compress HuPR/single_1/hori -o single_1.mmw --bytes 400000
+  mmweaver compress radar_frames.npy --layout rf_genesis -o walk.mmw --quality 40
   mmweaver compress adc.npy --radar profile.cfg --axes frame,loop,tx,rx,sample -o capture.mmw --bytes 40072
 """
 
@@ -24,16 +26,25 @@ def add_verb(verbs: Any) -> None:
         description="Stores a radar cube as moving scatterers, a static layer and what they leave, in a .mmw file.",
     )  # fmt: skip
     parser.add_argument(
-        "file", type=Path, metavar="FILE", help="radar.npz, adc_data.bin of a DCA1000, or raw ADC samples as .npy"
+        "file",
+        type=Path,
+        metavar="FILE",
+        help="radar.npz, adc_data.bin of a DCA1000, raw ADC samples as .npy, or a HuPR, mmMesh or RF-Genesis array",
     )
     parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the .mmw file to write")
     rate = parser.add_mutually_exclusive_group(required=True)
     rate.add_argument("--bytes", type=whole, metavar="N", help="size of the file at most")
     rate.add_argument("--quality", type=number, metavar="DB", help="signal over error in the cells that hold signal")
     parser.add_argument(
+        "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
+    )
+    parser.add_argument(
         "--radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: that beside .npz)"
     )
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
+    parser.add_argument(
+        "--layout", metavar="NAME", help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis"
+    )
     add_layout_options(parser)
     parser.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
@@ -50,50 +61,35 @@ def run(arguments: argparse.Namespace) -> int:
     start = time.monotonic()
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read the recording")
-        cube = read_any_cube(arguments)
-        from mmweaver.fields.codec.mmw import compressed
+        from mmweaver.recording import read_any_cube
 
-        data = compressed(cube, num_bytes=arguments.bytes, quality_db=arguments.quality, progress=bar)
+        cube = read_any_cube(
+            arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
+            iq_order=arguments.iq_order, tx_order=arguments.tx_order,
+        )  # fmt: skip
+        from mmweaver.fields.codec.mmw import compressed, errors_db
+
+        data = compressed(
+            cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise, progress=bar
+        )
+        bar("check")
+        errors = errors_db(data, cube)
         with atomic_file(arguments.out) as temporary:
             temporary.write_bytes(data)
     before = cube.values.size * 8
     summary = {
         "out": str(arguments.out), "bytes": len(data), "cube_bytes": before, "ratio": round(before / len(data), 1),
-        "frames": len(cube.values), "seconds": round(time.monotonic() - start, 2),
+        "frames": len(cube.values), "seconds": round(time.monotonic() - start, 2), **errors,
     }  # fmt: skip
     if arguments.json:
         print(json.dumps(summary, indent=2))
     elif not arguments.quiet:
         print(
             f"wrote {arguments.out}: {len(data):,} bytes for {len(cube.values)} frames, {summary['ratio']:,} times"
-            f" fewer than complex64, in {summary['seconds']:.1f} s"
+            f" fewer than complex64, in {summary['seconds']:.1f} s; error {errors['signal_error_db']:.1f} dB in cells"
+            f" with signal, {errors['all_error_db']:.1f} dB in all"
         )
     return 0
-
-
-def read_any_cube(arguments: argparse.Namespace) -> Any:
-    """The RadarCube of a radar.npz, or of raw samples and the radar that made them. Raises InputError."""
-    from dataclasses import replace
-
-    from mmweaver.dsp.cube import radar_cube
-    from mmweaver.formats.dca1000 import read_bin
-    from mmweaver.formats.npz_files import read_radar_npz
-    from mmweaver.formats.radar_file import load_radar
-    from mmweaver.formats.raw_npy import read_adc_npy
-
-    path, radar = arguments.file, arguments.radar
-    config = load_radar(radar) if radar is not None else None
-    if path.suffix == ".npz":
-        return read_radar_npz(path, config)
-    if config is None:
-        raise InputError(f"{path}: say which radar recorded it, for example --radar awr1843")
-    if arguments.tx_order is not None:
-        config = replace(config, tx_order=arguments.tx_order)
-    if path.suffix == ".npy":
-        if arguments.axes is None:
-            raise InputError(f"{path}: say which axis is which, for example --axes frame,loop,tx,rx,sample")
-        return radar_cube(read_adc_npy(path, config, arguments.axes))
-    return radar_cube(read_bin(path, config, iq_order=arguments.iq_order))
 
 
 def check_output_file(out: Path, *, overwrite: bool) -> None:

@@ -6,6 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, whole
+from mmweaver.cli.own_motion import (
+    add_motion_options,
+    check_motion_options,
+    motion_of_model,
+    placing_options,
+    read_own_motion,
+)
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,6 +27,8 @@ EXAMPLES = """examples:
       --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --frames 40 --radar mmmesh --out drink/ --bin
+  mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
+  mmweaver generate --demo --motion-model small --text "a person waves with the left hand" --out wave/
 """
 
 
@@ -35,7 +44,13 @@ def add_verb(verbs: Any) -> None:
     room = parser.add_argument_group("the room")
     room.add_argument("--rgb", type=Path, metavar="PNG", help="colour picture")
     room.add_argument(
-        "--depth", type=Path, metavar="FILE", help="its depth: 16-bit PNG (mm, or camera.json's unit) or .npy in metres"
+        "--depth",
+        type=Path,
+        metavar="FILE",
+        help="its depth: 16-bit PNG (mm, or camera.json's unit), .npy or float TIFF in metres",
+    )
+    room.add_argument(
+        "--depth-model", metavar="DIR|HUB", help="where there is no --depth: a metric depth model that estimates it"
     )
     room.add_argument(
         "--camera",
@@ -43,15 +58,36 @@ def add_verb(verbs: Any) -> None:
         metavar="JSON",
         help="fx, fy, cx, cy in pixels (default: a RealSense D455's field of view)",
     )
+    room.add_argument(
+        "--classes", type=Path, metavar="PNG", help="what each pixel shows (COCO-Stuff's numbers): materials follow"
+    )
+    room.add_argument(
+        "--segmenter",
+        metavar="builtin|DIR|HUB",
+        help="instead: what finds it: builtin, or a SegFormer, MaskFormer, Mask2Former ... by folder or Hub name",
+    )
+    room.add_argument("--sam", metavar="DIR|HUB", help="a SAM model whose masks sharpen the segmenter's edges")
+    room.add_argument(
+        "--capture", type=Path, metavar="DIR",
+        help="instead: a capture folder of mmwave-capture-std; its RealSense's photo and depth",
+    )  # fmt: skip
+    room.add_argument("--photo", type=whole, default=0, metavar="N", help="which photo of the capture (default 0)")
     room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
     person = parser.add_argument_group("the person")
-    person.add_argument("--text", help=f"what the person does (with --demo: {DEMO_TEXT!r})")
+    person.add_argument(
+        "--text",
+        action="append",
+        help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
+    )
     person.add_argument(
         "--at",
         type=place,
+        action="append",
         metavar="X,Y",
-        help="where the person starts: metres right of and ahead of the radar (default: chosen)",
+        help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
+        " the first --at is the first one's",
     )
+    add_motion_options(person)
     radar = parser.add_argument_group("the radar")
     radar.add_argument(
         "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
@@ -72,6 +108,7 @@ def add_verb(verbs: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then makes the signal and writes it. Raises InputError."""
     text, out = _check_inputs(arguments)
+    check_motion_options(arguments)
 
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
@@ -91,32 +128,69 @@ def run(arguments: argparse.Namespace) -> int:
             "frames": arguments.frames,
             "fps": arguments.fps,
             "seed": arguments.seed,
-            "at": arguments.at,
+            "at": _places(arguments),
             "keep_adc": arguments.bin,
         }
-        check_request(weaver.radar, text=text, **request)
-        result = weaver.generate(_read_room(weaver, arguments), text, **request)
-        meta = result.save(out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order)
+        texts = text if text is None or len(text) > 1 else text[0]
+        seconds = arguments.frames / arguments.fps if arguments.fps else arguments.frames * radar.frame_period_s
+        only = texts if isinstance(texts, str) else None
+        if arguments.motion_model is not None and only is None and text is not None:
+            raise InputError("--motion-model acts out one text; give --text once")
+        motion = read_own_motion(arguments) or motion_of_model(arguments, only, seconds)
+        check_request(weaver.radar, text=texts, motion=motion, **request)
+        request |= placing_options(arguments)
+        result = weaver.generate(_read_room(weaver, arguments), texts, motion=motion, **request)
+        meta = result.save(
+            out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq"
+        )
     print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
 
 
-def _check_inputs(arguments: argparse.Namespace) -> tuple[str, Path]:
-    """The text and the output folder, once it is clear which room is meant."""
-    pictures = (arguments.rgb, arguments.depth, arguments.camera)
+def _places(arguments: argparse.Namespace) -> Any:
+    """One place of one person, or a list of several people's."""
+    at = arguments.at
+    return at[0] if at is not None and len(at) == 1 and len(arguments.text or [""]) == 1 else at
+
+
+def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
+    """The texts and the output folder, once it is clear which room is meant."""
+    pictures = (
+        arguments.rgb, arguments.depth, arguments.camera, arguments.capture, arguments.depth_model, arguments.classes,
+        arguments.segmenter, arguments.sam,
+    )  # fmt: skip
     if arguments.demo:
         if any(picture is not None for picture in pictures):
-            raise InputError("--demo brings its own room; leave out --rgb, --depth and --camera, or leave out --demo")
-        text = DEMO_TEXT if arguments.text is None else arguments.text
+            raise InputError(
+                "--demo brings its own room; leave out --rgb, --depth, --camera and all else that tells of a room, or"
+                " leave out --demo"
+            )
+        text = [DEMO_TEXT] if arguments.text is None and arguments.motion is None else arguments.text
         return text, arguments.out or Path(DEMO_OUT)
+    if arguments.capture is not None:
+        if any(given is not None for given in (arguments.depth, arguments.camera, arguments.depth_model)):
+            raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")
+        return _text_and_out(arguments)
     if arguments.rgb is None and arguments.depth is None:
         raise InputError("which room? give --rgb and --depth, or try --demo")
-    if arguments.depth is None:
-        raise InputError("--rgb needs --depth too: the room is built from the distance of each pixel")
+    if arguments.depth is not None and arguments.depth_model is not None:
+        raise InputError("--depth-model is for a photo without depth; leave out one of --depth and --depth-model")
+    if arguments.depth is None and arguments.depth_model is None:
+        raise InputError(
+            "--rgb needs --depth too, for the room is built from the distance of each pixel; a metric depth model can"
+            " estimate it: --depth-model DIR, or a Hub name such as"
+            " depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf"
+        )
     if arguments.rgb is None:
         raise InputError("--depth needs --rgb too: the colour picture of the same view")
-    if arguments.text is None:
-        raise InputError("what does the person do? give --text, for example --text 'a person walks to the left'")
+    return _text_and_out(arguments)
+
+
+def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
+    if arguments.text is None and arguments.motion is None:
+        raise InputError(
+            "what does the person do? give --text, for example --text 'a person walks to the left', or --motion"
+        )
     if arguments.out is None:
         raise InputError("where to? give --out, a folder for the results")
     return arguments.text, arguments.out
@@ -125,4 +199,7 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[str, Path]:
 def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     if arguments.demo:
         return weaver.sample_room()
-    return weaver.read_room(arguments.rgb, arguments.depth, arguments.camera)
+    seen = {"classes": arguments.classes, "segmenter": arguments.segmenter, "sam": arguments.sam}
+    if arguments.capture is not None:
+        return weaver.read_capture(arguments.capture, photo=arguments.photo, rgb=arguments.rgb, **seen)
+    return weaver.read_room(arguments.rgb, arguments.depth, arguments.camera, depth_model=arguments.depth_model, **seen)

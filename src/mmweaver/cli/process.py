@@ -5,10 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option
+from mmweaver.core.errors import InputError
 
 NUM_STAGES = 6
 EXAMPLES = """examples:
   mmweaver process adc_data.bin --radar radar.json --iq-order iq --tx-order 0,2,1 --out capture/
+  mmweaver process capture_00000/ --out capture/
   mmweaver process adc.npy --radar profile.cfg --axes frame,loop,tx,rx,sample --out capture/
 """
 
@@ -19,8 +21,14 @@ def add_verb(verbs: Any) -> None:
         "process", help="take a recording through the same processing", epilog=EXAMPLES,
         description="Takes raw ADC samples of a real radar through range, Doppler, angle and CFAR.",
     )  # fmt: skip
-    parser.add_argument("file", type=Path, metavar="FILE", help="adc_data.bin of a DCA1000, or raw ADC samples as .npy")
-    parser.add_argument("--radar", required=True, metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
+    parser.add_argument(
+        "file", type=Path, metavar="FILE|DIR",
+        help="adc_data.bin of a DCA1000, raw ADC samples as .npy, or a capture folder of mmwave-capture-std"
+        " (radar.cfg, dca.pcap)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (a capture folder brings its own)"
+    )
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
     add_points_option(parser)
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
@@ -38,12 +46,26 @@ def run(arguments: argparse.Namespace) -> int:
     check_output_folder(arguments.out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         from mmweaver.core.stages import Stages
-        from mmweaver.recording import process_recording
+        from mmweaver.formats.capture_std import is_capture
+        from mmweaver.recording import process_capture, process_recording
 
-        recording = process_recording(
-            arguments.file, arguments.radar, iq_order=arguments.iq_order, tx_order=arguments.tx_order,
-            axes=arguments.axes, points=arguments.points, stages=Stages(bar),
-        )  # fmt: skip
+        if is_capture(arguments.file):
+            _check_capture(arguments)
+            recording = process_capture(arguments.file, points=arguments.points, stages=Stages(bar))
+        else:
+            recording = process_recording(
+                arguments.file, arguments.radar, iq_order=arguments.iq_order or "iq", tx_order=arguments.tx_order,
+                axes=arguments.axes, points=arguments.points, stages=Stages(bar),
+            )  # fmt: skip
         meta = recording.save(arguments.out, overwrite=arguments.overwrite)
     print_summary(arguments.out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
+
+
+def _check_capture(arguments: argparse.Namespace) -> None:
+    """A capture folder says all that these options would."""
+    given = {"--radar": arguments.radar, "--axes": arguments.axes, "--tx-order": arguments.tx_order}
+    given["--iq-order"] = arguments.iq_order
+    named = [name for name, value in given.items() if value is not None]
+    if named:
+        raise InputError(f"{arguments.file} is a capture folder, whose radar.cfg says it all; leave out {named[0]}")

@@ -26,8 +26,8 @@ def summary_lines(out: str | Path, meta: dict[str, Any]) -> list[str]:
     width = max(map(len, paths.values()))
     lines += [f"  {paths[name]:<{width}}  {text}" for name, text in meta["files"].items()]
     lines.append(_radar_line(meta))
-    if "person" in meta:
-        lines.append(_person_line(meta["person"]))
+    people = [meta["person"]] if "person" in meta else meta.get("people", [])
+    lines += [_person_line(person) for person in people]
     lines += [f"assumed: {sentence}" for sentence in meta["assumed"]]
     return lines
 

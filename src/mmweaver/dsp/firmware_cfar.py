@@ -21,6 +21,18 @@ class DetectionMatrix:
     counts_per_octave: float
 
 
+def counts_per_db(device: str, num_antennas: int) -> float:
+    """How many counts of a threshold one dB is.
+
+    >>> round(1280 / counts_per_db("xwr14xx", 8), 1), round(1280 / counts_per_db("xwr14xx", 12), 1)
+    (15.1, 20.1)
+    """
+    octave = (
+        256.0 * num_antennas if device == "xwr16xx" else 512.0 * num_antennas / 2 ** (num_antennas - 1).bit_length()
+    )
+    return float(octave / DB_PER_OCTAVE)
+
+
 def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"], device: str) -> DetectionMatrix:
     """Sum of the antennas' log2 magnitudes: in Q8 as it is ("xwr16xx"), or in Q9 over a power of two ("xwr14xx")."""
     num = spectrum.shape[-1]

@@ -37,7 +37,8 @@ SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db")
 CODECS: Registry[Callable[[], Codec]] = Registry(
     "codec",
     [
-        ("mmw", Mmw), ("klt_context", KltContext), ("top_klt", TopCoefficients), ("top_cells", TopCells),
+        ("mmw", Mmw), ("mmw_keep_noise", lambda: Mmw(keep_noise=True)),
+        ("klt_context", KltContext), ("top_klt", TopCoefficients), ("top_cells", TopCells),
         ("wavelets", Wavelets), ("sz3", Sz3), ("sperr", Sperr), ("zfp", Zfp), ("blosc2", Blosc2),
         ("jpeg2000", Jpeg2000), ("jpegxl", JpegXl), ("svd", TruncatedSvd), ("tucker", Tucker), ("cp", Cp),
         ("tensor_train", TensorTrain), ("inr_paper", lambda: InrInBytes("paper")),
@@ -49,9 +50,9 @@ CODECS: Registry[Callable[[], Codec]] = Registry(
 def codec_row(codec: Codec, signal: ExperimentSignal, num_bytes: int) -> dict[str, Any]:
     """One codec at one size on one cube; scores are None where it cannot be so small."""
     cube = signal.cube
-    start = time.perf_counter()
+    start, start_cpu = time.perf_counter(), time.process_time()
     data = codec.encoded(cube, num_bytes)
-    encode_s = time.perf_counter() - start
+    encode_s, encode_cpu_s = time.perf_counter() - start, time.process_time() - start_cpu
     decode_s: float | None = None
     scores: dict[str, float | None] = dict.fromkeys(SCORES)
     if data is not None:
@@ -72,7 +73,7 @@ def codec_row(codec: Codec, signal: ExperimentSignal, num_bytes: int) -> dict[st
         "n": 1,
         "seeds": [0],
         "interval": None,
-        "seconds": {"encode": round(encode_s, 2), "decode": decode_s},
+        "seconds": {"encode": round(encode_s, 2), "encode_cpu": round(encode_cpu_s, 2), "decode": decode_s},
         "size": {"bytes_allowed": num_bytes, "bytes": None if data is None else len(data)},
         "metrics": _metrics(scores, cube),
     }
@@ -100,14 +101,39 @@ def _metrics(scores: dict[str, Any], truth: RadarCube) -> dict[str, Any]:
     }
 
 
-def run(out: Path, codec_names: list[str], signal_names: list[str], data: Path | None, sizes: tuple[int, ...]) -> None:
-    """Every codec on every signal at every size; one file a codec, written when the codec is done."""
+def run(
+    out: Path,
+    codec_names: list[str],
+    signal_names: list[str],
+    data: Path | None,
+    sizes: tuple[int, ...],
+    *,
+    keep: bool = False,
+) -> None:
+    """Every codec on every signal at every size; one file a codec, written when the codec is done.
+
+    With `keep`, rows of other signals stay as they are in files of an earlier run, each with its own commit.
+    """
     signals = [SIGNALS[name](data) for name in signal_names]
     for name in codec_names:
         codec = CODECS[name]()
         rows = [codec_row(codec, signal, size) for signal in signals for size in sizes]
+        rows = in_order(rows + (kept_rows(out / EXPERIMENT / f"{name}.json", signal_names) if keep else []))
         path = write_result(out, experiment=EXPERIMENT, method=name, config={"sizes": list(sizes)}, rows=rows)
         print(json.dumps({"codec": name, "written": str(path)}), flush=True)  # noqa: T201
+
+
+def kept_rows(path: Path, measured: list[str]) -> list[dict[str, Any]]:
+    """Rows of an earlier run of signals that were not measured again."""
+    if not path.is_file():
+        return []
+    record = json.loads(path.read_text(encoding="utf-8"))
+    return [{"commit": record["commit"], **row} for row in record["rows"] if row["dataset"]["name"] not in measured]
+
+
+def in_order(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows by signal, as SIGNALS has them."""
+    return sorted(rows, key=lambda row: list(SIGNALS).index(row["dataset"]["name"]))
 
 
 def main() -> None:
@@ -117,9 +143,11 @@ def main() -> None:
     parser.add_argument("--codecs", nargs="*", default=list(CODECS))
     parser.add_argument("--signals", nargs="*", default=None)
     parser.add_argument("--sizes", nargs="*", type=int, default=SIZES)
+    parser.add_argument("--keep", action="store_true", help="keep the rows of signals that are not measured now")
     arguments = parser.parse_args()
     every = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]
-    run(arguments.out, arguments.codecs, arguments.signals or every, arguments.data, tuple(arguments.sizes))
+    signals = arguments.signals or every
+    run(arguments.out, arguments.codecs, signals, arguments.data, tuple(arguments.sizes), keep=arguments.keep)
 
 
 if __name__ == "__main__":

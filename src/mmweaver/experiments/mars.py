@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.presets import IWR1443_MARS
@@ -30,9 +31,11 @@ from mmweaver.experiments.cloud_scores import CloudScores, part_of, score
 from mmweaver.experiments.empty_room import empty_room
 from mmweaver.experiments.mars_data import Stretch, body_height_m, cut, read_mars
 from mmweaver.experiments.results import write_result
-from mmweaver.simulation.body import Body, SkinEcho
+from mmweaver.simulation.body import Body
 from mmweaver.simulation.receiver import Impairments
 from mmweaver.simulation.simulator import Simulator
+from mmweaver.simulation.skin import LAMBERT, SkinEcho
+from mmweaver.simulation.small_motions import STILL, SmallMotions
 
 PIECE_FRAMES, PIECES = 20, 20
 HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estimation begins
@@ -56,10 +59,12 @@ class Variant:
     """What is changed in the simulator; the defaults are the simulator as it stands."""
 
     impairments: Impairments = Impairments()  # noqa: RUF009 (frozen)
-    albedo_db: float = 0.0
-    exponent: float = 2.0  # of the skin, 2 = Lambert
+    brighter_db: float = 0.0
+    skin: SkinEcho = SkinEcho()  # noqa: RUF009 (frozen)
+    motions: SmallMotions = SmallMotions()  # noqa: RUF009 (frozen)
     has_floor: bool = True
     wall_m: float | None = None
+    smoothing_frames: float = 1.0  # of the Kinect's joints, which tremble by a centimetre from frame to frame
     joint_noise_m: float = 0.0
     num_points: int = 800
     chain: str = "firmware"
@@ -70,11 +75,13 @@ VARIANTS: dict[str, Variant] = {
     "simulator": Variant(),
     "no_thermal_noise": Variant(impairments=Impairments(thermal_noise=False)),
     "no_phase_noise": Variant(impairments=Impairments(phase_noise_dbc_per_hz=None, chirp_jitter_s=0.0)),
-    "body_6_db_fainter": Variant(albedo_db=-6.0),
-    "body_6_db_brighter": Variant(albedo_db=6.0),
-    "skin_exponent_20": Variant(exponent=20.0),
-    "skin_exponent_60": Variant(exponent=60.0),
-    "skin_exponent_400": Variant(exponent=400.0),
+    "body_6_db_fainter": Variant(brighter_db=-6.0),
+    "body_6_db_brighter": Variant(brighter_db=6.0),
+    "skin_of_lambert": Variant(skin=LAMBERT),
+    "skin_slope_0_20": Variant(skin=SkinEcho(slope=0.20)),
+    "joints_not_smoothed": Variant(smoothing_frames=0.0),
+    "skin_without_diffuse_part": Variant(skin=SkinEcho(albedo=0.0)),
+    "no_small_motions": Variant(motions=STILL),
     "skin_of_200_points": Variant(num_points=200),
     "skin_of_3200_points": Variant(num_points=3200),
     "no_floor_bounce": Variant(has_floor=False),
@@ -100,20 +107,27 @@ def simulate(pieces: list[Stretch], setup: Setup, variant: Variant, seed: int = 
         IWR1443_MARS,
         variant.impairments,
     )
-    albedo = SkinEcho().albedo * 10 ** (variant.albedo_db / 10)
-    echo = SkinEcho(albedo=albedo, exponent=variant.exponent)
+    gain, skin = 10 ** (variant.brighter_db / 10), variant.skin
+    echo = replace(skin, reflectivity=skin.reflectivity * gain, albedo=skin.albedo * gain)
     adcs = []
     for index, piece in enumerate(pieces):
         rng = stream(seed, "joint noise", index)
         noisy = replace(
-            piece, joints_m=piece.joints_m + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape)
+            piece,
+            joints_m=_smoothed(piece.joints_m, variant.smoothing_frames)
+            + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape),
         )
         run = simulator.run(
             noisy.pose(setup.shift_m, setup.height_m), num_frames=int(piece.frame[-1]) + 1, seed=seed,
-            num_points=variant.num_points, echo=echo,
+            num_points=variant.num_points, echo=echo, motions=variant.motions,
         )  # fmt: skip
         adcs.append(run.adc)
     return adcs
+
+
+def _smoothed(joints_m: np.ndarray, frames: float) -> np.ndarray:
+    """A Gaussian of so many frames over time."""
+    return gaussian_filter1d(joints_m, frames, axis=0, mode="nearest") if frames else joints_m
 
 
 def detect(adcs: list[AdcCube], pieces: list[Stretch], setup: Setup, variant: Variant) -> Clouds:

@@ -2,7 +2,8 @@
 
 python -m mmweaver.experiments.signal_statistics --data <recordings> --out results
 
-The rooms and people are not the recorded ones, so only the kind of number can agree, not the number.
+The person who moves is simulated where one of the recorded ones is; the resting room is the sample room, so there
+only the kind of number can agree.
 """
 
 import argparse
@@ -17,6 +18,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence
 from mmweaver.dsp.cube import radar_cube, remove_static
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.experiments.empty_room import empty_room
 from mmweaver.experiments.results import write_result
 from mmweaver.experiments.signals import pose_of, sample_scene, two_people_radar
 from mmweaver.formats.dca1000 import read_bin
@@ -26,6 +28,7 @@ from mmweaver.simulation.simulator import Simulator
 
 EXPERIMENT = "signal_statistics"
 VERSION = 1
+WALKER_M, WALKER_RAD, WALL_M = 2.93, float(np.radians(-15.0)), 5.2
 DEFINITIONS: dict[str, tuple[str, str]] = {
     "static_share": ("share", "energy of the mean over a frame's loops, of all energy in the kept range bins"),
     "top_1_percent": ("share", "energy of the strongest 1 % of range-Doppler-antenna cells"),
@@ -81,14 +84,20 @@ def recorded_hall(data: Path) -> AdcCube:
 
 
 def simulated(config: RadarConfig, seed: int, *, is_empty: bool) -> AdcCube:
-    """One frame in the sample room before the given radar: a walking person, or nobody."""
+    """One frame before the given radar: the sample room with nobody in it, or a person who walks at the recorded place.
+
+    One of the two recorded people is at 2.93 m and -15 degrees, with a wall at 5.2 m.
+    """
     pose = pose_of("walking", seconds=2.0, seed=seed)
     middle_s = float(np.mean(pose.time_s))
-    shifted = pose.joints_m + (np.array([0.0, 200.0, 0.0]) if is_empty else 0.0)
+    pelvis = pose.joints_m[len(pose.time_s) // 2, 0]
+    place = np.array([0.0, 200.0]) if is_empty else WALKER_M * np.array([np.sin(WALKER_RAD), np.cos(WALKER_RAD)])
+    shifted = pose.joints_m + np.append(place - pelvis[:2], 0.0)
     from_middle = PoseSequence(
         time_s=pose.time_s - middle_s, joints_m=shifted, height_m=pose.height_m, subject=pose.subject
     )
-    return Simulator(sample_scene(), config).run(from_middle, num_frames=1, seed=seed).adc
+    room = sample_scene() if is_empty else empty_room(floor_z_m=float(shifted[..., 2].min()) - 0.04, wall_y_m=WALL_M)
+    return Simulator(room, config).run(from_middle, num_frames=1, seed=seed).adc
 
 
 def rows(name: str, recording: AdcCube, *, is_empty: bool, seeds: tuple[int, ...]) -> list[dict[str, Any]]:
@@ -121,10 +130,16 @@ RECORDINGS: tuple[tuple[str, Callable[[Path], AdcCube], bool], ...] = (
 )
 
 
-def run(out: Path, data: Path, seeds: tuple[int, ...] = (0, 1, 2, 3, 4)) -> Path:
+def run(out: Path, data: Path, seeds: tuple[int, ...] = tuple(range(10))) -> Path:
     """Both recordings, each with simulated frames of the same radar."""
     found = [row for name, read, empty in RECORDINGS for row in rows(name, read(data), is_empty=empty, seeds=seeds)]
-    return write_result(out, experiment=EXPERIMENT, method="physics", config={"room": "bundled sample"}, rows=found)
+    return write_result(
+        out,
+        experiment=EXPERIMENT,
+        method="physics",
+        config={"rooms": "a floor and a wall at 5.2 m; bundled sample"},
+        rows=found,
+    )
 
 
 def main() -> None:

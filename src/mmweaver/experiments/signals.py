@@ -13,12 +13,15 @@ from mmweaver.core.presets import AWR1843, BGT60, halfwave_positions
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
+from mmweaver.core.seeding import stream
 from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.dsp.windows import hann
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.motion.compose import compose
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
-from mmweaver.simulation.receiver import Impairments
+from mmweaver.simulation.receiver import IDEAL, Impairments
 from mmweaver.simulation.simulator import Simulator
 
 NUM_FRAMES = 20
@@ -28,17 +31,20 @@ SENTENCES = {
     "sitting": "a person sits down on a chair",
 }
 ALONE = "_alone"
+NOISE_FREE = replace(IDEAL, leakage_db=Impairments().leakage_db)
 OTHER_SKIN = 1_000  # added to the subject: the same pose, other skin points and micro-phases
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExperimentSignal:
-    """A cube to work on, and its twin where one can be made (same pose and room, other micro-phases of the skin)."""
+    """A cube to work on; where they can be made its twin (same pose and room, other micro-phases of the skin) and the
+    same without noise, which no field that leaves the noise alone can be nearer to."""
 
     name: str
-    origin: str  # simulated | recorded
+    origin: str  # simulated | recorded | recorded, with a simulated person
     cube: RadarCube
     twin: RadarCube | None
+    noise_free: RadarCube | None = None
 
     @property
     def digest(self) -> str:
@@ -64,9 +70,9 @@ def without_room(scene: Scene) -> Scene:
     )
 
 
-def pose_of(activity: str, *, seconds: float, seed: int = 0) -> PoseSequence:
-    """A person in the sample room, doing what the activity's sentence says."""
-    window_m = (float(AWR1843.range_m[0]), float(AWR1843.range_m[-1]))
+def pose_of(activity: str, *, seconds: float, seed: int = 0, radar: RadarConfig = AWR1843) -> PoseSequence:
+    """A person in the sample room, within the ranges that the radar keeps, doing what the activity's sentence says."""
+    window_m = (float(radar.range_m[0]), float(radar.range_m[-1]))
     return compose(SENTENCES[activity], sample_scene(), duration_s=seconds, seed=seed, range_window_m=window_m).pose
 
 
@@ -84,11 +90,14 @@ def simulated(
     scene = sample_scene()
     if is_alone:
         scene, impairments = without_room(scene), replace(impairments, leakage_db=None)
-    simulator = Simulator(scene, AWR1843, impairments)
-    skins = (pose, replace(pose, subject=pose.subject + OTHER_SKIN))
-    cube, twin = (radar_cube(simulator.run(skin, num_frames=num_frames, seed=seed).adc) for skin in skins)
+    quiet = replace(NOISE_FREE, leakage_db=impairments.leakage_db)
+    other = replace(pose, subject=pose.subject + OTHER_SKIN)
+    cube, twin, noise_free = (
+        radar_cube(Simulator(scene, AWR1843, receiver).run(skin, num_frames=num_frames, seed=seed).adc)
+        for skin, receiver in ((pose, impairments), (other, impairments), (pose, quiet))
+    )
     name = activity + (ALONE if is_alone else "")
-    return ExperimentSignal(name=name, origin="simulated", cube=cube, twin=twin)
+    return ExperimentSignal(name=name, origin="simulated", cube=cube, twin=twin, noise_free=noise_free)
 
 
 def two_people_radar(num_loops: int = 32) -> RadarConfig:
@@ -112,14 +121,63 @@ def two_people(data: Path) -> ExperimentSignal:
     Windows overlap, which flatters whatever exploits likeness between frames.
     """
     hop, length = 5, 32
-    path = data / "radar" / "openradar_two_people" / "adc_frame_loops_vrx_samples_c64.npy"
-    whole = read_adc_npy(path, two_people_radar(num_loops=128), "loop,vrx,sample").samples[0]
+    whole = _two_people_frame(data).samples[0]
     config = two_people_radar(length)
     windows = np.stack([whole[hop * at : hop * at + length] for at in range(NUM_FRAMES)])
     cube = radar_cube(AdcCube(samples=windows, config=config, scale=float("nan")))
     times_s = np.arange(NUM_FRAMES) * hop * config.loop_period_s
     cube = replace(cube, grid=replace(cube.grid, frame_time_s=times_s))
     return ExperimentSignal(name="two_people", origin="recorded", cube=cube, twin=None)
+
+
+def _two_people_frame(data: Path) -> AdcCube:
+    """The recording as it is: one frame of 128 loops."""
+    path = data / "radar" / "openradar_two_people" / "adc_frame_loops_vrx_samples_c64.npy"
+    return read_adc_npy(path, two_people_radar(num_loops=128), "loop,vrx,sample")
+
+
+def walking_in_recording(data: Path, seed: int = 0) -> ExperimentSignal:
+    """What stood still before the radar of the two people, and a simulated walker before the same radar.
+
+    Clutter: the recording's mean over its 128 loops, gains and phases of the real array in it. Walker: as strong as
+    the recorded people (strongest moving cell), ideal array. Noise: white, as strong as the recording's (median of
+    the cells in the outer half of the velocities). 20 frames, 0.1 s apart.
+    """
+    frame, config = _two_people_frame(data), two_people_radar()
+    pose = pose_of("walking", seconds=NUM_FRAMES * config.frame_period_s, seed=seed, radar=config)
+    simulator = Simulator(without_room(sample_scene()), config, IDEAL)
+    skins = (pose, replace(pose, subject=pose.subject + OTHER_SKIN))
+    walkers = [simulator.run(skin, num_frames=NUM_FRAMES, seed=seed).adc for skin in skins]
+    gain = np.sqrt(_strongest_moving(two_people(data).cube) / _strongest_moving(radar_cube(walkers[0])))
+    shape = (*walkers[0].samples.shape, 2)
+    noise = stream(seed, "walking_in_recording noise").standard_normal(shape, dtype=np.float32).view(np.complex64)
+    hiss = noise[..., 0] * np.sqrt(_sample_noise_power(frame) / 2)
+    still = frame.samples.mean(axis=1, keepdims=True)
+    cube, twin, noise_free = (
+        radar_cube(AdcCube(samples=samples.astype(np.complex64), config=config, scale=float("nan")))
+        for samples in (
+            still + gain * walkers[0].samples + hiss,
+            still + gain * walkers[1].samples + hiss,
+            still + gain * walkers[0].samples,
+        )
+    )
+    return ExperimentSignal(
+        name="walking_in_recording", origin="recorded, with a simulated person", cube=cube, twin=twin,
+        noise_free=noise_free,
+    )  # fmt: skip
+
+
+def _strongest_moving(cube: RadarCube) -> float:
+    return float(range_doppler_power(cube)[:, :, moving_doppler(cube)].max())
+
+
+def _sample_noise_power(adc: AdcCube) -> float:
+    """Of one ADC sample, from the cells in the outer half of the velocities; a chi-squared's median is ln 2."""
+    cube, config = radar_cube(adc), adc.config
+    is_fast = np.abs(config.radial_velocity_mps) > config.max_velocity_mps / 2
+    cell = float(np.median(np.abs(cube.values[:, :, is_fast]) ** 2)) / np.log(2)
+    windows = (hann(config.num_samples), hann(config.num_loops))
+    return cell / float(np.prod([np.sum(window**2) / np.sum(window) ** 2 for window in windows]))
 
 
 def breathing(data: Path) -> ExperimentSignal:
@@ -152,7 +210,8 @@ SIGNALS: Registry[Callable[[Path | None], ExperimentSignal]] = Registry(
         ("waving", _simulated("waving", False)),
         ("sitting", _simulated("sitting", False)),
         ("two_people", _recorded(two_people)),
+        ("walking_in_recording", _recorded(walking_in_recording)),
         ("breathing", _recorded(breathing)),
     ],
 )
-RECORDED = ("two_people", "breathing")
+RECORDED = ("two_people", "walking_in_recording", "breathing")  # all that need recordings

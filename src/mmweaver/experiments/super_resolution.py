@@ -8,7 +8,8 @@ Questions that "super-resolution" mixes:
 - more_bandwidth, more_loops, more_antennas: does it give what a physically finer radar would record? Truth: the
   simulator with that radar, frames about the same instant, both cubes phase-centred (they then agree in phase).
 
-Rivals: zero padding (the coarse radar's own spectrum) and straight lines between cells.
+Rivals: zero padding (the coarse radar's own spectrum) and straight lines between cells. Scatterers answer twice:
+sampled more finely, as every field, and rendered as the finer radar would see them (scatterers_rendered).
 
     python -m mmweaver.experiments.super_resolution --out results
 """
@@ -28,6 +29,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
+from mmweaver.experiments.field_fidelity import PAPER_VALUES
 from mmweaver.experiments.finer_radar import (
     interpolated,
     middle_delay_s,
@@ -42,6 +44,8 @@ from mmweaver.experiments.signals import pose_of, sample_scene, without_room
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.phase_centring import centred, centring_turn
 from mmweaver.fields.sampling import drawn_grid, finer_grid
+from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
+from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.floors import FLOORS
 from mmweaver.metrics.scorecard import METRICS, scorecard
@@ -51,24 +55,30 @@ from mmweaver.simulation.simulator import Simulator
 from mmweaver.training.single_signal import RECIPES, fit
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
-RADII = (1, 2, 3, 7)
-FINER_FACTORS = (2.0, 4.0)
+RADII = (1, 2, 3, 4, 5, 6, 7)
 FINER_RADARS: dict[str, Callable[[RadarConfig, float], RadarConfig]] = {
     "more_bandwidth": more_bandwidth,
     "more_loops": more_loops,
     "more_antennas": more_antennas,
 }
 NUM_FRAMES = 8
+PAPER_FRAMES = 20
+RECIPE_NAMES = ("paper", "raw_short", "relu_short", "tuned_short", "smooth_short", "siren_short")
 Sampler = Callable[[CubeGrid], CubeValues]
+Renderer = Callable[[RadarConfig, float], RadarCube]  # another radar, its first frame so much later (s)
 Row = dict[str, Any]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
-    """A way to sample a cube anywhere, made from the cube alone; `settings` go into the result's config."""
+    """A way to sample a cube anywhere, made from the cube alone; `settings` go into the result's config.
+
+    One with `make_renderer` answers as a finer radar itself would, and only that is asked of it.
+    """
 
     name: str
-    make: Callable[[RadarCube], Sampler]
+    make: Callable[[RadarCube], Sampler] | None = None
+    make_renderer: Callable[[RadarCube], Renderer] | None = None
     settings: dict[str, Any]
 
 
@@ -93,10 +103,30 @@ def methods(recipe_names: tuple[str, ...]) -> list[Method]:
         Method(name="linear_centred", make=partial(_lines, is_centred=True), settings={}),
     ]
     fits = [RECIPES[name] for name in recipe_names]
+    settings = asdict(_scatterer_recipe(NUM_FRAMES))
+    rivals += [
+        field_method("scatterers", settings, _scatterers),
+        Method(name="scatterers_rendered", make_renderer=_scatterer_renderer, settings=settings),
+    ]
     return rivals + [
         field_method(f"inr_{recipe.name}", asdict(recipe), lambda cube, recipe=recipe: fit(cube, recipe).field)
         for recipe in fits
     ]
+
+
+def _scatterer_recipe(num_frames: int) -> ScattererRecipe:
+    """As many numbers a frame as the paper's INR has over 20."""
+    num_values = PAPER_VALUES * num_frames // PAPER_FRAMES
+    return ScattererRecipe(num_points=num_values, num_values=num_values, with_static=False)
+
+
+def _scatterers(cube: RadarCube) -> ScattererField:
+    return ScattererField.fit(cube, _scatterer_recipe(len(cube.values)))
+
+
+def _scatterer_renderer(cube: RadarCube) -> Renderer:
+    field = _scatterers(cube)
+    return lambda config, late_s: field.for_radar(config, len(cube.values), first_frame_s=late_s)
 
 
 def between_bins(sampler: Sampler, cube: RadarCube, adc: AdcCube, factor: float) -> Row:
@@ -136,7 +166,15 @@ def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig)
 
 def run(out: Path, recipe_names: tuple[str, ...], factors: tuple[float, ...] = FACTORS) -> list[Path]:
     """Scores every method on every question and writes one file each."""
-    finer = {(kind, factor): make(AWR1843, factor) for kind, make in FINER_RADARS.items() for factor in FINER_FACTORS}
+    coarse, truths = finer_truths(factors)
+    return [_run_method(method, coarse, truths, factors, out) for method in methods(recipe_names)]
+
+
+def finer_truths(
+    factors: tuple[float, ...], kinds: tuple[str, ...] = tuple(FINER_RADARS)
+) -> tuple[AdcCube, dict[tuple[str, float], RadarCube]]:
+    """A walker before the awr1843, and before radars that are finer, the middles of all frames at the same instants."""
+    finer = {(kind, factor): FINER_RADARS[kind](AWR1843, factor) for kind in kinds for factor in factors}
     delay_s = max(middle_delay_s(AWR1843, config) for config in finer.values())
     pose = pose_of("walking", seconds=NUM_FRAMES * AWR1843.frame_period_s + delay_s + 0.1)
     coarse = _record(AWR1843, starting_later(pose, delay_s))
@@ -144,7 +182,7 @@ def run(out: Path, recipe_names: tuple[str, ...], factors: tuple[float, ...] = F
         key: radar_cube(_record(config, starting_later(pose, delay_s - middle_delay_s(AWR1843, config))))
         for key, config in finer.items()
     }
-    return [_run_method(method, coarse, truths, factors, out) for method in methods(recipe_names)]
+    return coarse, truths
 
 
 def _run_method(
@@ -156,14 +194,24 @@ def _run_method(
 ) -> Path:
     start = time.perf_counter()
     cube = radar_cube(coarse)
-    sampler = method.make(cube)
-    seconds = time.perf_counter() - start
-    at_cells = _entry("nmse_db", sampler(cube.grid), cube, "the cube's own cells")
-    rows: list[Row] = [_row("own_cells", 1.0, {"nmse_db": at_cells})]
-    rows += [between_bins(sampler, cube, coarse, factor) for factor in factors]
-    rows += [drawn_places(sampler, cube, coarse, radius) for radius in RADII]
-    for (kind, factor), truth in truths.items():
-        rows.append(_row(kind, factor, against_finer_radar(sampler, truth, coarse.config)))
+    rows: list[Row] = []
+    if method.make is not None:
+        sampler = method.make(cube)
+        seconds = time.perf_counter() - start
+        at_cells = _entry("nmse_db", sampler(cube.grid), cube, "the cube's own cells")
+        rows.append(_row("own_cells", 1.0, {"nmse_db": at_cells}))
+        rows += [between_bins(sampler, cube, coarse, factor) for factor in factors]
+        rows += [drawn_places(sampler, cube, coarse, radius) for radius in RADII]
+        for (kind, factor), truth in truths.items():
+            rows.append(_row(kind, factor, against_finer_radar(sampler, truth, coarse.config)))
+    else:
+        assert method.make_renderer is not None
+        renderer = method.make_renderer(cube)
+        seconds = time.perf_counter() - start
+        for (kind, factor), truth in truths.items():
+            prediction = renderer(truth.config, -middle_delay_s(coarse.config, truth.config))
+            prediction = replace(prediction, grid=truth.grid)
+            rows.append(_row(kind, factor, scorecard(prediction, truth).as_json()))
     for row in rows:
         row |= {"n": 1, "seeds": [0], "interval": None, "seconds": {"prepare": round(seconds, 3)}}
     return write_result(out, experiment="super_resolution", method=method.name, config=method.settings, rows=rows)
@@ -198,7 +246,7 @@ def _entry(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, default=Path("results"))
-    parser.add_argument("--recipes", nargs="*", default=["paper", "raw_short", "smooth_short"])
+    parser.add_argument("--recipes", nargs="*", default=list(RECIPE_NAMES))
     arguments = parser.parse_args()
     run(arguments.out, tuple(arguments.recipes))
 

@@ -1,6 +1,6 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m mmweaver.experiments.tables results README.md docs/fields.md docs/limits.md
+python -m mmweaver.experiments.tables results README.md docs/*.md
 """
 
 import json
@@ -10,11 +10,14 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
+from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
+FINER, RADII = (1.5, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
 QUESTIONS = (
-    ("own_cells", 1.0), ("between_bins", 2.0), ("between_bins", 4.0), ("drawn_places", 2.0),
-    ("more_bandwidth", 2.0), ("more_bandwidth", 4.0), ("more_loops", 2.0), ("more_loops", 4.0), ("more_antennas", 2.0),
+    ("own_cells", (1.0,)), ("between_bins", FINER), ("drawn_places", RADII), ("more_bandwidth", FINER),
+    ("more_loops", FINER), ("more_antennas", FINER),
 )  # fmt: skip
 PHYSICS = (
     ("command_wall_s", "`mmweaver generate --demo`, imports and pictures included, wall", "{:.1f} s"),
@@ -34,20 +37,22 @@ PHYSICS = (
     ("synthesis_error_at_0.5_mps_db", "up to 0.5 m/s and 5 m/s2 on each axis", "{:.1f} dB"),
     ("synthesis_error_at_3_mps_db", "up to 3 m/s and 30 m/s2 on each axis", "{:.1f} dB"),
 )
+OURS = ("mmw", "mmw_keep_noise")  # what the rivals are measured against
 BEGIN, END = "<!-- table: {} -->", "<!-- end -->"
 
 
 def fidelity_table(folder: Path) -> str:
     """One row a method and signal, after the rows of the signal's floors and twin."""
     records = _records(folder / "field_fidelity")
-    lines = [_line("signal", "method", "values", "fit s", *SHOWN), _line(*["---"] * (4 + len(SHOWN)))]
+    lines = [_line("signal", "method", "values", "fit CPU s", *SHOWN), _line(*["---"] * (4 + len(SHOWN)))]
     for at, row in enumerate(records[0]["rows"]):
         name, metrics = row["dataset"]["name"], row["metrics"]
         for floor in ("zeros", "static_mean"):
             scores = [metrics[metric]["floor"][floor] for metric in SHOWN]
             lines.append(_line(name, f"*{floor}*", "", "", *map(_number, scores)))
-        if "twin" in metrics["nmse_db"]:
-            lines.append(_line(name, "*twin*", "", "", *(_number(metrics[metric]["twin"]) for metric in SHOWN)))
+        for other in ("twin", "noise_free"):
+            if other in metrics["nmse_db"]:
+                lines.append(_line(name, f"*{other}*", "", "", *(_number(metrics[metric][other]) for metric in SHOWN)))
         for record in records:
             own = record["rows"][at]
             scores = [_number(own["metrics"][metric]["value"]) for metric in SHOWN]
@@ -59,7 +64,7 @@ def fidelity_table(folder: Path) -> str:
 
 def codecs_table(folder: Path) -> str:
     """Error over active / moving cells in dB, one row a codec, one column a size; the best of each in bold."""
-    records = sorted(_records(folder / "codecs"), key=lambda record: record["method"] != "mmw")
+    records = sorted(_records(folder / "codecs"), key=lambda record: record["method"] not in OURS)
     found: dict[tuple[str, int, str], tuple[float | None, float | None]] = {}
     for record in records:
         for row in record["rows"]:
@@ -78,6 +83,43 @@ def codecs_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def codec_margins_table(folder: Path) -> str:
+    """How many dB .mmw errs less than the best rival at that, active / moving / all cells; where it loses, in bold."""
+    names = ("nmse_active_db", "nmse_moving_db", "nmse_db")
+    found: dict[tuple[str, int], dict[str, list[float | None]]] = {}
+    for record in _records(folder / "codecs"):
+        for row in record["rows"]:
+            scores = [row["metrics"][name]["value"] for name in names]
+            found.setdefault((row["dataset"]["name"], row["size"]["bytes_allowed"]), {})[record["method"]] = scores
+    sizes = sorted({size for _, size in found})
+    lines = [_line("signal", *(f"{size:,} B" for size in sizes)), _line(*["---"] * (1 + len(sizes)))]
+    for signal in dict.fromkeys(signal for signal, _ in found):
+        lines.append(_line(signal, *(_margins(found[signal, size]) for size in sizes)))
+    return "\n".join(lines)
+
+
+def _margins(scores: dict[str, list[float | None]]) -> str:
+    words = []
+    for at, ours in enumerate(scores[OURS[0]]):
+        rivals = [score[at] for method, score in scores.items() if method not in OURS]
+        best = min((value for value in rivals if value is not None), default=None)
+        margin = None if best is None or ours is None else round(best - ours, 2)
+        words.append(f"**{_number(margin)}**" if margin is not None and margin < 0 else _number(margin))
+    return " / ".join(words)
+
+
+def codec_seconds_table(folder: Path) -> str:
+    """Seconds of one processor that writing a .mmw of 20 frames took."""
+    (record,) = [record for record in _records(folder / "codecs") if record["method"] == OURS[0]]
+    rows = record["rows"]
+    sizes = sorted({row["size"]["bytes_allowed"] for row in rows})
+    lines = [_line("signal", *(f"{size:,} B" for size in sizes)), _line(*["---"] * (1 + len(sizes)))]
+    seconds = {(row["dataset"]["name"], row["size"]["bytes_allowed"]): row["seconds"]["encode_cpu"] for row in rows}
+    for signal in dict.fromkeys(signal for signal, _ in seconds):
+        lines.append(_line(signal, *(f"{seconds[signal, size]:.1f}" for size in sizes)))
+    return "\n".join(lines)
+
+
 def _best(found: dict, signal: str, size: int) -> tuple[float | None, float | None]:
     scores = [score for key, score in found.items() if key[:2] == (signal, size)]
     active, moving = ([score[at] for score in scores if score[at] is not None] for at in (0, 1))
@@ -93,17 +135,18 @@ def _pair(score: tuple[float | None, float | None], best: tuple[float | None, fl
 
 
 def super_resolution_table(folder: Path) -> str:
-    """NMSE in dB, one row a method, one column a question; all zeros have 0 dB in each."""
-    lines = [
-        _line("method", *(f"{truth} {factor:g}" for truth, factor in QUESTIONS)),
-        _line(*["---"] * (1 + len(QUESTIONS))),
-    ]
-    for record in _records(folder / "super_resolution"):
-        scores = {
+    """NMSE in dB, one row a question, one column a method; all zeros have 0 dB in each."""
+    scores = {
+        record["method"]: {
             (row["dataset"]["truth"], row["dataset"]["factor"]): row["metrics"]["nmse_db"]["value"]
             for row in record["rows"]
         }
-        lines.append(_line(record["method"], *(_number(scores[question]) for question in QUESTIONS)))
+        for record in _records(folder / "super_resolution")
+    }
+    lines = [_line("truth", "times finer, or radius", *scores), _line(*["---"] * (2 + len(scores)))]
+    for truth, factors in QUESTIONS:
+        for factor in factors:
+            lines.append(_line(truth, f"{factor:g}", *(_number(own.get((truth, factor))) for own in scores.values())))
     return "\n".join(lines)
 
 
@@ -127,6 +170,34 @@ def rooms_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+PEOPLE = (
+    ("nmse_active_db", "error energy, active cells (dB)"), ("nmse_moving_db", "error energy, moving cells (dB)"),
+    ("rd_ssim", "range-Doppler SSIM"), ("ra_ssim", "range-azimuth SSIM"), ("chamfer_m", "Chamfer of the points (m)"),
+    ("hausdorff_m", "Hausdorff of the points (m)"),
+)  # fmt: skip
+
+
+def people_table(folder: Path) -> str:
+    """Plain superposition against mutual shadowing, beside its floor and its ceilings; then what it is about."""
+    (record,) = _records(folder / "several_people")
+    lines = [
+        _line("arrangement (pairs)", "score", "plain sum (95 %)", "without the second", "other noise", "twin"),
+        _line(*["---"] * 6),
+    ]
+    for row in record["rows"]:
+        name = f"{row['dataset']['name']} ({row['n']})"
+        for metric, text in PEOPLE:
+            own = row["metrics"][metric]
+            beside = [_number(own["beside"][who]) for who in ("without_second", "other_noise", "twin")]
+            lines.append(_line(name, text, _with_interval(own), *beside))
+        dimmed, points = row["metrics"]["second_dimmed_db"], row["metrics"]["points_of_second"]
+        lines.append(_line(name, "*the second is dimmed by (dB)*", _with_interval(dimmed), "", "", ""))
+        with_shadows, without = (_number(points["beside"][who]) for who in ("mutual", "without_second"))
+        told = f"{_with_interval(points)}; with mutual shadows {with_shadows}"
+        lines.append(_line(name, "*points a frame at the second*", told, without, "", ""))
+    return "\n".join(lines)
+
+
 def statistics_table(folder: Path) -> str:
     """Recorded beside simulated: one row a number, the simulated ones with their range over seeds."""
     (record,) = _records(folder / "signal_statistics")
@@ -139,6 +210,81 @@ def statistics_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+AFFORDANCES = (
+    ("floor_error_median_m", "floor height, median error", "{:.3f} m"),
+    ("floor_error_p95_m", "95th percentile", "{:.3f} m"),
+    ("floor_within_3_cm", "within 3 cm", "share"), ("seats_found", "seats found", "share"),
+    ("false_seats", "found seats that are none", "share"),
+    ("facing_error_median_deg", "facing, median error", "{:.0f} deg"),
+    ("table_found", "tables and counters found", "share"), ("table_false", "found ones that are none", "share"),
+    ("door_found", "doors found", "share"), ("door_false", "found ones that are none", "share"),
+    ("window_found", "windows found", "share"), ("window_false", "found ones that are none", "share"),
+    ("bed_found", "beds found", "share"), ("bed_false", "found ones that are none", "share"),
+    ("placements_clear", "placements clear of furniture", "share"), ("arms_clear", "arms too", "share"),
+)  # fmt: skip
+
+
+def affordances_table(folder: Path) -> str:
+    """What is found in rooms whose truth is known, one column a set of rooms and an input."""
+    rows = [(record["method"], row) for record in _records(folder / "affordances") for row in record["rows"]]
+    heads = [f"{row['dataset']['name']}, {method} ({row['n']})" for method, row in rows]
+    lines = [_line("what", *heads), _line(*["---"] * (1 + len(rows)))]
+    for name, text, form in AFFORDANCES:
+        lines.append(_line(text, *(_share_cell(row["metrics"].get(name), form) for _, row in rows)))
+    return "\n".join(lines)
+
+
+def _share_cell(metric: dict[str, Any] | None, form: str) -> str:
+    if metric is None:
+        return "-"
+    if form != "share":
+        return form.format(metric["value"])
+    of = f" of {metric['of']}" if "of" in metric else ""
+    return f"{100 * metric['value']:.1f} %{of}"
+
+
+def motiongpt_table(folder: Path) -> str:
+    """One row a set of motions: how often the classifier's first, and one of its first three, is what was asked."""
+    (record,) = _records(folder / "motiongpt")
+    lines = [_line("motions", "first of 12", "among first 3", "bones stretch"), _line("---", "---", "---", "---")]
+    for row in record["rows"]:
+        first, three, bones = (row["metrics"][name] for name in ("r_precision_1", "r_precision_3", "bone_spread"))
+        cells = [f"{100 * m['value']:.0f} % ({100 * m['interval_95'][0]:.0f} to {100 * m['interval_95'][1]:.0f})"
+                 for m in (first, three)]  # fmt: skip
+        lines.append(_line(row["dataset"]["name"], *cells, f"{100 * bones['value']:.1f} %"))
+    lines.append(_line("chance", f"{100 / 12:.0f} %", "25 %", ""))
+    return "\n".join(lines)
+
+
+def tracks_table(folder: Path) -> str:
+    """One row a shape of track, beside free points in as many numbers."""
+    (record,) = _records(folder / "scatterer_tracks")
+    lines = [
+        _line("frames", "numbers a track", "nmse_db, tracks", "nmse_db, free points", "CPU s of all"),
+        _line(*["---"] * 5),
+    ]
+    for row in record["rows"]:
+        metric = row["metrics"]["nmse_db"]
+        cells = (_number(metric["value"]), _number(metric["free_points"]), f"{row['seconds']['all']:.0f}")
+        lines.append(_line(str(row["frames"]), str(row["values_of_track"]), *cells))
+    return "\n".join(lines)
+
+
+def noise_table(folder: Path) -> str:
+    """One row a signal: rendered without noise / with noise (the capture's own where it is not zero or the same)."""
+    (record,) = _records(folder / "rendered_noise")
+    names = list(record["rows"][0]["metrics"])
+    lines = [_line("signal", *names), _line(*["---"] * (1 + len(names)))]
+    for row in record["rows"]:
+        cells = []
+        for name in names:
+            metric = row["metrics"][name]
+            both = f"{_number(metric['floor']['without_noise'])} / {_number(metric['value'])}"
+            cells.append(f"{both} ({_number(metric['capture'])})" if metric["capture"] else both)
+        lines.append(_line(row["dataset"]["name"], *cells))
+    return "\n".join(lines)
+
+
 def _with_interval(metric: dict[str, Any]) -> str:
     edges = metric.get("interval")
     value = _number(metric["value"])
@@ -148,6 +294,14 @@ def _with_interval(metric: dict[str, Any]) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
+    "several_people": people_table,
+    "affordances": affordances_table,
+    "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
+    "motiongpt": motiongpt_table,
+    "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
+    "rendered_noise": noise_table,
+    "scatterer_tracks": tracks_table,
+    "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 
 

@@ -11,6 +11,7 @@
 Reference: paper, "INR for RF representation"; 4,898 weights and 256 modulations a frame.
 """
 
+import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -28,7 +29,6 @@ from mmweaver.fields.positional_encoding import (
     OCTAVES,
     Frequencies,
     encode_axis,
-    encoded_size,
     normalised,
     positional_encoding,
 )
@@ -67,7 +67,24 @@ def _gauss(z: torch.Tensor) -> torch.Tensor:
     return _Gauss.apply(z)  # pyright: ignore[reportReturnType]
 
 
-ACTIVATIONS: dict[str, Callable[[torch.Tensor], torch.Tensor]] = {"relu": torch.relu, "gauss": _gauss}
+SINE_TURNS = 30.0  # omega_0 of Sitzmann et al., "Implicit neural representations with periodic activation functions"
+
+
+def _sine(z: torch.Tensor) -> torch.Tensor:
+    return torch.sin(SINE_TURNS * z)
+
+
+ACTIVATIONS: dict[str, Callable[[torch.Tensor], torch.Tensor]] = {"relu": torch.relu, "gauss": _gauss, "sine": _sine}
+
+
+def _activate(activation: str, z: torch.Tensor) -> None:
+    """In place. What is negative as a bfloat16 is negative as an int16, whose maximum takes a sixth of the time."""
+    if activation == "relu" and z.dtype == torch.bfloat16:
+        z.view(torch.int16).clamp_min_(0)
+    elif activation == "relu":
+        z.relu_()
+    else:
+        z.copy_(ACTIVATIONS[activation](z))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +101,12 @@ class InrShape:
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        return (encoded_size(self.num_axes), *[HIDDEN_WIDTH] * NUM_HIDDEN, NUM_OUTPUTS)
+        return (sum(self.axis_sizes), *[HIDDEN_WIDTH] * NUM_HIDDEN, NUM_OUTPUTS)
+
+    @property
+    def axis_sizes(self) -> tuple[int, ...]:
+        """Encoded values of each axis; an axis without frequencies is its raw coordinate."""
+        return tuple(1 + 2 * len(frequencies) for frequencies in self.axis_frequencies)
 
     @property
     def num_weights(self) -> int:
@@ -105,10 +127,13 @@ class InrShape:
         return layers
 
     def fresh(self, generator: np.random.Generator) -> Weights:
-        """Weights as torch's Linear draws them: even in +-1 / sqrt(fan in), biases too."""
+        """Weights as torch's Linear draws them: even in +-1 / sqrt(fan in), biases too; for sines as SIREN does."""
         parts = []
-        for fan_in, fan_out in zip(self.sizes, self.sizes[1:], strict=False):
-            parts.append(generator.uniform(-1, 1, (fan_in + 1) * fan_out) / np.sqrt(fan_in))
+        for at, (fan_in, fan_out) in enumerate(zip(self.sizes, self.sizes[1:], strict=False)):
+            reach = 1 / np.sqrt(fan_in)
+            if self.activation == "sine":
+                reach = 1 / fan_in if at == 0 else np.sqrt(6 / fan_in) / SINE_TURNS
+            parts.append(generator.uniform(-1, 1, (fan_in + 1) * fan_out) * reach)
         return torch.from_numpy(np.concatenate(parts).astype(np.float32))
 
 
@@ -142,7 +167,7 @@ def evaluate(
 def first_layer_terms(shape: InrShape, theta: Weights, axes_norm: list[torch.Tensor]) -> list[torch.Tensor]:
     """The first layer without its bias as one term an axis, each (cell, 32); their sum over a grid is the layer."""
     weight, _ = shape.layers(theta)[0]
-    parts = weight.split(encoded_size(1), dim=1)
+    parts = weight.split(list(shape.axis_sizes), dim=1)
     each = zip(axes_norm, shape.axis_frequencies, parts, strict=True)
     return [encode_axis(axis, frequencies) @ part.T for axis, frequencies, part in each]
 
@@ -154,53 +179,77 @@ def evaluate_on_axes(
     beta: Modulation,
     axes_norm: list[torch.Tensor],
     *,
+    turn: Complex[torch.Tensor, " cell"] | None = None,
     dtype: torch.dtype = torch.float32,
     threads: int = 1,
 ) -> Float[torch.Tensor, "frame cell 2"]:
     """The proposed INR on the grid of three axes for each frame, cells in row order (r, d, a). Keeps no gradients.
 
     The first layer is summed from one term an axis and gamma, beta are folded into weights and biases, so a cell
-    costs three 32 x 32 products and one 32 x 2. Equals `evaluate` to rounding; bfloat16 errs by about 1 %. With
-    several `threads` each takes whole frames, which is faster than torch's own threads within such small products.
+    costs three 32 x 32 products and one 32 x 2. Equals `evaluate` to rounding; bfloat16 errs by about 1 %. I + jQ is
+    multiplied by `turn` where given. With several `threads` each takes some frames, which is faster than torch's own
+    threads within such small products.
     """
     with torch.no_grad():
-        a, b, c = (term.to(dtype) for term in first_layer_terms(shape, theta, axes_norm))
-        spatial = (a[:, None, None] + b[None, :, None] + c[None, None]).reshape(-1, HIDDEN_WIDTH)
-        out = torch.empty(len(gamma), len(spatial), NUM_OUTPUTS, dtype=torch.float32, device=theta.device)
+        terms = first_layer_terms(shape, theta, axes_norm)
+        cells = math.prod(len(term) for term in terms)
+        out = torch.empty(len(gamma), cells, NUM_OUTPUTS, dtype=torch.float32, device=theta.device)
 
-    def fill(frame: int) -> None:
+    def fill(frames: np.ndarray) -> None:
         with torch.no_grad():  # counts for one thread alone
-            out[frame] = _frame_on_cells(shape, theta, gamma[frame], beta[frame], spatial)
+            decoder = _FrameDecoder(shape, theta, terms, dtype)
+            for frame in frames.tolist():
+                decoder.decode(gamma[frame], beta[frame], turn, out[frame])
 
+    parts = np.array_split(np.arange(len(gamma)), threads)
     if threads == 1:
-        for frame in range(len(gamma)):
-            fill(frame)
+        fill(parts[0])
         return out
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
         with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(fill, range(len(gamma))))
+            list(pool.map(fill, parts))
     finally:
         torch.set_num_threads(before)
     return out
 
 
-def _frame_on_cells(
-    shape: InrShape,
-    theta: Weights,
-    gamma: Float[torch.Tensor, "4 32"],
-    beta: Float[torch.Tensor, "4 32"],
-    spatial: torch.Tensor,
-) -> IqPoints:
-    """One frame from the first layer's sums (without bias), in their type."""
-    act, dtype = ACTIVATIONS[shape.activation], spatial.dtype
-    (_, first_bias), *inner, (last_weight, last_bias) = shape.layers(theta)
-    h = act(torch.addcmul((gamma[0] * first_bias + beta[0]).to(dtype), spatial, gamma[0].to(dtype)))
-    for at, (weight, bias) in enumerate(inner, start=1):
-        folded = (gamma[at][:, None] * weight).T.to(dtype)
-        h = act(torch.addmm((gamma[at] * bias + beta[at]).to(dtype), h, folded))
-    return torch.addmm(last_bias.to(dtype), h, last_weight.T.to(dtype)).float()
+class _FrameDecoder:
+    """Frames one after the other in the same two buffers: fresh memory costs as much as the arithmetic."""
+
+    def __init__(self, shape: InrShape, theta: Weights, terms: list[torch.Tensor], dtype: torch.dtype):
+        self.shape, self.theta, self.dtype = shape, theta, dtype
+        a, b, c = terms
+        self.first = a[:, None]
+        self.rest = (b[:, None] + c[None]).flatten(0, 1)[None]
+        cells = len(a) * self.rest.shape[1]
+        self.buffers = [torch.empty(cells, HIDDEN_WIDTH, dtype=dtype, device=a.device) for _ in range(2)]
+
+    def decode(
+        self,
+        gamma: Float[torch.Tensor, "4 32"],
+        beta: Float[torch.Tensor, "4 32"],
+        turn: torch.Tensor | None,
+        out: IqPoints,
+    ) -> None:
+        """One frame into `out`."""
+        act, dtype = self.shape.activation, self.dtype
+        (_, first_bias), *inner, (last_weight, last_bias) = self.shape.layers(self.theta)
+        h, free = self.buffers
+        whole = h.view(len(self.first), -1, HIDDEN_WIDTH)
+        torch.add(gamma[0] * self.first, gamma[0] * (self.rest + first_bias) + beta[0], out=whole)
+        _activate(act, h)
+        for at, (weight, bias) in enumerate(inner, start=1):
+            folded = (gamma[at][:, None] * weight).T.to(dtype)
+            torch.addmm((gamma[at] * bias + beta[at]).to(dtype), h, folded, out=free)
+            _activate(act, free)
+            h, free = free, h
+        iq = torch.addmm(last_bias.to(dtype), h, last_weight.T.to(dtype)).float()
+        if turn is None:
+            out.copy_(iq)
+        else:
+            torch.mul(torch.view_as_complex(iq), turn, out=torch.view_as_complex(out))
 
 
 class InrField(SignalField):
@@ -249,14 +298,14 @@ class InrField(SignalField):
     def on_grid(self, grid: CubeGrid) -> CubeValues:
         axes = coordinates_on(self.grid, grid)
         gamma, beta = self._modulation_at(axes[0])
+        turn = np.full(grid.shape[1:], self.amplitude, np.complex64)
+        if self.is_centred:
+            turn *= centring_turn(self.config, grid).conj()[:, :, None]
         iq = evaluate_on_axes(
-            self.shape, self.theta, gamma, beta, self._norm(axes[1:]),
+            self.shape, self.theta, gamma, beta, self._norm(axes[1:]), turn=torch.from_numpy(turn.ravel()),
             dtype=self.decode_dtype, threads=self.decode_threads,
         )  # fmt: skip
-        values = _complex(iq).reshape(grid.shape) * np.float32(self.amplitude)
-        if self.is_centred:
-            values *= centring_turn(self.config, grid).conj()[None, :, :, None]
-        return values
+        return _complex(iq).reshape(grid.shape)
 
     def _norm(self, cells) -> list[torch.Tensor]:
         """Range, Doppler and antenna cells in [-1, 1]."""

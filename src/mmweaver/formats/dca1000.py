@@ -40,9 +40,24 @@ def read_bin(
     try:
         size = path.stat().st_size
         num_frames = _num_frames(path, size, config)
-        words = np.fromfile(path, dtype="<i2", count=size // 2)
+        words = np.fromfile(path, dtype="<i2", count=num_frames * bytes_of_frame(config) // 2)
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    return adc_of_words(words, config, iq_order=iq_order)
+
+
+def bytes_of_frame(config: RadarConfig) -> int:
+    """How many bytes a DCA1000 sends of one radar frame."""
+    return config.num_loops * config.num_antennas * config.num_samples * WORDS_PER_SAMPLE * 2
+
+
+def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str = "iq") -> AdcCube:
+    """Whole frames of int16 words as a DCA1000 sends them -> samples in counts.
+
+    Raises InputError where the radar's samples are real or odd in number.
+    """
+    config = _checked(config, iq_order, None)
+    num_frames = 2 * len(words) // bytes_of_frame(config)
     pairs = words.reshape(-1, 2, 2)  # (two samples, component, sample of the two)
     real, imaginary = (0, 1) if iq_order == "iq" else (1, 0)
     samples = np.empty((len(pairs), 2), np.complex64)
@@ -111,7 +126,7 @@ def _checked(config: RadarConfig, iq_order: str, tx_order: tuple[int, ...] | Non
 
 
 def _num_frames(path: Path, size: int, config: RadarConfig) -> int:
-    frame_bytes = config.num_loops * config.num_antennas * config.num_samples * WORDS_PER_SAMPLE * 2
+    frame_bytes = bytes_of_frame(config)
     layout = f"{config.num_loops} loops x {config.num_tx} TX x {config.num_rx} RX x {config.num_samples} samples x 4"
     if size == 0:
         raise InputError(f"{path} is empty")

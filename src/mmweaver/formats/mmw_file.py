@@ -20,7 +20,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 
-MAGIC, VERSION = b"MMWV", 1
+MAGIC, VERSION = b"MMWV", 2
+READABLE = (1, 2)  # 2 may hold residuals with a map of open cells
 FRONT = struct.Struct("<4sBH")
 CHECK = struct.Struct("<I")
 # What headers have in common; part of the format, so it may never change.
@@ -50,6 +51,17 @@ def packed_mmw(header: MmwHeader, chunks: list[bytes]) -> bytes:
     """The bytes of a file; the chunks' lengths in the header are filled in."""
     front = _packed_header(header, [len(chunk) for chunk in chunks])
     return front + b"".join(chunk + CHECK.pack(zlib.crc32(chunk)) for chunk in chunks)
+
+
+def unpacked_mmw(data: bytes) -> tuple[MmwHeader, list[bytes]]:
+    """Header and chunks of bytes that `packed_mmw` made a moment ago; nothing is checked."""
+    _, _, size = FRONT.unpack_from(data)
+    header = _header_of(json.loads(_inflated(data[FRONT.size : FRONT.size + size])))
+    chunks, at = [], FRONT.size + size + CHECK.size
+    for length in header.chunk_bytes:
+        chunks.append(data[at : at + length])
+        at += length + CHECK.size
+    return header, chunks
 
 
 def write_mmw(path: Path | str, header: MmwHeader, chunks: list[bytes]) -> int:
@@ -108,9 +120,10 @@ class MmwFile:
                 f"{self.path} is no .mmw file; make one with: mmweaver compress capture.npz -o capture.mmw"
             )
         _, version, size = FRONT.unpack(front)
-        if version != VERSION:
+        if version not in READABLE:
             raise InputError(
-                f"{self.path} is a .mmw file of version {version}, or damaged; this program reads version {VERSION}"
+                f"{self.path} is a .mmw file of version {version}, or damaged; this program reads versions"
+                f" {' and '.join(map(str, READABLE))}"
             )
         return size
 

@@ -84,26 +84,51 @@ def _radar_beside(path: Path) -> RadarConfig:
 
 
 # pose.npz -----------------------------------------------------------------------------------------------------------
-def write_pose_npz(path: Path, pose: PoseSequence) -> None:
-    """Writes joints: float32 (frame, 22, 3) metres in the radar's frame, with names and times."""
+def write_pose_npz(path: Path, pose: PoseSequence, *others: PoseSequence) -> None:
+    """Writes joints in metres in the radar's frame, with names and times: float32 (frame, 22, 3) of one person.
+
+    Of several people, all at the same times: (person, frame, 22, 3), and `height_m` (person,).
+    """
+    poses = (pose, *others)
+    joints_m = np.stack([np.asarray(one.joints_m, np.float32) for one in poses])
+    height_m = np.array([one.height_m for one in poses], np.float64)
+    alone = not others
     write_npz(
         path,
-        joints_m=np.asarray(pose.joints_m, np.float32),
+        joints_m=joints_m[0] if alone else joints_m,
         joint_names=np.array(JOINT_NAMES),
         frame_time_s=np.asarray(pose.time_s, np.float64),
-        height_m=np.float64(pose.height_m),
+        height_m=height_m[0] if alone else height_m,
     )
 
 
 def read_pose_npz(path: str | Path) -> PoseSequence:
-    """Reads what `write_pose_npz` wrote. Raises InputError for anything else."""
+    """The one person that `write_pose_npz` wrote. Raises InputError for anything else, several people too."""
+    poses = read_poses_npz(path)
+    if len(poses) != 1:
+        raise InputError(f"{path} holds {len(poses)} people; read it with read_poses_npz")
+    return poses[0]
+
+
+def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
+    """All people that `write_pose_npz` wrote; subjects 0, 1, 2 ... Raises InputError for anything else."""
     path = Path(path)
     arrays = read_npz(path)
     joints_m, names = _take(path, arrays, "joints_m"), _take(path, arrays, "joint_names")
-    if tuple(names.tolist()) != JOINT_NAMES or joints_m.ndim != 3 or joints_m.shape[1:] != (len(JOINT_NAMES), 3):
+    if (
+        tuple(names.tolist()) != JOINT_NAMES
+        or joints_m.ndim not in (3, 4)
+        or joints_m.shape[-2:] != (len(JOINT_NAMES), 3)
+    ):
         raise InputError(f"{path}: joints_m is {joints_m.shape}; the {len(JOINT_NAMES)} joints of SMPL are needed")
-    time_s, height_m = _take(path, arrays, "frame_time_s"), _take(path, arrays, "height_m")
-    return PoseSequence(time_s=time_s, joints_m=joints_m, height_m=float(height_m))
+    time_s, height_m = _take(path, arrays, "frame_time_s"), np.atleast_1d(_take(path, arrays, "height_m"))
+    people = joints_m if joints_m.ndim == 4 else joints_m[None]
+    if len(height_m) != len(people):
+        raise InputError(f"{path}: {len(people)} people, but {len(height_m)} heights")
+    return tuple(
+        PoseSequence(time_s=time_s, joints_m=own, height_m=float(tall), subject=index)
+        for index, (own, tall) in enumerate(zip(people, height_m, strict=True))
+    )
 
 
 # points.npz ---------------------------------------------------------------------------------------------------------

@@ -1,5 +1,7 @@
 """Timed steps and a root path -> one dense, smooth PoseSequence."""
 
+from dataclasses import replace
+
 import numpy as np
 from jaxtyping import Float
 
@@ -38,6 +40,7 @@ def assemble(
     """Acts out every step along the path, blends neighbours, solves the joints. `moves` and seats are by step."""
     time_s = dense_times(duration_s)
     parts, starts, blends = [], [], []
+    steps, moves, seat_height_m = _one_gait(steps, moves, seat_height_m)
     for k, step in enumerate(steps):
         stage = Stage(
             time_s=time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
@@ -51,3 +54,22 @@ def assemble(
     joints_m = solve(body, controls)
     joints_m[..., 2] += floor_z_m
     return PoseSequence(time_s=time_s, joints_m=joints_m, height_m=body.height_m)
+
+
+def _one_gait(
+    steps: tuple[Step, ...], moves: tuple[tuple[Move, ...], ...], seat_height_m: tuple[float, ...]
+) -> tuple[tuple[Step, ...], tuple[tuple[Move, ...], ...], tuple[float, ...]]:
+    """Walking, turning and walking on is one gait with one rhythm of steps: blending two would throw the feet about."""
+    whole: list[Step] = []
+    ways: list[tuple[Move, ...]] = []
+    seats: list[float] = []
+    for step, way, seat in zip(steps, moves, seat_height_m, strict=True):
+        alike = step.lower in ("walk", "turn") and not step.upper
+        if alike and whole and whole[-1].lower in ("walk", "turn") and not whole[-1].upper:
+            whole[-1] = replace(whole[-1], lower="walk", end_s=step.end_s)
+            ways[-1] = (*ways[-1], *way)
+        else:
+            whole.append(step)
+            ways.append(way)
+            seats.append(seat)
+    return tuple(whole), tuple(ways), tuple(seats)

@@ -1,13 +1,12 @@
 """One clause -> the steps it names: its verbs, and around them direction, hand, speed, count and seat."""
 
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.clauses import Clause
 from mmweaver.motion.lexicon import (
-    ACTIVITY_OF_LEMMA,
     ARMS,
-    BASE_VERB_SPEED,
     BOTH,
     DIRECTIONS,
     FILLERS,
@@ -21,15 +20,79 @@ from mmweaver.motion.lexicon import (
     RADAR,
     SEATS,
     SPEEDS,
-    TIMES,
+    TARGETS,
 )
-from mmweaver.motion.plan import KNOWN, Step
+from mmweaver.motion.modifiers import modifiers
+from mmweaver.motion.plan import Step
+from mmweaver.motion.suggestions import not_known
+from mmweaver.motion.verb_steps import LEGS, step_of
+from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.words import Word
 
-OPPOSITE = {"left": "right", "right": "left"}
-MOST_TIMES = 60
-STEPPING = GOING | {"walk", "jog", "run", "jump", "hop", "turn", "advance", "march", "retreat"}
+STEPPING = GOING | {
+    "walk",
+    "jog",
+    "run",
+    "jump",
+    "hop",
+    "turn",
+    "advance",
+    "march",
+    "retreat",
+    "sidestep",
+    "stumble",
+    "pushed",
+    "dance",
+    "tumble",
+    "stagger",
+    "limp",
+}
 DISTANCES = {"meters", "metres", "meter", "metre", "m", "cm", "centimeters", "feet", "yards"}
+LEG_VERBS = {
+    "kick",
+    "raise",
+    "lift",
+    "stomp",
+    "stamp",
+    "one_leg_stand",
+    "hop",
+    "jump",
+    "leap",
+    "turn",
+    "pivot",
+    "rotate",
+    "spin",
+    "kneel_down",
+    "kneel",
+    "lunge",
+    "limp",
+    "hobble",
+    "step",
+    "walk",
+}
+FLOOR_VERBS = {
+    "lie",
+    "lay",
+    "lie_down",
+    "fall",
+    "collapse",
+    "topple",
+    "pick_up",
+    "put_down",
+    "get_up",
+    "stand_up",
+    "kneel",
+    "kneel_down",
+    "kneel_up",
+    "stomp",
+    "stamp",
+    "look_around",
+    "bend",
+    "faint",
+    "wipe",
+    "clean",
+    "point",
+}
 
 
 @dataclass
@@ -40,6 +103,7 @@ class Reading:
     text: str
     steps: list[Step] = field(default_factory=list)
     form: str = ""  # of the first verb: ing, s, ...
+    forms: list[str] = field(default_factory=list)  # of each step's verb
     about: Step = field(default_factory=Step)  # direction, hand, speed, ... of a clause without a verb
     notes: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
@@ -57,6 +121,8 @@ class Reading:
         """Takes over what a clause without an activity says about the last step."""
         last, about = self.steps[-1], more.about
         if last.direction and about.direction and last.direction != about.direction:
+            if last.moves and self._leads_back(last, about):
+                return
             raise InputError(
                 f"{self.text!r} and {more.text!r} name two directions; say which movement goes where, with 'then'"
             )
@@ -70,6 +136,22 @@ class Reading:
             seconds=last.seconds or about.seconds,
         )
 
+    def _leads_back(self, last: Step, about: Step) -> bool:
+        """'Walks forwards and backwards', 'steps aside and then back': the other direction is a way of its own."""
+        if last.lower == "sidestep":
+            other = {"left": "right", "right": "left"}.get(last.direction, "")
+            if about.direction not in ("back", "backwards", other) or not other:
+                return False
+            self.steps.append(replace(last, direction=other, count=about.count or last.count))
+        elif (
+            about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg
+        ):
+            self.steps.append(replace(last, direction=about.direction, count=about.count or last.count))
+        else:
+            return False
+        self.forms.append("s")
+        return True
+
 
 def read_clause(clause: Clause) -> Reading:
     """Reads verbs and modifiers; raises InputError for what must not be acted out as if it were something known."""
@@ -77,16 +159,67 @@ def read_clause(clause: Clause) -> Reading:
     reading = Reading(clause.link, clause.text)
     _refuse(clause)
     verbs = _verbs(words)
-    about = _modifiers(words, reading)
     if not verbs:
-        reading.about = about
+        reading.about = modifiers(words, clause.text, reading.notes)
         _note_unknown(words, clause, reading, has_verb=False)
         return reading
+    for one, other in pairwise(verbs):  # "a hopping walk"
+        if other == one + 1 and words[one].form == "ing" and words[other].form in ("base", "s"):
+            raise InputError(not_known(clause.text, f"{words[one].text} {words[other].text}"))
+    for at in verbs:  # "a chachacha basic step"
+        noun = words[at].lemma in ("step", "turn", "jump") and words[at].form in ("base", "s") and at
+        if noun and not _is_known(words[at - 1]) and words[at - 1].text[:1].isalpha():
+            subject = words[at].form == "s" and words[at].text not in ("steps", "turns", "jumps")
+            if not subject and any(word.is_verb and not word.is_activity for word in words[:at]):
+                raise InputError(not_known(clause.text, words[at - 1].text))
     _note_unknown(words, clause, reading, has_verb=True)
     reading.form = _form(words, verbs[0])
-    for k, at in enumerate(verbs):
-        reading.steps.append(_step(words, at, about, clause, first=k == 0))
+    # what stands before the first verb belongs to it
+    starts = [0, *(_start_of(words, before, at) for before, at in pairwise(verbs))]
+    ends = [*starts[1:], len(words)]
+    for k, (at, end) in enumerate(zip(verbs, ends, strict=True)):
+        begin = starts[k]
+        own = words[begin:end]
+        about = modifiers(own, clause.text, reading.notes)
+        reading.steps.append(step_of(own, at - begin, about, clause.text))
+        reading.forms.append(_form(words[starts[k] :], at - starts[k]) if k else reading.form)
     return reading
+
+
+def _start_of(words: list[Word], before: int, at: int) -> int:
+    """Where a later verb's own words begin: at its light verb ("takes a turn"), else at its adjectives."""
+    if words[at].form == "past":  # "walks with the left hand raised"
+        noun = [i for i in range(before + 1, at) if words[i].text == "with"]
+        if noun:
+            return noun[-1]
+    light = [i for i in range(before + 1, at) if words[i].is_verb and not words[i].is_activity]
+    if light:
+        return light[0]
+    while at - 1 > before and (words[at - 1].text in _BEFORE_NOUNS or words[at - 1].text.startswith("deg")):
+        at -= 1
+    return at
+
+
+_THINGS = {"object", "objects", "something", "thing", "things", "box", "it", "them"}
+_BEFORE_NOUNS = {
+    "a",
+    "an",
+    "one",
+    "small",
+    "big",
+    "quick",
+    "fast",
+    "slow",
+    "sharp",
+    "short",
+    "full",
+    "is",
+    "gets",
+    "sideways",
+    "little",
+    "slight",
+    "further",
+}
 
 
 def _refuse(clause: Clause) -> None:
@@ -98,13 +231,16 @@ def _refuse(clause: Clause) -> None:
         raise InputError(f"{clause.text!r} speaks of several people; only one person can be shown")
     if texts & NOT_HUMAN:
         raise InputError(f"{clause.text!r} is not about a person alone; only one person can be shown")
-    other = [word.text for word in clause.words if word.text in OTHER_MOVEMENT and not _harmless(word, texts)]
+    lemmas = {word.lemma for word in clause.words if word.is_activity}
+    other = [word.text for word in clause.words if word.text in OTHER_MOVEMENT and not _harmless(word, texts, lemmas)]
     if other:
-        raise InputError(f"{clause.text!r}: {other[0]!r} is not among the movements that are known; known: {KNOWN}")
+        raise InputError(not_known(clause.text, other[0]))
 
 
-def _harmless(word: Word, texts: set[str]) -> bool:
+def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
     """Words that mean another movement only beside some verbs."""
+    if word.text in LEGS and lemmas & LEG_VERBS:
+        return True
     if word.text in ("over", "legs", "leg", "foot", "knees", "knee", "head", "shoulder", "shoulders"):
         lifted = texts & {"raise", "raises", "raising", "raised", "lift", "lifts", "lifting", "lifted"}
         jumped = texts & {"jump", "jumps", "jumping", "hop", "hops", "leaps"}
@@ -113,11 +249,11 @@ def _harmless(word: Word, texts: set[str]) -> bool:
         if word.text == "over":
             return not jumped and "chair" not in texts
         return not lifted and word.text not in ("leg", "foot", "knee") and "on" not in texts
-    if word.text == "quarterturn":
-        return bool(texts & {"turn", "turns", "turning", "turned", "rotates", "rotate", "rotating", "pivots"})
     if word.text in ("floor", "ground"):
-        return not texts & {"sit", "sits", "sitting", "seated", "sit_down", "sat"}
-    return False
+        return bool(lemmas & FLOOR_VERBS) or not texts & {"sit", "sits", "sitting", "seated", "sit_down", "sat"}
+    if word.text == "ball":
+        return bool(lemmas & {"throw", "toss", "hurl", "lob", "kick", "pick_up", "put_down", "carry"})
+    return word.text == "against" and "pushed" in lemmas
 
 
 def _verbs(words: list[Word]) -> list[int]:
@@ -125,9 +261,18 @@ def _verbs(words: list[Word]) -> list[int]:
     found: list[int] = []
     texts = {word.text for word in words}
     for i, word in enumerate(words):
-        if word.lemma == "move" and texts & ARMS:
+        if word.lemma == "head" and i and (words[i - 1].text in OWN or words[i - 1].text in ("the", "with")):
+            continue
+        if (
+            word.lemma == "reach"
+            and words[i + 1 : i + 2]
+            and words[i + 1].text in ("the", "his", "her", "its", "their")
+        ):
+            continue  # "reaches the end"
+        after = words[i + 1].text if i + 1 < len(words) else ""
+        if word.lemma == "move" and (texts & ARMS or after in ("them", "it", "him", "her")):
             continue  # it is the arm that moves, and how is not known
-        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS)
+        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS or texts & set(TARGETS))
         if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):
             found.append(i)
     if len(found) > 1 and words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
@@ -146,105 +291,25 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return before in ("a", "the", "this", "that")
     if word.lemma == "seat" and word.form != "past":
         return True
+    if word.lemma in ("phone", "text", "comb", "box") and before in ("a", "the", "his", "her", "their", "my"):
+        return True
+    if (
+        word.lemma == "point"
+        and word.form == "base"
+        and (found or before in ("a", "the", "starting", "same", "specific"))
+    ):
+        return True
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
-    if word.lemma == "step" and found and words[found[-1]].lemma in STEPPING:
-        return True
-    same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)
+    if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
+        return not any(other.is_verb and not other.is_activity for other in words[found[-1] + 1 : i])
+    same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)
     return same
 
 
 def _form(words: list[Word], at: int) -> str:
     light = next((word for word in words[:at] if word.is_verb and not word.is_activity), None)
     return light.form if light else words[at].form
-
-
-def _modifiers(words: list[Word], reading: Reading) -> Step:
-    """Everything of the clause that says how, as a Step without a verb."""
-    about = Step(clause=reading.text)
-    for i, word in enumerate(words):
-        text, after = word.text, words[i + 1].text if i + 1 < len(words) else ""
-        before = words[i - 1].text if i else ""
-        if text in SPEEDS:
-            about = replace(about, speed=SPEEDS[text])
-        elif text in ("left", "right"):
-            about = _left_or_right(about, text, before, after, words, i, reading)
-        elif text in BOTH or (text == "two" and after in ARMS):
-            about = replace(about, hand=about.hand or "both")
-        elif text in SEATS:
-            about = replace(about, seat=text)
-        elif text in DIRECTIONS:
-            about = _direction(about, text, words, i)
-        elif text in TIMES or text in NUMBERS or text.replace(".", "").isdigit():
-            about = _number(about, text, words, i)
-    return about
-
-
-def _left_or_right(
-    about: Step, text: str, before: str, after: str, words: list[Word], i: int, reading: Reading
-) -> Step:
-    """Before an arm it names the arm; else it is a direction, the viewer's unless said to be the person's own."""
-    if about.direction == "circle":
-        reading.notes.append("which way round a circle goes is left to chance")
-        return about
-    if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
-        return replace(about, hand="both" if about.hand and about.hand != text else text)
-    if before in OWN and not any(word.lemma in ("turn", "rotate", "pivot") for word in words):
-        reading.notes.append(
-            f"'{before} {text}' is taken as the {text} of a person who faces the radar, {OPPOSITE[text]} in the photo"
-        )
-        text = OPPOSITE[text]
-    return replace(about, direction=text)
-
-
-def _arm_soon(words: list[Word], i: int) -> bool:
-    """'his left hand', 'the left or ... arm', 'arm on the left': an arm within two words after."""
-    return any(word.text in ARMS for word in words[i + 1 : i + 3]) and not any(
-        word.text in ("with", "and", "using") for word in words[i + 1 : i + 2]
-    )
-
-
-def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
-    direction = DIRECTIONS[text]
-    following = {word.text for word in words[i + 1 : i + 4]}
-    if text == "back" and not any(word.lemma in ("step", "lean") for word in words):
-        direction = "back"
-    if text == "straight" and any(word.lemma in ("stand", "sit", "raise", "jump", "punch") for word in words):
-        return about
-    if text == "towards" or text == "toward":
-        if following & SEATS:
-            return replace(about, direction=about.direction or "seat")
-        if following & {"left", "right"}:
-            return about
-    if text == "away" and following & {"left", "right"}:
-        return about
-    if direction == "forwards" and about.direction:
-        return about
-    if about.direction in ("left", "right") and direction == "spot":
-        return about
-    if about.direction in ("left", "right") and direction in ("around", "backwards"):
-        return replace(about, direction=about.direction if direction == "around" else direction)
-    return replace(about, direction=direction)
-
-
-def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
-    """'three times', 'two steps', 'five squats' count; 'two seconds' is a duration; 'one hand' is neither."""
-    value = float(NUMBERS[text]) if text in NUMBERS else float(text)
-    following = [word.text for word in words[i + 1 : i + 4]]
-    if text in TIMES:
-        return replace(about, count=int(value))
-    if any(word in ("second", "seconds", "sec", "secs", "s") for word in following[:2]):
-        return replace(about, seconds=value)
-    if (following[:1] and following[0] in ARMS) or following[:1] == ["of"]:
-        return about
-    counted = any(word == "times" or word == "time" for word in following[:2]) or any(
-        word.is_activity or word.text in ("steps", "repetitions", "reps") for word in words[i + 1 : i + 4]
-    )
-    if not counted or text == "another":
-        return about
-    if value != int(value) or not 1 <= value <= MOST_TIMES:
-        raise InputError(f"{text} times is not possible; say a whole number from 1 to {MOST_TIMES}")
-    return replace(about, count=int(value))
 
 
 def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_verb: bool) -> None:
@@ -254,8 +319,11 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
         reading.unknown = unknown + [word.text for word in words if word.is_verb]
         return
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
-    if moved is not None and any(not _is_known(word) for word in words[moved + 1 : moved + 3]):
-        raise InputError(f"the clause {clause.text!r} names no activity that is known; known: {KNOWN}")
+    if moved is not None and any(not _is_known(word) or word.text in _THINGS for word in words[moved + 1 : moved + 3]):
+        raise InputError(not_known(clause.text, "move"))
+    odd = _odd_way(words)
+    if odd:
+        raise InputError(not_known(clause.text, odd))
     for text in unknown:
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
         if doing and text not in (
@@ -273,14 +341,30 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
             "everything",
             "during",
         ):
-            raise InputError(
-                f"the clause {clause.text!r} names an activity that is not known ({text!r}); known: {KNOWN}"
-            )
+            raise InputError(not_known(clause.text, text))
     if {word.text for word in words} & DISTANCES:
         reading.notes.append(f"the distance in {clause.text!r} is not kept: time and speed give it")
     if unknown:
         listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
         reading.notes.append(f"of the text, {listed} says nothing that can be acted out and was left aside")
+
+
+def _odd_way(words: list[Word]) -> str:
+    """An unknown word that says which way or what is done: 'in a pentagon', 'performs capoeira'."""
+    for i, word in enumerate(words):
+        if _is_known(word) or not word.text[:1].isalpha():
+            continue
+        before = [other.text for other in words[max(i - 3, 0) : i]]
+        if before[-2:] in (["in", "a"], ["in", "an"], ["of", "a"], ["of", "an"], ["like", "a"]):
+            return word.text
+        lead = i - 1
+        while lead >= 0 and words[lead].text in ("a", "an", "the", "some", "his", "her", "with"):
+            lead -= 1
+        if lead >= 0 and words[lead].lemma in ("do", "perform", "make", "practice", "practise", "execute"):
+            following = words[i + 1] if i + 1 < len(words) else None
+            if following is None or not following.is_verb:
+                return word.text
+    return ""
 
 
 def _is_known(word: Word) -> bool:
@@ -296,81 +380,11 @@ def _is_known(word: Word) -> bool:
         or text in RADAR
         or text in OWN
         or text in BOTH
-        or text in ("left", "right", "not", "without", "moving")
+        or text in ("left", "right", "not", "without", "moving", "sideways", "on_spot", "lookdown")
+        or text in TARGETS
+        or text in LEGS
+        or text.startswith(("arc", "deg", "from_", "on_", "fraction_"))
+        or text in ("onback", "onbelly", "highkick")
         or text.replace(".", "").isdigit()
         or len(text) == 1
     )
-
-
-def _step(words: list[Word], at: int, about: Step, clause: Clause, *, first: bool) -> Step:
-    """The step of one verb with the clause's modifiers."""
-    word = words[at]
-    lower, upper = ("walk", "") if word.is_going else ACTIVITY_OF_LEMMA[word.lemma]
-    texts = {other.text for other in words}
-    step = replace(about, lower=lower or "stand", upper=upper, clause=clause.text)
-    if word.lemma in BASE_VERB_SPEED:
-        step = replace(step, speed=step.speed or BASE_VERB_SPEED[word.lemma])
-    if lower == "sit" and word.lemma == "sit_down":
-        step = replace(step, lower="sit_down")
-    if upper == "raise" and not texts & ARMS:
-        raise InputError(f"{clause.text!r}: only a hand or an arm can be raised; say which")
-    if upper in ("", "clap", "drink") and upper != "drink":
-        step = replace(step, hand="")
-    if upper:
-        step = _arms_step(step, upper, texts)
-    if lower in ("walk", "jog"):
-        step = _going_step(step, words, first)
-    elif lower == "turn":
-        step = _turning_step(step, word, texts)
-    elif lower in ("jump", "squat", "jumping_jacks") and step.direction not in ("", "spot", "around"):
-        raise InputError(f"{clause.text!r}: {step.name} is done on the spot only; leave the direction out")
-    elif lower in ("stand", "sit", "squat", "jump", "jumping_jacks") or upper:
-        step = replace(step, direction="", facing=_facing(words))
-    return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
-
-
-def _arms_step(step: Step, upper: str, texts: set[str]) -> Step:
-    """A hand for each: raising without a side is the seed's choice, punching alternates."""
-    if upper == "drink" and step.hand == "both":
-        return replace(step, hand="")
-    return step
-
-
-def _going_step(step: Step, words: list[Word], first: bool) -> Step:
-    lemmas = {word.lemma for word in words}
-    direction = step.direction
-    if not direction and lemmas & {"approach"}:
-        direction = "towards"
-    if not direction and lemmas & {"retreat"}:
-        direction = "away"
-    if not direction and lemmas & {"advance"}:
-        direction = "forwards"
-    if not direction and {word.text for word in words} & RADAR and "to" in {word.text for word in words}:
-        direction = "towards"
-    if direction == "around":
-        direction = "pacing"
-    if step.seat and direction in ("", "backwards", "forwards"):
-        direction = "seat"
-    return replace(step, direction=direction, hand="")
-
-
-def _turning_step(step: Step, word: Word, texts: set[str]) -> Step:
-    facing = "towards" if texts & RADAR and step.direction != "away" else ""
-    if step.direction == "away" or word.lemma == "face":
-        facing = facing or step.direction or "towards"
-        return replace(step, facing=facing, direction="")
-    if facing:
-        return replace(step, facing=facing, direction="")
-    direction = step.direction if step.direction in ("left", "right") and "around" not in texts else "around"
-    return replace(step, direction=direction, count=0)
-
-
-def _facing(words: list[Word]) -> str:
-    """'facing the radar', 'facing left' beside another verb."""
-    for i, word in enumerate(words):
-        if word.text in ("facing", "faces"):
-            texts = {other.text for other in words[i + 1 : i + 4]}
-            if texts & RADAR:
-                return "towards"
-            return next((side for side in ("left", "right", "away") if side in texts), "")
-    return ""

@@ -1,12 +1,13 @@
 """A sentence as clauses, each with how it follows the one before."""
 
+import re
 from dataclasses import dataclass, field
 
 from mmweaver.motion.lexicon import MANY, PRONOUNS
 from mmweaver.motion.words import Word
 
 STOPS = frozenset({".", ";", "!", "?", ":"})
-THEN = frozenset({"then"})
+THEN = frozenset({"then", "but"})
 WHILE = frozenset({"while", "whilst", "at_once"})
 SUBJECTS = PRONOUNS | MANY | {"the", "a", "person", "man", "woman", "user", "his", "her", "their"}
 
@@ -20,7 +21,8 @@ class Clause:
 
     @property
     def text(self) -> str:
-        return " ".join(word.text for word in self.words).replace("_", " ")
+        text = " ".join(word.text for word in self.words).replace("_", " ")
+        return re.sub(r"\b(?:arc|deg)(\d+)", r"\1 degrees", text)
 
 
 def clauses_of(words: list[Word]) -> list[Clause]:
@@ -35,7 +37,7 @@ def _split(words: list[Word]) -> list[Clause]:
         if not link:
             clauses[-1].words.append(word)
         elif clauses[-1].words:
-            clauses.append(Clause(link))
+            clauses.append(Clause("after" if link == "when" else link))
         else:  # several connectives in a row: ", and then" is then; ", while" is while
             clauses[-1].link = _stronger(clauses[-1].link, link)
     if not clauses[-1].words:
@@ -58,7 +60,7 @@ def _link(words: list[Word], i: int) -> str:
     if text in ("before", "after"):
         return text
     if text in ("until", "once", "when") and following in SUBJECTS:
-        return "after" if text in ("once", "when") else "until"
+        return "when" if text in ("once", "when") else "until"
     if text == "as" and (following in PRONOUNS or following in ("the", "a")):
         return "while"
     if (
@@ -80,6 +82,8 @@ _STRENGTH = {"first": 0, "comma": 1, "and": 2, "then": 3, "until": 4, "before": 
 def _stronger(one: str, other: str) -> str:
     if one == "first" and other in ("then", "and", "comma"):
         return "first"
+    if other == "when":  # "A, and when B, C" is in its order already; "when B, A" and "A when B" are not
+        other = "after" if one == "first" else "then"
     if one == "first":
         return f"lead-{other}"
     if one.startswith("lead-"):

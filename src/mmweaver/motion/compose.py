@@ -9,7 +9,8 @@ from mmweaver.core.seeding import stream
 from mmweaver.motion.assemble import assemble
 from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
 from mmweaver.motion.floor_map import FloorMap
-from mmweaver.motion.placement import place
+from mmweaver.motion.obstacles import Obstacles
+from mmweaver.motion.placement import Placement, clearest, place
 from mmweaver.motion.plan import MotionPlan
 from mmweaver.motion.sentence import parse
 from mmweaver.motion.timing import schedule
@@ -35,11 +36,13 @@ def compose(
     range_window_m: tuple[float, float],
     start_m: tuple[float, float] | None = None,
     height_m: float | None = None,
+    others: tuple[PoseSequence, ...] = (),
 ) -> Motion:
     """Reads the sentence, shares out the time, finds room on the scene's floor, and moves the body.
 
     `range_window_m`: the slant ranges that the radar keeps; the body stays inside. `start_m`: where the person starts,
-    (x, y). `height_m`: the body's height, else drawn from the seed between 1.63 and 1.96 m. Raises InputError where the
+    (x, y). `height_m`: the body's height, else drawn from the seed between 1.63 and 1.96 m. `others`: people who are
+    there already; the way keeps clear of them (see `company`). Raises InputError where the
     sentence is not understood, its steps do not fit the time, or the room has no place for it.
     """
     if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
@@ -50,12 +53,16 @@ def compose(
     body = Body(height_m)
     floor = FloorMap(scene, range_window_m, height_m)
     plan, spot_notes = _jogging_without_a_way(plan)
-    placement = place(plan, floor, body, seed=seed, start_m=start_m)
-    pose = assemble(
-        plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
-        seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
-    )  # fmt: skip
-    return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions)
+    placements = place(plan, floor, body, seed=seed, start_m=start_m, others=others)
+
+    def moved(placement: Placement) -> PoseSequence:
+        return assemble(
+            plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
+            seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
+        )  # fmt: skip
+
+    placement, pose, note = clearest(placements, moved, Obstacles(scene))
+    return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions + note)
 
 
 def _jogging_without_a_way(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:

@@ -30,6 +30,7 @@ class Controls:
     foot_m: Float[Array, "n 2 3"]
     foot_rad: Float[Array, "n 2 2"]
     knee_out_rad: Float[Array, "n 2"]  # how far the knees point outward of the feet
+    knee_up_rad: Float[Array, " n"]  # where knees point: 0 ahead, pi/2 up (on the back), -pi/2 down (on the belly)
     knee_room: Float[Array, " n"]  # 0: legs may be straight as in standing, 1: knees stay soft as in stepping
     contact: Float[Array, "n 2"]  # 1: the foot carries weight, 0: it is in the air
 

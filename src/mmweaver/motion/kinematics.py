@@ -84,17 +84,18 @@ def collar_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
 
 
 def _ankle(body: Body, controls: Controls, side: int) -> Vectors:
-    """Where the foot's place and pitch put the ankle: it turns about the ball or, toes up, about the heel."""
+    """Where the foot's place and pitch put the ankle."""
     yaw, pitch = controls.foot_rad[:, side, 0], controls.foot_rad[:, side, 1]
+    return controls.foot_m[:, side] + ankle_from_foot(body, yaw, pitch)
+
+
+def ankle_from_foot(body: Body, yaw: Angles, pitch: Angles) -> Vectors:
+    """The ankle over the place of the flat foot: it turns about the ball or, toes up, about the heel."""
     height, ball, heel = body.ankle_height_m, body.ball_m, body.heel_m
     on_ball = rise((pitch + 0.2) / 0.4)
     forward = on_ball * ball * (1 - np.cos(pitch)) - (1 - on_ball) * heel * (1 - np.cos(pitch)) + height * np.sin(pitch)
     up = on_ball * ball * np.sin(pitch) - (1 - on_ball) * heel * np.sin(pitch) + height * np.cos(pitch)
-    ankle = controls.foot_m[:, side].copy()
-    ankle[:, 0] += forward * np.cos(yaw)
-    ankle[:, 1] += forward * np.sin(yaw)
-    ankle[:, 2] += up
-    return ankle
+    return np.stack([forward * np.cos(yaw), forward * np.sin(yaw), up], axis=1)
 
 
 def _pelvis(body: Body, controls: Controls, frame: Frames, ankles: list[Vectors]) -> Vectors:
@@ -137,7 +138,8 @@ def _knee_direction(controls: Controls, side: int, leg: Vectors) -> Vectors:
     outward = controls.knee_out_rad[:, side] * (1.0 if side == LEFT else -1.0)
     foot, pelvis = controls.foot_rad[:, side, 0], controls.heading_rad + controls.pelvis_rad[:, 2]
     yaw = 0.5 * (foot + pelvis) + outward
-    ahead = np.stack([np.cos(yaw), np.sin(yaw), np.zeros_like(yaw)], axis=1)
+    level, up = np.cos(controls.knee_up_rad), np.sin(controls.knee_up_rad)
+    ahead = np.stack([level * np.cos(yaw), level * np.sin(yaw), up], axis=1)
     square = ahead - np.sum(ahead * leg, axis=1, keepdims=True) * leg
     return square / np.linalg.norm(square, axis=1, keepdims=True)
 

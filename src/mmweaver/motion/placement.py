@@ -1,17 +1,34 @@
 """Where in the room a plan is acted out: many starts are tried, the best way is taken."""
 
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
+from mmweaver.motion.activities import CLEARANCE_M
+from mmweaver.motion.apart import keeps_clear
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
+from mmweaver.motion.obstacles import Obstacles
+from mmweaver.motion.other_ways import check_floor, is_other, lay_other, turn_by
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
-from mmweaver.motion.seating import STOOL_HEIGHT_M, Sitting, reachable, seats_of, stool_at, stool_fits, stool_note
+from mmweaver.motion.seating import (
+    STOOL_HEIGHT_M,
+    Sitting,
+    preferred,
+    reachable,
+    seats_of,
+    stool_at,
+    stool_fits,
+    stool_note,
+)  # fmt: skip
+from mmweaver.motion.targets import check_targets, goes_to_thing, start_for, walk_to_target
 from mmweaver.motion.way import (
     NoWay,
     Way,
@@ -25,10 +42,8 @@ from mmweaver.motion.way import (
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
-WANTED_CLEARANCE_M = {
-    "jumping_jacks": 0.85, "jump": 0.5, "squat": 0.6, "wave": 0.6, "clap": 0.45, "raise": 0.5, "punch": 0.75,
-    "drink": 0.4, "stand": 0.35, "turn": 0.4, "jog": 0.5, "sit": 0.4, "sit_down": 0.5, "stand_up": 0.5, "walk": 0.3,
-}  # fmt: skip
+MOST_MOVED, WORTH_A_NOTE_M = 16, 0.03
+CLOSEST_FEET_M = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,17 +53,20 @@ class Placement:
     path: RootPath
     moves: tuple[tuple[Move, ...], ...]
     seat_height_m: tuple[float, ...]
+    seats_m: tuple[tuple[float, float], ...]  # where the person sits
     assumptions: tuple[str, ...]
 
 
 def place(
-    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None
-) -> Placement:
-    """Finds a way for the whole plan that is free and in view all along.
+    plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None,
+    others: tuple[PoseSequence, ...] = (),
+) -> list[Placement]:  # fmt: skip
+    """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
-    `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, or where
-    there is no room, saying what there is.
+    `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, where
+    there is no room, or where the room lacks what a step goes to, saying what there is.
     """
+    check_targets(plan, floor.scene)
     if not floor.walkable.any() and not (seats_of(floor, body) and _starts_seated(plan)):
         raise InputError(_no_floor(floor))
     if start_m is not None:
@@ -57,20 +75,60 @@ def place(
     ways: list[Way] = []
     for _ in range(TRIES):
         try:
-            ways.append(_try(plan, floor, body, rng, start_m))
+            way = _try(plan, floor, body, rng, start_m)
         except NoWay:
             continue
+        if others and not _is_clear_of(way, plan, others):
+            continue
+        ways.append(way)
         if len(ways) >= ENOUGH:
             break
     if not ways:
         raise InputError(_no_room(plan, floor, start_m))
-    best = min(ways, key=lambda way: way.cost)
+    return [_placement(way) for way in sorted(ways, key=lambda way: way.cost)]
+
+
+def clearest(
+    placements: Sequence[Placement], moved: Callable[[Placement], PoseSequence], obstacles: Obstacles
+) -> tuple[Placement, PoseSequence, tuple[str, ...]]:
+    """The first placement whose motion meets nothing, hands and all; else the one that gets in least, and a note."""
+    best: tuple[float, Placement, PoseSequence] | None = None
+    for placement in _varied(placements)[:MOST_MOVED]:
+        pose = moved(placement)
+        deep_m = obstacles.deepest_m(pose, placement.seats_m)
+        if best is None or deep_m < best[0]:
+            best = (deep_m, placement, pose)
+        if deep_m <= 0.0:
+            break
+    assert best is not None
+    note = f"the body gets {100 * best[0]:.0f} cm into furniture or a wall, for the room leaves no better place"
+    return best[1], best[2], (note,) if best[0] > WORTH_A_NOTE_M else ()
+
+
+def _varied(placements: Sequence[Placement]) -> list[Placement]:
+    """The same in their order, but after two of a seat the others of that seat last."""
+    count: Counter[tuple[tuple[float, float], ...]] = Counter()
+    first, later = [], []
+    for placement in placements:
+        count[placement.seats_m] += 1
+        (later if placement.seats_m and count[placement.seats_m] > 2 else first).append(placement)
+    return first + later
+
+
+def _placement(way: Way) -> Placement:
     return Placement(
-        path=best.path(),
-        moves=tuple(tuple(moves) for moves in best.moves),
-        seat_height_m=tuple(best.seat_height_m),
-        assumptions=tuple(dict.fromkeys(best.notes)),
+        path=way.path(),
+        moves=tuple(tuple(moves) for moves in way.moves),
+        seat_height_m=tuple(way.seat_height_m),
+        seats_m=tuple(way.seats_m),
+        assumptions=tuple(dict.fromkeys(way.notes)),
     )
+
+
+def _is_clear_of(way: Way, plan: MotionPlan, others: tuple[PoseSequence, ...]) -> bool:
+    time_s = np.arange(0.0, plan.steps[-1].end_s + 1e-9, 0.05)
+    track_m = way.path().position_m(time_s)
+    return all(keeps_clear(track_m, time_s, other) for other in others)
 
 
 def _starts_seated(plan: MotionPlan) -> bool:
@@ -87,18 +145,24 @@ def _try(
         way.moves.append([])
         following = plan.steps[k + 1] if k + 1 < len(plan.steps) else None
         if step.moves:
-            target = _seat_ahead(way, step, following, seats)
+            wanted_seats = preferred(seats, following.seat if following else step.seat, floor.scene)
+            target = _seat_ahead(way, step, following, wanted_seats)
             _lay_move(way, step, target, first=k == 0, last=following is None)
             sitting = target if following is not None and following.lower == "sit_down" else None
-        elif step.lower == "turn" or step.facing:
+        elif step.lower == "turn" and step.turn_deg:
+            turn_by(way, step)
+        elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
             _lay_turn(way, step, rng, first=k == 0)
+        check_floor(way, step, body)
         way.from_seat = way.from_seat or step.lower == "stand_up"
         if step.lower == "sit_down" and k:
             sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
             way.turn_to(sitting.facing_rad, step.start_s - 0.3)
         way.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
+        if sitting is not None:
+            way.seats_m.append((float(sitting.seat_m[0]), float(sitting.seat_m[1])))
         if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
-            wanted = max(WANTED_CLEARANCE_M[step.lower], WANTED_CLEARANCE_M.get(step.upper, 0.0))
+            wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
             way.cost += 2.0 * max(0.0, wanted - float(floor.clearance_at(way.place)))
             way.cost += float(floor.dislike_at(way.place))
     way.cost += float(rng.uniform(0, 0.5))
@@ -111,10 +175,16 @@ def _start(
 ) -> tuple[Way, Sitting | None]:  # fmt: skip
     first = plan.steps[0]
     if _starts_seated(plan):
-        return _start_seated(floor, body, rng, start_m, seats)
+        usable = preferred(seats, first.seat, floor.scene)
+        if any(step.lower not in ("sit", "sit_down") for step in plan.steps):
+            # Who gets up needs room before the seat: not where a table is.
+            usable = [seat for seat in usable if floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+        return _start_seated(floor, body, rng, start_m, usable)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
-    if first.facing:
+    if any(step.posture in ("floor", "knees") for step in plan.steps):
+        facing = float(rng.uniform(-np.pi, np.pi))  # whichever way the floor is free
+    if first.facing and first.upper not in ("point", "look_around"):
         facing = _facing_rad(first.facing, spot) + float(rng.normal(0, 0.05))
     return Way(floor=floor, rng=rng, place=spot, heading_rad=facing), None
 
@@ -124,6 +194,10 @@ def _random_start(
 ) -> Float[Array, "2"]:
     """A cell at random; where a walk shall end at a seat, often one from which it would."""
     first = plan.steps[0]
+    if first.moves and goes_to_thing(first) and rng.random() < 0.8:
+        spot = start_for(first, floor, rng)
+        if spot is not None:
+            return spot
     to_seat = first.direction == "seat" or (len(plan.steps) > 1 and plan.steps[1].lower == "sit_down")
     if first.moves and seats and to_seat and rng.random() < 0.7:
         sitting = seats[int(rng.integers(len(seats)))]
@@ -169,7 +243,7 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
         said = _direction_rad(way, step)
         lasts = max(step.end_s - step.start_s - 0.35, 0.1)
         speed = float(np.hypot(*gap)) / lasts
-        fits = 0.45 <= speed <= (1.6 if step.lower == "walk" else 2.6)
+        fits = 0.45 <= speed <= (2.6 if step.lower == "jog" else 1.6)
         if (
             fits
             and (said is None or abs(angle_between(said, towards)) < 0.9)
@@ -180,6 +254,12 @@ def _seat_ahead(way: Way, step: Step, following: Step | None, seats: list[Sittin
 
 
 def _lay_move(way: Way, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
+    if target is None and goes_to_thing(step):
+        walk_to_target(way, step, first=first)
+        return
+    if target is None and is_other(step):
+        lay_other(way, step, _direction_rad(way, step), first=first, last=last)
+        return
     if target is not None:
         gap = target.feet_m - way.place
         direction = float(np.arctan2(gap[1], gap[0]))

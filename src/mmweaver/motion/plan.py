@@ -2,26 +2,29 @@
 
 from dataclasses import dataclass
 
-LOWER = (
-    "stand", "walk", "jog", "turn", "sit", "sit_down", "stand_up", "squat", "jump", "jumping_jacks",
-)  # fmt: skip
-UPPER = ("wave", "clap", "raise", "drink", "punch")
-KNOWN = (
-    "walking, jogging, turning, standing still, sitting, sitting down, standing up, drinking, waving, clapping,"
-    " raising the left or right hand, punching, squatting, jumping, jumping jacks"
-)
+from mmweaver.motion.activities import BODY, BY_KEY, HANDS
+
+LOWER = tuple(activity.key for activity in BODY)
+UPPER = tuple(activity.key for activity in HANDS)
+ON_THE_SPOT = ("jog", "leap")  # moving, unless the direction is "spot"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Step:
-    """One movement. Directions are the viewer's (left in the photo), hands the person's own."""
+    """One movement. Directions are the viewer's (left in the photo), hands and bends the person's own."""
 
     lower: str = "stand"  # one of LOWER
     upper: str = ""  # one of UPPER, laid over the lower one
     hand: str = ""  # left | right | both | "" (as the seed has it)
+    foot: str = ""  # left | right | "": the leg that acts
     direction: str = (
         ""  # left | right | towards | away | forwards | backwards | back | pacing | circle | seat | spot | around
     )
+    arc_deg: float = 0.0  # how far the way bends, to the person's left where positive
+    turn_deg: float = (
+        0.0  # of a turn or a turning jump, to the person's left where positive; 0: as the direction has it
+    )
+    style: str = ""  # back | front (lying and falling) | bent (walking) | knee (of one knee)
     speed: int = 0  # -1 slowly, 0, 1 quickly
     count: int = 0  # how often; 0: as time allows
     seat: str = ""  # the word used for it: sofa, chair, ...
@@ -40,10 +43,10 @@ class Step:
         >>> Step(lower="sit", upper="drink").name
         'sitting and drinking'
         """
-        lower = _LOWER_NAMES[self.lower]
+        lower = BY_KEY[self.lower].name
         if not self.upper:
             return lower
-        upper = _UPPER_NAMES[self.upper]
+        upper = BY_KEY[self.upper].name
         if self.upper == "raise":
             upper = {"both": "raising both hands", "": "hand raise"}.get(self.hand, f"{self.hand}-hand raise")
         return upper if self.lower == "stand" else f"{lower} and {upper}"
@@ -51,15 +54,12 @@ class Step:
     @property
     def moves(self) -> bool:
         """Whether it goes from one place to another."""
-        return self.lower in ("walk", "jog") and self.direction != "spot"
+        return BY_KEY[self.lower].moves and self.direction != "spot"
 
-
-_LOWER_NAMES = {
-    "stand": "standing", "walk": "walking", "jog": "jogging", "turn": "turning", "sit": "sitting",
-    "sit_down": "sitting down", "stand_up": "standing up", "squat": "squatting", "jump": "jumping",
-    "jumping_jacks": "jumping jacks",
-}  # fmt: skip
-_UPPER_NAMES = {"wave": "waving", "clap": "clapping", "raise": "raising", "drink": "drinking", "punch": "punching"}
+    @property
+    def posture(self) -> str:
+        """How it leaves the body: feet, seat, knees or floor."""
+        return BY_KEY[self.lower].posture
 
 
 @dataclass(frozen=True, kw_only=True)

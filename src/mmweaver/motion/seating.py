@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.core.records import Seat
+from mmweaver.core.records import Scene, Seat
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import FloorMap
 from mmweaver.motion.library.sitting import pelvis_behind_feet_m
@@ -13,6 +13,8 @@ from mmweaver.motion.library.sitting import pelvis_behind_feet_m
 Array = np.ndarray
 STOOL_HEIGHT_M = 0.45
 LOWEST_M, HIGHEST_M = 0.3, 0.65
+_COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
+_COUCH_M, _BED_REACH_M = 0.8, 1.2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +25,25 @@ class Sitting:
     facing_rad: float
     height_m: float
     seat_m: Float[Array, "2"]
+    width_m: float = 0.4
+
+
+def preferred(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
+    """Those that fit the word for them: couches are wide, chairs are not, beds are beds; all where none does."""
+    if word in _COUCHES:
+        fitting = [seat for seat in seats if seat.width_m >= _COUCH_M and not _on_bed(seat, scene)]
+    elif word == "bed":
+        fitting = [seat for seat in seats if _on_bed(seat, scene)]
+    elif word in _CHAIRS:
+        fitting = [seat for seat in seats if seat.width_m < _COUCH_M and not _on_bed(seat, scene)]
+    else:
+        fitting = [seat for seat in seats if not _on_bed(seat, scene)]
+    return fitting or seats
+
+
+def _on_bed(seat: Sitting, scene: Scene) -> bool:
+    beds = [mark for mark in scene.landmarks if mark.kind == "bed"]
+    return any(float(np.hypot(*(seat.seat_m - mark.position_m[:2]))) < _BED_REACH_M for mark in beds)
 
 
 def seats_of(floor: FloorMap, body: Body) -> list[Sitting]:
@@ -45,6 +66,7 @@ def _sitting(seat: Seat, floor: FloorMap, body: Body) -> Sitting:
         facing_rad=float(seat.facing_rad),
         height_m=height,
         seat_m=place,
+        width_m=float(seat.size_m[0]),
     )
 
 

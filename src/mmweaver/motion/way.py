@@ -10,7 +10,7 @@ from mmweaver.motion.plan import Step
 from mmweaver.motion.root_path import Move, RootPath, Turn
 
 Array = np.ndarray
-SLOWEST_MPS = {"walk": 0.5, "jog": 1.2}
+SLOWEST_MPS = {"walk": 0.5, "jog": 1.2, "limp": 0.4, "stagger": 0.4}
 RAMP_S = 0.45
 TURN_RATE = 3.6  # rad/s
 SHORTEST_LEG_M = 0.5
@@ -30,6 +30,8 @@ def angle_between(one: float, other: float) -> float:
 def wished_speed(step: Step, rng: np.random.Generator) -> float:
     if step.lower == "jog":
         low, high = ((1.3, 1.5), (1.5, 1.9), (1.9, 2.2))[step.speed + 1]
+    elif step.lower in ("limp", "stagger"):
+        low, high = ((0.45, 0.6), (0.6, 0.9), (0.9, 1.1))[step.speed + 1]
     else:
         low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
     return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0)
@@ -49,6 +51,7 @@ class Way:
     turns: list[Turn] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     seat_height_m: list[float] = field(default_factory=list)  # by step
+    seats_m: list[tuple[float, float]] = field(default_factory=list)  # where the person sits
     cost: float = 0.0
     last_direction_rad: float | None = None
     from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
@@ -202,7 +205,8 @@ def _open_direction(way: Way, wanted_m: float, *, keep_heading: bool) -> tuple[f
 
 def walk_circle(way: Way, step: Step, *, first: bool, last: bool) -> None:
     """Round and round, as wide as the room allows."""
-    rng, side = way.rng, (1.0 if way.rng.random() < 0.5 else -1.0)
+    rng = way.rng
+    side = float(np.sign(step.arc_deg)) or (1.0 if rng.random() < 0.5 else -1.0)
     direction = way.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
     begin = face_along(way, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)

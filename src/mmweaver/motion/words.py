@@ -4,10 +4,11 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-from mmweaver.motion.lexicon import ACTIVITY_OF_LEMMA, GOING, IRREGULAR, LIGHT, PHRASES
+from mmweaver.motion.lexicon import GOING, IRREGULAR, LIGHT, PHRASES
+from mmweaver.motion.verbs import ACTIVITY_OF_LEMMA
 
 _LEMMAS = frozenset(ACTIVITY_OF_LEMMA) | GOING | LIGHT
-_TOKEN = re.compile(r"[a-z_']+(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
+_TOKEN = re.compile(r"[a-z_']+[0-9_]*(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ def words_of(text: str) -> list[Word]:
     """The words and punctuation marks of a sentence in lower case, known phrases folded."""
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
     for pattern, replacement in PHRASES:
-        folded = re.sub(pattern, replacement, folded)
+        folded = " ".join(re.sub(pattern, replacement, folded).split())
     return [word_of(token) for token in _TOKEN.findall(folded)]
 
 

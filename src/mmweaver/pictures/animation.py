@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mmweaver.pictures.skeleton_drawing import SkeletonInPhoto
-from mmweaver.pictures.theme import POWER_MAP, SPAN_DB, STYLE, TRUTH, label_axes, shortened
+from mmweaver.pictures.theme import POWER_MAP, SPAN_DB, STYLE, label_axes, person_colour, shortened
 from mmweaver.pictures.view import Fan, View, decibels
 
 if TYPE_CHECKING:
@@ -82,19 +82,24 @@ def _lay_out(figure: "Figure", view: View) -> "list[tuple[Axes | None, Callable[
 
 def _photo_mover(axes: "Axes", view: View) -> "Callable[[int], list[Artist]]":
     assert view.photo is not None
-    assert view.shown_pose is not None
     assert view.radar_from_camera is not None
+    from matplotlib.colors import to_rgb
+
     height, width = view.photo.rgb.shape[:2]
     axes.imshow(view.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
-    skeleton = SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=2.2)
-    for artist in skeleton.artists:
+    people = view.shown_poses
+    skeletons = [SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=2.2) for _ in people]
+    count = len(people)
+    colours = [SKELETON_COLOUR] if count == 1 else [to_rgb(person_colour(index, count)) for index in range(count)]
+    artists: list[Artist] = [artist for skeleton in skeletons for artist in skeleton.artists]
+    for artist in artists:
         artist.set_animated(True)
-    joints_m = view.shown_pose.joints_m
 
     def update(index: int) -> "list[Artist]":
-        skeleton.show(joints_m[index], SKELETON_COLOUR)
-        return list(skeleton.artists)
+        for skeleton, person, colour in zip(skeletons, people, colours, strict=True):
+            skeleton.show(person.joints_m[index], colour)
+        return artists
 
     return update
 
@@ -125,14 +130,17 @@ def _azimuth_mover(axes: "Axes", view: View) -> "Callable[[int], list[Artist]]":
     image.set_animated(True)
     axes.set(xlim=fan.extent[:2], ylim=fan.extent[2:])
     label_axes(axes, "From above, what moves", "right (m)", "ahead (m)")
-    joints_m = None if view.shown_pose is None else view.shown_pose.joints_m
-    (dots,) = axes.plot([], [], ".", color=TRUTH, markersize=2.5, animated=True)
+    people = view.shown_poses
+    dots = [
+        axes.plot([], [], ".", color=person_colour(index, len(people)), markersize=2.5, animated=True)[0]
+        for index in range(len(people))
+    ]
 
     def update(index: int) -> "list[Artist]":
         image.set_data(fan.lay(values_db[index]))
-        if joints_m is not None:
-            dots.set_data(joints_m[index, :, 0], joints_m[index, :, 1])
-        return [image, dots]
+        for dot, person in zip(dots, people, strict=True):
+            dot.set_data(person.joints_m[index, :, 0], person.joints_m[index, :, 1])
+        return [image, *dots]
 
     return update
 

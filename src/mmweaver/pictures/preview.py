@@ -1,6 +1,7 @@
 """preview.png: one page that shows what a radar saw and, where known, what was truly there."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,7 @@ from mmweaver.pictures.theme import (
     VELOCITY_MAP,
     colour_bar,
     label_axes,
+    person_colour,
     shortened,
 )
 from mmweaver.pictures.view import Fan, View, decibels
@@ -30,7 +32,8 @@ if TYPE_CHECKING:
     from matplotlib.image import AxesImage
 
 DPI = 100
-GHOST_POSES = 7  # skeletons drawn into the photo, first to last
+GHOST_POSES = 7  # skeletons drawn into the photo, first to last,
+GHOST_POSES_OF_MANY = 3  # and of each of several people
 DB_LABEL = "dB relative to peak"
 
 
@@ -79,31 +82,49 @@ def _layout(figure: "Figure", photo: bool) -> "list[tuple[Callable[[Axes, View],
 
 # photo --------------------------------------------------------------------------------------------------------------
 def draw_photo(axes: "Axes", view: View) -> None:
-    """The photo with the skeleton at several times, first to last; what furniture hides is faint."""
+    """The photo with the skeletons at several times, first to last; what furniture hides is faint."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
+    from matplotlib.colors import Normalize, to_rgb
 
     assert view.photo is not None
-    assert view.shown_pose is not None
-    assert view.radar_from_camera is not None
     height, width = view.photo.rgb.shape[:2]
     axes.imshow(view.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
     axes.set_anchor("NW")
-    axes.set_title("The room, and the person at several times (faint: hidden behind something)")
-    colours = matplotlib.colormaps[TIME_MAP]
-    count = len(view.shown_pose.time_s)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, GHOST_POSES)).round().astype(int))
+    people = view.shown_poses
+    if len(people) == 1:
+        axes.set_title("The room, and the person at several times (faint: hidden behind something)")
+        colours = matplotlib.colormaps[TIME_MAP]
+        _draw_person(axes, view, people[0], GHOST_POSES, lambda share: _time_colour(colours, share))
+        low_s, high_s = float(people[0].time_s[0]), float(people[0].time_s[-1])
+        span = Normalize(low_s, high_s if high_s > low_s else low_s + 1)
+        colour_bar(axes, ScalarMappable(norm=span, cmap=_time_map()), "time (s)")
+        return
+    axes.set_title("The room, and the people at several times, the last the brightest (faint: hidden)")
+    for index, person in enumerate(people):
+        own = to_rgb(person_colour(index, len(people)))
+        _draw_person(axes, view, person, GHOST_POSES_OF_MANY, partial(_constant, own))
+
+
+def _constant(colour: tuple[float, float, float], _share: float) -> tuple[float, float, float]:
+    return colour
+
+
+def _draw_person(
+    axes: "Axes", view: View, pose: PoseSequence, most: int, colour_at: Callable[[float], tuple[float, float, float]]
+) -> None:
+    """One person at so many times, and the way of the pelvis."""
+    assert view.photo is not None
+    assert view.radar_from_camera is not None
+    count = len(pose.time_s)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
     for step, index in enumerate(chosen):
         share = step / max(len(chosen) - 1, 1)
         skeleton = SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=1.6 + 1.4 * share)
-        skeleton.show(view.shown_pose.joints_m[index], _time_colour(colours, share), alpha=0.45 + 0.55 * share)
-    pelvis = project(view.shown_pose.joints_m[:, joint("pelvis")], view.photo, view.radar_from_camera)
+        skeleton.show(pose.joints_m[index], colour_at(share), alpha=0.45 + 0.55 * share)
+    pelvis = project(pose.joints_m[:, joint("pelvis")], view.photo, view.radar_from_camera)
     axes.plot(pelvis[:, 0], pelvis[:, 1], color="white", linewidth=0.8, alpha=0.8)
-    low_s, high_s = float(view.shown_pose.time_s[0]), float(view.shown_pose.time_s[-1])
-    span = Normalize(low_s, high_s if high_s > low_s else low_s + 1)
-    colour_bar(axes, ScalarMappable(norm=span, cmap=_time_map()), "time (s)")
 
 
 def _time_colour(colours: "Callable[[float], tuple[float, ...]]", share: float) -> tuple[float, float, float]:
@@ -123,11 +144,12 @@ def draw_range_time(axes: "Axes", view: View) -> None:
     """Moving power over time and range, with the true extent of the joints."""
     strip = decibels(view.range_doppler_moving.max(axis=2))
     image = _power(axes, strip.T, (*view.time_edges_s, *view.range_edges_m))
-    if view.shown_pose is not None:
-        distance_m = np.linalg.norm(view.shown_pose.joints_m, axis=2)
+    if view.poses:
         middle_s = view.time_s + view.frame_step_s / 2
-        for edge in (distance_m.min(axis=1), distance_m.max(axis=1)):
-            axes.plot(middle_s, edge, color=TRUTH, linewidth=0.9)
+        for pose, colour in _coloured(view.shown_poses):
+            distance_m = np.linalg.norm(pose.joints_m, axis=2)
+            for edge in (distance_m.min(axis=1), distance_m.max(axis=1)):
+                axes.plot(middle_s, edge, color=colour, linewidth=0.9)
         _within(axes, view.time_edges_s, view.range_edges_m)
         _note(axes, "lines: nearest and farthest joint")
     label_axes(axes, "Range over time, what moves", "time (s)", "range (m)")
@@ -138,11 +160,12 @@ def draw_doppler_time(axes: "Axes", view: View) -> None:
     """Power over time and radial velocity (micro-Doppler), summed over range, with the true velocity of the pelvis."""
     strip = decibels(view.range_doppler_moving.sum(axis=1))
     image = _power(axes, strip.T, (*view.time_edges_s, *view.velocity_edges_mps))
-    if view.motion is not None:
-        distance_m = np.linalg.norm(view.motion.joints_m[:, joint("pelvis")], axis=1)
-        if len(distance_m) > 1:
-            velocity_mps = np.interp(view.time_s, view.motion.time_s, np.gradient(distance_m, view.motion.time_s))
-            axes.plot(view.time_s + view.frame_step_s / 2, velocity_mps, color=TRUTH, linewidth=0.9)
+    if view.motions:
+        for motion, colour in _coloured(view.motions):
+            distance_m = np.linalg.norm(motion.joints_m[:, joint("pelvis")], axis=1)
+            if len(distance_m) > 1:
+                velocity_mps = np.interp(view.time_s, motion.time_s, np.gradient(distance_m, motion.time_s))
+                axes.plot(view.time_s + view.frame_step_s / 2, velocity_mps, color=colour, linewidth=0.9)
         _within(axes, view.time_edges_s, view.velocity_edges_mps)
         _note(axes, "line: pelvis")
     label_axes(axes, "Doppler over time, what moves", "time (s)", "radial velocity (m/s), away +")
@@ -154,8 +177,9 @@ def draw_range_doppler(axes: "Axes", view: View) -> None:
     """Power over range and radial velocity in the liveliest frame, the standing room included."""
     at = view.liveliest
     image = _power(axes, decibels(view.range_doppler[at]), (*view.velocity_edges_mps, *view.range_edges_m))
-    if view.motion is not None:
-        _mark_joints(axes, view.motion, float(view.time_s[at]))
+    if view.motions:
+        for motion, colour in _coloured(view.motions):
+            _mark_joints(axes, motion, float(view.time_s[at]), colour)
         _within(axes, view.velocity_edges_mps, view.range_edges_m)
         _note(axes, "dots: joints")
     title = f"Range-Doppler, frame {view.frames[at]} ({view.time_s[at]:.1f} s)"
@@ -174,9 +198,10 @@ def draw_range_elevation(axes: "Axes", view: View) -> None:
     low, high, near, far = fan.extent
     image = _power(axes, fan.lay(decibels(power)).T, (near, far, low, high))
     axes.set_aspect("equal", anchor="N")
-    if view.shown_pose is not None:
-        joints_m = view.shown_pose.joints_m[:: max(len(view.shown_pose.time_s) // GHOST_POSES, 1)].reshape(-1, 3)
-        axes.plot(np.hypot(joints_m[:, 0], joints_m[:, 1]), joints_m[:, 2], ".", color=TRUTH, markersize=1.2)
+    if view.poses:
+        for pose, colour in _coloured(view.shown_poses):
+            joints_m = pose.joints_m[:: max(len(pose.time_s) // GHOST_POSES, 1)].reshape(-1, 3)
+            axes.plot(np.hypot(joints_m[:, 0], joints_m[:, 1]), joints_m[:, 2], ".", color=colour, markersize=1.2)
         _note(axes, "dots: joints", corner="upper left")
     axes.set(xlim=(0, far), ylim=(low, high))
     label_axes(axes, "Range-elevation, what moves", "ahead (m)", "up (m)")
@@ -197,10 +222,11 @@ def _draw_azimuth(axes: "Axes", view: View, power: np.ndarray, title: str) -> No
     fan = Fan.over(view.cube.grid.range_m, view.azimuth_rad)
     image = _power(axes, fan.lay(decibels(power.mean(axis=0))), fan.extent)
     axes.set_aspect("equal", anchor="N")
-    if view.shown_pose is not None:
-        path_m = view.shown_pose.joints_m[:, joint("pelvis")]
-        axes.plot(path_m[:, 0], path_m[:, 1], color=TRUTH, linewidth=1.0)
-        axes.plot(*path_m[-1, :2], ">", color=TRUTH, markersize=4)
+    if view.poses:
+        for pose, colour in _coloured(view.shown_poses):
+            path_m = pose.joints_m[:, joint("pelvis")]
+            axes.plot(path_m[:, 0], path_m[:, 1], color=colour, linewidth=1.0)
+            axes.plot(*path_m[-1, :2], ">", color=colour, markersize=4)
         _note(axes, "line: pelvis", corner="upper right")
     axes.set(xlim=fan.extent[:2], ylim=fan.extent[2:])
     label_axes(axes, title, "right (m)", "ahead (m)")
@@ -212,9 +238,10 @@ def draw_points_top(axes: "Axes", view: View) -> None:
     """All detections from above, coloured by radial velocity."""
     reach_m = view.range_edges_m[1]
     _scatter(axes, view, view.shown_points.x_m, view.shown_points.y_m)
-    if view.shown_pose is not None:
-        path_m = view.shown_pose.joints_m[:, joint("pelvis")]
-        axes.plot(path_m[:, 0], path_m[:, 1], color=INK, linewidth=1.0)
+    if view.poses:
+        for pose, colour in _coloured(view.shown_poses, on_white=True):
+            path_m = pose.joints_m[:, joint("pelvis")]
+            axes.plot(path_m[:, 0], path_m[:, 1], color=colour, linewidth=1.0)
         _note(axes, "line: pelvis", corner="upper right")
     axes.set(xlim=(-0.9 * reach_m, 0.9 * reach_m), ylim=(0, reach_m))
     axes.set_aspect("equal", anchor="N")
@@ -225,10 +252,11 @@ def draw_points_side(axes: "Axes", view: View) -> None:
     """All detections from the side, coloured by radial velocity."""
     reach_m = view.range_edges_m[1]
     _scatter(axes, view, view.shown_points.y_m, view.shown_points.z_m)
-    if view.shown_pose is not None:
-        for name in ("head", "left_foot"):
-            trace_m = view.shown_pose.joints_m[:, joint(name)]
-            axes.plot(trace_m[:, 1], trace_m[:, 2], color=INK, linewidth=0.8)
+    if view.poses:
+        for pose, colour in _coloured(view.shown_poses, on_white=True):
+            for name in ("head", "left_foot"):
+                trace_m = pose.joints_m[:, joint(name)]
+                axes.plot(trace_m[:, 1], trace_m[:, 2], color=colour, linewidth=0.8)
         _note(axes, "lines: head, left foot", corner="upper right")
     highest_m = float(np.max(np.abs(view.shown_points.z_m), initial=0.0))
     half_m = float(np.clip(1.1 * highest_m, 0.32 * reach_m, 0.45 * reach_m))
@@ -263,14 +291,19 @@ def _power(axes: "Axes", values_db: np.ndarray, extent: tuple[float, float, floa
     )  # fmt: skip
 
 
-def _mark_joints(axes: "Axes", motion: PoseSequence, time_s: float) -> None:
+def _coloured(people: tuple[PoseSequence, ...], *, on_white: bool = False) -> list[tuple[PoseSequence, str]]:
+    """Each person with the colour of what is known about them."""
+    return [(person, person_colour(index, len(people), on_white=on_white)) for index, person in enumerate(people)]
+
+
+def _mark_joints(axes: "Axes", motion: PoseSequence, time_s: float, colour: str) -> None:
     """Joints as dots at their true range and radial velocity at a time."""
     if len(motion.time_s) < 2:
         return
     at = int(np.clip(np.searchsorted(motion.time_s, time_s), 1, len(motion.time_s) - 1))
     distance_m = np.linalg.norm(motion.joints_m[at - 1 : at + 1], axis=2)
     velocity_mps = (distance_m[1] - distance_m[0]) / (motion.time_s[at] - motion.time_s[at - 1])
-    axes.plot(velocity_mps, distance_m.mean(axis=0), ".", color=TRUTH, markersize=3, alpha=0.9)
+    axes.plot(velocity_mps, distance_m.mean(axis=0), ".", color=colour, markersize=3, alpha=0.9)
 
 
 def _within(axes: "Axes", x: tuple[float, float], y: tuple[float, float]) -> None:

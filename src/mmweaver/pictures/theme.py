@@ -14,6 +14,9 @@ SPAN_DB = 50.0  # what a power picture shows below its peak
 INK = "#22262b"
 PAPER = "#ffffff"
 TRUTH = "#7fe3ff"  # what is known from the skeleton, drawn over what the radar saw
+# The same for several people: bright over power maps and photos, dark on white.
+PEOPLE = (TRUTH, "#8dff7a", "#ff9df2", "#ffffff", "#ffd24d", "#b3a6ff", "#5dffd0", "#ff8f70")
+PEOPLE_ON_WHITE = ("#0b7da3", "#1f8a0f", "#b02fa0", "#5b6168", "#a07400", "#5b48c9", "#00856a", "#c2431c")
 
 STYLE: Any = {
     "font.family": "DejaVu Sans",
@@ -52,6 +55,17 @@ def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
     bar.set_label(label, fontsize=8, labelpad=3)
     bar.outline.set_linewidth(0.5)  # type: ignore[operator]
     place.tick_params(labelsize=7, width=0.5, length=2)
+
+
+def person_colour(index: int, count: int, *, on_white: bool = False) -> str:
+    """A person's colour; one alone has the usual ones.
+
+    >>> person_colour(0, 1) == TRUTH, person_colour(0, 1, on_white=True) == INK
+    (True, True)
+    """
+    if on_white:
+        return INK if count == 1 else PEOPLE_ON_WHITE[index % len(PEOPLE_ON_WHITE)]
+    return PEOPLE[index % len(PEOPLE)]
 
 
 def shortened(text: str, most: int) -> str:

@@ -27,9 +27,9 @@ Raster = Float[Array, "ahead aside"]
 
 @dataclass(frozen=True, kw_only=True)
 class View:
-    """A cube and its points; with a photo and a pose where the signal was made, without them for a recording.
+    """A cube and its points; with a photo and poses where the signal was made, without them for a recording.
 
-    `pose` holds the joints at the cube's frames, `motion` the same person densely in time.
+    `poses` hold each person's joints at the cube's frames, `motions` the same people densely in time.
     """
 
     title: str
@@ -37,8 +37,8 @@ class View:
     points: PointCloud
     photo: RgbdPhoto | None = None
     radar_from_camera: Rotation | None = None
-    pose: PoseSequence | None = None
-    motion: PoseSequence | None = None
+    poses: tuple[PoseSequence, ...] = ()
+    motions: tuple[PoseSequence, ...] = ()
 
     @cached_property
     def frames(self) -> Int[Array, " shown"]:
@@ -64,11 +64,11 @@ class View:
         return PointCloud(**columns)
 
     @cached_property
-    def shown_pose(self) -> PoseSequence | None:
-        """The pose at the frames that are shown."""
-        if self.pose is None:
-            return None
-        return replace(self.pose, time_s=self.pose.time_s[self.frames], joints_m=self.pose.joints_m[self.frames])
+    def shown_poses(self) -> tuple[PoseSequence, ...]:
+        """The poses at the frames that are shown."""
+        return tuple(
+            replace(pose, time_s=pose.time_s[self.frames], joints_m=pose.joints_m[self.frames]) for pose in self.poses
+        )
 
     @cached_property
     def _shown(self) -> RadarCube:

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.core.shapes import Array, DepthPixels
+from mmweaver.core.shapes import Array, ClassPixels, DepthPixels
 from mmweaver.geometry.pinhole import unproject
 
 GridBool = Bool[Array, "row column"]
@@ -29,6 +29,7 @@ class DepthGrid:
     points_m: GridVectors  # (row, column, 3)
     normals: GridVectors  # unit, towards the camera; nan where no surface could be fitted
     rgb: GridVectors  # mean colour, 0 to 1
+    class_index: Int[Array, "row column"] | None = None  # what most of a cell shows, where the photo says
 
 
 def depth_tolerance_m(depth_m: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -58,7 +59,17 @@ def make_grid(photo: RgbdPhoto) -> DepthGrid:
         points_m=unproject(depth, intrinsics),
         normals=_fitted_normals(depth, intrinsics),
         rgb=colours.mean(axis=(1, 3)) / 255.0,
+        class_index=None if photo.classes is None else _most_common(photo.classes.index, size),
     )
+
+
+def _most_common(index: ClassPixels, size: int) -> Int[Array, "row column"]:
+    """The class that most pixels of each cell have."""
+    rows, columns = index.shape[0] // size, index.shape[1] // size
+    blocks = index[: rows * size, : columns * size].reshape(rows, size, columns, size)
+    present = np.unique(index)
+    shares = np.stack([(blocks == one).mean(axis=(1, 3)) for one in present])
+    return present[np.argmax(shares, axis=0)].astype(np.int64)
 
 
 def drop_strays(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixels:

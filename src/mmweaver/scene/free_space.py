@@ -3,22 +3,43 @@
 import numpy as np
 
 from mmweaver.core.records import FreeSpace
-from mmweaver.scene.height_map import HeightMap
+from mmweaver.core.shapes import GridMask
+from mmweaver.scene.height_map import CELL_M, HeightMap
 
+_EDGE_ON_M, _DEPTH_M = 0.13, 0.85
+_TABLE_M = (0.3, 1.1)
 _NEAREST_M = 0.5  # a body closer to the radar than this is not expected
 
 
-def find_free_space(height_map: HeightMap) -> FreeSpace:
+def find_free_space(height_map: HeightMap, camera_height_m: float) -> FreeSpace:
     """Free is floor that is seen, or that must go on where nothing stands: seen through, or under the picture's edge.
 
-    Nothing behind a wall is free, nor beside the picture, nor within half a metre of the radar.
+    Nothing behind a wall is free, nor beside the picture, nor within half a metre of the radar, nor behind the edge of
+    a thing as high as the camera: a table seen edge-on hides its own top, and the floor is seen below it.
     """
     distance_m = np.hypot(height_map.x_m[None, :], height_map.y_m[:, None])
     is_open = height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
-    is_free = is_open & ~height_map.is_blocked & (distance_m >= _NEAREST_M)
+    is_free = is_open & ~height_map.is_blocked & ~behind_edges(height_map, camera_height_m) & (distance_m >= _NEAREST_M)
     return FreeSpace(
         x_m=height_map.x_m,
         y_m=height_map.y_m,
         is_free=is_free,
         is_seen=height_map.is_floor_seen & is_free,
     )
+
+
+def behind_edges(height_map: HeightMap, camera_height_m: float) -> GridMask:
+    """Squares up to a table's depth behind things that end at the camera's own height."""
+    level = np.abs(np.nan_to_num(height_map.top_m, nan=-9.0) - camera_height_m) < _EDGE_ON_M
+    level &= (height_map.top_m > _TABLE_M[0]) & (height_map.top_m < _TABLE_M[1])
+    row, column = np.nonzero(level)
+    x, y = height_map.x_m[column], height_map.y_m[row]
+    length = np.maximum(np.hypot(x, y), 1e-6)
+    hidden = np.zeros_like(level, dtype=bool)
+    rows, columns = height_map.top_m.shape
+    for far in np.arange(CELL_M / 2, _DEPTH_M, CELL_M / 2):
+        a = np.floor((x * (1 + far / length) - height_map.x_m[0]) / CELL_M + 0.5).astype(int)
+        b = np.floor((y * (1 + far / length) - height_map.y_m[0]) / CELL_M + 0.5).astype(int)
+        inside = (a >= 0) & (a < columns) & (b >= 0) & (b < rows)
+        hidden[b[inside], a[inside]] = True
+    return hidden

@@ -62,7 +62,7 @@ def make_height_map(photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: fl
     return HeightMap(
         x_m=x_m,
         y_m=y_m,
-        top_m=_third_highest(square[kept], height[kept], shape),
+        top_m=without_gaps(_third_highest(square[kept], height[kept], shape), seen_through),
         is_blocked=_without_pockets(count >= _MIN_POINTS),
         is_floor_seen=floor_count >= 2,
         is_seen_through=seen_through,
@@ -79,6 +79,28 @@ def _without_pockets(is_blocked: GridMask) -> GridMask:
         pocket = labels[place] == label
         if pocket.sum() < _MAX_POCKET_M2 / CELL_M**2:
             filled[place] |= pocket
+    return filled
+
+
+def without_gaps(top_m: GridMetres, seen_through: GridMask) -> GridMetres:
+    """Also gives a height to squares between two of the same height, at most three squares apart.
+
+    A camera little above a surface sees it in rows far apart. Squares that are seen through stay empty.
+    """
+    reach = 3
+    padded = np.pad(top_m, reach, constant_values=np.nan)
+    rows, columns = top_m.shape
+
+    def shifted(row: int, column: int) -> GridMetres:
+        return padded[reach + row : reach + row + rows, reach + column : reach + column + columns]
+
+    filled = top_m.copy()
+    for row, column in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        for before in range(1, reach):
+            for after in range(1, reach + 1 - before):
+                one, other = shifted(-before * row, -before * column), shifted(after * row, after * column)
+                level = np.isnan(filled) & ~seen_through & (np.abs(one - other) < 0.02)
+                filled[level] = (one[level] + other[level]) / 2
     return filled
 
 

@@ -1,13 +1,17 @@
-"""What surfaces are made of, guessed from geometry and colour alone; metal and glass are never guessed."""
+"""What surfaces are made of: by what is seen where somebody said it, else guessed from geometry and colour.
+
+Metal and glass are never guessed.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Plane, Seat
 from mmweaver.core.shapes import Array
+from mmweaver.scene.coco_stuff import material_of
 from mmweaver.scene.depth_grid import GridVectors
 from mmweaver.scene.surfaces import LevelGrid, Surface
 
@@ -20,6 +24,12 @@ MATERIAL_NAMES = (
 ASSUMPTION = (
     "Materials were guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any"
     " other concrete, seats fabric if wide or of no wooden colour, the rest wood or chipboard by colour."
+)
+
+ASSUMPTION_OF_CLASSES = (
+    "Materials follow from the class of each pixel (COCO-Stuff to ITU-R P.2040) where it says one; elsewhere they were"
+    " guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any other"
+    " concrete, seats fabric if wide or of no wooden colour, the rest wood or chipboard by colour."
 )
 
 _SEAT_REACH_M = 0.55
@@ -68,6 +78,37 @@ def cell_materials(
                 material[surface.cells] = MATERIAL_NAMES.index("fabric")
     material[is_floor] = MATERIAL_NAMES.index(floor_material(rgb[is_floor]))
     return material, tuple(names)
+
+
+def by_class(
+    material: np.ndarray,
+    names: tuple[str, ...],
+    class_index: Int[Array, "row column"],
+    class_names: tuple[str, ...],
+    surfaces: Sequence[Surface],
+    is_floor: Bool[Array, "row column"],
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """The same with what is known in place of what was guessed: the class of a cell decides where it says a material.
+
+    A surface, and the floor, takes what most of its cells are where the class of half of them says it.
+    """
+    told = np.array([MATERIAL_NAMES.index(m) if (m := material_of(name)) else -1 for name in class_names])
+    known = told[np.clip(class_index, 0, len(told) - 1)]
+    guessed, material = material, np.where(known >= 0, known, material)
+    new = list(names)
+    for index, surface in enumerate(surfaces):
+        told_here = _majority(known[surface.cells])
+        if told_here is not None:
+            new[index] = MATERIAL_NAMES[told_here]
+            material[surface.cells] = np.where(known[surface.cells] >= 0, known[surface.cells], told_here)
+    told_floor = _majority(known[is_floor])
+    material[is_floor] = guessed[is_floor] if told_floor is None else told_floor
+    return material, tuple(new)
+
+
+def _majority(known: Int[Array, " cell"]) -> int | None:
+    told = known[known >= 0]
+    return int(np.bincount(told).argmax()) if len(told) > 0.5 * len(known) else None
 
 
 def _upholstered(

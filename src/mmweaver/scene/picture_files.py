@@ -22,7 +22,7 @@ def read_rgb(path: Path) -> tuple[RgbPixels, tuple[int, int], bool]:
     """The upright colour picture, the (width, height) stored in the file, and whether its EXIF tag turned it."""
     from PIL import ImageOps
 
-    image = _opened(path)
+    image = opened_picture(path)
     stored_size = image.size
     turned = image.getexif().get(0x0112, 1) not in (0, 1)
     if turned:
@@ -88,7 +88,7 @@ def _check_unit(path: Path, median_m: float, unit_m: float, counts: bool) -> Non
 
 
 def _raw_picture(path: Path) -> np.ndarray:
-    image = _opened(path)
+    image = opened_picture(path)
     if image.mode in ("1", "L", "P"):
         raise InputError(f"{path} has 8 bits a pixel; depth must be a 16-bit PNG or a .npy in metres")
     if not (image.mode.startswith("I;16") or image.mode in ("I", "F")):
@@ -119,7 +119,7 @@ def _raw_npy(path: Path) -> np.ndarray:
     return np.array(raw)
 
 
-def _opened(path: Path) -> Any:
+def opened_picture(path: Path) -> Any:
     """The picture, wholly decoded."""
     from PIL import Image, UnidentifiedImageError
 
@@ -133,6 +133,8 @@ def _opened(path: Path) -> Any:
             raise InputError(f"{path} has only {image.width} x {image.height} pixels; give a larger picture")
         image.load()
     except UnidentifiedImageError as error:
+        if path.suffix.lower() == ".exr":
+            raise InputError(f"{path} is OpenEXR, which is not read; save it as a float TIFF or a .npy") from error
         raise InputError(f"{path} is not a picture that can be read; give a PNG or JPEG") from error
     except Image.DecompressionBombError as error:
         raise InputError(f"{path} is too large; make it smaller than {MAX_PIXELS / 1e6:.0f} million pixels") from error

@@ -6,11 +6,20 @@ from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.geometry.rotations import level_from_camera
+from mmweaver.scene.class_evidence import sittable_squares
 from mmweaver.scene.depth_grid import DepthGrid, GridBool, GridVectors, make_grid
 from mmweaver.scene.free_space import find_free_space
 from mmweaver.scene.gravity import corrected_by_walls, find_gravity
 from mmweaver.scene.height_map import make_height_map
-from mmweaver.scene.materials import ASSUMPTION, MATERIAL_NAMES, cell_materials, with_material
+from mmweaver.scene.landmarks import find_landmarks
+from mmweaver.scene.materials import (
+    ASSUMPTION,
+    ASSUMPTION_OF_CLASSES,
+    MATERIAL_NAMES,
+    by_class,
+    cell_materials,
+    with_material,
+)
 from mmweaver.scene.mesh import floor_faces, make_mesh
 from mmweaver.scene.seats import find_seats
 from mmweaver.scene.surfaces import LevelGrid, find_surfaces, floor_cells
@@ -40,10 +49,14 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     is_floor = floor_cells(level) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
 
     height_map = make_height_map(photo, radar_from_camera, gravity.floor_z_m)
-    free_space = find_free_space(height_map)
-    seats = find_seats(height_map, gravity.floor_z_m)
+    free_space = find_free_space(height_map, -gravity.floor_z_m)
+    seats = find_seats(height_map, gravity.floor_z_m, sittable_squares(photo, radar_from_camera, gravity.floor_z_m))
 
     material, surface_names = cell_materials(level, grid.rgb, surfaces, is_floor, seats)
+    if grid.class_index is not None and photo.classes is not None:
+        material, surface_names = by_class(
+            material, surface_names, grid.class_index, photo.classes.names, surfaces, is_floor
+        )
     floor = _floor(level, is_floor, _floor_material(material, is_floor))
     planes = [with_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True)]
     rays = _rays(grid.intrinsics, radar_from_camera)
@@ -60,7 +73,14 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
         floor_z_m=gravity.floor_z_m,
         free_space=free_space,
         seats=seats,
-        assumptions=(*assumptions, *gravity.assumptions, *_own_assumptions(floor)),
+        landmarks=find_landmarks(
+            photo, radar_from_camera, gravity.floor_z_m, (floor, *planes), height_map, free_space, seats
+        ),
+        assumptions=(
+            *assumptions,
+            *gravity.assumptions,
+            *_own_assumptions(floor, has_classes=photo.classes is not None),
+        ),
     )
 
 
@@ -109,11 +129,11 @@ def _spread(parts: list[np.ndarray]) -> tuple[float, float]:
     return float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
 
 
-def _own_assumptions(floor: Plane) -> tuple[str, ...]:
+def _own_assumptions(floor: Plane, *, has_classes: bool) -> tuple[str, ...]:
     width, length = 2 * floor.half_size_m[0], 2 * floor.half_size_m[1]
     return (
         "The radar stands level at the camera and looks where it looks.",
         f"The floor was completed to a level rectangle of {width:.1f} x {length:.1f} m; walls were taken to reach it.",
         "Places under the picture's lower edge, before floor that is seen, were taken to be free.",
-        ASSUMPTION,
+        ASSUMPTION_OF_CLASSES if has_classes else ASSUMPTION,
     )

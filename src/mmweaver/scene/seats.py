@@ -7,6 +7,7 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Seat
 from mmweaver.core.shapes import Array
+from mmweaver.scene.class_evidence import GridClass
 from mmweaver.scene.height_map import CELL_M, SEAT_LEVELS_M, HeightMap
 from mmweaver.scene.patches import labelled, places
 
@@ -16,11 +17,13 @@ _DIRECTIONS = 24
 _MAX_SEATS = 8
 _APART_M = 0.55
 _MIN_ON_SEAT, _MAX_CONTRARY = 0.22, 0.15
-_MIN_BACK = 0.5
+_MIN_BACK = 0.38
 _BACK_M = (0.22, 0.85)  # a backrest reaches this far above the seat; a wall reaches farther
-_FULL_BACK_M = 0.30
+_FULL_BACK_M = 0.42
 _THIGH_M = 0.16
 _SAG_M = 0.06  # a seat's middle lies this much below its rim
+_TABLE_M = (0.60, 1.0)
+_BED_M, _MIN_BED_M2 = (0.38, 0.66), 1.0
 _SMALLEST_M = 0.25  # of what is seen of a seat
 _STOOL_M = (0.30, 0.60)
 _STOOL_HIGHEST_M = 0.52
@@ -73,6 +76,12 @@ class _Candidates:
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
         return inside, np.where(inside, row, 0), np.where(inside, column, 0)
 
+    def on(self, height_map: HeightMap, mask: Bool[Array, "y x"] | None) -> Bool[Array, " candidate"]:
+        """The mask at the places themselves; all False without one."""
+        if mask is None:
+            return np.zeros(len(self.x_m), bool)
+        return self.at(height_map, mask, np.zeros((1, 1, 2)))[:, 0, 0]
+
     def only(self, chosen: Bool[Array, " candidate"]) -> "_Candidates":
         return _Candidates(
             x_m=self.x_m[chosen],
@@ -82,12 +91,15 @@ class _Candidates:
         )
 
 
-def find_seats(height_map: HeightMap, floor_z_m: float) -> tuple[Seat, ...]:
+def find_seats(height_map: HeightMap, floor_z_m: float, sittable: GridClass | None = None) -> tuple[Seat, ...]:
     """Seats, the best first. Those with a back come from all level patches, those without only from stool-sized ones.
 
     A low table has no back of its own: what stands behind it is lower than a backrest, or too far away, or a wall.
+    `sittable` (class_evidence) rules out what is something else, and lets chairs, benches and beds do without a back.
     """
     level = _level_squares(height_map)
+    if sittable is not None:
+        level &= sittable >= 0
     candidates = _candidates(height_map, level)
     if len(candidates.x_m) == 0:
         return ()
@@ -95,8 +107,14 @@ def find_seats(height_map: HeightMap, floor_z_m: float) -> tuple[Seat, ...]:
     fits = np.abs(on_seat) < _FLAT_M
     # What is lower speaks against a seat only where the seat would have been seen: not under a chair seen edge-on.
     contrary = (on_seat >= _FLAT_M) | (~fits & candidates.bare(height_map, _ON_SEAT))
-    suits = (fits.mean(axis=(1, 2)) > _MIN_ON_SEAT) & (contrary.mean(axis=(1, 2)) < _MAX_CONTRARY)
+    is_named = candidates.on(height_map, bed_squares(height_map) if sittable is None else sittable > 0)
+    on_stool = _on_stool(height_map, level, candidates)
+    inner = slice(2, -2)  # a stool is smaller than the place that a sitter takes
+    is_round = on_stool & (contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
+    is_whole = (contrary.mean(axis=(1, 2)) < _MAX_CONTRARY) | is_round
+    suits = (fits.mean(axis=(1, 2)) > _MIN_ON_SEAT) & is_whole
     candidates, fit = candidates.only(suits), fits[suits].mean(axis=(1, 2))
+    is_named, on_stool, is_round = is_named[suits], on_stool[suits], is_round[suits]
     if len(candidates.x_m) == 0:
         return ()
     back = _back_share(height_map, candidates)
@@ -105,11 +123,13 @@ def find_seats(height_map: HeightMap, floor_z_m: float) -> tuple[Seat, ...]:
     obstructed = ((front > 0.08) & (front < _THIGH_M)).mean(axis=(1, 2))
     drop = (front < -0.12) | (np.isnan(front) & candidates.at(height_map, _is_open(height_map), _IN_FRONT))
     drop, under_table = drop.mean(axis=(1, 2)), (front >= _THIGH_M).mean(axis=(1, 2))
-    score = 2 * back + 0.5 * fit + drop + 0.7 * under_table - 2 * obstructed
+    score = 2 * back + (0.5 + 1.5 * is_round) * fit + drop + 0.7 * under_table - 2 * obstructed
     is_backed = (back >= _MIN_BACK) & (obstructed < 0.35) & (drop + under_table > 0.4)
-    is_stool = _on_stool(height_map, level, candidates) & (obstructed < 0.1)
+    is_stool = on_stool & (obstructed < 0.1)
+    # Without a back one sits at the edge.
+    is_bench = is_named & (obstructed < 0.35) & (drop + under_table > 0.8)
     score = np.where(is_backed, score + 2, score)
-    return _spread_out(height_map, candidates, np.where(is_backed | is_stool, score, -np.inf), floor_z_m)
+    return _spread_out(height_map, candidates, np.where(is_backed | is_stool | is_bench, score, -np.inf), floor_z_m)
 
 
 def _level_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
@@ -121,6 +141,31 @@ def _level_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
     for row, column in ((0, 1), (1, 0), (2, 1), (1, 2)):
         neighbours += np.abs(top[row : row + rows, column : column + columns] - centre) < 0.6 * _FLAT_M
     return (centre > _LOWEST_M) & (centre < _HIGHEST_M) & (neighbours >= 2)
+
+
+def table_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
+    """Squares of level surfaces at table height that are 35 cm across and more: no backs of sofas or chairs."""
+    from scipy import ndimage
+
+    found = np.zeros(height_map.top_m.shape, bool)
+    for height in np.arange(_TABLE_M[0], _TABLE_M[1], 0.02):
+        near = np.abs(height_map.top_m - height) < 0.02
+        found |= np.asarray(ndimage.binary_opening(near, structure=np.ones((7, 7), bool)), bool)
+    return found
+
+
+def bed_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
+    """Squares of level surfaces at a bed's height that are 65 cm across and 1 m2 large: larger than low tables."""
+    from scipy import ndimage
+
+    found = np.zeros(height_map.top_m.shape, bool)
+    for height in np.arange(_BED_M[0], _BED_M[1], 0.03):
+        near = ndimage.binary_closing(np.abs(height_map.top_m - height) < 0.05, structure=np.ones((3, 3), bool))
+        wide = np.asarray(ndimage.binary_opening(near, structure=np.ones((13, 13), bool)), bool)
+        labels, _ = labelled(wide)
+        large = np.bincount(labels.ravel()) * CELL_M**2 >= _MIN_BED_M2
+        found |= wide & large[labels]
+    return found
 
 
 def _is_open(height_map: HeightMap) -> Bool[Array, "y x"]:
@@ -145,6 +190,7 @@ def _back_share(height_map: HeightMap, candidates: _Candidates) -> Float[Array, 
     # An armrest is lower than a back and counts for less.
     highest = np.where(stands, behind, 0.0).max(axis=1)
     share = np.minimum(highest / _FULL_BACK_M, 1.0).mean(axis=1)
+    stands &= ~candidates.at(height_map, table_squares(height_map), _BEHIND)
     # A table top is as high as a low back, but level: a back is thin, or slopes.
     height = np.where(stands, behind, -1.0)
     middle = np.partition(height.reshape(len(height), -1), -(height[0].size // 4), axis=1)[:, -(height[0].size // 4)]

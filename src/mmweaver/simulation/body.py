@@ -12,29 +12,11 @@ import numpy as np
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
+from mmweaver.simulation.skin import SkinEcho
 
 REFERENCE_HEIGHT_M = 1.75
 DEFAULT_NUM_POINTS = 800
-# Share of the incident power that skin and clothes return diffusely; published 77 GHz averages (about -5 to -8 dBsm
-# seen from the front) ask for 0.15 to 0.2.
-ALBEDO = 0.18
 RING = 6  # corners of a capsule's low-poly hull
-
-
-@dataclass(frozen=True, kw_only=True)
-class SkinEcho:
-    """How skin returns a wave that meets it at an angle: 4 albedo cos^exponent of its area, 2 being Lambert's law.
-
-    Other exponents are scaled to return as much over all angles, so a larger one is a flash where skin faces the radar.
-    """
-
-    albedo: float = ALBEDO
-    exponent: float = 2.0
-
-    @property
-    def strength(self) -> float:
-        """Cross section of one square metre that faces the radar."""
-        return 4 * self.albedo * (self.exponent + 1) / 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,10 +64,12 @@ CAPSULES: tuple[Capsule, ...] = (
     *_both_sides("ankle", "foot", (0.038, 0.035), FRONT, 0.05),
     *_both_sides("shoulder", "elbow", (0.05, 0.042), ARM),
     *_both_sides("elbow", "wrist", (0.042, 0.03), ARM),
-    *_both_sides("wrist", "wrist", (0.035, 0.03), ARM, 0.13),
+    *_both_sides("wrist", "wrist", (0.042, 0.04), ARM, 0.12),
 )
 TORSO_WIDTH_FRONT = 1.25  # the trunk is wider than deep: its cross-section is an ellipse
 TORSO = {"pelvis", "spine1", "spine2", "spine3"}
+CHEST = {"pelvis": 0.3, "spine1": 0.7, "spine2": 1.0, "spine3": 0.8}  # how far each part of the trunk breathes
+CHEST_BACK = 0.15  # and its back, of its front
 # A part that ends at its own start continues the bone before it: the hand the forearm, the crown the neck.
 CONTINUES = {"head": "neck", "left_wrist": "left_elbow", "right_wrist": "right_elbow"}
 
@@ -118,6 +102,8 @@ class Body:
         self.angle_rad = rng.uniform(0, 2 * np.pi, num_points)
         self.micro_phase = np.exp(2j * np.pi * rng.random(num_points))
         self.area_m2 = area.sum() * self.scale**2 / num_points
+        limb_db = [_limb_db(capsule, self.echo) for capsule in CAPSULES]
+        self.brightness = 10 ** (np.array(limb_db)[self.part] / 10)  # (point,) in power
 
     @staticmethod
     def _side_area(capsule: Capsule) -> float:
@@ -154,8 +140,15 @@ class Body:
             rotations.append(_shortest_turn(torso, np.asarray(capsule.rest), unit))
         return np.stack(starts, 1), np.stack(axes, 1), np.stack(rotations, 1)
 
-    def skin(self, joints_m: np.ndarray) -> Skin:
-        """Skin points for joints (time, 22, 3)."""
+    @cached_property
+    def _breathes(self) -> np.ndarray:
+        """How far each point follows the chest's front: all of it in front, a little at the sides and back."""
+        share = np.array([CHEST.get(capsule.start, 0.0) for capsule in CAPSULES])[self.part]
+        front = np.maximum(np.sin(self.angle_rad), 0.0)
+        return share * (CHEST_BACK + (1 - CHEST_BACK) * front)
+
+    def skin(self, joints_m: np.ndarray, chest_m: np.ndarray | None = None) -> Skin:
+        """Skin points for joints (time, 22, 3); `chest_m` (time,) is how far the chest's front stands out."""
         starts, axes, rotations = self.frames(joints_m)
         part, radii = self.part, self._radii
         along = np.clip(self.along, 0.0, 1.0)
@@ -170,7 +163,11 @@ class Body:
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         turn = rotations[:, part]
         place = starts[:, part] + axes[:, part] * along[None, :, None] + np.einsum("tpij,pj->tpi", turn, offset)
-        return Skin(place_m=place, normal=np.einsum("tpij,pj->tpi", turn, normal))
+        outward = np.einsum("tpij,pj->tpi", turn, normal)
+        if chest_m is not None:
+            trunk = np.flatnonzero(self._breathes)
+            place[:, trunk] += outward[:, trunk] * (chest_m[:, None] * self._breathes[trunk])[..., None]
+        return Skin(place_m=place, normal=outward)
 
     def hull(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Low-poly hull of all capsules for shadows: vertices (time, vertex, 3) and faces (face, 3)."""
@@ -212,6 +209,14 @@ def _cap_shares(capsule: Capsule) -> tuple[float, float]:
     share = capsule.end_radius_m / _length_m(capsule) if capsule.extend_m else 0.0
     is_lump = capsule.start == capsule.end and capsule.start not in CONTINUES
     return (share if is_lump else 0.0, share)
+
+
+def _limb_db(capsule: Capsule, echo: SkinEcho) -> float:
+    """How much brighter than the trunk a capsule is."""
+    start, end = (name.rsplit("_", 1)[-1] for name in (capsule.start, capsule.end))
+    if end in ("elbow", "wrist"):
+        return echo.arms_db
+    return echo.legs_db if end in ("knee", "ankle", "foot") and start != end else 0.0
 
 
 def _torso_rotation(joints_m: np.ndarray) -> np.ndarray:

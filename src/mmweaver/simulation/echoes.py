@@ -1,4 +1,4 @@
-"""The person's echoes: direct, over one wall, over a wall both ways; and the shadow the person casts."""
+"""A person's echoes: direct, over one wall, over a wall both ways; and the shadow the person casts."""
 
 from dataclasses import dataclass, replace
 
@@ -26,25 +26,29 @@ class BodyAtFrames:
     nodes_m: np.ndarray  # (frame, node, point, 3)
     place_m: np.ndarray  # (frame, point, 3)
     normal: np.ndarray  # (frame, point, 3)
-    hulls: list[RayCaster]  # one a frame
+    hulls: list[RayCaster]  # one a frame, of everybody who may stand in the way
 
     @classmethod
-    def of(cls, body: Body, joints_m: np.ndarray) -> "BodyAtFrames":
-        """Joints (frame, node, 22, 3); the middle node counts as the frame's middle."""
+    def of(
+        cls, body: Body, joints_m: np.ndarray, chest_m: np.ndarray | None, hulls: list[RayCaster] | None = None
+    ) -> "BodyAtFrames":
+        """Joints (frame, node, 22, 3), chest (frame, node); the middle node counts as the frame's middle.
+
+        `hulls` stand for this body and all others that may hide it; the body's own if not given.
+        """
         frames, nodes = joints_m.shape[:2]
-        skin = body.skin(joints_m.reshape(-1, 22, 3))
+        skin = body.skin(joints_m.reshape(-1, 22, 3), None if chest_m is None else chest_m.ravel())
         places = skin.place_m.reshape(frames, nodes, -1, 3)
         normals = skin.normal.reshape(frames, nodes, -1, 3)
-        vertices, faces = body.hull(joints_m[:, nodes // 2])
         return cls(
             nodes_m=places,
             place_m=places[:, nodes // 2],
             normal=normals[:, nodes // 2],
-            hulls=[RayCaster(frame, faces) for frame in vertices],
+            hulls=hulls or hulls_of([body], [joints_m]),
         )
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float, wanted: np.ndarray) -> np.ndarray:
-        """True where wanted and the body itself does not lie between; start (frame, point, 3) or (3,)."""
+        """True where wanted and no body lies between; start (frame, point, 3) or (3,)."""
         clear = wanted.copy()
         for frame, hull in enumerate(self.hulls):
             ask = np.flatnonzero(wanted[frame])
@@ -53,12 +57,33 @@ class BodyAtFrames:
         return clear
 
 
+def hulls_of(bodies: list[Body], joints_m: list[np.ndarray]) -> list[RayCaster]:
+    """One mesh a frame of all bodies together, posed at the frame's middle; joints (frame, node, 22, 3) of each."""
+    posed = [body.hull(own[:, own.shape[1] // 2]) for body, own in zip(bodies, joints_m, strict=True)]
+    first = np.cumsum([0, *(vertices.shape[1] for vertices, _ in posed)])
+    faces = np.concatenate([faces + at for (_, faces), at in zip(posed, first, strict=False)])
+    vertices = np.concatenate([vertices for vertices, _ in posed], axis=1)
+    return [RayCaster(frame, faces) for frame in vertices]
+
+
+def shadow_of(hull: RayCaster, echoes: StaticEchoes, near: np.ndarray) -> StaticEchoes:
+    """Those of the room's echoes (rows `near` are asked) whose way out or back a body blocks."""
+    first, last = echoes.first_m[near], echoes.last_m[near]
+    blocked = ~hull.is_clear(np.zeros_like(first), first, 0.02)
+    other = np.flatnonzero(np.any(first != last, axis=1))
+    blocked[other] |= ~hull.is_clear(last[other], np.zeros_like(last[other]), 0.02)
+    return echoes.part(near[blocked])
+
+
 class BodyEchoes:
     """Echo rows of one person in one room, frame by frame."""
 
-    def __init__(self, room: Room, body: Body, joints_m: np.ndarray):
+    def __init__(
+        self, room: Room, body: Body, joints_m: np.ndarray, chest_m: np.ndarray | None = None,
+        hulls: list[RayCaster] | None = None,
+    ):  # fmt: skip
         self.room, self.body, self.config = room, body, room.config
-        self.posed = BodyAtFrames.of(body, joints_m)
+        self.posed = BodyAtFrames.of(body, joints_m, chest_m, hulls)
         self.num_frames = len(joints_m)
         self.distance_m = np.linalg.norm(self.posed.place_m, axis=-1)
         self.towards = -self.posed.place_m / np.maximum(self.distance_m, 1e-6)[..., None]
@@ -76,15 +101,10 @@ class BodyEchoes:
 
     def shadowed(self, frame: int) -> StaticEchoes:
         """The room's echoes that the person hides in one frame."""
-        echoes, hull = self.room.echoes, self.posed.hulls[frame]
-        near = self._near_body(echoes, frame)
-        first, last = echoes.first_m[near], echoes.last_m[near]
-        blocked = ~hull.is_clear(np.zeros_like(first), first, 0.02)
-        other = np.flatnonzero(np.any(first != last, axis=1))
-        blocked[other] |= ~hull.is_clear(last[other], np.zeros_like(last[other]), 0.02)
-        return echoes.part(near[blocked])
+        echoes = self.room.echoes
+        return shadow_of(self.posed.hulls[frame], echoes, self.near_body(echoes, frame))
 
-    def _near_body(self, echoes: StaticEchoes, frame: int) -> np.ndarray:
+    def near_body(self, echoes: StaticEchoes, frame: int) -> np.ndarray:
         """Rows within the cone that the body fills, seen from the radar."""
         axis = self.posed.place_m[frame].mean(axis=0)
         axis = axis / np.linalg.norm(axis)
@@ -96,13 +116,12 @@ class BodyEchoes:
         return np.flatnonzero((unit[0] @ axis > opening) | (unit[1] @ axis > opening))
 
     def _visible(self) -> np.ndarray:
-        facing = self.cos > 0.02
+        facing = self.cos > self.body.echo.least_cos
         facing &= self.room.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
 
     def _direct(self) -> "Rows":
-        echo = self.body.echo
-        cross_section = echo.strength * np.maximum(self.cos, 0) ** echo.exponent * self.body.area_m2
+        cross_section = self.body.echo.back(self.cos) * self.body.area_m2 * self.body.brightness
         amplitude = self.gain * self._pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return Rows(
             None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible, False
@@ -113,7 +132,7 @@ class BodyEchoes:
         count = len(self.body.micro_phase)
         chosen = np.unique(np.linspace(0, count - 1, min(GHOST_POINTS, count)).astype(int))
         place, normal = self.posed.place_m[:, chosen], self.posed.normal[:, chosen]
-        area_m2 = self.body.area_m2 * count / len(chosen)
+        area_m2 = self.body.area_m2 * self.body.brightness[chosen] * count / len(chosen)
         image = mirror.image(place)
         way_m = np.linalg.norm(image, axis=-1)
         corner = mirror.crossing(np.zeros(3), image)
@@ -129,11 +148,11 @@ class BodyEchoes:
         over = self.gain * self._pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / way_m * coefficient
         micro = self.body.micro_phase[chosen]
         direct = self._pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]
-        echo = self.body.echo
-        share = echo.exponent / 4  # of each of the two directions, in amplitude
-        skin = np.sqrt(echo.strength * area_m2) * np.maximum(cos, 0) ** share
-        mixed = over * direct * skin * np.maximum(self.cos[:, chosen], 0) ** share * micro
-        double = over**2 / self.gain * skin * np.maximum(cos, 0) ** share * micro
+        half = to_corner + self.towards[:, chosen]
+        cos_half = (normal * half).sum(-1) / np.maximum(np.linalg.norm(half, axis=-1), 1e-6)
+        skin = self.body.echo
+        mixed = over * direct * np.sqrt(skin.over(self.cos[:, chosen], cos, cos_half) * area_m2) * micro
+        double = over**2 / self.gain * np.sqrt(skin.back(cos) * area_m2) * micro
         ghosts = [
             Rows(None, mirror, chosen, mixed, seen & self.visible[:, chosen], True),
             Rows(mirror, mirror, chosen, double, seen, False),

@@ -25,6 +25,9 @@ class Impairments:
     phase_noise_dbc_per_hz: float | None = -93.0  # at 1 MHz; None = none
     chirp_jitter_s: float = 1.1e-9  # a chirp starts at one of two instants so far apart (TI SPRACV2: 0.4 deg at 1 MHz)
     quantise: bool = True
+    channel_gain_db: float = 0.0  # rms of each transmitter's and each receiver's gain error; a board keeps its own
+    channel_phase_rad: float = 0.0
+    board: int = 0  # which board: draws these errors, whatever the seed
 
 
 IDEAL = Impairments(
@@ -38,11 +41,14 @@ class Receiver:
 
     def __init__(self, config: RadarConfig, impairments: Impairments, seed: int):
         self.config, self.impairments, self.seed = config, impairments, seed
+        self.channels = channel_errors(config, impairments)
 
     def receive(self, person: np.ndarray, room: np.ndarray, room_rate: np.ndarray, frame: int) -> np.ndarray:
         """Person (loop, tx, rx, sample) + room (tx, rx, sample) and its time derivative -> samples, complex64."""
         samples = person + room
         samples += self._shift(frame)[:, :, None, :] * room_rate
+        if self.impairments.channel_gain_db or self.impairments.channel_phase_rad:
+            samples *= self.channels[:, :, None]
         if self.impairments.thermal_noise:
             samples += self._noise(samples.shape, frame)
         if not self.config.complex_samples:
@@ -72,6 +78,15 @@ class Receiver:
             white = rng.standard_normal(shift.shape, dtype=np.float32)
             shift += white * np.float32(deviation_hz / config.chirp_slope_hz_per_s)
         return shift
+
+
+def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
+    """Factors (tx, rx), complex64, of an uncalibrated board: one of each transmitter times one of each receiver."""
+    rng = stream(impairments.board, "channel errors")
+    drawn = rng.standard_normal((2, config.num_tx + config.num_rx))
+    gain_db, phase_rad = impairments.channel_gain_db * drawn[0], impairments.channel_phase_rad * drawn[1]
+    each = 10 ** (gain_db / 20) * np.exp(1j * phase_rad)
+    return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
 
 
 def quantised(samples: np.ndarray, count: float) -> np.ndarray:

@@ -1,6 +1,6 @@
-"""Scene + poses -> ADC samples. Three steps: the room once, the person's echoes, the receiver."""
+"""Scene + poses -> ADC samples. Three steps: the room once, the people's echoes, the receiver."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,10 +9,12 @@ from scipy.interpolate import CubicSpline
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
-from mmweaver.simulation.body import DEFAULT_NUM_POINTS, SkinEcho, body_of
-from mmweaver.simulation.echoes import BodyEchoes
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS, Body, body_of
+from mmweaver.simulation.people import PeopleEchoes
 from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
+from mmweaver.simulation.skin import SkinEcho
+from mmweaver.simulation.small_motions import Restlessness, SmallMotions
 from mmweaver.simulation.synthesis import FrameClock, synthesise
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -20,8 +22,13 @@ CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
 ASSUMPTIONS = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
     " makers' documents; they are not calibrated against a recording",
-    "the body is made of capsules with a diffuse skin (albedo 0.18 at 77 GHz); clothes are not modelled",
+    "the body is made of capsules with a wrinkled skin that glints where it faces the radar (reflectivity 0.14, slope"
+    " 0.10); clothes are in that figure and not modelled",
+    "who stands or sits still sways, trembles and breathes by typical amounts",
     "nothing passes through furniture, and waves do not bend around edges",
+)
+SEVERAL_PEOPLE = (
+    "people hide each other, but no wave goes from one person over another to the radar (see docs/several_people.md)"
 )
 
 
@@ -51,50 +58,91 @@ class Simulator:
 
     def run(
         self,
-        pose: PoseSequence,
+        pose: PoseSequence | Sequence[PoseSequence],
         *,
         num_frames: int,
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
+        motions: SmallMotions | None = None,
+        mutual_shadows: bool = True,
     ) -> Simulation:
-        """ADC samples of the posed person, all frames at once: mind the memory, or take `chunks`."""
-        chunks = list(self.chunks(pose, num_frames=num_frames, seed=seed, num_points=num_points, echo=echo))
+        """ADC samples of the posed people, all frames at once: mind the memory, or take `chunks`.
+
+        They sway, waver and breathe as `motions` says, by default as people do; STILL only holds the joints.
+        """
+        chunks = self.chunks(
+            pose,
+            num_frames=num_frames,
+            seed=seed,
+            num_points=num_points,
+            echo=echo,
+            motions=motions,
+            mutual_shadows=mutual_shadows,
+        )
         samples = np.concatenate([chunk.samples for chunk in chunks])
         return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
 
     def chunks(
         self,
-        pose: PoseSequence,
+        pose: PoseSequence | Sequence[PoseSequence],
         *,
         num_frames: int,
         seed: int,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
+        motions: SmallMotions | None = None,
+        mutual_shadows: bool = True,
     ) -> Iterator[AdcCube]:
         """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
 
-        Raises InputError where the pose does not cover the frames or holds numbers that are none.
+        `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_shadows` the signal is the
+        plain sum of people who do not hide each other. Raises InputError where a pose does not cover the frames or
+        holds numbers that are none.
         """
-        self._check(pose, num_frames)
-        body = body_of(pose, num_points, echo)
+        poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
+        for one in poses:
+            self._check(one, num_frames)
+        bodies = [body_of(one, num_points, echo) for one in poses]
         receiver = Receiver(self.config, self.impairments, seed)
+        restless = [Restlessness(one.subject, seed, motions or SmallMotions()) for one in poses]
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
-            echoes = BodyEchoes(self.room, body, self._joints_at_nodes(pose, frames))
+            echoes = self._echoes(poses, bodies, restless, frames, mutual_shadows)
             samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
             yield AdcCube(samples=samples, config=self.config, scale=1.0)
 
-    def _frame(self, echoes: BodyEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
-        room = self.room_adc - static_adc(echoes.shadowed(index), self.config)
-        person = synthesise(echoes.rows(index), self.clock)
-        return receiver.receive(person, room, self.room.adc_rate, frame)
+    def _frame(self, echoes: PeopleEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
+        room = self.room_adc
+        for shadow in echoes.shadowed(index):
+            room = room - static_adc(shadow, self.config)
+        people = synthesise(echoes.rows(index), self.clock)
+        return receiver.receive(people, room, self.room.adc_rate, frame)
+
+    def _echoes(
+        self, poses: tuple[PoseSequence, ...], bodies: list[Body], restless: list[Restlessness], frames: np.ndarray,
+        mutual: bool,
+    ) -> PeopleEchoes:  # fmt: skip
+        time_s = (frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]).ravel()
+        joints_m, chests_m = [], []
+        for pose, unrest in zip(poses, restless, strict=True):
+            joints = self._joints_at_nodes(pose, frames)
+            moved = unrest.moved(joints.reshape(-1, *joints.shape[2:]), time_s, pose.height_m)
+            joints_m.append(moved.reshape(joints.shape))
+            chests_m.append(unrest.chest_m(time_s).reshape(joints.shape[:2]))
+        return PeopleEchoes(self.room, bodies, joints_m, chests_m, mutual=mutual)
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
-        """(frame, node, 22, 3): slow time is interpolated, never held."""
+        """(frame, node, 22, 3): slow time is interpolated, never held.
+
+        A frame that begins with the last pose goes on as fast as that pose was: held, it would be a person who freezes.
+        """
         times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
         spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
-        return spline(np.clip(times, pose.time_s[0], pose.time_s[-1]))
+        last_s = pose.time_s[-1]
+        joints = spline(np.clip(times, pose.time_s[0], last_s))
+        beyond_s = np.maximum(times - last_s, 0.0)
+        return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
 
     def _check(self, pose: PoseSequence, num_frames: int) -> None:
         needed_s = (num_frames - 1) * self.config.frame_period_s

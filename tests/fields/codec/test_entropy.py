@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.seeding import stream
-from mmweaver.fields.codec.entropy import BitModel, Mixture, NumberModel, Reader, Writer
+from mmweaver.fields.codec.entropy import BitModel, LadderModel, Mixture, NumberModel, Reader, Writer
 
 
 def test_bits_and_numbers_come_back_and_cost_what_they_should():
@@ -48,9 +48,28 @@ def test_whole_numbers_of_any_size():
     assert np.array_equal(again, numbers)
 
 
+def test_a_ladder_holds_any_number_and_is_cheap_where_numbers_are_even():
+    numbers = np.concatenate([np.arange(70), [1000, 70_000, 2**27]])
+    contexts = [numbers % 3, numbers % 2]
+    writer = Writer()
+    LadderModel([3, 2]).code(writer, contexts, numbers)
+    again = LadderModel([3, 2]).code(Reader(writer.finished()), contexts, np.zeros_like(numbers))
+    assert np.array_equal(again, numbers)
+    rng = stream(3, "ladder")
+    writer, model, bits = Writer(), LadderModel([1]), 0.0
+    for _ in range(40):
+        numbers = rng.geometric(0.02, 200) - 1
+        model.code(writer, [np.zeros(200, np.int64)], numbers)
+        bits -= float(np.sum(np.log2(0.02 * 0.98**numbers)))
+    assert 8 * len(writer.finished()) < 1.05 * bits
+
+
 def test_a_damaged_stream_ends():
     noise = stream(2, "damage").integers(0, 256, 400).astype(np.uint8).tobytes()
     reader = Reader(noise)
     with pytest.raises((ValueError, AssertionError)):
         for _ in range(1000):
             NumberModel(1, 2, 0.99).code(reader, np.zeros(500, np.int64), np.zeros(500, np.int64))
+    with pytest.raises((ValueError, AssertionError)):
+        for _ in range(1000):
+            LadderModel([1], 0.99).code(reader, [np.zeros(500, np.int64)], np.zeros(500, np.int64))

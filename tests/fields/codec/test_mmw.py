@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.fields.codec import mmw
-from mmweaver.fields.codec.mmw import compressed, described, read_cube
+from mmweaver.fields.codec.mmw import compressed, described, errors_db, read_cube
 
 
 @pytest.fixture(scope="module")
@@ -43,6 +43,28 @@ def test_the_quality_asked_for_is_met(tmp_path: Path):
     power = np.mean(np.abs(cube.values) ** 2, axis=-1)
     active = power > np.median(power) * 10**1.2
     assert -27 < error_db(again.values[active], cube.values[active]) <= -25
+
+
+def test_noise_is_kept_where_asked(tmp_path: Path):
+    """Signal gets the bytes unless noise is wanted too; both say what they did."""
+    cube = crowd()
+    plain, even = (errors_db(compressed(cube, num_bytes=9000, keep_noise=keep), cube) for keep in (False, True))
+    assert plain["signal_error_db"] < even["signal_error_db"] - 1
+    power = np.mean(np.abs(cube.values) ** 2, axis=-1)
+    noise = power <= np.median(power) * 10**1.2
+    left = []
+    for keep in (False, True):
+        (tmp_path / "a.mmw").write_bytes(compressed(cube, num_bytes=9000, keep_noise=keep))
+        left.append(error_db(read_cube(tmp_path / "a.mmw").values[noise], cube.values[noise]))
+    assert left[1] < left[0] - 1
+
+
+def test_files_of_version_1_are_still_read():
+    """Written by the release that made that version."""
+    path = Path(__file__).with_name("version_1.mmw")
+    assert path.read_bytes()[4] == 1
+    assert error_db(read_cube(path).values, crowd().values) < -10
+    assert described(path)["chunks"][0]["scatterers"] > 10
 
 
 @pytest.mark.usefixtures("in_chunks")

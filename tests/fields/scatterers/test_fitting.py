@@ -1,8 +1,9 @@
 import torch
 from tests.fields.echoes import SMALL, crowd
 
+from mmweaver.fields.beams import beams_of
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from mmweaver.fields.scatterers.layers import rendered
+from mmweaver.fields.scatterers.layers import rendered, static_cells
 from mmweaver.fields.scatterers.stretch import Stretch
 
 
@@ -57,3 +58,24 @@ def test_gains_of_the_antennas_are_learned():
     error = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
     assert error < plain - 1
     assert abs(layers.calibration[3] / layers.calibration[4]) > 1.1
+
+
+def test_so_many_numbers_are_not_exceeded_and_static_beams_worth_nothing_go():
+    """A wall straight ahead beside a crowd: few beams keep it, and the points get the rest."""
+    stretch = Stretch.of(SMALL, 3, 0)
+    wall = torch.zeros(24, 12, dtype=torch.complex64)
+    wall[6:10] = 0.3
+    working = stretch.working(crowd().values) + static_cells(wall, stretch.response, stretch.axes)
+    kept_db = {}
+    for most in (600, 1200):
+        layers = fitted(working, stretch, FitRecipe(num_points=999, num_values=most, stages=10))
+        assert 0.9 * most < layers.num_values(stretch.response) <= most
+        kept = layers.kept_beams
+        assert kept is not None
+        assert 6 < int(kept.sum()) < 0.7 * kept.numel()
+        beams = layers.static @ torch.from_numpy(beams_of(SMALL)).to(layers.static.dtype).T
+        assert float(beams[~kept].abs().max()) < 1e-5
+        left = working - rendered(layers, stretch.response, stretch.axes)
+        kept_db[most] = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
+    assert kept_db[1200] < kept_db[600] - 2
+    assert kept_db[1200] < -30

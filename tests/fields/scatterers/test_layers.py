@@ -1,7 +1,16 @@
 import torch
 from tests.fields.echoes import SMALL
 
-from mmweaver.fields.scatterers.layers import Layers, at_rest, compact, joined, no_points, static_cells, strongest
+from mmweaver.fields.scatterers.layers import (
+    Layers,
+    at_rest,
+    compact,
+    joined,
+    no_points,
+    static_cells,
+    static_values,
+    strongest,
+)
 from mmweaver.fields.scatterers.response import PointResponse, Points
 
 
@@ -38,3 +47,12 @@ def test_values_are_counted():
     assert layers.num_values(response) == 6 + 1
     with_all = Layers(points=some([[0.5, 0.2]]), static=torch.ones(24, 12) + 0j, calibration=2 * gains, noise_power=1.0)
     assert with_all.num_values(response) == 12 + 2 * 24 * 12 + 24 + 1
+
+
+def test_a_sparse_static_layer_costs_its_beams_and_the_marks_of_which_they_are():
+    kept = torch.zeros(64, 12, dtype=torch.bool)
+    kept[3, :5] = True
+    assert static_values(None, kept.numel()) == 2 * 64 * 12
+    assert static_values(kept, kept.numel()) == 2 * 5 + 64 * 12 / 32
+    assert static_values(~kept, kept.numel()) == 2 * 64 * 12  # cheaper without the marks
+    assert static_values(torch.ones_like(kept), kept.numel()) == 2 * 64 * 12

@@ -11,13 +11,15 @@ from mmweaver.fields.codec.mmw import compressed, read_cube
 
 
 class Mmw(Codec):
-    """Scatterers, static layer and residual in a .mmw file."""
+    """Scatterers, static layer and residual in a .mmw file; with `keep_noise` cells of noise count as much as any."""
 
-    name = "mmw"
+    def __init__(self, *, keep_noise: bool = False):
+        self.keep_noise = keep_noise
+        self.name = "mmw_keep_noise" if keep_noise else "mmw"
 
     def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
         try:
-            return compressed(cube, num_bytes=num_bytes)
+            return compressed(cube, num_bytes=num_bytes, keep_noise=self.keep_noise)
         except InputError:
             return None
 

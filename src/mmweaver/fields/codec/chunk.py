@@ -14,6 +14,8 @@ from torch import Tensor
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import CubeValues
+from mmweaver.fields.codec.cell_choice import active_cells, chosen_cells, rounded, still_joined
+from mmweaver.fields.codec.cell_coder import COARSE, COARSER, MapCoder, NumberCoder
 from mmweaver.fields.codec.entropy import BitStream, Reader, Writer
 from mmweaver.fields.codec.point_coder import PointCoder, PointSteps, nearness, points_of, quantised
 from mmweaver.fields.codec.residual_coder import ResidualCoder
@@ -25,8 +27,7 @@ from mmweaver.fields.scatterers.stretch import Stretch
 
 # frames, hop, peak, step, centroids of 1 and of more, noise, flags
 FRONT = struct.Struct("<HHffBBBB")
-HAS_STATIC, HAS_POINTS, HAS_RESIDUAL, HAS_GAINS = 1, 2, 4, 8
-ROUNDING = 0.3  # a number is rounded up from 1 - this: small ones cost more than they are worth
+HAS_STATIC, HAS_POINTS, HAS_RESIDUAL, HAS_GAINS, HAS_CELLS = 1, 2, 4, 8, 16
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; smaller scatterers are cheaper as residual
 REFINED_STEPS = 4
@@ -58,12 +59,13 @@ class Decoded:
 class ChunkEncoder:
     """Frames that were fitted once, written as finely as asked. `target` is the working frames over `peak`."""
 
-    def __init__(self, target: Tensor, stretch: Stretch, layers: Layers, peak: float):
+    def __init__(self, target: Tensor, stretch: Stretch, layers: Layers, peak: float, *, keep_noise: bool = False):
         if bool((layers.calibration - 1).abs().max() < LEAST_GAIN):
             layers = replace(layers, calibration=torch.ones_like(layers.calibration))
         self.target, self.stretch, self.peak = target, stretch, peak
         self.layers = replace(layers, calibration=_cut_gains(layers.calibration))
         self.beams = beams_of(stretch.config)
+        self.is_active = None if keep_noise else still_joined(active_cells(target.numpy()))
         self._refined_points: tuple[int, Points] | None = None
         self._with_points: tuple[float, bool] | None = None
 
@@ -98,13 +100,17 @@ class ChunkEncoder:
             left = self.target - rendered(layers, stretch.response, stretch.axes)
             scaled = to_coefficients(left.numpy().astype(np.complex128), self.beams) / step
             parts = np.stack([scaled.real, scaled.imag])
-            levels = _rounded(parts, ROUNDING)
             near = nearness(coded, _shape_of(stretch))
+        classes = None if self.is_active is None else chosen_cells(parts, self.is_active)
+        if classes is not None:
+            parts = parts / np.where(classes == COARSE, COARSER, 1) * (classes > 0)
+        levels = rounded(parts)
         if levels.any():
-            ResidualCoder(levels.shape[1:]).code(stream, levels, near)
+            _code_residual(stream, levels, classes, near)
         has_gains = bool((layers.calibration != 1).any())
         flags = HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded))
-        flags += HAS_RESIDUAL * bool(levels.any()) + HAS_GAINS * has_gains
+        flags += HAS_GAINS * has_gains
+        flags += (HAS_RESIDUAL if classes is None else HAS_CELLS) * bool(levels.any())
         front = FRONT.pack(
             stretch.num_frames, stretch.hop, self.peak, step, *_centroids(parts, levels),
             _noise_level(layers.noise_power), flags,
@@ -113,7 +119,7 @@ class ChunkEncoder:
 
     def _static_levels(self, step: float) -> np.ndarray:
         values = np.einsum("ra,ba->br", self.layers.static.numpy(), self.beams) / _static_step(self.stretch, step)
-        return _rounded(np.stack([values.real, values.imag]), STATIC_ROUNDING)[:, :, None, :, None]
+        return rounded(np.stack([values.real, values.imag]), STATIC_ROUNDING)[:, :, None, :, None]
 
     def _refined(self, layers: Layers, steps: PointSteps) -> Points:
         """The points worth writing, fitted again without the others."""
@@ -148,6 +154,8 @@ def _decoded(data: bytes, config: RadarConfig, with_residual: bool) -> Decoded:
         raise ValueError("impossible front")
     stretch = Stretch.of(config, num_frames, hop)
     beams = beams_of(config)
+    if flags >= 2 * HAS_CELLS or (flags & HAS_RESIDUAL and flags & HAS_CELLS):
+        raise ValueError("impossible flags")
     at = FRONT.size
     gains = torch.ones(config.num_antennas, dtype=torch.complex64)
     if flags & HAS_GAINS:
@@ -164,11 +172,14 @@ def _decoded(data: bytes, config: RadarConfig, with_residual: bool) -> Decoded:
         coded = _point_coder(stretch, steps).code(stream, None)
         points, near = _points_of(coded, stretch, steps), nearness(coded, shape)
     residual, num_values = None, 0
-    if flags & HAS_RESIDUAL and with_residual:
+    if flags & (HAS_RESIDUAL | HAS_CELLS) and with_residual:
         levels = np.zeros((2, config.num_antennas, *shape), np.int64)
-        ResidualCoder(levels.shape[1:]).code(stream, levels, near)
+        classes = np.zeros(shape, np.int64) if flags & HAS_CELLS else None
+        _code_residual(stream, levels, classes, near)
         num_values = int(np.count_nonzero(levels))
         values = _restored(levels, one, more) * step
+        if classes is not None:
+            values *= np.where(classes == COARSE, COARSER, 1)
         cells = from_coefficients(values[0] + 1j * values[1], beams)
         residual = torch.from_numpy(cells.astype(np.complex64))
     layers = Layers(
@@ -208,8 +219,13 @@ def _static_of(levels: np.ndarray, stretch: Stretch, beams: np.ndarray, step: fl
     return torch.from_numpy(np.einsum("br,ba->ra", values, beams.conj()).astype(np.complex64))
 
 
-def _rounded(values: np.ndarray, rounding: float) -> np.ndarray:
-    return (np.sign(values) * np.floor(np.abs(values) + rounding)).astype(np.int64)
+def _code_residual(stream: BitStream, levels: np.ndarray, classes: np.ndarray | None, near: np.ndarray) -> None:
+    """All cells alike, or by a map of those that are open."""
+    if classes is None:
+        ResidualCoder(levels.shape[1:]).code(stream, levels, near)
+        return
+    MapCoder(classes.shape).code(stream, classes, near)
+    NumberCoder(levels.shape[1:]).code(stream, levels, classes, near)
 
 
 def _centroids(values: np.ndarray, levels: np.ndarray) -> tuple[int, int]:

@@ -15,6 +15,10 @@ Chance = np.ndarray  # (n,) float64
 
 LEAST_CHANCE = 2.0**-14
 MOST_OCTAVES = 30
+MOST_EVEN = 2**23
+LAST_SINGLE = 3
+RUNGS = np.array([0, 1, 2, 3, *(2**octave * half // 2 for octave in range(2, 30) for half in (2, 3))])
+MOST_RUNGS = len(RUNGS) - 2
 
 
 class BitStream(ABC):
@@ -24,9 +28,18 @@ class BitStream(ABC):
     def bits(self, chance: Chance, values: Whole) -> Whole:
         """Bits of which each is 1 with its chance. A reader ignores `values` (but for their number)."""
 
-    @abstractmethod
     def even(self, sizes: Whole, values: Whole) -> Whole:
-        """Numbers of which each is any of 0 ... size - 1."""
+        """Numbers of which each is any of 0 ... size - 1. Sizes beyond 2^23 must be multiples of 2^16."""
+        huge = sizes > MOST_EVEN
+        if not huge.any():
+            return self._even_small(sizes, values)
+        out = self._even_small(np.where(huge, sizes >> 16, sizes), np.where(huge, values >> 16, values))
+        low = self._even_small(np.where(huge, 1 << 16, 1), values & 0xFFFF)
+        return np.where(huge, (out << 16) + low, out)
+
+    @abstractmethod
+    def _even_small(self, sizes: Whole, values: Whole) -> Whole:
+        """The same for sizes of at most 2^23, which is what the coder's precision allows."""
 
 
 def _constriction() -> tuple[Any, Any]:
@@ -51,7 +64,7 @@ class Writer(BitStream):
             self._coder.encode(values.astype(np.int32), self._bit, chance)
         return values
 
-    def even(self, sizes: Whole, values: Whole) -> Whole:
+    def _even_small(self, sizes: Whole, values: Whole) -> Whole:
         wide = sizes > 1
         if wide.any():
             self._coder.encode(values[wide].astype(np.int32), self._even, sizes[wide].astype(np.int32))
@@ -75,7 +88,7 @@ class Reader(BitStream):
             return values
         return np.asarray(self._coder.decode(self._bit, chance)).astype(np.int64)
 
-    def even(self, sizes: Whole, values: Whole) -> Whole:
+    def _even_small(self, sizes: Whole, values: Whole) -> Whole:
         out = np.zeros(len(sizes), np.int64)
         wide = sizes > 1
         if wide.any():
@@ -161,3 +174,32 @@ def _climbed(stream: BitStream, models: list[Mixture], context: Whole, values: W
         open_ = open_[more > 0]
         out[open_] = step + 1
     return out
+
+
+class LadderModel:
+    """Whole numbers from 0, seen from several sides: a learned chance for each rung of a ladder, then even bits.
+
+    Rungs are 0, 1, 2, 3, then two to an octave: 4-5, 6-7, 8-11, 12-15, 16-23, ...
+    """
+
+    def __init__(self, num_contexts: list[int], chance: float = 0.4):
+        self.rungs = [Mixture([BitModel(num, chance, 2.0) for num in num_contexts]) for _ in range(MOST_RUNGS)]
+
+    def code(self, stream: BitStream, contexts: list[Whole], values: Whole) -> Whole:
+        """One context of each side a number."""
+        wanted = np.searchsorted(RUNGS, values, side="right") - 1
+        rung = np.zeros(len(values), np.int64)
+        open_ = np.arange(len(values))
+        for step, model in enumerate(self.rungs):
+            if not len(open_):
+                break
+            more = model.code(stream, [context[open_] for context in contexts], (wanted[open_] > step).astype(np.int64))
+            open_ = open_[more > 0]
+            rung[open_] = step + 1
+        if len(open_):
+            raise ValueError("a number too large: the stream is damaged")
+        out = RUNGS[rung]
+        wide = np.flatnonzero(rung > LAST_SINGLE)
+        if len(wide):
+            out[wide] += stream.even(RUNGS[rung[wide] + 1] - out[wide], values[wide] - out[wide])
+        return out

@@ -11,23 +11,24 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
+from mmweaver.fields.codec.cell_choice import active_cells
 from mmweaver.fields.codec.chunk import ChunkEncoder, Decoded, decoded
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.stretch import Stretch, overlap_hop
-from mmweaver.formats.mmw_file import MmwFile, MmwHeader, packed_mmw
+from mmweaver.formats.mmw_file import MmwFile, MmwHeader, packed_mmw, unpacked_mmw
 
 CHUNK_FRAMES = 20
-BYTES_A_POINT = 3.3  # a scatterer seldom costs less
-POINTS_A_FRAME = 95  # more of them take long to fit and say little more
+BYTES_A_POINT = 6.0  # fewer and well fitted ones say more than many: what is left has a coder of its own
+POINTS_A_FRAME = 50
+FIT_STAGES, LEAST_GAIN = 20, 12.0
 LEAST_BYTES = 256
-FINEST_STEP, COARSEST_STEP = 1e-6, 0.5
+FINEST_STEP, COARSEST_STEP = 1e-7, 0.5
 TRIALS = 9
 BENT = 0.1  # trials whose sizes (as logarithms) are nearer than this are joined by a line
 CLOSE_ENOUGH = 0.97  # of the bytes allowed
 # a first guess: the step that suits 500 bytes a frame, and how it falls with more of them
 FIRST_STEP, FIRST_SLOPE, USUAL_BYTES = 3e-3, 1.2, 500
 CLOSE_ENOUGH_DB = 0.1
-ACTIVE_DB = 12.0
 
 Progress = Callable[[str], None]
 
@@ -37,10 +38,13 @@ def compressed(
     *,
     num_bytes: int | None = None,
     quality_db: float | None = None,
+    keep_noise: bool = False,
     progress: Progress = lambda _: None,
 ) -> bytes:
     """The bytes of a .mmw file: at most `num_bytes`, or with the active cells right to `quality_db` dB.
 
+    Cells that hold no signal (less than 12 dB over the median power) may err 12 dB more, and are left empty where
+    they hold less than that; with `keep_noise` all cells err alike.
     Raises InputError where the cube cannot be written (no numbers, other axes than its radar's) or the wish cannot
     be met.
     """
@@ -57,7 +61,7 @@ def compressed(
     encoders = []
     for number, part in enumerate(parts):
         progress(f"fitting frames {part[0]} to {part[-1]} ({number + 1} of {len(parts)})")
-        encoders.append(_encoder(_some_frames(cube, part), peak, wanted))
+        encoders.append(_encoder(_some_frames(cube, part), peak, wanted, keep_noise))
     header = MmwHeader(
         config=cube.config, scale=cube.scale, frame_time_s=tuple(float(t) for t in cube.grid.frame_time_s),
         chunk_frames=tuple(len(part) for part in parts),
@@ -93,6 +97,17 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
     joined = np.concatenate(values)
     joined = joined if wanted.step > 0 else joined[order]
     return RadarCube(values=joined, grid=grid, config=header.config, scale=header.scale)
+
+
+def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
+    """Error over signal, dB, of a file's bytes against the cube they were made of: cells with signal, and all cells."""
+    header, chunks = unpacked_mmw(data)
+    again = np.concatenate([decoded(chunk, header.config).cube_values() for chunk in chunks])
+    is_active = active_cells(cube.values)
+    return {
+        "signal_error_db": round(_error_db(cube.values, again, is_active), 2),
+        "all_error_db": round(_error_db(cube.values, again, np.ones_like(is_active)), 2),
+    }
 
 
 def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> Decoded:
@@ -176,15 +191,17 @@ def _some_frames(cube: RadarCube, part: Sequence[int]) -> RadarCube:
     return replace(cube, values=cube.values[chosen], grid=grid)
 
 
-def _encoder(cube: RadarCube, peak: float, wanted: float | None) -> ChunkEncoder:
+def _encoder(cube: RadarCube, peak: float, wanted: float | None, keep_noise: bool) -> ChunkEncoder:
     frames = len(cube.values)
     stretch = Stretch.of(cube.config, frames, overlap_hop(cube))
     target = stretch.working(cube.values / np.float32(peak))
     most = POINTS_A_FRAME * frames
     num_points = most if wanted is None else min(most, int(wanted / BYTES_A_POINT))
     # one frame cannot tell what stands still from what moves slowly
-    recipe = FitRecipe(num_points=num_points, with_static=frames > 1, with_calibration=True)
-    return ChunkEncoder(target, stretch, fitted(target, stretch, recipe), peak)
+    recipe = FitRecipe(
+        num_points=num_points, with_static=frames > 1, with_calibration=True, stages=FIT_STAGES, least_gain=LEAST_GAIN
+    )
+    return ChunkEncoder(target, stretch, fitted(target, stretch, recipe), peak, keep_noise=keep_noise)
 
 
 def _within_bytes(written: Callable[[float], list[bytes]], header: MmwHeader, num_bytes: int) -> bytes:
@@ -234,9 +251,7 @@ def _next_guess(seen: list[tuple[float, float]], low: float, high: float) -> flo
 
 def _within_error(written: Callable[[float], list[bytes]], cube: RadarCube, quality_db: float) -> list[bytes]:
     """The coarsest step whose error on active cells is at most -quality_db."""
-    power = np.mean(np.abs(cube.values) ** 2, axis=-1)
-    is_active = power > np.median(power) * 10 ** (ACTIVE_DB / 10)
-    is_active = is_active if is_active.any() else np.ones_like(is_active)
+    is_active = active_cells(cube.values)
     low, high = math.log(FINEST_STEP), math.log(COARSEST_STEP)
     best: list[bytes] | None = None
     seen: list[tuple[float, float]] = []

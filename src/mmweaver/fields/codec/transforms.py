@@ -3,27 +3,10 @@
 import numpy as np
 from jaxtyping import Complex, Float
 
-from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.virtual_array import SAME_PLACE_WAVELENGTHS
+from mmweaver.fields.beams import beams_of as beams_of
 
 Array = np.ndarray
 STILL = 1  # Doppler bins on either side of zero that a resting scene fills
-
-
-def beams_of(config: RadarConfig) -> Complex[Array, "beam antenna"]:
-    """Each row of the array by its own DFT, straight ahead in the middle; rows from low to high, unitary."""
-    position_m = config.antenna_position_m
-    height = np.round(position_m[:, 2] / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))
-    beams = np.zeros((config.num_antennas, config.num_antennas), complex)
-    first = 0
-    for level in np.unique(height):
-        row = np.flatnonzero(height == level)
-        row = row[np.argsort(position_m[row, 0], kind="stable")]
-        num = len(row)
-        turns = np.outer(np.arange(num) - num // 2, np.arange(num)) / num
-        beams[first : first + num, row] = np.exp(-2j * np.pi * turns) / np.sqrt(num)
-        first += num
-    return beams
 
 
 def cosines(num: int) -> Float[Array, "num num"]:
@@ -54,8 +37,13 @@ def from_coefficients(
     return np.moveaxis(np.tensordot(beams.conj(), values, axes=(0, 0)), 0, 3)
 
 
+def still_bins(num_doppler: int) -> slice:
+    """Doppler cells that a resting scene fills."""
+    middle = num_doppler // 2
+    return slice(max(0, middle - STILL), middle + STILL + 1)
+
+
 def _still_turned(values: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    middle = values.shape[3] // 2
-    still = slice(max(0, middle - STILL), middle + STILL + 1)
+    still = still_bins(values.shape[3])
     values[..., still] = np.einsum("ts,bsrd->btrd", matrix, values[..., still], optimize=True)
     return values

@@ -22,7 +22,8 @@ class WindowKernel:
         self.num = num
         place = np.arange(0, num * STEPS_A_BIN // 2 + 2 * STEPS_A_BIN) / STEPS_A_BIN
         value, slope = _spectrum(np.asarray(window, np.float64), place)
-        self._pieces = torch.from_numpy(_cubics(value, slope / STEPS_A_BIN)).to(torch.float32)
+        # (coefficient, piece): four short lookups take a quarter of the time of one long one
+        self._pieces = torch.from_numpy(_cubics(value, slope / STEPS_A_BIN).T.copy()).to(torch.float32)
 
     def __call__(self, x: Tensor) -> tuple[Tensor, Tensor]:
         """Value and slope (a bin) at any x; differentiable."""
@@ -34,10 +35,10 @@ class WindowKernel:
         step = folded.abs() * STEPS_A_BIN
         index = step.detach().floor()
         t = step - index
-        c = self._pieces.to(x.dtype)[index.long()]
-        c0, c1, c2, c3 = c.unbind(-1)
-        value = c0 + t * (c1 + t * (c2 + t * c3))
-        slope = (c1 + t * (2 * c2 + t * 3 * c3)) * STEPS_A_BIN
+        flat = index.flatten().int()
+        c0, c1, c2, c3 = (piece.index_select(0, flat).view(x.shape) for piece in self._pieces.to(x.dtype))
+        value = torch.addcmul(c0, t, torch.addcmul(c1, t, torch.addcmul(c2, t, c3)))
+        slope = torch.addcmul(c1, t, torch.addcmul(2 * c2, t, c3, value=3)) * STEPS_A_BIN
         return value * even, slope * sign
 
 

@@ -9,20 +9,24 @@ from mmweaver.fields.scatterers.response import Axes, PointResponse, Points
 
 VALUES_OF_POINT = 4  # range, velocity, complex amplitude; and one for each direction the array can tell
 
+BITS_OF_VALUE = 32  # float32
+
 
 @dataclass(frozen=True, kw_only=True)
 class Layers:
     """Parameters of one stretch, in units of its response.
 
     `points` (frame, point) are padded with amplitude zero. `static` (range, antenna): what stands still, one complex
-    number for each range cell and antenna; its Doppler response is known. `calibration` (antenna,) multiplies all of
-    it. `noise_power` is that of one cell, what a rendered cube lacks.
+    number for each range cell and antenna; its Doppler response is known. `kept_beams` (range, beam): the beams of it
+    that are not zero, None = all. `calibration` (antenna,) multiplies all of it. `noise_power` is that of one cell,
+    what a rendered cube lacks.
     """
 
     points: Points
     static: Tensor
     calibration: Tensor
     noise_power: float
+    kept_beams: Tensor | None = None
 
     def counts(self) -> Tensor:
         """Scatterers in each frame."""
@@ -30,10 +34,23 @@ class Layers:
 
     def num_values(self, response: PointResponse) -> int:
         """Real numbers that say all of this: the points, the static layer, the gains where learned, the noise."""
-        points = int(self.counts().sum()) * (VALUES_OF_POINT + response.num_directions)
-        static = 2 * self.static.numel() if bool((self.static != 0).any()) else 0
+        points = int(self.counts().sum()) * values_of_point(response)
+        has_static = bool((self.static != 0).any())
+        static = static_values(self.kept_beams, self.static.numel()) if has_static else 0
         gains = 2 * self.calibration.numel() if bool((self.calibration != 1).any()) else 0
         return points + static + gains + 1
+
+
+def values_of_point(response: PointResponse) -> int:
+    """Real numbers of one scatterer."""
+    return VALUES_OF_POINT + response.num_directions
+
+
+def static_values(kept_beams: Tensor | None, num_cells: int) -> int:
+    """Real numbers of a static layer: two a beam that is kept, and one for every 32 marks of which are."""
+    if kept_beams is None:
+        return 2 * num_cells
+    return min(2 * num_cells, 2 * int(kept_beams.sum()) + -(-num_cells // BITS_OF_VALUE))
 
 
 def rendered(layers: Layers, response: PointResponse, axes: Axes) -> Tensor:

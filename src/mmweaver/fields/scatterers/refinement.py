@@ -68,8 +68,9 @@ def refined(
         for half in range(halves):
             points = _sorted_by_range(points) if num_groups > 1 else points
             groups = _grouped(points, num_groups, axes)
-            moved = _stepped(groups, residual, response, axes, damping.value, half if halves == 2 else None)
-            trial = _ungrouped(moved, count)
+            turn = slice(half, None, halves)  # neighbours in turn: each sees where the other went
+            moved = _stepped(_some(groups, turn), residual, response, axes, damping.value)
+            trial = _ungrouped(_put_back(groups.points, moved, turn), count)
             left = target - response.render(trial, axes)
             trial_cost = _energy(left)
             is_better = trial_cost < cost
@@ -116,6 +117,31 @@ def _grouped(points: Points, num_groups: int, axes: Axes) -> Groups:
     return Groups(points=shaped, first=low.clamp(0, total - num_cells), num_cells=num_cells)
 
 
+def _some(groups: Groups, which: slice) -> Groups:
+    points = groups.points
+    chosen = Points(
+        range_bin=points.range_bin[:, which],
+        doppler_bin=points.doppler_bin[:, which],
+        direction=points.direction[:, which],
+        amplitude=points.amplitude[:, which],
+    )
+    return Groups(points=chosen, first=groups.first[:, which], num_cells=groups.num_cells)
+
+
+def _put_back(points: Points, moved: Points, which: slice) -> Points:
+    def whole(old: Tensor, new: Tensor) -> Tensor:
+        out = old.clone()
+        out[:, which] = new
+        return out
+
+    return Points(
+        range_bin=whole(points.range_bin, moved.range_bin),
+        doppler_bin=whole(points.doppler_bin, moved.doppler_bin),
+        direction=whole(points.direction, moved.direction),
+        amplitude=whole(points.amplitude, moved.amplitude),
+    )
+
+
 def _ungrouped(points: Points, count: int) -> Points:
     return Points(
         range_bin=points.range_bin.flatten(1, 2)[:, :count],
@@ -134,10 +160,8 @@ def _chosen(mask: Tensor, yes: Points, no: Points) -> Points:
     )
 
 
-def _stepped(
-    groups: Groups, residual: Tensor, response: PointResponse, axes: Axes, damping: Tensor, half: int | None
-) -> Points:
-    """One damped Gauss-Newton step of every group, or of every second one."""
+def _stepped(groups: Groups, residual: Tensor, response: PointResponse, axes: Axes, damping: Tensor) -> Points:
+    """One damped Gauss-Newton step of every group."""
     points = groups.points
     cells = groups.first[..., None] + torch.arange(groups.num_cells)
     seen = residual[torch.arange(len(residual))[:, None, None], cells]  # frame, group, range, doppler, antenna
@@ -158,8 +182,6 @@ def _stepped(
     step = torch.cholesky_solve((gradient * norm)[..., None], root)[..., 0] * norm
     step = torch.nan_to_num(step).unflatten(-1, (num, -1))
     is_real = (points.amplitude != 0).to(step.dtype)
-    if half is not None:
-        is_real = is_real * (torch.arange(step.shape[1]) % 2 == half)[:, None]
     return _moved(points, step * is_real[..., None, :], response)
 
 

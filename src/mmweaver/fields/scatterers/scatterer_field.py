@@ -117,25 +117,38 @@ class ScattererField(SignalField):
         return out
 
     def with_noise(self, cube: RadarCube, seed: int) -> RadarCube:
-        """A rendered cube with the noise floor of the capture: white before the windows, so neighbours share it."""
-        config, shape = cube.config, cube.values.shape
+        """A rendered cube with the noise floor of the capture: white before the windows, so neighbours share it.
+
+        Frames that overlap share the noise of their chirps too. Raises InputError where the cube is not on the field's
+        own cells.
+        """
+        config, shape = self.config, cube.values.shape
+        if shape != self.grid.shape:
+            raise InputError(
+                f"noise is known on the field's own cells, {self.grid.shape}, not on {shape}; render with cube()"
+            )
         rng = stream(seed, "scatterer field noise")
-        loops = rng.standard_normal((shape[0], config.num_loops, shape[3], config.num_samples, 2), dtype=np.float32)
+        step = self.stretch.hop or config.num_loops
+        num_loops = config.num_loops + step * (shape[0] - 1)
+        loops = rng.standard_normal((num_loops, shape[3], config.num_samples, 2), dtype=np.float32)
         samples = loops.view(np.complex64)[..., 0] * hann(config.num_samples).astype(np.float32)
         first = config.first_range_bin
-        spectrum = np.fft.fft(samples, axis=-1)[..., first : first + shape[1]]
-        spectrum = np.fft.fft(spectrum * hann(config.num_loops)[:, None, None], axis=1).transpose(0, 3, 1, 2)
+        lines = np.fft.fft(samples, axis=-1)[..., first : first + shape[1]]
+        frames = np.stack([lines[step * at :][: config.num_loops] for at in range(shape[0])])
+        spectrum = np.fft.fft(frames * hann(config.num_loops)[:, None, None], axis=1).transpose(0, 3, 1, 2)
         power = 2 * np.sum(hann(config.num_samples) ** 2) * np.sum(hann(config.num_loops) ** 2)
         noise = spectrum * (self.peak * math.sqrt(self._cell_noise() / power))
         return replace(cube, values=(cube.values + noise).astype(np.complex64))
 
-    def for_radar(self, config: RadarConfig, num_frames: int | None = None) -> RadarCube:
+    def for_radar(self, config: RadarConfig, num_frames: int | None = None, *, first_frame_s: float = 0.0) -> RadarCube:
         """What another radar (bandwidth, chirps, array) at the same place would have seen; nothing is fitted again.
 
-        The static layer becomes points first. Learned gains belong to this array and stay behind.
+        Its first frame starts `first_frame_s` after the field's. The static layer becomes points first. Learned gains
+        belong to this array and stay behind.
         """
         num_frames = num_frames or max(1, round(self._span_s() / config.frame_period_s))
         grid = CubeGrid.of(config, num_frames)
+        grid = replace(grid, frame_time_s=grid.frame_time_s + first_frame_s)
         response = PointResponse(config)
         axes = response.axes()
         time_s = grid.frame_time_s - self.grid.frame_time_s[0]

@@ -1,6 +1,7 @@
 """Walking, jogging and turning: feet planted along the root's path, the rest following the phase of the steps."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +38,9 @@ class Style:
     sink: float  # stretch of the legs that the pelvis is carried at
     pelvis_yaw_rad: float
     sway_m: float
+    uneven: float = 0.0  # share of a step that the right foot's strike is late (early where negative): a limp
+    lopsided: float = 0.0  # how much higher the left foot swings than the right one, as a share
+    weave_m: float = 0.0  # how far the whole body sways to the sides of its way
 
 
 def walking_style(stage: Stage, speed_mps: float) -> Style:
@@ -53,7 +57,7 @@ def walking_style(stage: Stage, speed_mps: float) -> Style:
         heel_strike_rad=0.28 * share**0.5, toe_off_rad=0.95 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
         arm_swing_rad=0.28 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
         lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.985, pelvis_yaw_rad=0.09 * share,
-        sway_m=0.018,
+        sway_m=0.018, lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
     )  # fmt: skip
 
 
@@ -61,14 +65,17 @@ def jogging_style(stage: Stage, speed_mps: float) -> Style:
     """Short contacts with flight between them; the pelvis bobs so that in flight it falls freely."""
     rng, height_m = stage.rng, stage.body.height_m
     steps_hz = stage.tempo(2.35, 2.6, 2.9, 0.08)
-    share = min(speed_mps / 2.0, 1.2)
+    share = min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
     vigour = np.exp(rng.normal(0, 0.12))
     return Style(
-        steps_hz=steps_hz, double_support=-0.3, half_stance_m=0.036 * height_m, toes_out_rad=0.08,
-        ahead_m=0.05 * share, heel_strike_rad=0.1 * share, toe_off_rad=0.55 + 0.25 * share, lift_m=0.09 + 0.06 * share,
-        spot_lift_m=0.13 * vigour, arm_swing_rad=(0.42 + 0.15 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
-        elbow_swing_rad=0.22, lean_rad=0.05 + 0.07 * share, bob_m=GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
+        steps_hz=steps_hz, double_support=-0.3 - 0.2 * max(share - 0.8, 0.0),
+        half_stance_m=0.036 * height_m, toes_out_rad=0.08,
+        ahead_m=0.05 * share, heel_strike_rad=0.08 * share, toe_off_rad=0.45 + 0.1 * share, lift_m=0.03 + 0.015 * share,
+        spot_lift_m=0.13 * vigour, arm_swing_rad=(0.3 + 0.03 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
+        elbow_swing_rad=0.15, lean_rad=0.05 + 0.05 * share,
+        bob_m=(1.1 + 0.3 * min(share, 1.4)) * GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
         sink=0.945, pelvis_yaw_rad=0.08, sway_m=0.01,
+        lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
     )  # fmt: skip
 
 
@@ -83,11 +90,11 @@ class Footfall:
 
 
 def walking(stage: Stage) -> Controls:
-    return stepping(stage, walking_style(stage, _cruise_mps(stage)), jog=False)
+    return stepping(stage, walking_style(stage, max(cruise_mps(stage), 0.7)), jog=False)
 
 
 def jogging(stage: Stage) -> Controls:
-    return stepping(stage, jogging_style(stage, _cruise_mps(stage)), jog=True)
+    return stepping(stage, jogging_style(stage, cruise_mps(stage)), jog=True)
 
 
 def turning(stage: Stage) -> Controls:
@@ -95,7 +102,8 @@ def turning(stage: Stage) -> Controls:
     return stepping(stage, walking_style(stage, 0.9), jog=False)
 
 
-def _cruise_mps(stage: Stage) -> float:
+def cruise_mps(stage: Stage) -> float:
+    """The fastest that the step's way is gone, between its ramps."""
     return max((move.speed_mps for move in stage.moves), default=0.0)
 
 
@@ -103,12 +111,13 @@ def stepping(stage: Stage, style: Style, *, jog: bool) -> Controls:
     """Steps along the root's path. A foot whose next place is its old one stays where it is, unless jogging."""
     controls = upright(stage)
     time_s = stage.time_s
-    strikes = _clock(stage, style)
     first_side = int(stage.rng.integers(2))
+    strikes = _clock(stage, style, first_side)
+    aside = _weave(controls, stage, style)
     moving = _moving(stage, time_s, jog)
     for side in (LEFT, RIGHT):
         own = [k for k in range(len(strikes) - 2) if (k + first_side) % 2 == side]
-        falls = [_footfall(stage, style, strikes, k, side) for k in own]
+        falls = [_footfall(stage, style, strikes, k, side, aside) for k in own]
         _write_foot(controls, time_s, falls, side, style, jog)
     from scipy.interpolate import CubicSpline
 
@@ -117,7 +126,7 @@ def stepping(stage: Stage, style: Style, *, jog: bool) -> Controls:
     return controls
 
 
-def _clock(stage: Stage, style: Style) -> Float[Array, " k"]:
+def _clock(stage: Stage, style: Style, first_side: int) -> Float[Array, " k"]:
     """Times of the foot strikes, alternating feet, from well before the stage to well after it."""
     period = 1 / style.steps_hz
     # After standing, the first foot leaves the floor at once; under way already, any phase will do.
@@ -126,10 +135,30 @@ def _clock(stage: Stage, style: Style) -> Float[Array, " k"]:
     anchor = stage.start_s + lead
     low = int(np.floor((begin - anchor) / period)) - 4
     high = int(np.ceil((end - anchor) / period)) + 5
-    return anchor + np.arange(low, high) * period
+    strikes = anchor + np.arange(low, high) * period
+    right = (np.arange(len(strikes)) + first_side) % 2 == RIGHT
+    return strikes + style.uneven * period * right
 
 
-def _footfall(stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, side: int) -> Footfall:
+def _weave(controls: Controls, stage: Stage, style: Style) -> Callable[[Float[Array, " k"]], Float[Array, " k"]]:
+    """Sways the pelvis to the sides; returns how far, to the left, so that the feet come along."""
+    phase, rate = stage.rng.uniform(0, 2 * np.pi, 2), stage.rng.uniform(0.35, 0.6)
+
+    def aside(time_s: Float[Array, " k"]) -> Float[Array, " k"]:
+        slow = np.sin(2 * np.pi * rate * time_s + phase[0]) + 0.5 * np.sin(4.4 * np.pi * rate * time_s + phase[1])
+        return style.weave_m * slow
+
+    if style.weave_m:
+        left = aside(stage.time_s)
+        controls.pelvis_m[:, 0] -= left * np.sin(controls.heading_rad)
+        controls.pelvis_m[:, 1] += left * np.cos(controls.heading_rad)
+    return aside
+
+
+def _footfall(
+    stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, side: int,
+    weave: Callable[[Float[Array, " k"]], Float[Array, " k"]],
+) -> Footfall:  # fmt: skip
     period = float(strikes[k + 1] - strikes[k])
     stance = (1 + style.double_support) * period
     middle = np.array([strikes[k] + stance / 2])
@@ -138,6 +167,7 @@ def _footfall(stage: Stage, style: Style, strikes: Float[Array, " k"], k: int, s
     share = float(rise(path.speed_mps(middle) / 0.6)[0])
     height_m = stage.body.height_m
     aside = SIDE_SIGN[side] * (HALF_STANCE * height_m * (1 - share) + style.half_stance_m * share)
+    aside = aside + float(weave(middle)[0])
     velocity = path.position_m(middle + 0.01)[0] - path.position_m(middle - 0.01)[0]
     back = np.sign(velocity @ np.array([np.cos(heading), np.sin(heading)])) if share > 0 else 1.0
     behind = -ANKLE_BEHIND * height_m - style.ahead_m * share * back
@@ -154,7 +184,7 @@ def _moving(stage: Stage, time_s: Float[Array, " n"], jog: bool) -> Float[Array,
         end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
         return np.asarray(start * end)
     turning = np.abs(stage.path.facing_rad(time_s + 1e-3) - stage.path.facing_rad(time_s - 1e-3)) / 2e-3
-    going = stage.path.speed_mps(time_s) / max(0.8 * _cruise_mps(stage), 0.7)
+    going = stage.path.speed_mps(time_s) / max(0.8 * cruise_mps(stage), 0.7)
     return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
 
 
@@ -172,14 +202,15 @@ def _write_foot(
         long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
         effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
         u = (t - fall.off_s) / (after.strike_s - fall.off_s)
-        across = travel(np.clip(u, 0, 1), 0.33, 0.36)
+        across = travel(np.clip(u, 0, 1), *((0.34, 0.38) if jog else (0.4, 0.42)))
         controls.foot_m[inside, side, :2] = fall.place_m + across[:, None] * gap
-        high = style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
+        own = 1 + SIDE_SIGN[side] * style.lopsided
+        high = own * style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
         controls.foot_m[inside, side, 2] = high * bump(u)
         controls.foot_rad[inside, side, 0] = fall.yaw_rad + rise(u) * (after.yaw_rad - fall.yaw_rad)
-        pitch = _pitch(t, fall, after, style, came, ahead)
+        pitch = own * _pitch(t, fall, after, style, came, ahead)
         if jog:
-            pitch = pitch + 0.5 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
+            pitch = pitch + 0.2 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
         controls.foot_rad[inside, side, 1] = pitch
         # Weight leaves the foot before its toes do, and comes fully onto it only after the heel has struck: so the
         # knee is never stretched at speed, and the pelvis comes down in time for the foot that is about to land.
@@ -218,7 +249,9 @@ def _write_trunk_and_arms(
     controls.pelvis_rad[:, 0] -= 0.05 * right_stance
     controls.pelvis_rad[:, 1] += 0.4 * style.lean_rad * moving
     controls.pelvis_rad[:, 2] -= style.pelvis_yaw_rad * left_ahead
-    controls.spine_rad[:, 0] += 0.05 * right_stance
+    lame = 0.7 * style.uneven * np.maximum(np.sign(style.uneven) * right_stance, 0) ** 3  # over the bad leg
+    controls.spine_rad[:, 0] += 0.05 * right_stance + lame
+    controls.pelvis_m[:, 2] -= 0.12 * np.abs(lame)
     controls.spine_rad[:, 1] += 0.6 * style.lean_rad * moving
     controls.spine_rad[:, 2] += 1.9 * style.pelvis_yaw_rad * left_ahead
     controls.head_rad[:, 1] -= 0.9 * style.pelvis_yaw_rad * left_ahead

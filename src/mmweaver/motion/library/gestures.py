@@ -10,35 +10,18 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.arm_reach import reach
 from mmweaver.motion.body import Body
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.profiles import plateau, rise
+from mmweaver.motion.library.limbs import cycles, mix_arm, sides
+from mmweaver.motion.profiles import plateau, rise, wander
 from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
 PerTime = Float[Array, " n"]
 
 
-def sides(stage: Stage) -> tuple[int, ...]:
-    """Which arms act: as the sentence says, else as the seed has it (five of six people are right-handed)."""
-    chosen = stage.step.hand or ("right" if stage.rng.random() < 5 / 6 else "left")
-    return {"left": (LEFT,), "right": (RIGHT,), "both": (LEFT, RIGHT)}[chosen]
-
-
-def _mix(controls: Controls, side: int, arm: Float[Array, "n 4"], weight: PerTime) -> None:
-    controls.arm_rad[:, side] += weight[:, None] * (arm - controls.arm_rad[:, side])
-
-
-def _cycles(stage: Stage, rate_hz: float, low_hz: float, high_hz: float) -> tuple[float, float]:
-    """Rate and end of a repeated movement: a count asked for fixes the rate as far as nature allows."""
-    if not stage.step.count:
-        return rate_hz, stage.end_s
-    rate = float(np.clip(stage.step.count / max(stage.duration_s - 0.2, 0.1), low_hz, high_hz))
-    return rate, stage.start_s + stage.step.count / rate
-
-
 def waving(stage: Stage, controls: Controls) -> Controls:
     """Upper arm out, forearm up, the forearm swinging from side to side."""
     time_s, rng = stage.time_s, stage.rng
-    rate, end = _cycles(stage, stage.tempo(0.9, 1.4, 2.0), 0.8, 2.5)
+    rate, end = cycles(stage, stage.tempo(0.9, 1.4, 2.0), 0.8, 2.5)
     swing = float(rng.uniform(0.35, 0.5)) * min(1.0, 1.5 / rate)
     on = rise((end + 0.25 - time_s) / 0.5) if stage.step.count else np.ones_like(time_s)
     begin = stage.start_s
@@ -54,7 +37,7 @@ def waving(stage: Stage, controls: Controls) -> Controls:
             ],
             axis=1,
         )
-        _mix(controls, side, arm, on)
+        mix_arm(controls, side, arm, on)
         controls.spine_rad[:, 0] += 0.03 * (1 if side == LEFT else -1) * on
     return controls
 
@@ -62,7 +45,7 @@ def waving(stage: Stage, controls: Controls) -> Controls:
 def clapping(stage: Stage, controls: Controls) -> Controls:
     """Palms meet in front of the chest, never crossing: each wrist keeps to its own side of the middle."""
     time_s, rng, body = stage.time_s, stage.rng, stage.body
-    rate, end = _cycles(stage, stage.tempo(1.2, 2.0, 2.8), 0.9, 3.5)
+    rate, end = cycles(stage, stage.tempo(1.2, 2.0, 2.8), 0.9, 3.5)
     on = rise((end + 0.2 - time_s) / 0.5) if stage.step.count else np.ones_like(time_s)
     phase = 2 * np.pi * rate * (time_s - stage.start_s)
     apart = (0.5 + 0.5 * np.cos(phase)) ** 1.0  # 0 when the palms meet
@@ -74,7 +57,7 @@ def clapping(stage: Stage, controls: Controls) -> Controls:
     target[:, 2] = (up + 0.01 * apart) * body.height_m
     arm = reach(body, target, elbow=(-0.1, 0.8, -1.0))
     for side in (LEFT, RIGHT):
-        _mix(controls, side, arm, on)
+        mix_arm(controls, side, arm, on)
     return controls
 
 
@@ -96,13 +79,14 @@ def raising(stage: Stage, controls: Controls) -> Controls:
         arm[:, 0 if side_way else 1] = 0.12 if side_way else 0.08
         arm[:, 3] = rng.uniform(0.12, 0.25)
         arm[:, 2] = 0.0
-        _mix(controls, side, arm, up)
+        mix_arm(controls, side, arm, up)
         controls.arm_rad[:, side, 3] += 0.8 * np.sin(np.pi * up) * (not side_way)
         controls.spine_rad[:, 0] += 0.05 * up * (-1 if side == LEFT else 1) * (len(sides(stage)) == 1)
     return controls
 
 
-def _mouth_in_chest_m(body: Body, controls: Controls) -> Float[Array, "n 3"]:
+def mouth_in_chest_m(body: Body, controls: Controls) -> Float[Array, "n 3"]:
+    """The mouth seen from spine3 in the chest's frame, metres."""
     from mmweaver.motion.kinematics import about_y, about_z, turned
 
     half = about_z(controls.head_rad[:, 1] / 2) @ about_y(controls.head_rad[:, 0] / 2)
@@ -126,39 +110,58 @@ def drinking(stage: Stage, controls: Controls) -> Controls:
         tilt += plateau(time_s, begin + 0.28 * sip_s, end - 0.28 * sip_s, 0.2 * sip_s, 0.2 * sip_s)
     sign = 1.0 if side == LEFT else -1.0
     controls.head_rad[:, 0] -= rng.uniform(0.2, 0.32) * tilt
-    mouth = _mouth_in_chest_m(body, controls)
+    mouth = mouth_in_chest_m(body, controls)
     mouth[:, 1] *= sign  # seen from the acting arm's side
     cup = mouth + np.array([0.032, 0.022, -0.036]) * body.height_m
     rest = np.array([rng.uniform(0.15, 0.18), rng.uniform(0.05, 0.08), rng.uniform(-0.08, -0.04)]) * body.height_m
     bow = np.array([0.03, 0.0, 0.0]) * body.height_m  # the way up goes a little outside the straight line
     target = rest + lift[:, None] * (cup - rest) + (4 * lift * (1 - lift))[:, None] * bow
     arm = reach(body, target, elbow=(-0.25, 0.75, -1.0))
-    _mix(controls, side, arm, np.ones_like(time_s))
+    mix_arm(controls, side, arm, np.ones_like(time_s))
     return controls
+
+
+def _sway(controls: Controls, stage: Stage, lunge_m: PerTime) -> None:
+    """A boxer's trunk is never at rest: it goes with each blow and sways between them, over feet that stay."""
+    rng, time_s = stage.rng, stage.time_s
+    calm = 0.3 if stage.step.hand in ("left", "right") else 1.0  # one hand alone is shown, not a fight
+    ahead = lunge_m + calm * float(rng.uniform(0.015, 0.075)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.5)
+    aside = calm * float(rng.uniform(0.02, 0.07)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.2)
+    cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
+    controls.pelvis_m[:, 0] += ahead * cos - aside * sin
+    controls.pelvis_m[:, 1] += ahead * sin + aside * cos
+    controls.spine_rad[:, 1] += 2.0 * ahead
+    controls.spine_rad[:, 0] -= 1.5 * aside
 
 
 def punching(stage: Stage, controls: Controls) -> Controls:
     """Fists before the face; one after the other shoots forward at shoulder height and comes back."""
     time_s, rng, body = stage.time_s, stage.rng, stage.body
-    rate, _ = _cycles(stage, stage.tempo(1.1, 1.7, 2.3), 0.9, 2.6)
+    rate, _ = cycles(stage, stage.tempo(1.1, 1.7, 2.3), 0.9, 2.6)
     period = 1 / rate
     count = stage.step.count or int(np.ceil(stage.duration_s / period - 0.2))
     arms = sides(stage) if stage.step.hand in ("left", "right") else (LEFT, RIGHT)
     first = int(rng.integers(2))
     out = [np.zeros_like(time_s), np.zeros_like(time_s)]
-    strike = float(np.clip(0.75 * period, 0.42, 0.62))
+    strike = float(np.clip(0.75 * period, 0.34, 0.62))
     for k in range(max(count, 1)):
         begin = stage.start_s + 0.06 + k * period
         side = arms[(k + first) % len(arms)]
         out[side] += plateau(time_s, begin, begin + strike, 0.48 * strike, 0.52 * strike)
-    twist = 0.38 * (out[RIGHT] - out[LEFT])
+    twist = float(rng.uniform(0.35, 0.7)) * (out[RIGHT] - out[LEFT])
     controls.spine_rad[:, 2] += twist
     controls.head_rad[:, 1] -= 0.8 * twist
     controls.spine_rad[:, 1] += 0.06
-    guard = np.array([rng.uniform(0.15, 0.175), rng.uniform(0.05, 0.065), rng.uniform(0.12, 0.15)])
+    _sway(controls, stage, float(rng.uniform(0.02, 0.06)) * (out[RIGHT] + out[LEFT]))
+    guard = np.array([rng.uniform(0.13, 0.175), rng.uniform(0.04, 0.09), rng.uniform(0.06, 0.15)])
+    hook = float(rng.choice([0.0, 0.0, rng.uniform(0.04, 0.12)]))  # round the side rather than straight
+    restless = float(rng.uniform(0.004, 0.02)) * (stage.step.count == 0 and len(arms) == 2)
     for side in (LEFT, RIGHT):
-        aim = np.array([0.285, 0.035, 0.1 + rng.normal(0, 0.01)])
-        target = (guard + out[side][:, None] * (aim - guard)) * body.height_m
-        arm = reach(body, target, elbow=(-0.15, 0.45, -1.0))
-        _mix(controls, side, arm, np.ones_like(time_s))
+        aim = np.array([rng.uniform(0.25, 0.29), 0.035, 0.08 + rng.normal(0, 0.03)])
+        target = guard + out[side][:, None] * (aim - guard)
+        target[:, 1] += hook * 4 * out[side] * (1 - out[side])
+        for axis in range(3):  # fists are never at rest in the guard
+            target[:, axis] += restless * wander(time_s, rng, slow_hz=0.8, fast_hz=2.2) * (1 - out[side])
+        arm = reach(body, target * body.height_m, elbow=(-0.15, 0.45 + 3 * hook, -1.0))
+        mix_arm(controls, side, arm, np.ones_like(time_s))
     return controls

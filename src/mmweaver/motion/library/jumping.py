@@ -1,13 +1,15 @@
 """Jumping, jumping jacks and squats: the legs drive the pelvis up and down, in flight it falls freely."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.library.limbs import shift_pelvis
 from mmweaver.motion.library.standing import STAND_STRETCH, home_feet, upright
 from mmweaver.motion.profiles import plateau, rise, through
+from mmweaver.motion.root_path import RootPath
 from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
@@ -64,7 +66,7 @@ class Hop:
         return up - half - down
 
 
-def _hop_all(
+def hop_all(
     controls: Controls,
     stage: Stage,
     hops: list[Hop],
@@ -94,8 +96,57 @@ def _hop_all(
 
 def jumping(stage: Stage) -> Controls:
     """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
+    # Whoever jumps on and on mostly hops from the ankles, two a second, with quiet arms.
+    if not stage.step.count and stage.duration_s > 1.8 and stage.rng.random() < 0.5:
+        return hopping(stage)
+    return _jumps(stage)[0]
+
+
+def hopping(stage: Stage) -> Controls:
+    """Small quick jumps from the ankles, about two a second, the arms bent and almost still."""
+    controls = upright(stage)
+    bounce(controls, stage, one_leg=False)
+    controls.arm_rad[:, :, 3] += float(stage.rng.uniform(0.0, 1.1))
+    controls.arm_rad[:, :, 0] += 0.1
+    return controls
+
+
+def bounce(controls: Controls, stage: Stage, *, one_leg: bool) -> None:
+    """A row of hops at an even rate over the stage's time."""
+    rate = stage.tempo(1.7, 2.05, 2.35)
+    count = stage.step.count or max(1, round((stage.duration_s - 0.45) * rate))
+    period = float(np.clip((stage.duration_s - 0.45) / count, 0.4, 0.62)) if stage.step.count else 1 / rate
+    high = float(stage.rng.uniform(0.025, 0.085)) * (0.8 if one_leg else 1.0)
+    ground = period - Hop(off_s=0.0, rise_m=high).flight_s
+    first = stage.start_s + 0.3
+    hops = [Hop(off_s=first + k * period, rise_m=high) for k in range(count)]
+    dips = [(first - 0.3, 0.0, 0.0)]
+    dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
+    dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
+    hop_all(controls, stage, hops, dips, ready_m=-0.04, heels=0.8)
+    # nobody hops quite straight: the trunk swings to and fro with each
+    turn = 2 * np.pi * (stage.time_s - first) / period + stage.rng.uniform(0, 2 * np.pi)
+    shift_pelvis(controls, float(stage.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
+
+
+def leaping(stage: Stage) -> Controls:
+    """Jumps that lead somewhere: the way of the step is gone in the air, in equal parts."""
+    time_s, path = stage.time_s, stage.path
+    ends = np.array([stage.start_s - 0.001, stage.end_s])
+    start, heading = path.position_m(ends)[0], float(path.facing_rad(ends)[0])
+    here = RootPath(start_m=(float(start[0]), float(start[1])), heading_rad=heading)
+    controls, hops = _jumps(replace(stage, path=here))
+    feet = sum(rise((time_s - hop.off_s) / hop.flight_s) for hop in hops) / len(hops)
+    body = sum(rise((time_s - hop.off_s + 0.16) / (hop.flight_s + 0.34)) for hop in hops) / len(hops)
+    way = path.position_m(ends)[1] - start
+    controls.pelvis_m[:, :2] += np.asarray(body)[:, None] * way
+    controls.foot_m[:, :, :2] += np.asarray(feet)[:, None, None] * way
+    return controls
+
+
+def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    height_m = float(rng.uniform(0.12, 0.22)) * (0.75, 1.0, 1.1)[stage.step.speed + 1]
+    height_m = float(rng.uniform(0.18, 0.36)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
@@ -109,20 +160,20 @@ def jumping(stage: Stage) -> Controls:
     dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
     dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
     dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips)
+    hop_all(controls, stage, hops, dips, ready_m=-0.02 - 0.15 * max(height_m - 0.16, 0.0))
     trunk = plateau(time_s, stage.start_s, first + 0.12, crouch_s, push_s + 0.12)
     arms = -0.5 * plateau(time_s, stage.start_s, first + 0.05, crouch_s, push_s + 0.2)
     for hop in hops:
         gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
         after = recover_s if hop is hops[-1] else gap
         trunk = trunk + 0.75 * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
-        arms = arms + 1.3 * plateau(
+        arms = arms + 1.2 * plateau(
             time_s, hop.off_s - 0.25, hop.land_s + gap + 0.3, 0.25 + flight_s / 2, flight_s / 2 + gap + 0.2
         )
     _bend(controls, trunk, 0.45)
     controls.arm_rad[:, :, 0] += arms[:, None]
     controls.arm_rad[:, :, 3] += 0.5 * np.maximum(trunk, 0)[:, None]
-    return controls
+    return controls, hops
 
 
 def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> None:
@@ -152,7 +203,7 @@ def jumping_jacks(stage: Stage) -> Controls:
     dips = [(stage.start_s - 0.2, 0.0, 0.0)]
     dips += [(hop.off_s - ground_s / 2, 0.08, 5.0) for hop in hops]
     dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    _hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
+    hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0
@@ -163,7 +214,7 @@ def jumping_jacks(stage: Stage) -> Controls:
     top = float(rng.uniform(2.55, 2.85))
     controls.arm_rad[:, :, 1] += (top * lift)[:, None]
     controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
-    controls.arm_rad[:, :, 0] += 0.12
+    controls.arm_rad[:, :, 0] += float(rng.uniform(0.0, 0.35)) + (float(rng.uniform(-0.1, 0.3)) * lift)[:, None]
     return controls
 
 
@@ -188,8 +239,9 @@ def squatting(stage: Stage) -> Controls:
     for k in range(count):
         begin = stage.start_s + k * period
         down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
-    knee = np.radians(rng.uniform(98, 112))
-    back = 0.125 * body.height_m
+    knee = np.radians(rng.uniform(94, 112))
+    back = float(rng.uniform(0.085, 0.125)) * body.height_m
+    lean = float(rng.uniform(0.4, 1.3))
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
     low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + body.hip_below_pelvis_m * 0.95
     stand = body.pelvis_height_m(STAND_STRETCH)
@@ -198,10 +250,11 @@ def squatting(stage: Stage) -> Controls:
     shift = (back + 0.022 * body.height_m) * down
     controls.pelvis_m[:, 0] -= shift * np.cos(heading)
     controls.pelvis_m[:, 1] -= shift * np.sin(heading)
-    controls.pelvis_rad[:, 1] += 0.42 * down
-    controls.spine_rad[:, 1] += 0.3 * down
+    controls.pelvis_rad[:, 1] += 0.42 * lean * down
+    controls.spine_rad[:, 1] += 0.3 * lean * down
     controls.head_rad[:, 0] -= 0.45 * down
     controls.knee_out_rad[:] += (0.2 * down)[:, None]
-    controls.arm_rad[:, :, 0] += (float(rng.uniform(1.5, 1.9)) * down)[:, None]
+    lift_rad = float(rng.choice([rng.uniform(0.0, 0.5), rng.uniform(1.2, 1.9)]))  # arms left hanging, or for balance
+    controls.arm_rad[:, :, 0] += (lift_rad * down)[:, None]
     controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]
     return controls

@@ -50,6 +50,7 @@ def upright(stage: Stage) -> Controls:
         foot_m=home_feet(body, position, heading),
         foot_rad=foot_rad,
         knee_out_rad=np.full((n, 2), 0.05),
+        knee_up_rad=np.zeros(n),
         knee_room=np.zeros(n),
         contact=np.ones((n, 2)),
     )

@@ -22,7 +22,7 @@ WINDOW_M = (0.7, 3.45)  # ground distance, of the radar's range bins
 HALF_VIEW_RAD = float(np.deg2rad(38))
 MIN_FREE_M2, MIN_WALKABLE_M2 = 2.0, 0.8
 CELL_M = 0.05
-_DRAWS, _ENOUGH, _TRIES = 60, 5, 60
+_DRAWS, _ENOUGH, _TRIES, _PATIENCE = 60, 5, 150, 15
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,6 +31,7 @@ class Shell:
 
     size_m: tuple[float, float, float]
     openings: tuple[Piece, ...]  # door and windows
+    lamp: Piece
     fixed: tuple[Placed, ...]  # lamps and, once placed, doors and windows
     radar_m: tuple[float, float, float]
     radar_yaw_rad: float  # from +y towards -x
@@ -66,25 +67,30 @@ def draw_shell(kind: Kind, palette: Palette, rng: np.random.Generator, layout: n
     size = (float(rng.uniform(*kind.width_m)), behind + float(rng.uniform(*kind.back_m)), float(rng.uniform(2.4, 2.8)))
     openings = [things.door(palette, rng, float(rng.uniform(0.8, 0.95)))]
     openings += [things.window(palette, rng, float(rng.uniform(1.1, 1.7))) for _ in range(kind.num_windows)]
-    narrow = size[0] < 2.6
-    across = layout.uniform(0.42, 0.58) if narrow else layout.uniform(0.32, 0.68)
-    turn = layout.uniform(-5, 5) if narrow else layout.uniform(-14, 14)
-    lamps = (0.3, 0.75)
-    return Shell(
+    empty = Shell(
         size_m=size,
         openings=tuple(openings),
-        fixed=tuple(
-            Placed(piece=things.ceiling_lamp(palette), x_m=size[0] / 2, y_m=y * size[1], z_m=size[2]) for y in lamps
-        ),
-        radar_m=(size[0] * float(across), behind, float(layout.uniform(0.5, 1.5))),
-        radar_yaw_rad=float(np.deg2rad(turn)),
+        lamp=things.ceiling_lamp(palette),
+        fixed=(),
+        radar_m=(size[0] / 2, behind, float(layout.uniform(0.5, 1.5))),
+        radar_yaw_rad=0.0,
     )
+    return with_radar(empty, layout)
+
+
+def with_radar(shell: Shell, rng: np.random.Generator) -> Shell:
+    """The shell with the radar somewhere in the middle third and turned a little; less of both in a corridor."""
+    narrow = shell.size_m[0] < 2.6
+    across = rng.uniform(0.42, 0.58) if narrow else rng.uniform(0.32, 0.68)
+    turn = rng.uniform(-5, 5) if narrow else rng.uniform(-14, 14)
+    _, y, z = shell.radar_m
+    return replace(shell, radar_m=(shell.size_m[0] * float(across), y, z), radar_yaw_rad=float(np.deg2rad(turn)))
 
 
 def with_openings(shell: Shell, rng: np.random.Generator) -> Shell:
-    """The shell with its door and windows put into walls; one that finds no place is left out."""
-    width, depth, _ = shell.size_m
-    fixed = list(shell.fixed)
+    """The shell with lamps, and its door and windows put into walls; one that finds no place is left out."""
+    width, depth, height = shell.size_m
+    fixed = [Placed(piece=shell.lamp, x_m=width / 2, y_m=y * depth, z_m=height) for y in (0.3, 0.75)]
     for piece in shell.openings:
         for _ in range(_DRAWS):
             wall = ("left", "right", "back")[int(rng.choice(3, p=(0.35, 0.35, 0.3)))]
@@ -105,11 +111,16 @@ def arrange(
 ) -> tuple[Shell, tuple[Placed, ...], FreeFloor]:
     """Puts in door and windows, then the groups, those marked True always, so that enough floor stays free.
 
-    Raises RuntimeError where no try of many works out, which a test keeps from happening.
+    Where that does not work out for long, the radar moves, and then the room becomes wider. Raises RuntimeError where
+    no try of many works out, which has not been seen.
     """
     for attempt in range(_TRIES):
+        if attempt >= _PATIENCE:
+            width, depth, height = shell.size_m
+            wider = 0.25 if attempt % _PATIENCE == 0 and attempt > _PATIENCE else 0.0
+            shell = with_radar(replace(shell, size_m=(width + wider, depth, height)), rng)
         there = with_openings(shell, rng)
-        placed = _once(there, wanted, rng, leave_out=attempt / _TRIES)
+        placed = _once(there, wanted, rng, leave_out=min(attempt / 40, 1.0))
         if placed is None or not _in_window(there, placed):
             continue
         floor = free_floor(there, placed)

@@ -8,7 +8,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Landmark, Plane, RgbdPhoto, Scene, Seat
 from mmweaver.core.seeding import stream
-from mmweaver.core.shapes import Faces, PerFace, Rotation, Vertices
+from mmweaver.core.shapes import DepthPixels, Faces, PerFace, Rotation, Vertices
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.camera_file import d455_intrinsics
 from mmweaver.scene.materials import MATERIAL_NAMES
@@ -101,6 +101,11 @@ class ProceduralRoom:
             assumptions=(),
             landmarks=self.landmarks,
         )
+
+    @property
+    def true_depth_m(self) -> DepthPixels:
+        """Of every pixel along the optical axis, without the camera's errors."""
+        return self._view.depth_m
 
     @cached_property
     def _caster(self) -> RayCaster:

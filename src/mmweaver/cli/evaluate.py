@@ -1,0 +1,63 @@
+"""mmweaver evaluate: how well a recogniser trained on generated data alone does on recordings of real people."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+EXAMPLES = """examples:
+  mmweaver evaluate zero-shot-activity --recordings RadHAR/Data/Test
+  mmweaver evaluate zero-shot-activity --recordings recordings/ --json
+
+The recordings are of an IWR1443 at 30 frames a second, as RadHAR publishes them (.txt, one message a point) or as
+.npz with frame (point) and pts (point, 8). The activity is the subfolder's name or a word of the file's name: boxing,
+jack, jump, squats, walk. For other radars and activities: docs/zero_shot.md.
+"""
+
+
+def add_verb(verbs: Any) -> None:
+    """Declares the verb and its options."""
+    parser = verbs.add_parser(
+        "evaluate", help="score what was trained on generated data on real recordings", epilog=EXAMPLES,
+        description="Trains on generated data alone and scores on recordings of real people.",
+    )  # fmt: skip
+    parser.add_argument("task", choices=("zero-shot-activity",), help="what is recognised")
+    parser.add_argument("--recordings", type=Path, required=True, metavar="DIR", help="folder of recordings")
+    parser.add_argument(
+        "--frozen", choices=("development", "blind"), default="development",
+        help="which frozen recogniser: the one after development (default) or the blind one before it",
+    )  # fmt: skip
+    parser.add_argument("--json", action="store_true", help="print the scores for machines")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Prints the scores on stdout. Raises InputError for a folder without readable recordings."""
+    from mmweaver.tasks.frozen_activity import load_frozen
+    from mmweaver.tasks.recording_files import read_recordings
+    from mmweaver.tasks.scoring import judge, report
+
+    frozen = load_frozen(arguments.frozen)
+    recordings = read_recordings(arguments.recordings, frozen.labels)
+    scores = report(judge(frozen.train(), recordings, frozen.window_s))
+    scores = {"task": arguments.task, "frozen": arguments.frozen, **frozen.provenance, **scores}
+    print(json.dumps(scores, indent=2) if arguments.json else "\n".join(lines(scores)))
+    return 0
+
+
+def lines(scores: dict[str, Any]) -> list[str]:
+    """The scores for people."""
+    text = [f"{scores['recordings']} recordings; trained on {scores['generated_windows']} generated windows alone"]
+    for name, words in (("window", "windows of 2 s"), ("three_windows", "three windows"), ("recording", "recordings")):
+        row = scores[name]
+        low, high = row["interval_95"]
+        text.append(
+            f"  {words:15s} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
+            f" {row['floor']:.3f}, n {row['n']}"
+        )
+    width = max(len(name) for name in scores["classes"]) + 2
+    text.append("  windows, true in rows, recognised in columns")
+    text.append(" " * (width + 2) + "".join(f"{name:>{width}}" for name in scores["classes"]))
+    for name, row in zip(scores["classes"], scores["window"]["confusion"], strict=True):
+        text.append(f"  {name:{width}}" + "".join(f"{count:>{width}}" for count in row))
+    return text

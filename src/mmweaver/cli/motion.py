@@ -1,0 +1,74 @@
+"""mmweaver motion: a sentence alone, without a photo and without a radar."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from mmweaver.cli.arguments import number, whole
+
+EXAMPLES = """examples:
+  mmweaver motion "a person walks to the left, then waves"
+  mmweaver motion "a person falls, then gets up" --seconds 8 --out fall.npz --picture fall.png
+"""
+
+
+def add_verb(verbs: Any) -> None:
+    """Declares the verb and its options."""
+    parser = verbs.add_parser(
+        "motion", help="try a sentence: how it is read, and the moving skeleton on an empty floor", epilog=EXAMPLES,
+        description="Reads a sentence and acts it out on an empty floor, without a photo and without a radar.",
+    )  # fmt: skip
+    parser.add_argument("text", metavar="SENTENCE", help="what the person does")
+    parser.add_argument("--seconds", type=number, help="how long (default: what the sentence needs)")
+    parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same motion (default 0)")
+    parser.add_argument("--height", type=number, metavar="M", help="the person's height (default: drawn by the seed)")
+    parser.add_argument("--out", type=Path, metavar="NPZ", help="write 22 joints at 120 Hz, as pose.npz holds them")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the skeleton at ten instants")
+    parser.add_argument("--json", action="store_true", help="print the reading for machines")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Acts the sentence out; writes what was asked for. Raises InputError."""
+    from mmweaver.motion.alone import act_out
+    from mmweaver.motion.sentence import parse
+    from mmweaver.motion.timing import natural_s
+
+    _check_files(arguments)
+    seconds = arguments.seconds if arguments.seconds is not None else natural_s(parse(arguments.text))
+    motion = act_out(arguments.text, duration_s=seconds, seed=arguments.seed, height_m=arguments.height)
+    if arguments.out is not None:
+        from mmweaver.core.atomic_files import atomic_file
+        from mmweaver.formats.npz_files import write_pose_npz
+
+        with atomic_file(arguments.out) as temporary:
+            write_pose_npz(temporary, motion.pose)
+    if arguments.picture is not None:
+        from mmweaver.pictures.motion_strip import draw_strip
+
+        draw_strip(motion.pose, arguments.picture, title=arguments.text)
+    steps = [
+        {"name": step.name, "start_s": round(step.start_s, 3), "end_s": round(step.end_s, 3), "said": step.clause}
+        for step in motion.plan.steps
+    ]
+    if arguments.json:
+        files = [str(file) for file in (arguments.out, arguments.picture) if file is not None]
+        facts = {"text": arguments.text, "seconds": seconds, "height_m": round(motion.pose.height_m, 3), "steps": steps}
+        print(json.dumps({**facts, "assumptions": motion.assumptions, "files": files}, indent=2))
+        return 0
+    for step in steps:
+        print(f"{step['start_s']:6.2f} to {step['end_s']:5.2f} s   {step['name']}")
+    for sentence in motion.assumptions:
+        print(f"  assumed: {sentence}")
+    return 0
+
+
+def _check_files(arguments: argparse.Namespace) -> None:
+    """What is cheap to refuse is refused before anything is made."""
+    from mmweaver.core.errors import InputError
+
+    if arguments.out is not None and arguments.out.suffix != ".npz":
+        raise InputError(f"{arguments.out} does not end in .npz; joints are written as .npz")
+    if arguments.picture is not None and arguments.picture.suffix not in (".png", ".pdf", ".svg"):
+        raise InputError(f"{arguments.picture} does not end in .png, .pdf or .svg; choose one of these")

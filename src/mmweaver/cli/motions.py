@@ -1,0 +1,47 @@
+"""mmweaver motions: what a sentence may ask for, with an example of each."""
+
+import argparse
+import json
+from typing import Any
+
+EXAMPLES = """examples:
+  mmweaver motions
+  mmweaver motions --json
+"""
+
+
+def add_verb(verbs: Any) -> None:
+    """Declares the verb and its options."""
+    parser = verbs.add_parser(
+        "motions", help="list what a person can do, with example sentences", epilog=EXAMPLES,
+        description="Lists every activity that a sentence may name, with an example and its natural time.",
+    )  # fmt: skip
+    parser.add_argument("--json", action="store_true", help="print them for machines")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Prints the table of activities on stdout."""
+    from mmweaver.motion.activities import BODY, HANDS
+
+    if arguments.json:
+        rows = [
+            {
+                "activity": activity.key,
+                "name": activity.name,
+                "example": activity.example,
+                "part": "hands" if activity.hands else "body",
+                "shortest_s": activity.least_s,
+                "natural_s": activity.natural_s,
+                "can_be_counted": activity.counted_s is not None,
+            }
+            for activity in (*BODY, *HANDS)
+        ]
+        print(json.dumps(rows, indent=2))
+        return 0
+    for title, activities in (("the body", BODY), ("hands and head, over any of these", HANDS)):
+        print(f"{title}:")
+        for activity in activities:
+            print(f"  {activity.name:24s} {activity.natural_s:3.1f} s   {activity.example}")
+    print("joined by 'and', 'then', 'while', with sides, directions, speeds and counts: see docs/motion.md")
+    return 0

@@ -1,0 +1,23 @@
+"""Antennas as beams: a unitary transform of the array."""
+
+import numpy as np
+from jaxtyping import Complex
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.virtual_array import SAME_PLACE_WAVELENGTHS
+
+
+def beams_of(config: RadarConfig) -> Complex[np.ndarray, "beam antenna"]:
+    """Each row of the array by its own DFT, straight ahead in the middle; rows from low to high, unitary."""
+    position_m = config.antenna_position_m
+    height = np.round(position_m[:, 2] / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))
+    beams = np.zeros((config.num_antennas, config.num_antennas), complex)
+    first = 0
+    for level in np.unique(height):
+        row = np.flatnonzero(height == level)
+        row = row[np.argsort(position_m[row, 0], kind="stable")]
+        num = len(row)
+        turns = np.outer(np.arange(num) - num // 2, np.arange(num)) / num
+        beams[first : first + num, row] = np.exp(-2j * np.pi * turns) / np.sqrt(num)
+        first += num
+    return beams

@@ -1,0 +1,72 @@
+"""The radar part of a capture folder as mmwave-capture-std writes it: <capture>/<radar>/{radar.cfg, dca.pcap}.
+
+Reference: mmwave-capture-std, "Dataset Directories Structure".
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.formats.dca_packets import PacketCapture, read_pcap
+from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order, ti_cfg_lines, whole
+
+PACKETS, RADAR = "dca.pcap", "radar.cfg"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadarCapture:
+    """The radar of a capture folder: its packets put together, its settings and the order of I and Q."""
+
+    folder: Path
+    config: RadarConfig
+    iq_order: str
+    packets: PacketCapture
+
+
+def is_capture(path: Path | str) -> bool:
+    """Whether a path is a capture folder or a radar's folder within one."""
+    path = Path(path)
+    return path.is_dir() and bool(_radar_folders(path))
+
+
+def radar_folder(path: Path | str) -> Path:
+    """The folder with the one radar of a capture. Raises InputError where there is none, or more than one."""
+    path = Path(path)
+    found = _radar_folders(path) if path.is_dir() else []
+    if not found:
+        raise InputError(
+            f"{path} is no capture folder: neither it nor a folder in it holds {PACKETS}; give capture_00000/"
+        )
+    if len(found) > 1:
+        names = ", ".join(str(folder) for folder in found)
+        raise InputError(f"{path} holds several radars; give the folder of one: {names}")
+    return found[0]
+
+
+def read_radar_capture(path: Path | str) -> RadarCapture:
+    """Reads the radar of a capture folder (or the radar's own folder in it).
+
+    Raises InputError where a file is missing or damaged, or the samples come with headers (lvdsStreamCfg).
+    """
+    folder = radar_folder(path)
+    cfg = folder / RADAR
+    if not cfg.is_file():
+        raise InputError(f"{folder} holds {PACKETS} but no {RADAR}; put the .cfg of the recording there")
+    config, iq_order = read_ti_cfg(cfg), read_ti_cfg_iq_order(cfg)
+    lines = ti_cfg_lines(cfg, {"lvdsStreamCfg": 4})
+    for line in lines.get("lvdsStreamCfg", [])[-1:]:
+        if line.values[1] != 0:
+            raise InputError(
+                f"{cfg}, line {line.number}: the samples come with HSI headers (lvdsStreamCfg's second number);"
+                " record without"
+            )
+    asked = whole(lines["frameCfg"][-1], "frameCfg", 3)
+    packets = read_pcap(folder / PACKETS, config, iq_order=iq_order, num_frames=asked or None)
+    return RadarCapture(folder=folder, config=config, iq_order=iq_order, packets=packets)
+
+
+def _radar_folders(path: Path) -> list[Path]:
+    if (path / PACKETS).is_file():
+        return [path]
+    return sorted(folder for folder in path.iterdir() if (folder / PACKETS).is_file())

@@ -1,0 +1,88 @@
+"""UDP packets of a .pcap file, as tcpdump writes them; nothing but struct is needed.
+
+Reference: libpcap file format (IETF draft-ietf-opsawg-pcap); RFC 791, RFC 768.
+"""
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+
+# magic as it lies in the file: (byte order, ticks a second)
+MAGIC = {
+    b"\xd4\xc3\xb2\xa1": ("<", 1e6), b"\xa1\xb2\xc3\xd4": (">", 1e6),
+    b"\x4d\x3c\xb2\xa1": ("<", 1e9), b"\xa1\xb2\x3c\x4d": (">", 1e9),
+}  # fmt: skip
+PCAPNG = b"\x0a\x0d\x0d\x0a"
+# link type: bytes before the network layer, and where in them the protocol's number stands (None: always IP)
+LINK_TYPES: dict[int, tuple[int, int | None]] = {1: (14, 12), 101: (0, None), 113: (16, 14), 276: (20, 0)}
+IPV4, VLAN, UDP = 0x0800, 0x8100, 17
+
+
+@dataclass(frozen=True)
+class UdpPacket:
+    """What one packet carried, and when it was caught (seconds of the recorder's clock)."""
+
+    time_s: float
+    payload: bytes
+
+
+def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
+    """Packets of a .pcap sent to a UDP port, in the order of the file.
+
+    Raises InputError where the file cannot be read, is no .pcap, or is cut off before its first packet; a last packet
+    that is cut off (the recorder was stopped) is left out.
+    """
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    order, ticks, link = _header(path, data)
+    at, header = 24, struct.Struct(f"{order}IIII")
+    while at + 16 <= len(data):
+        seconds, fraction, kept, _ = header.unpack_from(data, at)
+        at += 16
+        if at + kept > len(data):
+            return
+        payload = _udp_payload(data, at, at + kept, link, port)
+        if payload is not None:
+            yield UdpPacket(seconds + fraction / ticks, payload)
+        at += kept
+
+
+def _header(path: Path, data: bytes) -> tuple[str, float, int]:
+    if data[:4] == PCAPNG:
+        raise InputError(f"{path} is a pcapng file; turn it into a .pcap with: editcap -F pcap in.pcapng out.pcap")
+    if data[:4] not in MAGIC:
+        raise InputError(f"{path} is no .pcap file{' (it is empty)' if not data else ''}; record it with tcpdump -w")
+    if len(data) < 24:
+        raise InputError(f"{path} is cut off within its header; it holds no packets")
+    order, ticks = MAGIC[data[:4]]
+    link = struct.unpack_from(f"{order}I", data, 20)[0] & 0xFFFF
+    if link not in LINK_TYPES:
+        raise InputError(f"{path} was caught on a link of type {link}; known: Ethernet (1), raw IP (101), Linux (113)")
+    return order, ticks, link
+
+
+def _udp_payload(data: bytes, at: int, end: int, link: int, port: int) -> bytes | None:
+    """The payload if this is IPv4, UDP and for this port."""
+    length, kind_at = LINK_TYPES[link]
+    if kind_at is not None:
+        if at + length > end:
+            return None
+        kind = int.from_bytes(data[at + kind_at : at + kind_at + 2], "big")
+        if kind == VLAN:
+            kind, length = int.from_bytes(data[at + length + 2 : at + length + 4], "big"), length + 4
+        if kind != IPV4:
+            return None
+    at += length
+    if at + 20 > end or data[at] >> 4 != 4 or data[at + 9] != UDP:
+        return None
+    at += 4 * (data[at] & 0xF)
+    if at + 8 > end or int.from_bytes(data[at + 2 : at + 4], "big") != port:
+        return None
+    size = int.from_bytes(data[at + 4 : at + 6], "big")
+    return data[at + 8 : min(at + size, end)]  # Ethernet pads short packets

@@ -1,0 +1,123 @@
+"""Arrays that other projects keep radar recordings in: HuPR's frames, and the ADC samples of mmMesh and RF-Genesis.
+
+HuPR: one .npy a frame, complex (doppler 16, range 64, azimuth 64, elevation 8): the middle 16 of 64 Doppler bins, range
+from far to near, no windows, the mean over loops taken away, zero-padded angle FFTs, both angles mirrored. The
+elevation FFT was taken at azimuth channels 2 to 5 alone, where the array has two rows; all of it can be undone.
+mmMesh: complex (tx, rx, loop, sample) of a frame, or a stack of them. RF-Genesis: radar_frames.npy, complex
+(frame, tx, rx, loop, sample).
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Complex
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
+from mmweaver.formats.raw_npy import read_adc_npy
+
+LAYOUTS = ("hupr", "mmmesh", "rf_genesis")
+HUPR_SHAPE = (16, 64, 64, 8)
+HUPR_ANTENNAS = (3, 4)
+ADC_SHAPE = (3, 4, 128, 256)
+POINT_COLUMNS = 6
+# azimuth channel of receiver 0 of each transmitter; the second has the upper row
+HUPR_FIRST_CHANNEL = (0, 2, 4)
+UPPER_TX, BOTH_ROWS = 1, slice(2, 6)
+LEAST_FITTING = 1e-3  # share of the energy that may lie where the array has no antenna
+
+
+def recognised(path: Path) -> str:
+    """The layout that an array's shape gives away. Raises InputError where none or more than one does."""
+    if path.is_dir():
+        return "hupr"
+    shape = _opened(path).shape
+    if shape == HUPR_SHAPE:
+        return "hupr"
+    if shape[-4:] == ADC_SHAPE:
+        raise InputError(
+            f"{path} has shape {shape}, as mmMesh and RF-Genesis have it; say which with --layout mmmesh or rf_genesis"
+        )
+    if len(shape) == 2 and shape[1] == POINT_COLUMNS:
+        raise InputError(f"{path} has shape {shape}: points of a cloud, no samples; give the recording they came from")
+    raise InputError(
+        f"{path} has shape {shape}: say which axis is which, for example --axes frame,loop,tx,rx,sample, or whose"
+        f" array it is with --layout {', '.join(LAYOUTS)}"
+    )
+
+
+def read_mmmesh(path: Path, config: RadarConfig) -> AdcCube:
+    """Samples of one frame or more; transmitters in firing order. Raises InputError where the array is no such."""
+    frames = "frame," if _opened(path).ndim == len(ADC_SHAPE) + 1 else ""
+    return read_adc_npy(path, config, f"{frames}tx,rx,loop,sample")
+
+
+def read_rf_genesis(path: Path, config: RadarConfig) -> AdcCube:
+    """Samples of RF-Genesis, with the timing it has: chirps spread over the whole frame, transmitters all at once.
+
+    The record's configuration has so much more idle time; its cube needs no TDM compensation. Raises InputError where
+    the array is no such.
+    """
+    adc = read_adc_npy(path, config, "frame,tx,rx,loop,sample")
+    chirp_s = config.frame_period_s / (config.num_loops * config.num_tx)
+    return replace(adc, config=replace(config, idle_time_s=chirp_s - config.ramp_end_time_s))
+
+
+def read_hupr(path: Path, config: RadarConfig) -> RadarCube:
+    """One frame, or a folder of frames in the order of their names; Doppler bins that HuPR left out are zero.
+
+    The antennas' phases are those of the recording, without TDM compensation; values are counts of the converter (or
+    what HuPR had). Raises InputError where an array is not HuPR's or the radar cannot have made it.
+    """
+    paths = sorted(path.glob("*.npy")) if path.is_dir() else [path]
+    if not paths:
+        raise InputError(f"{path} holds no .npy files; name HuPR's folder hori or vert, or one frame of it")
+    kept, num_range = HUPR_SHAPE[:2]
+    if (config.num_range_bins, config.num_tx, config.num_rx) != (num_range, *HUPR_ANTENNAS) or config.num_loops < kept:
+        raise InputError(
+            f"radar {config.name!r} cannot have made HuPR's arrays, which have {num_range} range bins, 3 TX and 4 RX;"
+            " leave --radar away, or give one that has"
+        )
+    values = np.zeros((len(paths), num_range, config.num_loops, config.num_antennas), np.complex64)
+    first = config.num_loops // 2 - kept // 2
+    # a tone of amplitude a has the peak a, as in cubes of our own
+    weight = 1 / (config.num_samples * config.num_loops)
+    for frame, name in enumerate(paths):
+        values[frame, :, first : first + kept] = weight * _hupr_antennas(name)
+    return RadarCube(values=values, grid=CubeGrid.of(config, len(paths)), config=config, scale=float("nan"))
+
+
+def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
+    """A frame's angle FFTs undone."""
+    array = _opened(path)
+    if array.shape != HUPR_SHAPE or array.dtype.kind != "c":
+        raise InputError(f"{path} holds {array.dtype} of shape {array.shape}; HuPR's are complex {HUPR_SHAPE}")
+    values = np.asarray(array, np.complex128)[:, ::-1, ::-1, ::-1]
+    if not np.isfinite(values).all():
+        raise InputError(f"{path} holds values that are not finite")
+    values = np.fft.ifftshift(values, axes=(2, 3))
+    channels = np.fft.ifft(values, axis=2)  # doppler, range, channel, elevation
+    channels[:, :, BOTH_ROWS] = np.fft.ifft(channels[:, :, BOTH_ROWS], axis=3)
+    out = np.empty((*channels.shape[:2], *HUPR_ANTENNAS), complex)
+    for tx, channel in enumerate(HUPR_FIRST_CHANNEL):
+        own = slice(channel, channel + HUPR_ANTENNAS[1])
+        out[:, :, tx] = channels[:, :, own, int(tx == UPPER_TX)]
+    energy = np.sum(np.abs(channels) ** 2)
+    if energy - np.sum(np.abs(out) ** 2) > LEAST_FITTING * energy:
+        raise InputError(f"{path} has HuPR's shape, but its angle spectra are not those of HuPR's array")
+    return out.reshape(*channels.shape[:2], -1).transpose(1, 0, 2)
+
+
+def _opened(path: Path) -> np.ndarray:
+    """An array that is read when it is used."""
+    try:
+        array = np.load(path, mmap_mode="r", allow_pickle=False)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, EOFError, SyntaxError) as error:
+        raise InputError(f"{path} is no .npy array of numbers ({str(error).splitlines()[0]})") from None
+    if not isinstance(array, np.ndarray):
+        raise InputError(f"{path} holds several arrays; give one .npy")
+    return array

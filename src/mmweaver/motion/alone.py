@@ -1,0 +1,47 @@
+"""A sentence acted out without a photo: on an empty floor before the radar, to look at or to learn from."""
+
+import numpy as np
+
+from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto, Scene
+from mmweaver.motion.compose import Motion, compose
+
+RADAR_HEIGHT_M = 1.1
+FLOOR_M = 8.0  # both ways
+WINDOW_M = (0.8, 8.0)
+CELL_M = 0.05
+_LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+
+
+def empty_floor() -> Scene:
+    """A free floor of 8 x 8 metres before a radar 1.1 m high, with a camera that sees all of it."""
+    half = FLOOR_M / 2
+    x, y = np.arange(-half, half + 1e-9, CELL_M), np.arange(0.0, FLOOR_M + 1e-9, CELL_M)
+    free = np.ones((len(y), len(x)), dtype=bool)
+    lens = CameraIntrinsics(fx=16.0, fy=16.0, cx=31.5, cy=23.5, width=64, height=48)
+    photo = RgbdPhoto(rgb=np.full((48, 64, 3), 128, np.uint8), depth_m=np.full((48, 64), np.nan), intrinsics=lens)
+    floor = Plane(
+        kind="floor", centre_m=np.array([0.0, half, -RADAR_HEIGHT_M]), normal=np.array([0.0, 0.0, 1.0]),
+        axis_u=np.array([1.0, 0.0, 0.0]), axis_v=np.array([0.0, 1.0, 0.0]), half_size_m=(half, half),
+        material="concrete",
+    )  # fmt: skip
+    corners = np.array([[-half, 0, 0], [half, 0, 0], [half, FLOOR_M, 0], [-half, FLOOR_M, 0]]) - [0, 0, RADAR_HEIGHT_M]
+    return Scene(
+        photo=photo, radar_from_camera=_LEVEL, vertices_m=corners, faces=np.array([[0, 1, 2], [0, 2, 3]]),
+        face_material=np.array([0, 0]), material_names=("concrete",), planes=(floor,), floor_z_m=-RADAR_HEIGHT_M,
+        free_space=FreeSpace(x_m=x, y_m=y, is_free=free, is_seen=np.ones_like(free)), seats=(), assumptions=(),
+    )  # fmt: skip
+
+
+def act_out(text: str, *, duration_s: float, seed: int = 0, height_m: float | None = None) -> Motion:
+    """The motion of a sentence on an empty floor; the radar stands at the origin, the floor lies 1.1 m below it.
+
+    Seats are stools, as nothing else stands there. Raises InputError where the sentence is not understood or does not
+    fit the time.
+
+    >>> motion = act_out("a person bows", duration_s=2.0)
+    >>> motion.plan.steps[0].lower, motion.pose.joints_m.shape
+    ('bow', (245, 22, 3))
+    """
+    return compose(
+        text, empty_floor(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M, height_m=height_m
+    )  # fmt: skip

@@ -1,0 +1,45 @@
+"""Opening .npy and .npz of other people: numbers and strings alone, never a pickle."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+
+Array = np.ndarray
+
+
+def open_npy(path: Path) -> Array:
+    """The numbers of a .npy file as float64. Raises InputError for anything else."""
+    try:
+        values = np.load(path, allow_pickle=False)
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, EOFError, SyntaxError) as error:
+        raise InputError(f"{path} is no .npy array of numbers ({str(error).splitlines()[0]})") from None
+    if not isinstance(values, np.ndarray) or not np.issubdtype(values.dtype, np.number):
+        raise InputError(f"{path} is no .npy array of numbers; save the joints alone with numpy.save")
+    if np.iscomplexobj(values):
+        raise InputError(f"{path} holds complex numbers; a motion has real ones")
+    return values.astype(float)
+
+
+def open_npz(path: Path, only: tuple[str, ...] | None = None) -> dict[str, Array]:
+    """The arrays of a .npz; pickled ones (dtype object) are left out. Raises InputError for what is no archive."""
+    found: dict[str, Array] = {}
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            if not isinstance(archive, np.lib.npyio.NpzFile):
+                raise InputError(f"{path} is no .npz archive; is it a .npy?")
+            for name in archive.files:
+                if only is None or name in only:
+                    try:
+                        found[name] = archive[name]
+                    except ValueError:
+                        continue  # pickled: a gender kept as an object, a note
+    except OSError as error:
+        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, EOFError, zipfile.BadZipFile, SyntaxError) as error:
+        raise InputError(f"{path} is no .npz archive of arrays ({str(error).splitlines()[0]})") from None
+    return found

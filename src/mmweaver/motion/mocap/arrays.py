@@ -1,0 +1,125 @@
+""".npy and .npz files of joints, of HumanML3D features, of SMPL poses, and the CMU collection with 38 joints."""
+
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS
+from mmweaver.motion.mocap.archives import open_npy, open_npz
+from mmweaver.motion.mocap.clip import RawMotion
+from mmweaver.motion.mocap.humanml3d import FPS, NUM_FEATURES, joints_from_features
+from mmweaver.motion.mocap.smpl import is_smpl, rate_of, read_smpl
+
+Array = np.ndarray
+JOINT_KEYS = ("joints_m", "joints", "positions", "keypoints3d", "pos")
+NAME_KEYS = ("joint_names", "names")
+CMU_FPS = 120.0
+# The 38 joints of CMU's skeleton; joints that lie upon another, fingers and the clavicles' inner ends have no name.
+CMU_NAMES = {
+    0: "hips", 2: "left_upleg", 3: "left_leg", 4: "left_foot", 5: "left_toebase", 8: "right_upleg", 9: "right_leg",
+    10: "right_foot", 11: "right_toebase", 14: "spine1", 15: "spine2", 17: "neck", 18: "head", 21: "left_arm",
+    22: "left_forearm", 23: "left_hand", 30: "right_arm", 31: "right_forearm", 32: "right_hand",
+}  # fmt: skip
+NORMALISED_BELOW_M = 0.25  # a root that low on the mean: the features have no mean any more
+
+
+def read_npy(path: Path) -> RawMotion:
+    """Joints (frame, 22, 3) or (frame, 66), or HumanML3D features (frame, 263). Raises InputError for other shapes."""
+    values = open_npy(path)
+    if values.shape[:1] == (1,) and (values.ndim == 4 or values.shape[2:] == (NUM_FEATURES,)):
+        values = values[0]  # a batch of one
+    if values.ndim == 2 and values.shape[1] == NUM_FEATURES:
+        return _of_features(values, path)
+    return RawMotion(names=JOINT_NAMES, places=_of_22(values, path), kind="joints")
+
+
+def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None) -> RawMotion:
+    """SMPL poses, CMU clips (`clip` names one), or joints under a known key. Raises InputError for anything else."""
+    arrays = open_npz(path)
+    if {"names", "lengths", "pos", "parents"} <= set(arrays):
+        return _of_cmu(arrays, path, clip)
+    if clip is not None:
+        raise InputError(f"{path} holds a single motion, so there is no clip {clip!r}; leave out --clip")
+    if is_smpl(arrays):
+        return read_smpl(arrays, path, body_model)
+    key = next((name for name in JOINT_KEYS if name in arrays), None)
+    if key is None:
+        raise InputError(
+            f"{path} holds {', '.join(list(arrays)[:8]) or 'nothing'}; neither SMPL poses (poses, trans) nor joints"
+            f" ({', '.join(JOINT_KEYS)}) are among them"
+        )
+    names = next((tuple(map(str, arrays[name])) for name in NAME_KEYS if name in arrays), None)
+    places = np.asarray(arrays[key], float)
+    if names is None:
+        places, names = _of_22(places, path), JOINT_NAMES
+    elif places.ndim != 3 or places.shape[1:] != (len(names), 3):
+        raise InputError(
+            f"{path}: {key} has shape {places.shape}, {len(names)} joint names need (frame, {len(names)}, 3)"
+        )
+    ours = key == "joints_m"
+    return RawMotion(
+        names=names, places=places, kind="joints", fps=rate_of(arrays) or _rate_of_times(arrays),
+        unit_m=1.0 if ours else None, up="z" if ours else None,
+    )  # fmt: skip
+
+
+def clips_of(path: Path) -> tuple[str, ...]:
+    """Names of the motions that a file holds, where it holds several."""
+    arrays = open_npz(path, only=("names", "lengths")) if path.suffix.lower() == ".npz" else {}
+    return tuple(map(str, arrays["names"])) if {"names", "lengths"} <= set(arrays) else ()
+
+
+def _of_features(values: Float[Array, "frame 263"], path: Path) -> RawMotion:
+    if len(values) < 2:
+        raise InputError(f"{path} has {len(values)} frames; a motion has at least 2")
+    if np.isfinite(values[:, 3]).all() and abs(float(values[:, 3].mean())) < NORMALISED_BELOW_M:
+        raise InputError(
+            f"{path}: the features seem normalised (their root is {values[:, 3].mean():.2f} high); multiply by Std.npy"
+            " and add Mean.npy first"
+        )
+    return RawMotion(
+        names=JOINT_NAMES, places=joints_from_features(values), kind="HumanML3D", fps=FPS, unit_m=1.0, up="y"
+    )
+
+
+def _of_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
+    if values.ndim == 2 and values.shape[1] == 3 * NUM_JOINTS:
+        values = values.reshape(-1, NUM_JOINTS, 3)
+    if values.ndim == 3 and values.shape[1:] == (24, 3):
+        values = values[:, :NUM_JOINTS]  # SMPL's two hands come last
+    if values.ndim != 3 or values.shape[1:] != (NUM_JOINTS, 3):
+        raise InputError(
+            f"{path} has shape {values.shape}; (frame, 22, 3) joints in SMPL order or (frame, 263) HumanML3D features"
+            " are read, other skeletons from .npz with joint_names"
+        )
+    return np.asarray(values, float)
+
+
+def _of_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion:
+    names, lengths = [str(name) for name in arrays["names"]], arrays["lengths"].astype(int)
+    places = arrays["pos"]
+    if places.ndim != 3 or places.shape[1:] != (38, 3) or lengths.sum() != len(places) or len(names) != len(lengths):
+        raise InputError(f"{path}: names, lengths and pos do not fit each other or the 38 joints of CMU's skeleton")
+    if clip is None and len(names) > 1:
+        raise InputError(f"{path} holds {len(names)} motions; choose one with --clip, for example --clip {names[0]}")
+    hits = [k for k, name in enumerate(names) if clip is None or name == clip]
+    hits = hits or [k for k, name in enumerate(names) if clip is not None and clip in name]
+    if len(hits) != 1:
+        few = ", ".join(names[k] for k in hits[:4]) or ", ".join(names[:4])
+        raise InputError(f"{path}: {clip!r} names {len(hits)} of its {len(names)} motions; write one out, as {few}")
+    start = int(lengths[: hits[0]].sum())
+    chosen = np.asarray(places[start : start + lengths[hits[0]]], float)
+    return RawMotion(
+        names=tuple(CMU_NAMES.values()), places=chosen[:, list(CMU_NAMES)], kind="CMU", fps=CMU_FPS, unit_m=1.0, up="y"
+    )
+
+
+def _rate_of_times(arrays: dict[str, Array]) -> float | None:
+    times = arrays.get("frame_time_s", arrays.get("time_s"))
+    if times is None or len(times) < 2:
+        return None
+    step = np.diff(np.asarray(times, float))
+    even = step.min() > 0 and np.ptp(step) < 1e-3 * step.mean()
+    return float(1 / step.mean()) if even else None

@@ -1,0 +1,89 @@
+"""Unit, upward axis and handedness of a motion: as said, else read off the body, else asked for."""
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.body import ALLOWED_M
+from mmweaver.motion.mocap.clip import body_height
+
+Array = np.ndarray
+UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+UPS = ("y", "z", "-y", "-z", "x", "-x")
+CLEAR = 0.8  # of the body's length must stand along one axis
+
+
+def unit_of(joints: Float[Array, "frame 22 3"], said: str | float | None, source: str) -> tuple[float, str]:
+    """Metres in one unit of the file, and a note ("" where it was said).
+
+    `said` is a name in UNITS_M or a number of metres. Guessed only where exactly one unit makes a body of 1.2 to 2.2 m.
+    """
+    if said is not None:
+        return metres_of(said), ""
+    size = body_height(joints)
+    low, high = ALLOWED_M
+    fits = [name for name, metres in UNITS_M.items() if low <= size * metres <= high]
+    if len(fits) == 1:
+        metres = UNITS_M[fits[0]]
+        return metres, f"lengths of {source} are taken as {fits[0]}: the body is then {size * metres:.2f} m tall"
+    raise InputError(
+        f"{source}: the body is {size:.4g} units tall, which in no unit (m, cm, mm, inch) is a person of {low:g} to"
+        f" {high:g} m; give --motion-unit, a name or the metres in one unit"
+    )
+
+
+def metres_of(said: str | float) -> float:
+    """'cm' -> 0.01; a number of metres stays. Raises InputError.
+
+    >>> metres_of("inch"), metres_of("0.056444")
+    (0.0254, 0.056444)
+    """
+    if isinstance(said, str) and said in UNITS_M:
+        return UNITS_M[said]
+    try:
+        metres = float(said)
+    except ValueError:
+        metres = float("nan")
+    if not 1e-6 < metres < 1e3:
+        raise InputError(
+            f"{said!r} is no unit of length; choose {', '.join(UNITS_M)} or the metres in one unit of the file"
+        )
+    return metres
+
+
+def up_of(joints: Float[Array, "frame 22 3"], said: str | None, source: str) -> tuple[str, str]:
+    """The upward axis, and a note where it was read off the body."""
+    if said is not None:
+        if said not in UPS:
+            raise InputError(f"the upward axis is one of {', '.join(UPS)}, not {said!r}")
+        return said, ""
+    feet = joints[:, [joint("left_ankle"), joint("right_ankle")]].mean(axis=1)
+    stands = np.nanmedian(joints[:, joint("head")] - feet, axis=0)
+    stands = stands / max(float(np.linalg.norm(stands)), 1e-12)
+    axis = int(np.abs(stands).argmax())
+    if abs(stands[axis]) < CLEAR:
+        raise InputError(
+            f"{source}: which axis points up cannot be told, for the body does not stand; give --motion-up y or z"
+        )
+    up = ("-" if stands[axis] < 0 else "") + "xyz"[axis]
+    return up, f"{up} points up in {source}, for there the head is"
+
+
+def turned_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
+    """The same with z up, by a rotation (never a mirror); y up becomes (x, -z, y)."""
+    x, y, z = (joints[..., axis] for axis in range(3))
+    turned = {
+        "z": (x, y, z), "-z": (x, -y, -z), "y": (x, -z, y), "-y": (x, z, -y), "x": (-z, y, x), "-x": (z, y, -x)
+    }[up]  # fmt: skip
+    return np.stack(turned, axis=-1)
+
+
+def is_mirrored(joints: Float[Array, "frame 22 3"]) -> bool:
+    """Whether left and right are exchanged (left-handed axes): the toes then point out of the back. z up."""
+    across = joints[:, joint("left_hip")] - joints[:, joint("right_hip")]
+    across = across + joints[:, joint("left_shoulder")] - joints[:, joint("right_shoulder")]
+    ahead = np.stack([across[:, 1], -across[:, 0]], axis=-1)
+    toes = sum(joints[:, joint(f"{s}_foot"), :2] - joints[:, joint(f"{s}_ankle"), :2] for s in ("left", "right"))
+    forwards = np.sum(ahead * np.asarray(toes), axis=-1)
+    return bool(np.nanmedian(forwards) < 0 and np.nanmean(forwards < 0) > 0.9)

@@ -1,0 +1,118 @@
+"""What recordings have besides motion: gaps, frames of zeros, a T-pose in front, joints that are mixed up."""
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.skeleton import JOINT_NAMES, joint
+
+Array = np.ndarray
+LONGEST_GAP_S = 0.25
+JUMP_MPS = 6.0  # of the wrists' mean from one frame to the next: no person leaves a T-pose so fast
+LONGEST_T_POSE_S = 1.0
+BONE_SPREAD = 0.3  # 5th to 95th percentile of a limb's length, as a share of its median
+LIMBS = (("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "wrist"))
+
+
+def without_gaps(
+    joints: Float[Array, "frame 22 3"], fps: float, source: str
+) -> tuple[Float[Array, "frame 22 3"], tuple[str, ...]]:
+    """Gaps (nan, infinities, frames of zeros) of up to 0.25 s bridged by cubics through what is around them.
+
+    Raises InputError for longer ones, for gaps at either end, and where there is no motion at all.
+    """
+    joints = np.array(joints, float)
+    joints[~np.isfinite(joints)] = np.nan
+    extent = np.ptp(np.nan_to_num(joints), axis=1).max(axis=-1)
+    if len(joints) < 2 or not np.isfinite(joints).any() or np.nanmax(extent) <= 0:
+        raise InputError(f"{source} has no motion: {_count(len(joints))}, or nothing but zeros; choose another file")
+    joints[extent < 1e-3 * np.nanmedian(extent[extent > 0])] = np.nan  # all joints at one point
+    missing = np.asarray(np.isnan(joints).any(axis=-1))
+    if not missing.any():
+        return joints, ()
+    longest, name, at = _longest_gap(missing)
+    if longest / fps > LONGEST_GAP_S or missing[0].any() or missing[-1].any():
+        raise InputError(
+            f"{source}: {name} is missing for {longest} frames ({longest / fps:.2f} s) from frame {at}; gaps of up to"
+            f" {LONGEST_GAP_S:g} s inside are filled, fill this one where the motion was recorded or cut it off"
+        )
+    _bridge(joints, missing)
+    filled = int(missing.any(axis=1).sum())
+    return joints, (f"{_count(filled)} of {source} had joints missing and were filled in",)
+
+
+def _count(frames: int) -> str:
+    return "1 frame" if frames == 1 else f"{frames} frames"
+
+
+def _longest_gap(missing: Bool[Array, "frame 22"]) -> tuple[int, str, int]:
+    """Frames, joint and start of the longest run of missing places."""
+    best = (0, "", 0)
+    for k, name in enumerate(JOINT_NAMES):
+        edges = np.flatnonzero(np.diff(np.pad(missing[:, k].astype(int), 1)))
+        for start, end in edges.reshape(-1, 2):
+            best = max(best, (int(end - start), name, int(start)), key=lambda gap: gap[0])
+    return best
+
+
+def _bridge(joints: Float[Array, "frame 22 3"], missing: Bool[Array, "frame 22"]) -> None:
+    from scipy.interpolate import CubicSpline
+
+    frame = np.arange(len(joints), dtype=float)
+    for k in np.flatnonzero(missing.any(axis=0)):
+        there = ~missing[:, k]
+        joints[~there, k] = CubicSpline(frame[there], joints[there, k], axis=0)(frame[~there])
+
+
+def without_t_pose(
+    joints_m: Float[Array, "frame 22 3"], fps: float, source: str
+) -> tuple[Float[Array, "left 22 3"], tuple[str, ...]]:
+    """A T-pose of up to a second in front is cut off where the motion then jumps; else only noted."""
+    spread = is_t_pose(joints_m[: max(int(LONGEST_T_POSE_S * fps), 1) + 1])
+    if not spread[0]:
+        return joints_m, ()
+    last = int(np.argmin(spread)) if not spread.all() else len(spread)
+    wrists = joints_m[:, [joint("left_wrist"), joint("right_wrist")]]
+    speed = np.linalg.norm(np.diff(wrists[: last + 1], axis=0), axis=-1).mean(axis=-1) * fps
+    jumps = np.flatnonzero(speed > JUMP_MPS)
+    if len(jumps) and len(joints_m) - jumps[-1] > 2:
+        first = int(jumps[-1]) + 1
+        return joints_m[first:], (f"{_count(first)} of T-pose in front of {source} cut off",)
+    return joints_m, (f"{source} begins in a T-pose, which is shown; --motion-start leaves it out",)
+
+
+def is_t_pose(joints_m: Float[Array, "frame 22 3"]) -> Bool[Array, " frame"]:
+    """Both arms straight, level and aside, both legs straight down; z up."""
+    result = np.ones(len(joints_m), bool)
+    for side in ("left", "right"):
+        shoulder, elbow, wrist, hip, ankle = (
+            joints_m[:, joint(f"{side}_{part}")] for part in ("shoulder", "elbow", "wrist", "hip", "ankle")
+        )
+        arm, leg = wrist - shoulder, ankle - hip
+        length = np.linalg.norm(arm, axis=-1)
+        bones = np.linalg.norm(elbow - shoulder, axis=-1) + np.linalg.norm(wrist - elbow, axis=-1)
+        result &= (np.abs(arm[:, 2]) < 0.35 * length) & (length > 0.95 * bones)
+        result &= -leg[:, 2] > 0.95 * np.linalg.norm(leg, axis=-1)
+    reach = joints_m[:, joint("left_wrist")] - joints_m[:, joint("right_wrist")]
+    span = np.linalg.norm(joints_m[:, joint("left_elbow")] - joints_m[:, joint("right_elbow")], axis=-1)
+    return result & (np.linalg.norm(reach, axis=-1) > 1.4 * span)
+
+
+def check_bones(joints: Float[Array, "frame 22 3"], source: str) -> None:
+    """Raises InputError where limbs change their length or differ from side to side, as joints that are mixed up do."""
+    for one, other in LIMBS:
+        middles = []
+        for side in ("left", "right"):
+            bone = joints[:, joint(f"{side}_{other}")] - joints[:, joint(f"{side}_{one}")]
+            low, middle, high = np.percentile(np.linalg.norm(bone, axis=-1), [5, 50, 95])
+            middles.append(float(middle))
+            if middle <= 0 or high - low > BONE_SPREAD * middle:
+                raise InputError(
+                    f"{source}: the bone from {side} {one} to {side} {other} is {low:.3g} to {high:.3g} units long; the"
+                    " joints are not those that are expected there (order: core/skeleton.py)"
+                )
+        if max(middles) > (1 + BONE_SPREAD) * min(middles):
+            raise InputError(
+                f"{source}: from {one} to {other} it is {middles[0]:.3g} units on the left and {middles[1]:.3g} on the"
+                " right; the joints are not those that are expected there (order: core/skeleton.py)"
+            )

@@ -1,0 +1,89 @@
+"""What a motion file holds: as it was read (RawMotion), and made clear (MotionClip)."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.shapes import Joints
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.body import ALLOWED_M
+
+Array = np.ndarray
+
+# Legs and trunk (hips to shoulders) are this share of the height in the library's own body (motion/body.py); the SMPL
+# mean body has 0.776. Spine and head joints would say more, but every skeleton puts them elsewhere.
+BONES_OF_HEIGHT = 0.474 + 0.295
+LEGS = (("hip", "knee"), ("knee", "ankle"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RawMotion:
+    """Joints of a file under its own names, in its own unit and axes; None where the file does not say."""
+
+    names: tuple[str, ...]
+    places: Float[Array, "frame joint 3"]
+    kind: str  # what the file is: BVH, SMPL, ...
+    fps: float | None = None
+    unit_m: float | None = None  # metres in one unit
+    up: str | None = None  # y | z | -y | -z | x | -x
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionClip:
+    """A recorded motion of 22 joints: metres, z up, right-handed, evenly spaced in time; anywhere on its floor."""
+
+    joints_m: Joints
+    fps: float
+    label: str  # what it is called in titles and meta.json
+    notes: tuple[str, ...] = ()  # sentences on what was assumed
+    steady: bool = True  # take marker jitter out (see dense.py)
+    file: Path | None = None  # where it was read from
+    first_frame: int = 0  # of the file, as it begins here
+
+    @property
+    def duration_s(self) -> float:
+        """Every frame lasts 1/fps, the last one too."""
+        return len(self.joints_m) / self.fps
+
+    @property
+    def height_m(self) -> float:
+        """The body's height, estimated from the bones of legs and trunk."""
+        return body_height(self.joints_m)
+
+    def after(self, start_s: float) -> "MotionClip":
+        """The same from a later second on. Raises InputError where nothing is left."""
+        first = round(start_s * self.fps)
+        if not 0 <= first <= len(self.joints_m) - 2:
+            raise InputError(
+                f"{self.label} lasts {self.duration_s:.2f} s, so it cannot start at {start_s:g} s; choose an earlier"
+                " --motion-start"
+            )
+        return replace(self, joints_m=self.joints_m[first:], first_frame=self.first_frame + first) if first else self
+
+    def scaled_to(self, height_m: float) -> "MotionClip":
+        """The same motion of a body of another height; ways grow and shrink with the legs."""
+        low, high = ALLOWED_M
+        if not low <= height_m <= high:
+            raise InputError(f"a body height of {height_m:g} m is outside {low:g} to {high:g} m; choose another")
+        was = self.height_m
+        note = f"the recorded body of about {was:.2f} m was scaled to {height_m:.2f} m, its steps with it"
+        return replace(self, joints_m=self.joints_m * (height_m / was), notes=(*self.notes, note))
+
+
+def body_height(joints: Joints) -> float:
+    """Height of the body in the unit of `joints` (frame, 22, 3), from the median lengths of its legs and trunk.
+
+    Within some 8 % of the truth: people, and the skeletons of recordings, differ in their proportions.
+    """
+
+    def length(one: str, other: str) -> float:
+        return float(np.median(np.linalg.norm(joints[:, joint(one)] - joints[:, joint(other)], axis=-1)))
+
+    leg = sum(length(f"{side}_{a}", f"{side}_{b}") for side in ("left", "right") for a, b in LEGS) / 2
+    hips, shoulders = (joints[:, joint(f"left_{p}")] + joints[:, joint(f"right_{p}")] for p in ("hip", "shoulder"))
+    trunk = float(np.median(np.linalg.norm(shoulders - hips, axis=-1))) / 2
+    return (leg + trunk) / BONES_OF_HEIGHT

@@ -1,0 +1,116 @@
+"""SMPL poses (AMASS and its kin): axis-angle rotations of a body -> its 22 joints.
+
+Without a body model the joints hang on the public mean skeleton; shape coefficients (betas) then count for nothing.
+With a model file of the user's own (SMPL, SMPL-H or SMPL-X as .npz) the joints are those of that body.
+
+Reference: Loper et al., SMPL, 2015; Mahmood et al., AMASS, 2019.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS
+from mmweaver.motion.mocap.archives import open_npz
+from mmweaver.motion.mocap.clip import RawMotion
+
+Array = np.ndarray
+# Each joint from its parent in the mean neutral body, metres; x to its left, y up, z forward. Public figures, as in
+# the humanoid models of physics simulators.
+MEAN_OFFSET_M = np.array([
+    (0.0, 0.0, 0.0), (0.0695, -0.0914, -0.0068), (-0.0677, -0.0905, -0.0043), (-0.0025, 0.1090, -0.0267),
+    (0.0343, -0.3752, -0.0045), (-0.0383, -0.3826, -0.0089), (0.0055, 0.1352, 0.0011), (-0.0136, -0.3980, -0.0437),
+    (0.0158, -0.3984, -0.0423), (0.0015, 0.0529, 0.0254), (0.0264, -0.0558, 0.1193), (-0.0254, -0.0481, 0.1233),
+    (-0.0028, 0.2139, -0.0429), (0.0788, 0.1217, -0.0341), (-0.0818, 0.1188, -0.0386), (0.0052, 0.0650, 0.0513),
+    (0.0910, 0.0305, -0.0089), (-0.0960, 0.0326, -0.0091), (0.2596, -0.0128, -0.0275), (-0.2537, -0.0133, -0.0214),
+    (0.2492, 0.0090, -0.0012), (-0.2553, 0.0078, -0.0056),
+])  # fmt: skip
+TRANSLATIONS = ("trans", "transl", "root_translation")
+RATES = ("mocap_framerate", "mocap_frame_rate", "fps", "frame_rate", "framerate")
+
+
+def is_smpl(arrays: dict[str, Array]) -> bool:
+    """Whether an .npz holds poses of an SMPL body."""
+    return bool({"poses", "pose", "root_orient", "pose_body"} & set(arrays)) and bool(set(TRANSLATIONS) & set(arrays))
+
+
+def read_smpl(arrays: dict[str, Array], path: Path, body_model: Path | None = None) -> RawMotion:
+    """Joints (frame, 22, 3) of an AMASS or SMPL .npz. Raises InputError for shapes that are no such poses."""
+    poses = _poses(arrays, path)
+    trans = next(arrays[name] for name in TRANSLATIONS if name in arrays)
+    if trans.shape != (len(poses), 3):
+        raise InputError(f"{path}: the translation has shape {trans.shape}, {(len(poses), 3)} fits the poses")
+    betas = arrays.get("betas", arrays.get("shape"))
+    if body_model is not None:
+        offsets, note = _own_offsets(body_model, betas), f"bones of the body model {body_model.name}"
+    else:
+        offsets, note = MEAN_OFFSET_M, "the mean SMPL skeleton stands for the recorded body (no body model was given)"
+    places = forward(poses[:, :NUM_JOINTS], np.asarray(trans, float), offsets)
+    return RawMotion(names=JOINT_NAMES, places=places, kind="SMPL", fps=rate_of(arrays), unit_m=1.0, notes=(note,))
+
+
+def rate_of(arrays: dict[str, Array]) -> float | None:
+    """The frame rate that an .npz states, if it does."""
+    found = [arrays[name] for name in RATES if name in arrays and np.asarray(arrays[name]).size == 1]
+    if not found or not np.issubdtype(found[0].dtype, np.number):
+        return None
+    rate = float(np.asarray(found[0]).reshape(()))
+    return rate if rate > 0 else None
+
+
+def forward(
+    rotations: Float[Array, "frame 22 3"], trans: Float[Array, "frame 3"], offsets_m: Float[Array, "22 3"]
+) -> Float[Array, "frame 22 3"]:
+    """Forward kinematics of axis-angle rotations, each in its parent's frame."""
+    from scipy.spatial.transform import Rotation
+
+    missing = np.asarray(~np.isfinite(rotations).all(axis=(1, 2)))
+    local = Rotation.from_rotvec(np.where(missing[:, None, None], 0.0, rotations).reshape(-1, 3)).as_matrix()
+    local = np.asarray(local).reshape(len(rotations), NUM_JOINTS, 3, 3)
+    turned, places = local.copy(), np.zeros((len(rotations), NUM_JOINTS, 3))
+    places[:, 0] = trans + offsets_m[0]
+    for k, parent in enumerate(PARENTS):
+        if parent >= 0:
+            places[:, k] = places[:, parent] + turned[:, parent] @ offsets_m[k]
+            turned[:, k] = turned[:, parent] @ local[:, k]
+    places[missing] = np.nan
+    return places
+
+
+def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"]:
+    if "pose_body" in arrays and "root_orient" in arrays:
+        parts = [
+            np.asarray(arrays[name], float).reshape(len(arrays[name]), -1) for name in ("root_orient", "pose_body")
+        ]
+        poses = np.concatenate(parts, axis=1) if len(parts[0]) == len(parts[1]) else np.zeros((0, 0))
+    else:
+        given = np.asarray(arrays.get("poses", arrays.get("pose")), float)
+        poses = given.reshape(len(given), -1) if given.ndim >= 2 else np.zeros((0, 0))
+    if poses.shape[1] < 3 * NUM_JOINTS or poses.shape[1] % 3:
+        raise InputError(
+            f"{path} holds no SMPL poses: {poses.shape[1]} numbers a frame, at least 66 (22 axis-angle rotations) are"
+            " needed"
+        )
+    return poses.reshape(len(poses), -1, 3)
+
+
+def _own_offsets(body_model: Path, betas: Array | None) -> Float[Array, "22 3"]:
+    """Joint offsets of a body model's .npz in the shape of the recording."""
+    if body_model.suffix != ".npz":
+        raise InputError(f"{body_model}: the body model must be an .npz (pickles are not opened); SMPL-H has model.npz")
+    model = open_npz(body_model, only=("v_template", "shapedirs", "J_regressor"))
+    if set(model) != {"v_template", "shapedirs", "J_regressor"}:
+        raise InputError(f"{body_model} is no body model: v_template, shapedirs and J_regressor are needed")
+    template, shapes, regressor = model["v_template"], model["shapedirs"], model["J_regressor"]
+    fits = template.ndim == 2 and shapes.shape[:2] == template.shape and regressor.shape[1:] == (len(template),)
+    if not fits or len(regressor) < NUM_JOINTS:
+        raise InputError(f"{body_model} is no body model: its shapes do not fit each other")
+    count = 0 if betas is None else min(np.asarray(betas).reshape(-1).size, shapes.shape[2])
+    shape = np.zeros(0) if betas is None else np.asarray(betas, float).reshape(-1)[:count]
+    joints = regressor[:NUM_JOINTS] @ (template + shapes[:, :, :count] @ shape)
+    parents = np.array([max(parent, 0) for parent in PARENTS])
+    offsets = joints - joints[parents]
+    offsets[0] = joints[0]
+    return offsets

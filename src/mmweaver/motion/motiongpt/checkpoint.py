@@ -1,0 +1,128 @@
+"""A MotionGPT checkpoint: read without running anything from it, checked name by name, and its sizes read off.
+
+Reference: MotionGPT's checkpoint `motiongpt_s3_h3d.tar`: a torch archive whose `state_dict` holds `vae.*` and
+`lm.language_model.*` (docs/motiongpt.md).
+"""
+
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.motiongpt.tokenizer import TokenizerConfig
+
+VAE, LANGUAGE = "vae.", "lm.language_model."
+MEAN, STD, VOCABULARY = "meta.mean", "meta.std", "vocabulary"  # only in this project's own files
+State = dict[str, Tensor]
+
+
+def read_checkpoint(path: Path) -> tuple[State, dict[str, str]]:
+    """All tensors of a checkpoint, and the notes of a safetensors file. Raises InputError for anything else."""
+    if not path.is_file():
+        raise InputError(f"there is no checkpoint {path}; give the file of MotionGPT, or a folder that holds it")
+    if path.suffix == ".safetensors":
+        return _read_safetensors(path)
+    try:
+        # The published file was written by torch's own saving; weights_only runs nothing that it might hold.
+        content = torch.load(path, map_location="cpu", weights_only=True)
+    except Exception as error:
+        raise InputError(_why_unread(path, error)) from None
+    state = content.get("state_dict", content) if isinstance(content, dict) else content
+    if not isinstance(state, dict) or not all(isinstance(value, Tensor) for value in state.values()):
+        raise InputError(f"{path} holds no state_dict of tensors; it is no MotionGPT checkpoint")
+    return {str(name): value for name, value in state.items()}, {}
+
+
+def _read_safetensors(path: Path) -> tuple[State, dict[str, str]]:
+    from safetensors import SafetensorError, safe_open
+
+    try:
+        with safe_open(path, framework="pt") as file:
+            return {name: file.get_tensor(name) for name in file.keys()}, dict(file.metadata() or {})  # noqa: SIM118
+    except (SafetensorError, OSError) as error:
+        raise InputError(f"{path} is damaged or no safetensors file ({str(error).splitlines()[0][:100]})") from None
+
+
+def _why_unread(path: Path, error: Exception) -> str:
+    text = " ".join(str(error).split())
+    if "GLOBAL" in text or "Unsupported" in text or "weights_only" in text.lower():
+        what = text.split("GLOBAL ")[-1].split(" ")[0] if "GLOBAL " in text else "something"
+        return (
+            f"{path} holds {what} besides tensors, which is not opened (it could run code); where you trust it, save"
+            " its state_dict alone with torch.save and give that file"
+        )
+    return f"{path} cannot be read: cut short, damaged, or no torch checkpoint ({text[:80]})"
+
+
+def parts_of(state: State, path: Path) -> tuple[State, State]:
+    """The tensors of the tokenizer and of the language model; metrics and losses are left out."""
+    vae = {name.removeprefix(VAE): value for name, value in state.items() if name.startswith(VAE)}
+    language = {name.removeprefix(LANGUAGE): value for name, value in state.items() if name.startswith(LANGUAGE)}
+    if not vae or not language:
+        lacks = [prefix + "*" for prefix, part in ((VAE, vae), (LANGUAGE, language)) if not part]
+        few = ", ".join(list(state)[:3]) or "nothing"
+        raise InputError(f"{path} is no MotionGPT checkpoint: it has no {' and no '.join(lacks)}, but {few}")
+    return vae, language
+
+
+def tokenizer_config(vae: State, path: Path) -> TokenizerConfig:
+    """Sizes of the tokenizer, read off its tensors."""
+    first, book = _need(vae, path, VAE, "encoder.model.0.weight", "quantizer.codebook")
+    blocks = {int(name.split(".")[2]) for name in vae if name.startswith("encoder.model.") and ".model." in name[14:]}
+    depth = {int(name.split(".")[5]) for name in vae if name.startswith("encoder.model.2.1.model.")}
+    if first.ndim != 3 or book.ndim != 2 or not blocks or not depth:
+        raise InputError(f"{path}: the motion tokenizer's tensors have other shapes than MotionGPT's")
+    return TokenizerConfig(
+        features=first.shape[1], width=first.shape[0], codes=book.shape[0], code_width=book.shape[1],
+        halvings=len(blocks), depth=max(depth) + 1,
+    )  # fmt: skip
+
+
+def _need(state: State, path: Path, prefix: str, *names: str) -> list[Tensor]:
+    missing = [prefix + name for name in names if name not in state]
+    if missing:
+        raise InputError(f"{path} lacks {', '.join(missing)}; it is incomplete, download it again")
+    return [state[name] for name in names]
+
+
+def t5_sizes(language: State, path: Path) -> dict[str, int | str | bool]:
+    """Sizes of the T5, read off its tensors, as `transformers.T5Config` calls them."""
+    block = "encoder.block.0.layer.0.SelfAttention."
+    shared, bias, query = _need(
+        language, path, LANGUAGE, "shared.weight", f"{block}relative_attention_bias.weight", f"{block}q.weight"
+    )
+    gated = "encoder.block.0.layer.1.DenseReluDense.wi_0.weight" in language
+    wide = f"encoder.block.0.layer.1.DenseReluDense.{'wi_0' if gated else 'wi'}.weight"
+    (inner,) = _need(language, path, LANGUAGE, wide)
+    if shared.ndim != 2 or bias.ndim != 2 or query.ndim != 2 or not bias.shape[1] or query.shape[0] % bias.shape[1]:
+        raise InputError(f"{path}: the language model's tensors have other shapes than a T5's")
+    layers = {
+        side: 1 + max((int(name.split(".")[2]) for name in language if name.startswith(f"{side}.block.")), default=-1)
+        for side in ("encoder", "decoder")
+    }
+    return {
+        "vocab_size": shared.shape[0], "d_model": shared.shape[1], "num_heads": bias.shape[1],
+        "relative_attention_num_buckets": bias.shape[0], "d_kv": query.shape[0] // bias.shape[1],
+        "d_ff": inner.shape[0], "num_layers": layers["encoder"], "num_decoder_layers": layers["decoder"],
+        "feed_forward_proj": "gated-gelu" if gated else "relu",
+        "tie_word_embeddings": "lm_head.weight" not in language,
+    }  # fmt: skip
+
+
+def check_state(given: State, wanted: State, prefix: str, path: Path) -> None:
+    """Raises InputError where tensors are missing or have another shape, naming the first few."""
+    missing = [prefix + name for name in wanted if name not in given]
+    if missing:
+        raise InputError(f"{path} lacks {_few(missing)}; it is incomplete or of another model")
+    other = [
+        f"{prefix}{name} is {tuple(given[name].shape)} and not {tuple(value.shape)}"
+        for name, value in wanted.items()
+        if given[name].shape != value.shape
+    ]
+    if other:
+        raise InputError(f"{path}: {_few(other)}; it is of another model")
+
+
+def _few(names: list[str], most: int = 3) -> str:
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")

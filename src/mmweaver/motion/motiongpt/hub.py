@@ -1,0 +1,35 @@
+"""The published checkpoint by its name on the Hugging Face Hub."""
+
+import re
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.motiongpt.language import EXTRA
+
+PUBLISHED = "OpenMotionLab/MotionGPT-base"
+CHECKPOINT = "motiongpt_s3_h3d.tar"
+
+
+def looks_like_hub(name: str) -> bool:
+    """Whether a name is owner/name and no path that exists.
+
+    >>> looks_like_hub("OpenMotionLab/MotionGPT-base"), looks_like_hub("weights/motiongpt.tar")
+    (True, False)
+    """
+    shaped = re.fullmatch(r"[\w.-]+/[\w.-]+", name) is not None
+    return shaped and not Path(name).exists() and not Path(name).parent.is_dir() and Path(name).suffix == ""
+
+
+def published_checkpoint(name: str) -> Path:
+    """The checkpoint of a repository on the Hub, downloaded once and kept. Raises InputError where it cannot be had."""
+    try:
+        from huggingface_hub import hf_hub_download
+    except ImportError:
+        raise InputError(EXTRA) from None
+    try:
+        return Path(hf_hub_download(repo_id=name, filename=CHECKPOINT))
+    except Exception as error:
+        why = " ".join(str(error).split())[:80]
+        raise InputError(
+            f"{CHECKPOINT} of {name} cannot be fetched from the Hub ({why}); download it yourself and give its path"
+        ) from None

@@ -1,0 +1,113 @@
+"""The language model of MotionGPT: a T5 whose vocabulary has 515 motion tokens after the words.
+
+`<motion_id_0>` ... `<motion_id_511>` are the codes, 512 begins a motion, 513 ends it, 514 masks one.
+"""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor
+
+from mmweaver.core.errors import InputError
+
+if TYPE_CHECKING:
+    from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
+
+EXTRA = "the motion model needs the extra 'motiongpt'; install it with: pip install 'mmweaver[motiongpt]'"
+# flan-t5-base with 32,100 words and 515 motion tokens: what the published checkpoint holds.
+PUBLISHED_T5: dict[str, Any] = {
+    "vocab_size": 32_100 + 515, "d_model": 768, "d_kv": 64, "d_ff": 2048, "num_layers": 12, "num_decoder_layers": 12,
+    "num_heads": 12, "feed_forward_proj": "gated-gelu", "tie_word_embeddings": False,
+}  # fmt: skip
+LONGEST_TEXT_TOKENS = 256
+
+
+def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
+    """A T5 of these sizes, without weights from anywhere.
+
+    `tie_word_embeddings` False gives the output words a matrix of their own, as flan-t5 has it; transformers 5 would
+    share one with the input words whatever the configuration says.
+    """
+    try:
+        from transformers import T5Config, T5ForConditionalGeneration
+    except ImportError:
+        raise InputError(EXTRA) from None
+    special: dict[str, Any] = {"decoder_start_token_id": 0, "pad_token_id": 0, "eos_token_id": 1}
+    config = T5Config(**sizes, **special)
+    model = T5ForConditionalGeneration(config)
+    if not sizes.get("tie_word_embeddings", True) and model.lm_head.weight is model.shared.weight:
+        model.config.tie_word_embeddings = False
+        fresh = torch.empty_like(model.shared.weight)
+        model.lm_head.weight = torch.nn.Parameter(fresh if fresh.is_meta else fresh.normal_(0, fresh.shape[1] ** -0.5))
+    return model
+
+
+def add_motion_tokens(words: "PreTrainedTokenizerBase", codes: int) -> int:
+    """Adds the motion tokens behind the words; gives the id of the first."""
+    names = [f"<motion_id_{k}>" for k in range(codes + 3)]
+    words.add_tokens(names)
+    first, last = words.convert_tokens_to_ids(names[0]), words.convert_tokens_to_ids(names[-1])
+    if not (isinstance(first, int) and isinstance(last, int)) or last - first != codes + 2:
+        raise InputError("the text tokenizer already has motion tokens, in another order; give the plain one")
+    return first
+
+
+def sample_codes(
+    t5: "T5ForConditionalGeneration",
+    text_ids: Int[Tensor, "1 word"],
+    *,
+    first_motion_id: int,
+    codes: int,
+    tokens: int | None,
+    most_tokens: int,
+    seed: int,
+    temperature: float = 1.0,
+    top_k: int = 50,
+) -> list[int]:
+    """Codes that the model says after a text.
+
+    With `tokens`, exactly so many: other words, and the end before its time, are forbidden. Without, as many as the
+    model likes, up to `most_tokens`, as the published demo does; what is no code is left out. The same seed gives the
+    same codes.
+    """
+    from transformers import LogitsProcessorList
+
+    rules = LogitsProcessorList()
+    if tokens is not None:
+        rules.append(_exactly(tokens, first_motion_id, codes))  # type: ignore[arg-type]
+    model: Any = t5
+    with torch.random.fork_rng(devices=[]), torch.inference_mode():
+        torch.manual_seed(seed)
+        said = model.generate(
+            input_ids=text_ids,
+            attention_mask=torch.ones_like(text_ids),
+            max_new_tokens=(tokens if tokens is not None else most_tokens) + 3,
+            num_beams=1,
+            do_sample=True,
+            temperature=temperature,
+            top_k=top_k,
+            logits_processor=rules,
+        )
+    ids = [int(k) - first_motion_id for k in said[0]]
+    begin = ids.index(codes) + 1 if codes in ids else 0
+    end = ids.index(codes + 1) if codes + 1 in ids else len(ids)
+    return [k for k in ids[begin:end] if 0 <= k < codes]
+
+
+def _exactly(tokens: int, first: int, codes: int) -> Callable[[Tensor, Tensor], Tensor]:
+    """A rule for generation: begin, so many codes, end, stop."""
+
+    def rule(ids: Tensor, scores: Float[Tensor, "batch vocabulary"]) -> Float[Tensor, "batch vocabulary"]:
+        said = ids.shape[1] - 1  # the decoder begins with padding
+        allowed = torch.zeros(scores.shape[1], dtype=torch.bool)
+        if said == 0:
+            allowed[first + codes] = True
+        elif said <= tokens:
+            allowed[first : first + codes] = True
+        else:
+            allowed[first + codes + 1 if said == tokens + 1 else 1] = True
+        return scores.masked_fill(~allowed, -torch.inf)
+
+    return rule

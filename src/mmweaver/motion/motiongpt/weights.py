@@ -1,0 +1,54 @@
+"""Writing a MotionGPT: as a safetensors file of this project, whole in itself, or in the published format."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.errors import InputError
+from mmweaver.motion.motiongpt.checkpoint import LANGUAGE, MEAN, STD, VAE, VOCABULARY
+from mmweaver.motion.motiongpt.language import EXTRA
+from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
+
+if TYPE_CHECKING:
+    from transformers import T5ForConditionalGeneration
+
+SAME = ("encoder.embed_tokens.weight", "decoder.embed_tokens.weight")  # of shared.weight
+
+
+def state_of(tokenizer: MotionTokenizer, language: "T5ForConditionalGeneration") -> dict[str, Tensor]:
+    """All tensors under their published names."""
+    state = {VAE + name: value.detach() for name, value in tokenizer.state_dict().items()}
+    return state | {LANGUAGE + name: value.detach() for name, value in language.state_dict().items()}
+
+
+def save_weights(
+    path: Path,
+    *,
+    tokenizer: MotionTokenizer,
+    language: "T5ForConditionalGeneration",
+    mean: Float[np.ndarray, " feature"],
+    std: Float[np.ndarray, " feature"],
+    vocabulary: str,
+    half: bool = False,
+) -> None:
+    """One safetensors file with weights, mean, std and words; with `half` the weights as float16."""
+    try:
+        from safetensors.torch import save_file
+    except ImportError:
+        raise InputError(EXTRA) from None
+    state = {name: value for name, value in state_of(tokenizer, language).items() if not name.endswith(SAME)}
+    state = {name: (value.half() if half else value).contiguous().clone() for name, value in state.items()}
+    state |= {MEAN: torch.from_numpy(mean.astype(np.float32)), STD: torch.from_numpy(std.astype(np.float32))}
+    with atomic_file(path) as temporary:
+        save_file(state, temporary, metadata={VOCABULARY: vocabulary})
+
+
+def save_published(path: Path, tokenizer: MotionTokenizer, language: "T5ForConditionalGeneration") -> None:
+    """A torch archive as MotionGPT's: everything under `state_dict`."""
+    with atomic_file(path) as temporary:
+        torch.save({"state_dict": state_of(tokenizer, language)}, temporary)

@@ -1,0 +1,97 @@
+"""Whether a moving body meets what the photo shows: its limbs against the measured points and the walls."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.skeleton import joint
+
+Array = np.ndarray
+# Radii of a person of 1.75 m about the bones, and what may be pressed by them.
+_LIMBS = (
+    ("pelvis", "spine3", 0.12), ("spine3", "neck", 0.11), ("neck", "head", 0.08), ("left_hip", "right_hip", 0.105),
+    ("left_collar", "left_shoulder", 0.07), ("right_collar", "right_shoulder", 0.07),
+    ("left_hip", "left_knee", 0.075), ("right_hip", "right_knee", 0.075),
+    ("left_knee", "left_ankle", 0.05), ("right_knee", "right_ankle", 0.05),
+    ("left_ankle", "left_foot", 0.04), ("right_ankle", "right_foot", 0.04),
+    ("left_shoulder", "left_elbow", 0.05), ("right_shoulder", "right_elbow", 0.05),
+    ("left_elbow", "left_wrist", 0.04), ("right_elbow", "right_wrist", 0.04),
+)  # fmt: skip
+_HAND_M = 0.15  # beyond the wrist
+_SEATED = ("pelvis", "spine3", "left_hip", "right_hip", "left_collar", "right_collar")
+_REFERENCE_HEIGHT_M = 1.75
+_SHARES = np.array([0.0, 0.33, 0.67, 1.0])
+_STEP_S = 0.1
+_ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
+_LOWEST_M = 0.09  # above the floor: soles meet the floor
+_MOST_POINTS = 34_000
+
+
+@dataclass(frozen=True)
+class Obstacles:
+    """The measured points of a scene above its floor, and its walls."""
+
+    scene: Scene
+
+    @cached_property
+    def _tree(self) -> Any:
+        """For the nearest point; None where there is none."""
+        from scipy.spatial import KDTree
+
+        photo = self.scene.photo
+        step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
+        rows, columns = np.mgrid[0 : photo.depth_m.shape[0] : step, 0 : photo.depth_m.shape[1] : step]
+        depth, lens = photo.depth_m[rows, columns], photo.intrinsics
+        camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
+        points = camera[np.isfinite(depth) & (depth > 0.3)] @ self.scene.radar_from_camera.T
+        points = points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+        return KDTree(points) if len(points) else None
+
+    def deepest_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = ()) -> float:
+        """How far the body gets into anything, at worst; 0 where it stays clear.
+
+        About the places of `seats_m` trunk and thighs may sink in, for they sit there.
+        """
+        rows = np.unique(np.searchsorted(pose.time_s, np.arange(max(pose.time_s[0], 0.0), pose.time_s[-1], _STEP_S)))
+        joints = pose.joints_m[np.minimum(rows, len(pose.time_s) - 1)].astype(float)
+        scale = pose.height_m / _REFERENCE_HEIGHT_M
+        points, radius, soft = [], [], []
+        for start, end, thick in _LIMBS:
+            first, last = joints[:, joint(start)], joints[:, joint(end)]
+            if end.endswith("wrist"):
+                along = last - first
+                last = last + _HAND_M * along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-6)
+            limb = first[None] * (1 - _SHARES[:, None, None]) + last[None] * _SHARES[:, None, None]
+            points.append(limb.reshape(-1, 3))
+            radius.append(np.full(limb.shape[0] * limb.shape[1], thick * scale))
+            soft.append(np.full(limb.shape[0] * limb.shape[1], start in _SEATED))
+        return self._worst(np.concatenate(points), np.concatenate(radius), np.concatenate(soft), seats_m)
+
+    def _worst(
+        self,
+        points: Float[Array, "point 3"],
+        radius: Float[Array, " point"],
+        soft: np.ndarray,
+        seats_m: Sequence[tuple[float, float]],
+    ) -> float:
+        allowed = np.full(len(points), _ALLOWED_M)
+        for seat in seats_m:
+            at_seat = soft & (np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M)
+            allowed[at_seat] = _ON_SEAT_M
+        worst = 0.0
+        if self._tree is not None:
+            distance, _ = self._tree.query(points, distance_upper_bound=0.3)
+            worst = max(worst, float((radius - distance - allowed).max()))
+        for plane in self.scene.planes:
+            if plane.kind == "wall":
+                away = points - plane.centre_m
+                inside = np.abs(away @ plane.axis_u) < plane.half_size_m[0] + 0.3
+                into = np.where(inside, radius - away @ plane.normal - allowed, 0.0)
+                # Far behind a wall is another room seen through a door.
+                worst = max(worst, float(into[into < 0.6].max(initial=0.0)))
+        return worst

@@ -1,0 +1,67 @@
+"""Models of other people through `transformers`: from a local folder, or from the Hub where there is a network."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError
+
+
+def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any]) -> tuple[Any, Any, Any]:
+    """(config, image processor, model) of a folder or Hub name, on the CPU, ready to run; safetensors alone are read.
+
+    `choose(transformers, config)` gives the class to load with. Raises InputError where `transformers` is missing, or
+    nothing can be loaded.
+    """
+    try:
+        import transformers
+    except ImportError:
+        raise InputError(
+            f"{option} needs transformers; install it with: pip install 'mmweaver[segmentation]'"
+        ) from None
+    folder = Path(source)
+    if folder.is_dir() and not (folder / "config.json").is_file():
+        raise InputError(f"{option} {source} is a folder without config.json; give one that save_pretrained wrote")
+    if not folder.is_dir() and (folder.exists() or source.startswith((".", "/", "~"))):
+        raise InputError(f"{option} {source} is no folder; give a model's folder or its name on the Hub")
+    with quiet(transformers):
+        try:
+            config = transformers.AutoConfig.from_pretrained(source)
+            model_class = choose(transformers, config)
+            processor = transformers.AutoImageProcessor.from_pretrained(source)
+            model = model_class.from_pretrained(source, use_safetensors=True)
+        except InputError:
+            raise
+        except Exception as error:  # a file of other people's may break in any way
+            if isinstance(error, MemoryError):
+                raise
+            raise InputError(_why(source, option, error, is_folder=folder.is_dir())) from None
+    return config, processor, model.eval()
+
+
+@contextmanager
+def quiet(transformers: Any) -> Iterator[None]:
+    """Without its log lines and progress bars."""
+    logging = transformers.utils.logging
+    level = logging.get_verbosity()
+    logging.set_verbosity_error()
+    logging.disable_progress_bar()
+    try:
+        yield
+    finally:
+        logging.set_verbosity(level)
+        logging.enable_progress_bar()
+
+
+def _why(source: str, option: str, error: Exception, *, is_folder: bool) -> str:
+    reason = (str(error).strip().splitlines() or [type(error).__name__])[0][:160]
+    if is_folder:
+        return (
+            f"{option} {source} cannot be loaded ({reason}); it needs config.json, preprocessor_config.json and"
+            " model.safetensors"
+        )
+    return (
+        f"{option} {source} is no folder here and cannot be had from the Hub ({reason}); where there is a network:"
+        f" hf download {source} --local-dir DIR, then {option} DIR"
+    )

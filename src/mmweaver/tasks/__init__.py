@@ -1,0 +1,1 @@
+"""Downstream recognisers that are trained on generated data."""

@@ -1,0 +1,81 @@
+"""Which activity a window shows: two kinds of decision trees, trained on features of labelled windows, their votes
+averaged."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+
+Features = Float[np.ndarray, "window feature"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClassifierSettings:
+    """How the trees grow; equal settings, seed and data give equal trees."""
+
+    num_trees: int = 400
+    leaf_size: int = 3
+    feature_share: float = 0.25
+    boosting_rounds: int = 150
+    learning_rate: float = 0.08
+    leaves: int = 15
+    seed: int = 0
+
+    def as_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+class ActivityClassifier:
+    """Extremely randomised trees and gradient boosting. `classes` are the labels in the order of the columns."""
+
+    def __init__(self, settings: ClassifierSettings | None = None):
+        self.settings = settings or ClassifierSettings()
+        self.classes: tuple[str, ...] = ()
+        self._models: list[Any] = []
+        self._used = np.zeros(0, bool)
+
+    def fit(self, features: Features, labels: np.ndarray, weights: np.ndarray | None = None) -> "ActivityClassifier":
+        """Learns from one row a window (nan = not known); weights default to 1. Returns itself.
+
+        Raises InputError where scikit-learn is missing.
+        """
+        try:
+            from sklearn.ensemble import ExtraTreesClassifier, HistGradientBoostingClassifier
+        except ImportError:
+            raise InputError("recognising activities needs scikit-learn; pip install 'mmweaver[evaluate]'") from None
+        chosen = self.settings
+        shared: dict[str, Any] = {
+            "max_features": chosen.feature_share, "class_weight": "balanced", "random_state": chosen.seed
+        }  # fmt: skip
+        grown: dict[str, Any] = {"min_samples_leaf": chosen.leaf_size, "n_jobs": 1}
+        boosted: dict[str, Any] = {"max_leaf_nodes": chosen.leaves, "early_stopping": False}
+        self._models = [
+            ExtraTreesClassifier(chosen.num_trees, **grown, **shared),
+            HistGradientBoostingClassifier(
+                max_iter=chosen.boosting_rounds, learning_rate=chosen.learning_rate, **boosted, **shared
+            ),
+        ]
+        self._used = _varied(features)
+        if not self._used.any():
+            raise InputError("the features of all windows are alike; is anything detected at all?")
+        for model in self._models:
+            model.fit(features[:, self._used], labels, sample_weight=weights)
+        self.classes = tuple(str(name) for name in self._models[0].classes_)
+        return self
+
+    def probabilities(self, features: Features) -> Float[np.ndarray, "window activity"]:
+        """Mean vote of both kinds, (window, activity)."""
+        return np.mean([model.predict_proba(features[:, self._used]) for model in self._models], axis=0)
+
+    def predict(self, features: Features) -> np.ndarray:
+        """The activity with most votes, one a window."""
+        return np.array(self.classes)[np.argmax(self.probabilities(features), axis=1)]
+
+
+def _varied(features: Features) -> np.ndarray:
+    """Columns with more than one known value; trees cannot take others."""
+    filled = [column[np.isfinite(column)] for column in features.T]
+    return np.array([len(column) > 0 and bool(np.ptp(column) > 0) for column in filled])

@@ -1,0 +1,44 @@
+"""mmweaver evaluate: scores of a frozen recogniser, and one line for a folder that has none to give."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sklearn")
+
+from mmweaver.cli.main import main
+
+
+@pytest.fixture
+def recordings(tmp_path: Path) -> Path:
+    """Two made-up recordings of 2.5 s: somebody who goes away, and somebody who stands."""
+    frame = np.repeat(np.arange(75), 3)
+    for name, speed in (("walk_1", 0.615), ("boxing_1", 0.0)):
+        points = np.zeros((225, 8), np.float32)
+        points[:, 0] = 1.0 + speed * frame / 30
+        points[:, 4] = speed
+        np.savez(tmp_path / f"{name}.npz", frame=frame, pts=points)
+    return tmp_path
+
+
+def test_scores_are_printed(recordings: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["evaluate", "zero-shot-activity", "--recordings", str(recordings), "--json"]) == 0
+    scores = json.loads(capsys.readouterr().out)
+    assert scores["recordings"] == scores["window"]["n"] == 2
+    assert scores["classes"] == ["boxing", "jack", "jump", "squats", "walk"]
+    assert np.sum(scores["window"]["confusion"]) == 2
+    assert scores["generated_windows"] > 500
+    assert main(["evaluate", "zero-shot-activity", "--recordings", str(recordings), "--frozen", "blind"]) == 0
+    text = capsys.readouterr().out
+    for word in ("2 recordings", "balanced accuracy", "chance 0.200", "squats"):
+        assert word in text
+
+
+def test_a_bad_folder_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    for folder, message in ((tmp_path, "holds no recordings"), (tmp_path / "none", "is no folder")):
+        assert main(["evaluate", "zero-shot-activity", "--recordings", str(folder)]) == 2
+        error = capsys.readouterr().err
+        assert message in error
+        assert error.count("\n") == 1

@@ -1,0 +1,36 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.cli.main import main
+
+
+def test_a_sentence_is_read_and_acted_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    out, picture = tmp_path / "m.npz", tmp_path / "m.png"
+    assert main(["motion", "a person bows, then waves", "--out", str(out), "--picture", str(picture), "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert [step["name"] for step in facts["steps"]] == ["bowing", "waving"]
+    with np.load(out, allow_pickle=False) as file:
+        assert file["joints_m"].shape[1:] == (22, 3)
+        assert file["frame_time_s"][-1] >= facts["seconds"]
+    assert picture.read_bytes()[:4] == b"\x89PNG"
+    assert main(["motion", "a person bows"]) == 0
+    assert "bowing" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["a person swings a bat"], "did you mean"),
+        (["a person bows", "--out", "m.txt"], ".npz"),
+        (["a person bows", "--picture", "m.txt"], ".png"),
+        (["a person bows, then waves", "--seconds", "0.5"], "need at least"),
+    ],
+)
+def test_bad_input_is_one_line(words: list[str], told: str, capsys: pytest.CaptureFixture[str]):
+    assert main(["motion", *words]) == 2
+    message = capsys.readouterr().err
+    assert told in message
+    assert message.count("\n") == 1

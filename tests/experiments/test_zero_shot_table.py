@@ -1,0 +1,44 @@
+"""Tables of the zero-shot page."""
+
+import json
+
+from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
+
+
+def metric(value: float) -> dict:
+    return {"value": value, "interval_95": [value - 0.1, value + 0.1], "floor": 0.2, "confusion": [[3, 1], [0, 4]]}
+
+
+def test_rows_are_recognisers_and_groups(tmp_path):
+    (tmp_path / "zero_shot").mkdir()
+    for method, values in (("blind", (0.5,)), ("development", (0.9, 0.91, 0.88))):
+        rows = [
+            {
+                "dataset": {"recordings": 7}, "classes": ["a", "b"],
+                "metrics": {key: metric(value) for key in ("window", "three_windows", "recording")},
+            }
+            for value in values
+        ]  # fmt: skip
+        (tmp_path / "zero_shot" / f"{method}.json").write_text(json.dumps({"rows": rows}))
+    table = zero_shot_table(tmp_path)
+    assert "| blind | 7 | 0.500 (0.400 to 0.600)" in table
+    assert "| *kept aside* | 7 | 0.880" in table
+    assert "| a | 3 | 1 |" in table
+
+
+def test_the_curve_has_both_ways_side_by_side(tmp_path):
+    (tmp_path / "zero_shot").mkdir()
+    rows = [
+        {
+            "real_recordings_each": each,
+            "generated": generated,
+            "metrics": {"window": {"value": value, "lowest": 0.1, "highest": 1.0}},
+        }
+        for each, generated, value in ((0, True, 0.8), (5, True, 0.9), (5, False, 0.7))
+    ]
+    (tmp_path / "zero_shot" / "curve.json").write_text(json.dumps({"rows": rows}))
+    lines = curve_table(tmp_path).splitlines()
+    assert lines[2].startswith("| 0 | 0.800")
+    assert "chance" in lines[2]
+    assert lines[3].startswith("| 5 | 0.900")
+    assert "0.700" in lines[3]

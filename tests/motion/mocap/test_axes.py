@@ -1,0 +1,52 @@
+"""Units and axes: what was put in is read off the body; what cannot be told is asked for."""
+
+import numpy as np
+import pytest
+from mocap_files import walk
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.mocap.axes import UNITS_M, UPS, is_mirrored, metres_of, turned_up, unit_of, up_of
+
+
+@pytest.mark.parametrize("unit", UNITS_M)
+def test_units_are_read_off_the_body(unit: str):
+    metres, note = unit_of(walk() / UNITS_M[unit], None, "walk")
+    assert metres == UNITS_M[unit]
+    assert f"taken as {unit}" in note
+    assert "1.7" in note
+
+
+def test_what_could_be_anything_is_asked_for():
+    for scale in (1 / 0.056444, 3.0, 1e5):
+        with pytest.raises(InputError, match="--motion-unit"):
+            unit_of(walk() * scale, None, "walk")
+    assert unit_of(walk(), "0.056444", "walk") == (0.056444, "")
+    for said in ("furlong", "-1", "0", "nan"):
+        with pytest.raises(InputError, match="no unit of length"):
+            metres_of(said)
+
+
+@pytest.mark.parametrize("up", UPS)
+def test_up_is_where_the_head_is(up: str):
+    """A body turned so that `up` is up is found and turned back, never mirrored."""
+    to_up = turned_up(np.repeat(np.eye(3)[:, None], 22, axis=1), up)[:, 0].T  # columns: where the file's axes go
+    lying = walk() @ to_up  # the inverse rotation, for rows
+    assert np.linalg.det(to_up) == pytest.approx(1.0)
+    found, note = up_of(lying, None, "walk")
+    assert found == up
+    assert up in note
+    np.testing.assert_allclose(turned_up(lying, found), walk(), atol=1e-12)
+
+
+def test_who_lies_is_asked_about():
+    lying = walk() @ np.array([[1.0, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]])
+    with pytest.raises(InputError, match="--motion-up"):
+        up_of(lying, None, "walk")
+    assert up_of(lying, "y", "walk") == ("y", "")
+    with pytest.raises(InputError, match="one of y, z"):
+        up_of(lying, "w", "walk")
+
+
+def test_mirrored_bodies_are_noticed():
+    assert not is_mirrored(walk())
+    assert is_mirrored(walk() * np.array([-1.0, 1.0, 1.0]))

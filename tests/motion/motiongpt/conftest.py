@@ -1,0 +1,6 @@
+"""Tests of MotionGPT need its extra."""
+
+import pytest
+
+pytest.importorskip("transformers")
+pytest.importorskip("safetensors")

@@ -1,0 +1,66 @@
+"""Several people composed for one room."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+from tests.rooms import floor, scene_of
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.apart import gaps_m
+from mmweaver.motion.company import compose_company
+from mmweaver.motion.compose import compose
+from mmweaver.simulation.body import body_of
+
+SCENE = scene_of((floor(),))
+REST = {"duration_s": 2.0, "range_window_m": (0.7, 3.48)}
+TEXTS = ["a person walks to the left", "a person walks to the right", "someone does jumping jacks", "a man claps"]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_nobody_comes_too_near(seed: int):
+    people = compose_company(TEXTS[:3], SCENE, seed=seed, **REST)
+    for one, other in combinations(people, 2):
+        pelvis_m, body_m = gaps_m(one.pose, other.pose)
+        assert pelvis_m >= 0.5
+        assert body_m >= 0.02
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_radars_own_bodies_do_not_touch_either(seed: int):
+    """No corner of one person's hull lies within the other's capsules, at any time."""
+    people = compose_company(TEXTS[:2], SCENE, seed=seed, **REST)
+    for mover, other in ((0, 1), (1, 0)):
+        one, two = people[mover].pose, people[other].pose
+        corners, _ = body_of(one).hull(one.joints_m[::12])
+        starts, axes, _ = body_of(two).frames(two.joints_m[::12])
+        radii = body_of(two)._radii.max(axis=1) * 1.25
+        for at in range(len(corners)):
+            gap = corners[at][:, None] - starts[at][None]
+            share = np.clip((gap * axes[at]).sum(-1) / np.maximum((axes[at] ** 2).sum(-1), 1e-9), 0, 1)
+            apart = np.linalg.norm(gap - share[..., None] * axes[at][None], axis=-1)
+            assert (apart > radii - 0.03).all()
+
+
+def test_the_first_is_what_it_would_be_alone_and_the_same_seed_the_same():
+    people = compose_company(TEXTS[:2], SCENE, seed=5, **REST)
+    again = compose_company(TEXTS[:2], SCENE, seed=5, **REST)
+    alone = compose(TEXTS[0], SCENE, seed=5, **REST)
+    assert np.array_equal(people[0].pose.joints_m, alone.pose.joints_m)
+    assert np.array_equal(people[1].pose.joints_m, again[1].pose.joints_m)
+    assert [person.pose.subject for person in people] == [0, 1]
+
+
+def test_equal_texts_are_different_people():
+    one, two = compose_company([TEXTS[3]] * 2, SCENE, seed=0, **REST)
+    assert one.pose.height_m != two.pose.height_m
+
+
+def test_a_crowd_is_refused_and_so_are_places_too_near():
+    small = (0.7, 1.6)
+    with pytest.raises(InputError, match=r"no room for 6 people.*finds no place"):
+        compose_company([TEXTS[2]] * 6, SCENE, seed=0, duration_s=2.0, range_window_m=small)
+    with pytest.raises(InputError, match="finds no place beside"):
+        compose_company([TEXTS[3]] * 2, SCENE, seed=0, starts_m=[(0.0, 2.0), (0.1, 2.0)], **REST)
+    with pytest.raises(InputError, match="walk"):
+        compose_company(["a person photosynthesises", TEXTS[0]], SCENE, seed=0, **REST)

@@ -1,0 +1,74 @@
+"""Recorded motion of other people: HumanML3D's sample to 1e-5, all of CMU's clips, in our rooms."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.experiments.empty_room import empty_room
+from mmweaver.experiments.motiongpt_data import wide_room
+from mmweaver.motion.mocap.arrays import clips_of
+from mmweaver.motion.mocap.dense import densely
+from mmweaver.motion.mocap.humanml3d import CONTACTS, features_from_joints, joints_from_features
+from mmweaver.motion.mocap.placing import place_clip
+from mmweaver.motion.mocap.read import read_motion
+
+SAMPLE = Path("motion") / "humanml3d_sample"
+CMU = Path("motion") / "cmu" / "cmu_joints_m_120fps.npz"
+SMOOTHING_FRAMES = 80  # of the published heading: four times its Gaussian; the sample lacks the recording's last frame
+
+
+@pytest.fixture
+def sample(real_data: Path) -> tuple[np.ndarray, np.ndarray]:
+    folder = real_data / SAMPLE
+    return tuple(
+        np.load(folder / f"HumanML3D_{name}_012314.npy").astype(float) for name in ("new_joint_vecs", "new_joints")
+    )
+
+
+def test_joints_from_features(sample: tuple[np.ndarray, np.ndarray]):
+    features, joints = sample
+    assert np.abs(joints_from_features(features) - joints).max() < 1e-5
+
+
+def test_features_from_joints(sample: tuple[np.ndarray, np.ndarray]):
+    """All columns, rotations and the heading's smoothing included; near the end the smoothing misses one frame."""
+    features, joints = sample
+    made = features_from_joints(joints)
+    assert np.abs(made - features[:-1])[:-SMOOTHING_FRAMES].max() < 1e-5
+    assert np.abs(made - features[:-1]).max() < 0.015
+    assert np.array_equal(made[:, CONTACTS], features[:-1, CONTACTS])
+    assert np.abs(joints_from_features(made) - joints[:-1]).max() < 1e-5
+
+
+def test_every_clip_of_cmu_is_read_and_resampled_without_spikes(real_data: Path):
+    path = real_data / CMU
+    names = clips_of(path)
+    assert len(names) == 89
+    for name in names[::6]:
+        clip = read_motion(path, clip=name)
+        assert 1.3 < clip.height_m < 2.0
+        _, joints = densely(clip, min(clip.duration_s, 4.0))
+        speed = np.linalg.norm(np.diff(joints, axis=0), axis=-1) * 120
+        acceleration = np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1) * 120**2
+        assert speed.max() < 12
+        assert np.percentile(acceleration, 99.9) < 200
+
+
+def test_a_recorded_walk_in_a_wide_room(real_data: Path):
+    clip = read_motion(real_data / CMU, clip="train/walking/walking_2.txt")
+    scene = wide_room()
+    motion = place_clip(clip, scene, duration_s=4.0, seed=0, range_window_m=(0.7, 15.0))
+    lowest = motion.pose.joints_m[..., 2].min(axis=1) - scene.floor_z_m
+    assert lowest.min() > -0.03
+    assert np.median(lowest) < 0.05
+    assert motion.pose.height_m == clip.height_m
+    assert empty_room(floor_z_m=-1.0).floor_z_m == scene.floor_z_m
+
+
+def test_a_sample_of_humanml3d_in_a_wide_room(real_data: Path):
+    for name, fps in (("new_joint_vecs", None), ("new_joints", 20.0)):
+        clip = read_motion(real_data / SAMPLE / f"HumanML3D_{name}_012314.npy", fps=fps)
+        assert clip.joints_m.shape == (170, 22, 3)
+        motion = place_clip(clip, wide_room(), duration_s=8.5, seed=0, range_window_m=(0.7, 15.0))
+        assert np.isfinite(motion.pose.joints_m).all()

@@ -1,0 +1,40 @@
+"""A training that was interrupted ends with the same weights as one that was not."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.training.resuming import Resumable
+
+
+def run(file: Path | None, steps: int) -> tuple[torch.nn.Module, Resumable]:
+    torch.manual_seed(0)
+    model = torch.nn.Linear(3, 1)
+    optimiser = torch.optim.Adam(model.parameters(), lr=0.1)
+    work = Resumable(file, {"model": model, "optimiser": optimiser})
+    for step in work.steps(steps):
+        torch.manual_seed(step)
+        loss = (model(torch.randn(8, 3)) - 1).square().mean()
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        work.report(loss=float(loss.detach()))
+    return model, work
+
+
+def test_going_on_is_as_never_stopped(tmp_path: Path):
+    whole, _ = run(None, 120)
+    run(tmp_path / "state.pt", 70)
+    resumed, work = run(tmp_path / "state.pt", 120)
+    assert torch.equal(whole.weight, resumed.weight)
+    assert [row["step"] for row in work.history] == [0, 50, 100]
+    finished, _ = run(tmp_path / "state.pt", 120)
+    assert torch.equal(whole.weight, finished.weight)
+
+
+def test_a_state_of_something_else_is_refused(tmp_path: Path):
+    (tmp_path / "state.pt").write_text("weights")
+    with pytest.raises(InputError, match="delete it to begin anew"):
+        run(tmp_path / "state.pt", 3)
