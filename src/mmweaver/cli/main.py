@@ -16,6 +16,7 @@ from mmweaver.cli import (
     process,
     radar,
     rooms,
+    train,
 )
 from mmweaver.cli.arguments import Parser, glued
 from mmweaver.core.errors import InputError
@@ -60,7 +61,7 @@ def build_parser() -> Parser:
     parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", title="verbs")
     verbs_in_order = (
-        generate, process, radar, compress, decompress, info, rooms, motions, motion, evaluate, dataset,
+        generate, process, radar, compress, decompress, info, rooms, motions, motion, evaluate, dataset, train,
     )  # fmt: skip
     for module in verbs_in_order:
         module.add_verb(verbs)

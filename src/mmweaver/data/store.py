@@ -173,9 +173,14 @@ def read_rooms(folder: Path) -> list[StoredRoom]:
     return [_room(folder / name, config) for name in names]
 
 
+def plan_text(folder: Path) -> str:
+    """The plan a data set was made by, as JSON."""
+    return (folder / PLAN_FILE).read_text()
+
+
 def read_plan(folder: Path) -> dict[str, Any]:
-    """The plan a data set was made by."""
-    return json.loads((folder / PLAN_FILE).read_text())
+    """The same, read."""
+    return json.loads(plan_text(folder))
 
 
 def _room(folder: Path, config: RadarConfig) -> StoredRoom:

@@ -24,7 +24,7 @@ from mmweaver.data.plan import SequenceSpec
 from mmweaver.data.store import StoredRoom, read_plan, read_rooms
 from mmweaver.experiments.results import write_result
 from mmweaver.metrics.scorecard import METRICS, scorecard
-from mmweaver.models.weaver_method import WovenRoom
+from mmweaver.models.weaver_method import FrameMotion, WovenRoom
 from mmweaver.models.weaver_network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.procedural.room import make_room
@@ -84,9 +84,10 @@ def woven(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom]) -> Meth
     """The network, given a photo."""
 
     def method(case: Case) -> RadarCube:
-        woven_room = WovenRoom(network, reconstruct(room_of(case).photo), case.room.config)
+        woven_room = WovenRoom(network, reconstruct(room_of(case).photo), case.room.config, room_seed=1)
         joints, velocity = case.joints
-        return woven_room.cube(joints, velocity, subject=TWIN + case.spec.person, seed=case.index)
+        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=TWIN + case.spec.person)
+        return woven_room.cube([motion], seed=case.index)
 
     return method
 

@@ -18,8 +18,8 @@ from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.response import PointResponse, Points
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.fields.scatterers.stretch import Stretch
+from mmweaver.models.echoes import Echoes
 from mmweaver.models.radar_view import carrier, points_of
-from mmweaver.models.weaver_network import Echoes
 
 SPOTS = 6  # of skin, for each echo
 SPOT_SPREAD_M = 0.04

@@ -7,7 +7,7 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.fields.scatterers.response import PointResponse, Points
-from mmweaver.models.weaver_network import Echoes
+from mmweaver.models.echoes import Echoes
 from mmweaver.simulation.antenna import (
     AZIMUTH_ROLL_OFF,
     ELEVATION_ROLL_OFF,

@@ -1,4 +1,4 @@
-"""What the networks see of a room: a small picture, the surface point of every second cell, and the flat faces."""
+"""What the networks see of a room: a small picture, the echoes of what it shows, and the flat faces."""
 
 import math
 from dataclasses import dataclass, fields, replace
@@ -7,14 +7,15 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
-from mmweaver.geometry.pinhole import unproject
 from mmweaver.scene.depth_grid import DepthGrid, make_grid
+from mmweaver.simulation.antenna import pattern, scatterer_gain
+from mmweaver.simulation.room import Room
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
 IMAGE_CHANNELS = 5  # red, green, blue, depth, class (paper: RGB + depth + mask)
-POINT_ROWS, POINT_COLUMNS = 60, 80
-POINT_FEATURES = 12
+NUM_POINTS, POINT_FEATURES = 5000, 11
 NUM_PLANES, PLANE_FEATURES = 8, 13
 FARTHEST_M = 8.0
 NUM_CLASSES = 182.0  # of COCO-Stuff
@@ -28,8 +29,7 @@ class RoomView:
     image: Tensor  # (channel, row, column), 0 where nothing is known
     depth_m: Tensor  # (row, column) along the optical axis; 0 = no measurement
     point_m: Tensor  # (point, 3)
-    point_normal: Tensor  # (point, 3) towards the radar; 0 = unknown
-    point_area_m2: Tensor  # (point,) seen from the radar: distance^2 times solid angle; 0 = nothing measured
+    point_cross_section_m2: Tensor  # (point,) what physics says of the photographed room; 0 = no point
     point_features: Tensor  # (point, POINT_FEATURES)
     camera_from_radar: Tensor  # (3, 3)
     camera: Tensor  # (4,) fx, fy, cx, cy in cells of the picture
@@ -39,15 +39,15 @@ class RoomView:
     plane_features: Tensor  # (plane, PLANE_FEATURES)
 
     @classmethod
-    def of(cls, scene: Scene) -> "RoomView":
-        """The view of a scene's photo, with the scene's faces."""
+    def of(cls, scene: Scene, config: RadarConfig) -> "RoomView":
+        """The view of a scene's photo, with the scene's faces and the echoes that this radar would have of them."""
         grid = make_grid(scene.photo)
         rows = _nearest(IMAGE_ROWS, grid.depth_m.shape[0])
         columns = _nearest(IMAGE_COLUMNS, grid.depth_m.shape[1])
         camera = grid.intrinsics
         scale_x, scale_y = IMAGE_COLUMNS / camera.width, IMAGE_ROWS / camera.height
         view = np.ix_(rows, columns)
-        points = _points(grid, scene, rows[1::2], columns[1::2])
+        points = _points(Room(scene, config), scene)
         planes = _planes(scene)
         return cls(
             image=_tensor(_image(grid, scene, view)),
@@ -101,37 +101,40 @@ def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGr
     return classes.index[row, column] / NUM_CLASSES
 
 
-def _points(grid: DepthGrid, scene: Scene, rows: np.ndarray, columns: np.ndarray) -> dict[str, Tensor]:
-    view = np.ix_(rows, columns)
-    depth = grid.depth_m[view]
-    point = (unproject(grid.depth_m, grid.intrinsics)[view] @ scene.radar_from_camera.T).reshape(-1, 3)
-    normal = (grid.normals[view] @ scene.radar_from_camera.T).reshape(-1, 3)
-    colour = grid.rgb[view].reshape(-1, 3)
-    distance = np.linalg.norm(point, axis=1)
-    ray = np.stack([columns[None, :] - grid.intrinsics.cx + 0 * rows[:, None],
-                    rows[:, None] - grid.intrinsics.cy + 0 * columns[None, :]], -1)  # fmt: skip
-    slope = ray / np.array([grid.intrinsics.fx, grid.intrinsics.fy])
-    cell = (grid.intrinsics.height / POINT_ROWS) * (grid.intrinsics.width / POINT_COLUMNS)
-    solid_angle = cell / (grid.intrinsics.fx * grid.intrinsics.fy) / (1 + (slope**2).sum(-1)) ** 1.5
-    known = np.asarray(np.isfinite(depth.ravel()))
-    has_normal = np.asarray(np.isfinite(normal).all(axis=1))
-    point, normal = np.where(known[:, None], point, 0.0), np.where(has_normal[:, None], normal, 0.0)
-    distance = np.where(known, distance, 0.0)
-    towards = -point / np.maximum(distance, 1e-3)[:, None]
-    cos = np.abs((normal * towards).sum(axis=1))
-    height = np.asarray(point[:, 2])
+def _points(room: Room, scene: Scene) -> dict[str, Tensor]:
+    """The strongest resting echoes that physics finds in the photographed room, each where it seems to stand.
+
+    The network turns their strength; what the photo does not show it adds.
+    """
+    echoes, config = room.echoes, room.config
+    order = np.argsort(-np.abs(echoes.amplitude))[:NUM_POINTS]
+    distance = np.maximum(echoes.way_m[order].mean(axis=(1, 2)) / 2, 0.1)
+    towards = _unit(_unit(echoes.first_m[order]) + _unit(echoes.last_m[order]))
+    gain = scatterer_gain(config) * pattern(towards, config) ** 2
+    cross_section = (np.abs(echoes.amplitude[order]) * distance**2 / gain) ** 2
+    place = towards * distance[:, None]
+    kind = np.searchsorted(np.cumsum(list(room.counts.values())), order, side="right")
     features = np.column_stack(
         [
-            distance / 4, point / 4, (height - scene.floor_z_m) / 2, cos, (1 - cos) ** 8, cos**8,
-            np.abs(normal[:, 2]), has_normal, known, colour.mean(axis=1),
+            distance / 4, place / 4, (place[:, 2] - scene.floor_z_m) / 2, towards[:, 0], towards[:, 2],
+            np.log10(np.maximum(cross_section, 1e-12)) / 4, *(kind == index for index in range(len(room.counts))),
         ]
     )  # fmt: skip
+    count = len(order)
     return {
-        "point_m": _tensor(point),
-        "point_normal": _tensor(normal),
-        "point_area_m2": _tensor(np.where(known, distance**2 * solid_angle.ravel(), 0.0)),
-        "point_features": _tensor(features),
+        "point_m": _tensor(_padded(place, count)),
+        "point_cross_section_m2": _tensor(_padded(cross_section, count)),
+        "point_features": _tensor(_padded(features, count)),
     }
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+
+
+def _padded(values: np.ndarray, count: int) -> np.ndarray:
+    """Rows of zeros where there are fewer than NUM_POINTS; such a point stands at the radar and returns nothing."""
+    return np.concatenate([values, np.zeros((NUM_POINTS - count, *values.shape[1:]))])
 
 
 def _planes(scene: Scene) -> dict[str, Tensor]:

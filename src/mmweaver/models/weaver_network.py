@@ -1,6 +1,6 @@
 """The weaver: a network that writes the scatterer field of a person moving in a room.
 
-    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 4,800 resting points, faces, unseen places
+    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 5,000 resting points, faces, unseen places
                                                            |
     joints ---PoseEncoder--------> z_pose -----------------+--> strength and place of moving points
                                                                 (anchored to the body and its mirror images)
@@ -27,23 +27,14 @@ from mmweaver.models.body_anchors import (
     body_anchors,
     ghost_anchors,
 )
+from mmweaver.models.echoes import Echoes
 from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.room_view import PLANE_FEATURES, POINT_FEATURES, RoomView
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
-NUM_UNSEEN = 24  # resting echoes from beyond the picture
+NUM_UNSEEN = 48  # resting echoes from beyond the picture
 LARGEST_STEP = 12.0  # of a logarithm of power
-
-
-@dataclass(frozen=True, kw_only=True)
-class Echoes:
-    """Mean echoes (..., echo): cross sections in square metres, places in metres, m/s and direction cosines."""
-
-    range_m: Tensor
-    velocity_mps: Tensor
-    direction: Tensor
-    cross_section_m2: Tensor
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,7 +64,6 @@ class WeaverNetwork(nn.Module):
             WIDTH, HEADS, 2 * WIDTH, dropout=0.0, activation="gelu", batch_first=True, norm_first=True
         )
         self.mix = nn.TransformerEncoder(layer, LAYERS, enable_nested_tensor=False)
-        self.noise_level = nn.Parameter(torch.zeros(()))  # logarithm of the receiver's noise over its data sheet's
         self.out = nn.Sequential(nn.LayerNorm(WIDTH), nn.Linear(WIDTH, 5))
         for network in (self.point, self.face, self.out):
             head = network[-1]
@@ -111,13 +101,11 @@ class WeaverNetwork(nn.Module):
         return _placed(self.out(mixed), body, ghosts)
 
     def _points(self, view: RoomView, z_env: Tensor, places: Tensor) -> Echoes:
-        local = nn.functional.interpolate(places, (60, 80), mode="bilinear", align_corners=False)
+        local = _looked_up(places, view.point_m, view)
         context = self.point_context(z_env)[:, None].expand(-1, view.point_m.shape[1], -1)
-        known = torch.cat([view.point_features, local.flatten(2).transpose(1, 2), context], dim=-1)
-        level = self.point(known)[..., 0]
-        distance = view.point_m.norm(dim=-1).clamp(min=0.15)
-        # a Lambert surface of a few percent, turned by the network
-        cross_section = view.point_area_m2 * torch.exp(_bounded(level) - 4.0)
+        level = self.point(torch.cat([view.point_features, local, context], dim=-1))[..., 0]
+        distance = view.point_m.norm(dim=-1).clamp(min=0.1)
+        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level))
         return _resting(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
 
     def _faces(self, view: RoomView, z_env: Tensor) -> Echoes:
@@ -135,6 +123,18 @@ class WeaverNetwork(nn.Module):
         distance = 0.3 + 3.7 * torch.sigmoid(free[..., 0])
         direction = torch.stack([torch.tanh(free[..., 1]), 0.5 * torch.tanh(free[..., 2])], dim=-1)
         return _resting(distance, direction, torch.exp(_bounded(free[..., 3]) - 6.0))
+
+
+def _looked_up(places: Tensor, point_m: Tensor, view: RoomView) -> Tensor:
+    """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
+    camera = point_m @ view.camera_from_radar.transpose(-1, -2)
+    depth = camera[..., 2].clamp(min=0.05)
+    column = view.camera[:, None, 0] * camera[..., 0] / depth + view.camera[:, None, 2]
+    row = view.camera[:, None, 1] * camera[..., 1] / depth + view.camera[:, None, 3]
+    rows, columns = view.depth_m.shape[-2:]
+    grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1)
+    found = nn.functional.grid_sample(places, grid[:, None].clamp(-3, 3), align_corners=False)
+    return found[:, :, 0].transpose(1, 2)
 
 
 def _picked(values: Tensor, frames: Tensor) -> Tensor:

@@ -48,7 +48,7 @@ class RoomExamples:
     @cached_property
     def view(self) -> RoomView:
         """What the product would see of the room: its photo, reconstructed."""
-        return RoomView.of(reconstruct(self.room.photo))
+        return RoomView.of(reconstruct(self.room.photo), self.room.config)
 
     @cached_property
     def empty(self) -> PowerMaps:

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from mmweaver.models.echoes import Echoes
 from mmweaver.models.mean_power import MeanPower, PowerMaps
 from mmweaver.models.radar_view import points_of
-from mmweaver.models.weaver_network import Echoes
 
 STEEPEST = 8.0
 FLOOR = 1e-5  # of the peak: what a 50 dB picture no longer shows counts for nothing
@@ -39,10 +39,8 @@ def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
     return (bounded.exp() - bounded - 1 + (STEEPEST - 1) * (log_ratio - bounded)).mean()
 
 
-def weaver_loss(
-    radar: MeanPower, resting: Echoes, moving: Echoes, targets: Targets, noise_gain: Tensor
-) -> dict[str, Tensor]:
-    """Terms of the loss by name; their sum is what is minimised. `noise_gain` scales the receiver's noise floor."""
+def weaver_loss(radar: MeanPower, resting: Echoes, moving: Echoes, targets: Targets) -> dict[str, Tensor]:
+    """Terms of the loss by name; their sum is what is minimised."""
     still = radar.maps(points_of(resting, radar.response))
     person = radar.maps(points_of(moving, radar.response))
     terms: dict[str, Tensor] = {}
@@ -50,14 +48,13 @@ def weaver_loss(
         truth, empty = getattr(targets.maps, name), getattr(targets.empty, name)
         if truth.shape[-1] == 0:
             continue
-        floor = noise * noise_gain
-        mean = getattr(person, name) + getattr(still, name)[:, None] + floor
+        mean = getattr(person, name) + getattr(still, name)[:, None] + noise
         peak = truth.amax(dim=(1, 2, 3), keepdim=True)
         for rows, columns in POOLS:
             terms[f"{name}_{rows}x{columns}"] = itakura_saito(
                 _pooled(mean, rows, columns), _pooled(truth, rows, columns), FLOOR * peak
             ) / len(POOLS)
-        least = 1e-3 * floor + FLOOR * empty.amax(dim=(1, 2), keepdim=True)
+        least = 0.1 * noise + FLOOR * empty.amax(dim=(1, 2), keepdim=True)
         terms[f"{name}_empty"] = 0.5 * itakura_saito(getattr(still, name), empty, least)
     return terms
 

@@ -1,5 +1,6 @@
 """Training the weaver: one loop, its recipe, and what it writes."""
 
+import hashlib
 import json
 import math
 import time
@@ -12,12 +13,17 @@ import torch
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.version import __version__
+from mmweaver.data.store import plan_text
 from mmweaver.models.mean_power import MeanPower
 from mmweaver.models.weaver_network import WeaverNetwork
-from mmweaver.training.checkpoints import load_checkpoint, save_checkpoint
+from mmweaver.models.weights import WeightsCard, save_weights
+from mmweaver.training.resuming import Resumable
 from mmweaver.training.weaver_examples import Batch, RoomExamples, draw_batch, examples
 from mmweaver.training.weaver_loss import weaver_loss
 
+BEST_FILE = "best.safetensors"
+VALIDATION_SEED = 10_000  # added to the recipe's
 WORST_SKIPS = 20  # steps in a row whose gradients are no numbers before training gives up
 
 
@@ -37,7 +43,6 @@ class TrainingRecipe:
     validate_every: int = 250
     validation_batches: int = 8
     patience: int = 12  # validations without a better one before training stops early
-    save_every_s: float = 120.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,11 +64,11 @@ def train(
     *,
     start: dict[str, torch.Tensor] | None = None,
     listener: Callable[[Progress], object] | None = None,
-) -> WeaverNetwork:
-    """Trains on split `train` of a data set and returns the network that was best on `validation`.
+) -> "Training":
+    """Trains on split `train` of a data set; what comes back holds the network that was best on `validation`.
 
-    Goes on from `out`/checkpoint where there is one. `start`: weights to fine-tune. Raises InputError for folders that
-    hold no data, and where gradients stay without meaning.
+    Goes on from `out`/checkpoint.pt where there is one. `start`: weights to fine-tune. Raises InputError for folders
+    that hold no data, and where gradients stay without meaning.
     """
     rooms, unseen = examples(data, "train"), examples(data, "validation")
     config = rooms[0].room.config
@@ -71,11 +76,26 @@ def train(
     network = WeaverNetwork()
     if start is not None:
         network.load_state_dict(start)
-    loop = _Loop(network, rooms, unseen, config, recipe, out)
-    return loop.run(listener)
+    training = Training(network, rooms, unseen, config, recipe, out)
+    training.run(listener)
+    return training
 
 
-class _Loop:
+def write_weights(out: Path, data: Path, training: "Training") -> Path:
+    """Writes `out`/weights.safetensors with its card, and gives its path."""
+    card = WeightsCard(
+        recipe=training.recipe.name, licence="MIT", dataset_sha256=hashlib.sha256(plan_text(data).encode()).hexdigest(),
+        radar=training.radar.config.name, steps=training.step, seed=training.recipe.seed,
+        validation_loss=training.best.value, mmweaver_version=__version__,
+    )  # fmt: skip
+    file = out / "weights.safetensors"
+    save_weights(file, training.network, card)
+    return file
+
+
+class Training:
+    """One run: its network, its recipe, how far it is."""
+
     def __init__(
         self,
         network: WeaverNetwork,
@@ -90,60 +110,66 @@ class _Loop:
         self.optimiser = torch.optim.AdamW(
             network.parameters(), lr=recipe.learning_rate, weight_decay=recipe.weight_decay
         )
-        self.step, self.best, self.since_best, self.skips = 0, math.inf, 0, 0
-        self.spent_s = 0.0
+        self.best = _Best(asdict(recipe))
+        self.skips = 0
+        out.mkdir(parents=True, exist_ok=True)
+        parts = {"network": network, "optimiser": self.optimiser, "best": self.best}
+        self.resumable = Resumable(out / "checkpoint.pt", parts)
 
-    def run(self, listener: Callable[[Progress], object] | None) -> WeaverNetwork:
-        self.out.mkdir(parents=True, exist_ok=True)
-        self._resume()
-        recipe, began, saved, before_s = self.recipe, time.monotonic(), time.monotonic(), self.spent_s
-        while self.step < recipe.steps and self.since_best < recipe.patience:
-            loss, terms = self._one_step()
-            self.step += 1
-            validation = None
-            if self.step % recipe.validate_every == 0 or self.step == recipe.steps:
-                validation = self._validate()
-            self.spent_s = before_s + time.monotonic() - began
+    @property
+    def step(self) -> int:
+        """Steps that are done."""
+        return self.resumable.done
+
+    def run(self, listener: Callable[[Progress], object] | None) -> None:
+        """Goes on from the last checkpoint to the end, and leaves the best network in `network`."""
+        began = time.monotonic()
+        for step in self.resumable.steps(self.recipe.steps):
+            loss, terms = self._one_step(step)
+            last = step + 1 == self.recipe.steps
+            validation = self._validate() if (step + 1) % self.recipe.validate_every == 0 or last else None
             progress = Progress(
-                step=self.step, steps=recipe.steps, loss=loss, terms=terms, validation=validation, seconds=self.spent_s
-            )
+                step=step + 1, steps=self.recipe.steps, loss=loss, terms=terms, validation=validation,
+                seconds=time.monotonic() - began,
+            )  # fmt: skip
             self._log(progress)
             if listener is not None:
                 listener(progress)
-            if time.monotonic() - saved > recipe.save_every_s or self.step == recipe.steps:
-                self._save()
-                saved = time.monotonic()
-        self._save()
-        return self._best_network()
+            if self.best.since >= self.recipe.patience:
+                break
+        self._take_best()
 
-    def _one_step(self) -> tuple[float, dict[str, float]]:
+    def _one_step(self, step: int) -> tuple[float, dict[str, float]]:
         recipe = self.recipe
-        rate = recipe.learning_rate * min(1.0, (self.step + 1) / recipe.warm_up_steps)
-        rate *= 0.5 + 0.5 * math.cos(math.pi * self.step / recipe.steps)
+        rate = recipe.learning_rate * min(1.0, (step + 1) / recipe.warm_up_steps)
+        rate *= 0.5 + 0.5 * math.cos(math.pi * step / recipe.steps)
         for group in self.optimiser.param_groups:
             group["lr"] = rate
-        batch = draw_batch(self.rooms, recipe.seed, self.step, size=recipe.batch_size, frames=recipe.frames)
+        batch = draw_batch(self.rooms, recipe.seed, step, size=recipe.batch_size, frames=recipe.frames)
         self.network.train()
         terms = self._terms(batch)
         loss = torch.stack(list(terms.values())).sum()
         self.optimiser.zero_grad()
         loss.backward()
         norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), recipe.largest_gradient)
-        if bool(torch.isfinite(norm)):
+        self._take_step(bool(torch.isfinite(norm)), step)
+        return float(loss.detach()), {name: float(term.detach()) for name, term in terms.items()}
+
+    def _take_step(self, is_sound: bool, step: int) -> None:
+        if is_sound:
             self.optimiser.step()
             self.skips = 0
-        else:
-            self.skips += 1
-            if self.skips > WORST_SKIPS:
-                raise InputError(
-                    f"training broke at step {self.step}: gradients are no numbers; go on with a lower learning rate"
-                )
-        return float(loss.detach()), {name: float(term.detach()) for name, term in terms.items()}
+            return
+        self.skips += 1
+        if self.skips > WORST_SKIPS:
+            raise InputError(
+                f"training broke at step {step}: gradients are no numbers; start anew with a lower learning rate"
+            )
 
     def _terms(self, batch: Batch) -> dict[str, torch.Tensor]:
         code = self.network.encode_room(batch.view)
         moving = self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
-        return weaver_loss(self.radar, code.resting, moving, batch.targets, self.network.noise_level.exp())
+        return weaver_loss(self.radar, code.resting, moving, batch.targets)
 
     def _validate(self) -> float:
         """Mean loss over fixed batches of unseen kinds of rooms; keeps the weights where it is the best so far."""
@@ -153,49 +179,46 @@ class _Loop:
         with torch.inference_mode():
             for index in range(recipe.validation_batches):
                 batch = draw_batch(
-                    self.unseen, 10_000 + recipe.seed, index, size=recipe.batch_size, frames=recipe.frames
+                    self.unseen, VALIDATION_SEED + recipe.seed, index, size=recipe.batch_size, frames=recipe.frames
                 )
                 total += float(torch.stack(list(self._terms(batch).values())).sum())
         value = total / recipe.validation_batches
-        if value < self.best:
-            self.best, self.since_best = value, 0
-            _save_tensors(self.network, self.out / "best.safetensors")
-        else:
-            self.since_best += 1
+        if self.best.improved_by(value):
+            _save_tensors(self.network, self.out / BEST_FILE)
         return value
 
     def _log(self, progress: Progress) -> None:
         if progress.step % 50 == 0 or progress.validation is not None:
-            line: dict[str, Any] = asdict(progress)
             with (self.out / "log.jsonl").open("a") as log:
-                log.write(json.dumps(line) + "\n")
+                log.write(json.dumps(asdict(progress)) + "\n")
 
-    def _save(self) -> None:
-        state = {
-            "step": self.step, "best": self.best if math.isfinite(self.best) else None, "since_best": self.since_best,
-            "spent_s": self.spent_s, "recipe": asdict(self.recipe),
-        }  # fmt: skip
-        save_checkpoint(self.out / "checkpoint", self.network, self.optimiser, state)
-
-    def _resume(self) -> None:
-        state = load_checkpoint(self.out / "checkpoint", self.network, self.optimiser)
-        if state is None:
-            return
-        if state["recipe"] != asdict(self.recipe):
-            raise InputError(
-                f"{self.out} was trained by another recipe; go on with the same settings or choose another folder"
-            )
-        self.step, self.since_best, self.spent_s = state["step"], state["since_best"], state["spent_s"]
-        self.best = math.inf if state["best"] is None else state["best"]
-
-    def _best_network(self) -> WeaverNetwork:
+    def _take_best(self) -> None:
         from safetensors.torch import load_file
 
-        best = self.out / "best.safetensors"
-        if best.is_file():
-            self.network.load_state_dict(load_file(best))
+        if (self.out / BEST_FILE).is_file():
+            self.network.load_state_dict(load_file(self.out / BEST_FILE))
         self.network.eval()
-        return self.network
+
+
+class _Best:
+    """The best validation so far, and the recipe it belongs to; kept in the checkpoint."""
+
+    def __init__(self, recipe: dict[str, Any]):
+        self.recipe, self.value, self.since = recipe, math.inf, 0
+
+    def improved_by(self, value: float) -> bool:
+        """Takes note of a new validation; True where it is the best."""
+        is_better = value < self.value
+        self.value, self.since = (value, 0) if is_better else (self.value, self.since + 1)
+        return is_better
+
+    def state_dict(self) -> dict[str, Any]:
+        return {"recipe": self.recipe, "value": self.value, "since": self.since}
+
+    def load_state_dict(self, state: dict[str, Any]) -> None:
+        if state["recipe"] != self.recipe:
+            raise InputError("it was made with other settings")
+        self.value, self.since = state["value"], state["since"]
 
 
 def _save_tensors(network: WeaverNetwork, file: Path) -> None:
