@@ -10,7 +10,7 @@
         empty_iq    (range, antenna, part)  the room without a person
 
 A room is written under another name and renamed when it is whole, so that a kill at any point loses only the rooms
-that were being made. Reference: Zarr v3, xarray's `_ARRAY_DIMENSIONS`; decision 42.
+that were being made. Reference: Zarr v3, xarray's `_ARRAY_DIMENSIONS`; decision 92.
 """
 
 import json

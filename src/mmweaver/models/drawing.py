@@ -2,7 +2,7 @@
 
 A moving echo stands for several spots of skin that ride on one part of the body; their sum glitters as the part turns,
 as real skin does. Spots belong to the person, resting phases to the room, so that the same seed, person and room give
-the same signal, and a person's frames belong together. Reference: decisions 4 and 41.
+the same signal, and a person's frames belong together. Reference: decisions 4 and 91.
 """
 
 import math
@@ -31,8 +31,8 @@ def draw_static(resting: Echoes, response: PointResponse, room_seed: int) -> Ten
     count = resting.range_m.shape[-1]
     axes = response.axes()
     points = points_of(resting, response)
-    phase = torch.from_numpy(rng.standard_normal((count, 2))).to(torch.float32) / math.sqrt(2)
-    points = replace(points, amplitude=points.amplitude * torch.complex(phase[:, 0], phase[:, 1]))
+    turns = torch.from_numpy(2 * math.pi * rng.random(count)).to(torch.float32)
+    points = replace(points, amplitude=torch.polar(points.amplitude, turns))
     strong = points.amplitude.abs() > 1e-4 * points.amplitude.abs().max()
     points = Points(
         range_bin=points.range_bin[strong], doppler_bin=points.doppler_bin[strong],

@@ -1,6 +1,6 @@
 """The power maps that echoes of unknown phase leave on average: what can be predicted of a radar signal.
 
-Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman), decision 41.
+Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman), decision 91.
 """
 
 import math

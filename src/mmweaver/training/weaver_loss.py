@@ -2,7 +2,9 @@
 
 The power of a radar cell in which several echoes of unknown phase meet is exponentially distributed about its mean.
 The likelihood of that mean is the Itakura-Saito divergence, p/m - log(p/m) - 1: it asks for the right decibels
-everywhere, faint cells as much as strong ones. Reference: Fevotte et al. 2009; decision 41.
+everywhere, faint cells as much as strong ones. But where the network cannot know whether a cell is bright, the mean is
+that of the bright case, and its pictures glow all over; the absolute difference of logarithms asks for the median
+instead. Both are used. Reference: Fevotte et al. 2009; decision 91.
 """
 
 import math
@@ -16,6 +18,7 @@ from mmweaver.models.mean_power import MeanPower, PowerMaps
 from mmweaver.models.radar_view import points_of
 
 STEEPEST = 8.0
+LIKELIHOOD = 0.2  # share of the divergence beside the difference of logarithms
 FLOOR = 1e-5  # of the peak: what a 50 dB picture no longer shows counts for nothing
 POOLS = ((1, 1), (4, 2), (8, 8))  # cells of a map taken together: small steps of an echo shall not cost twice
 
@@ -39,6 +42,12 @@ def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
     return (bounded.exp() - bounded - 1 + (STEEPEST - 1) * (log_ratio - bounded)).mean()
 
 
+def difference(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
+    """Absolute difference of logarithms, and a share of the divergence."""
+    logs = ((power + least).log() - (mean + least).log()).abs().mean()
+    return logs + LIKELIHOOD * itakura_saito(mean, power, least)
+
+
 def weaver_loss(radar: MeanPower, resting: Echoes, moving: Echoes, targets: Targets) -> dict[str, Tensor]:
     """Terms of the loss by name; their sum is what is minimised."""
     still = radar.maps(points_of(resting, radar.response))
@@ -51,11 +60,10 @@ def weaver_loss(radar: MeanPower, resting: Echoes, moving: Echoes, targets: Targ
         mean = getattr(person, name) + getattr(still, name)[:, None] + noise
         peak = truth.amax(dim=(1, 2, 3), keepdim=True)
         for rows, columns in POOLS:
-            terms[f"{name}_{rows}x{columns}"] = itakura_saito(
-                _pooled(mean, rows, columns), _pooled(truth, rows, columns), FLOOR * peak
-            ) / len(POOLS)
+            pooled = _pooled(mean, rows, columns), _pooled(truth, rows, columns)
+            terms[f"{name}_{rows}x{columns}"] = difference(*pooled, FLOOR * peak) / len(POOLS)
         least = 0.1 * noise + FLOOR * empty.amax(dim=(1, 2), keepdim=True)
-        terms[f"{name}_empty"] = 0.5 * itakura_saito(getattr(still, name), empty, least)
+        terms[f"{name}_empty"] = 0.5 * difference(getattr(still, name), empty, least)
     return terms
 
 
