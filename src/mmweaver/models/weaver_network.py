@@ -1,6 +1,6 @@
 """The weaver: a network that writes the scatterer field of a person moving in a room.
 
-    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 5,000 resting points, faces, unseen places
+    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 5,000 resting points and faces
                                                            |
     joints ---PoseEncoder--------> z_pose -----------------+--> strength and place of moving points
                                                                 (anchored to the body and its mirror images)
@@ -33,8 +33,8 @@ from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.room_view import PLANE_FEATURES, POINT_FEATURES, RoomView
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
-NUM_UNSEEN = 48  # resting echoes from beyond the picture
 LARGEST_STEP = 12.0  # of a logarithm of power
+LARGEST_CORRECTION = 2.0  # the same, for what physics says of the photographed room
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,10 +53,8 @@ class WeaverNetwork(nn.Module):
         super().__init__()
         self.environment = EnvironmentEncoder()
         self.pose = PoseEncoder()
-        self.point = _mlp(POINT_FEATURES + MAP_CHANNELS + 32, 96, 1)
-        self.point_context = nn.Linear(Z_ENV, 32)
-        self.face = _mlp(PLANE_FEATURES + 32, 64, 1)
-        self.unseen = nn.Linear(Z_ENV, NUM_UNSEEN * 4)
+        self.point = _mlp(POINT_FEATURES + MAP_CHANNELS, 96, 1)
+        self.face = _mlp(PLANE_FEATURES, 64, 1)
         self.body_in, self.ghost_in = nn.Linear(BODY_FEATURES, WIDTH), nn.Linear(GHOST_FEATURES, WIDTH)
         self.part = nn.Parameter(0.02 * torch.randn(NUM_ANCHORS + NUM_GHOSTS, WIDTH))
         self.from_env, self.from_pose = nn.Linear(Z_ENV, WIDTH), nn.Linear(Z_POSE, WIDTH)
@@ -70,13 +68,11 @@ class WeaverNetwork(nn.Module):
             assert isinstance(head, nn.Linear)
             nn.init.normal_(head.weight, std=1e-3)
             nn.init.zeros_(head.bias)
-        nn.init.normal_(self.unseen.weight, std=1e-3)
-        nn.init.normal_(self.unseen.bias, std=0.5)
 
     def encode_room(self, view: RoomView) -> RoomCode:
         """Rooms (room, ...) -> their code; resting echoes (room, echo)."""
         z_env, places = self.environment(view.image)
-        parts = [self._points(view, z_env, places), self._faces(view, z_env), self._unseen(z_env)]
+        parts = [self._points(view, places), self._faces(view)]
         resting = Echoes(
             range_m=torch.cat([part.range_m for part in parts], -1),
             velocity_mps=torch.cat([part.velocity_mps for part in parts], -1),
@@ -100,29 +96,21 @@ class WeaverNetwork(nn.Module):
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
         return _placed(self.out(mixed), body, ghosts)
 
-    def _points(self, view: RoomView, z_env: Tensor, places: Tensor) -> Echoes:
+    def _points(self, view: RoomView, places: Tensor) -> Echoes:
         local = _looked_up(places, view.point_m, view)
-        context = self.point_context(z_env)[:, None].expand(-1, view.point_m.shape[1], -1)
-        level = self.point(torch.cat([view.point_features, local, context], dim=-1))[..., 0]
+        level = self.point(torch.cat([view.point_features, local], dim=-1))[..., 0]
         distance = view.point_m.norm(dim=-1).clamp(min=0.1)
-        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level))
+        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, LARGEST_CORRECTION))
         return _resting(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
 
-    def _faces(self, view: RoomView, z_env: Tensor) -> Echoes:
+    def _faces(self, view: RoomView) -> Echoes:
         """The mirror image of the radar in each face: an echo from the foot of the perpendicular."""
-        context = self.point_context(z_env)[:, None].expand(-1, view.plane_features.shape[1], -1)
-        level = self.face(torch.cat([view.plane_features, context], dim=-1))[..., 0]
+        level = self.face(view.plane_features)[..., 0]
         normal = view.plane_axes[..., 2, :]
         distance = -(view.plane_centre_m * normal).sum(-1)
         there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0)
-        cross_section = there * torch.exp(_bounded(level) - 4.0)
+        cross_section = there * torch.exp(_bounded(level) - 8.0)
         return _resting(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
-
-    def _unseen(self, z_env: Tensor) -> Echoes:
-        free = self.unseen(z_env).unflatten(-1, (NUM_UNSEEN, 4))
-        distance = 0.3 + 3.7 * torch.sigmoid(free[..., 0])
-        direction = torch.stack([torch.tanh(free[..., 1]), 0.5 * torch.tanh(free[..., 2])], dim=-1)
-        return _resting(distance, direction, torch.exp(_bounded(free[..., 3]) - 6.0))
 
 
 def _looked_up(places: Tensor, point_m: Tensor, view: RoomView) -> Tensor:
@@ -165,8 +153,8 @@ def _placed(out: Tensor, body: Anchors, ghosts: Anchors) -> Echoes:
     )
 
 
-def _bounded(level: Tensor) -> Tensor:
-    return LARGEST_STEP * torch.tanh(level / LARGEST_STEP)
+def _bounded(level: Tensor, largest: float = LARGEST_STEP) -> Tensor:
+    return largest * torch.tanh(level / largest)
 
 
 def _mlp(wide_in: int, hidden: int, wide_out: int) -> nn.Sequential:
