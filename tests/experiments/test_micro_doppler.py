@@ -47,6 +47,17 @@ def test_towards_and_away_are_one_motion_turned(walk: Motion):
         assert np.sign(across.mean()) == -facing
 
 
+def test_who_goes_nowhere_faces_the_radar_or_turns_the_back_on_it(walk: Motion):
+    on_the_spot = walk.joints_m - walk.joints_m[:, :1] * [1, 1, 0]
+    for is_away, facing in ((False, -1), (True, 1)):
+        joints = placed(on_the_spot, is_away=is_away)
+        toes = (
+            joints[:, [joint("left_foot"), joint("right_foot")]]
+            - joints[:, [joint("left_ankle"), joint("right_ankle")]]
+        )
+        assert np.sign(toes[..., 1].mean()) == facing
+
+
 def test_a_walk_is_wider_than_the_same_body_frozen_and_its_cadence_is_found(walk: Motion):
     shown_by = simulator()
     found, seen = figures(walk, "walking", shown_by, 0)

@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
 
+from mmweaver.core.skeleton import joint
 from mmweaver.experiments.micro_doppler_figures import (
     Spectrogram,
     both_ways,
     gait_figures,
+    kinematic_figures,
     spread_figures,
     step_difference,
     step_lag,
@@ -33,10 +35,22 @@ def test_cadence_torso_and_limbs_are_those_put_in(cadence_hz: float):
     found = gait_figures(made_up(cadence_hz), (0.4, 0.85))
     assert found["cadence_hz"] == pytest.approx(cadence_hz, rel=0.03)
     assert found["torso_ratio"] == pytest.approx(1.0, abs=0.05)
+    assert found["torso_surge_mps"] < 0.1
     assert found["limb_share"] == pytest.approx(0.09, abs=0.015)
     assert found["ahead_share"] > 0.98
     assert found["upper_mps"] == pytest.approx(3.0, abs=0.3)
     assert found["lower_mps"] > -0.4
+
+
+def test_limbs_are_measured_about_the_pelvis():
+    joints = np.zeros((240, 22, 3))
+    joints[..., 0] = (np.arange(240) / 120 * 1.3)[:, None]
+    joints[:, joint("left_knee"), 0] += 0.2 * np.sin(2 * np.pi * np.arange(240) / 120)
+    joints[:, joint("right_knee"), 0] -= 0.2 * np.sin(2 * np.pi * np.arange(240) / 120)
+    found = kinematic_figures(joints, 120.0)
+    assert found["knee_ahead_mps"] == pytest.approx(0.2 * 2 * np.pi, rel=0.05)
+    assert found["ankle_ahead_mps"] == pytest.approx(0.0, abs=1e-9)
+    assert found["pelvis_surge_mps"] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_unequal_steps_show():

@@ -25,6 +25,7 @@ DEFINITIONS: dict[str, tuple[str, str]] = {
     "rhythm": ("", "that autocorrelation, 1 = strictly periodic"),
     "step_difference": ("", "median peak of the upper envelope in odd and in even steps: difference over mean"),
     "torso_ratio": ("", "velocity that halves a frame's energy, median over frames, over the pelvis's true one"),
+    "torso_surge_mps": ("m/s", "that velocity's 5 to 95 % width over time: the torso slows down and speeds up"),
     "spread_mps": ("m/s", "width that holds 5 to 95 % of the energy, about the pelvis's velocity"),
     "upper_mps": ("m/s", "99 % of a frame's energy is slower than this, about the pelvis; 95th percentile over time"),
     "lower_mps": ("m/s", "1 % of a frame's energy is slower than this, about the pelvis; 5th percentile over time"),
@@ -32,10 +33,15 @@ DEFINITIONS: dict[str, tuple[str, str]] = {
     "ahead_share": ("", "energy that is faster than the pelvis by more than 0.4 m/s, of all limb energy"),
     "away_towards_overlap": ("", "common part of the energy profiles towards and away, 1 = the same"),
     "away_minus_towards": ("", "limb share away from the radar less that towards it"),
+    "pelvis_surge_mps": ("m/s", "of the joints, not the radar: 5 to 95 % width of the pelvis's speed along the way"),
     "knee_ahead_mps": ("m/s", "of the joints, not the radar: knees ahead about the pelvis, 95th percentile over time"),
     "ankle_ahead_mps": (
         "m/s",
         "of the joints, not the radar: ankles ahead about the pelvis, 95th percentile over time",
+    ),
+    "elbow_ahead_mps": (
+        "m/s",
+        "of the joints, not the radar: elbows ahead about the pelvis, 95th percentile over time",
     ),
     "wrist_ahead_mps": (
         "m/s",
@@ -90,12 +96,13 @@ def gait_figures(seen: Spectrogram, lags_s: tuple[float, float]) -> Figures:
     lower, upper = (quantiles(shares, PROFILE_MPS, part) for part in (0.01, 0.99))
     period_s = float(seen.time_s[1] - seen.time_s[0])
     lag_s, rhythm = step_lag(upper - lower, period_s, lags_s)
-    middle = float(np.median(quantiles(seen.share, seen.velocity_mps, 0.5)))
+    middle = quantiles(seen.share, seen.velocity_mps, 0.5)
     return {
         "cadence_hz": 1 / lag_s,
         "rhythm": rhythm,
         "step_difference": step_difference(upper, lag_s / period_s),
-        "torso_ratio": middle / float(np.median(seen.pelvis_mps)),
+        "torso_ratio": float(np.median(middle) / np.median(seen.pelvis_mps)),
+        "torso_surge_mps": float(np.percentile(middle, 95) - np.percentile(middle, 5)),
         **spread_figures(seen),
     }
 
@@ -138,8 +145,9 @@ def kinematic_figures(joints_m: Joints, rate_hz: float) -> Figures:
     """How fast limbs go ahead of the pelvis along the way; ahead is where it goes."""
     pelvis = joints_m[:, 0, :2]
     way = (pelvis[-1] - pelvis[0]) / np.linalg.norm(pelvis[-1] - pelvis[0])
-    found = {}
-    for part in ("knee", "ankle", "wrist"):
+    low, high = np.percentile(np.gradient(pelvis @ way, 1 / rate_hz), (5, 95))
+    found = {"pelvis_surge_mps": float(high - low)}
+    for part in ("knee", "ankle", "elbow", "wrist"):
         limbs = joints_m[:, [joint(f"left_{part}"), joint(f"right_{part}")], :2] - pelvis[:, None]
         found[f"{part}_ahead_mps"] = float(np.percentile(np.gradient(limbs @ way, 1 / rate_hz, axis=0), 95))
     return found
