@@ -5,6 +5,7 @@ import pytest
 from tests.rooms import standing_person
 
 from mmweaver.simulation.body import CAPSULES, Body
+from mmweaver.simulation.skin import SkinEcho
 
 PERSON = standing_person((0.0, 2.0, -1.2))
 JOINTS = PERSON.joints_m[:1]

@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         cube = read_any_cube(
             arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
-            iq_order=arguments.iq_order, tx_order=arguments.tx_order,
+            iq_order=arguments.iq_order or "iq", tx_order=arguments.tx_order,
         )  # fmt: skip
         from mmweaver.fields.codec.mmw import compressed, errors_db
 
