@@ -12,6 +12,7 @@ from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import FloorMap
 from mmweaver.motion.placement import place
 from mmweaver.motion.plan import MotionPlan, Step
+from mmweaver.motion.targets import without_things
 
 DOOR = Landmark(kind="door", position_m=np.array([0.9, 2.9, -0.1]), approach_m=(0.75, 2.5), facing_rad=1.2)
 
@@ -49,3 +50,10 @@ def test_what_the_room_lacks_is_refused_with_what_it_has():
     with pytest.raises(InputError, match="say a direction instead"):
         _placed(room(), "door")
     assert _placed(scene, "desk").path  # a desk is a table
+
+
+def test_without_a_photo_the_way_leads_anywhere_and_says_so():
+    plan = without_things(_plan("door"))
+    assert [step.target for step in plan.steps] == ["", ""]
+    assert plan.notes == ("for 'walks to the door': without a photo there is no door; the way leads where room is",)
+    assert without_things(plan) == plan

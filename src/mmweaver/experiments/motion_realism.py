@@ -56,7 +56,7 @@ def recorded(path: Path, activity: str) -> list[Places]:
             continue
         clip = places[end - length : end][:, :, [0, 2, 1]] * [1, -1, 1]  # y is up there
         joints = {joint_name: _smooth(clip[:, k]) for joint_name, k in THEIRS.items()}
-        if activity not in SPEEDS or _is_steady(joints["pelvis"], SPEEDS[activity]):
+        if activity not in SPEEDS or is_steady(joints["pelvis"], SPEEDS[activity]):
             found.append(joints)
     return found
 
@@ -66,7 +66,8 @@ def _smooth(place: Float[Array, "frame 3"]) -> Float[Array, "n 3"]:
     return np.stack([np.convolve(place[:, axis], kernel, "valid") for axis in range(3)], axis=1)
 
 
-def _is_steady(pelvis: Float[Array, "frame 3"], speeds: tuple[float, float]) -> bool:
+def is_steady(pelvis: Float[Array, "frame 3"], speeds: tuple[float, float]) -> bool:
+    """A straight way of more than 2 m at a usual speed."""
     gone = np.linalg.norm(np.diff(pelvis[:, :2], axis=0), axis=1).sum()
     straight = float(np.linalg.norm(pelvis[-1, :2] - pelvis[0, :2]))
     speed_mps = straight / len(pelvis) * RATE_HZ
@@ -81,11 +82,7 @@ def speed_of(joints: Places) -> float:
 def gait_figures(joints: Places) -> Figures:
     """Of a straight, steady walk or run."""
     pelvis, speed = joints["pelvis"], speed_of(joints)
-    way = (pelvis[-1, :2] - pelvis[0, :2]) / np.linalg.norm(pelvis[-1, :2] - pelvis[0, :2])
-    scissors = (joints["left_ankle"] - joints["right_ankle"])[:, :2] @ way
-    scissors = scissors - scissors.mean()
-    spectrum = np.abs(np.fft.rfft(scissors * np.hanning(len(scissors)), 16 * len(scissors)))
-    cadence = 2 * float(np.fft.rfftfreq(16 * len(scissors), 1 / RATE_HZ)[spectrum.argmax()])
+    cadence = cadence_hz(joints)
     time = np.arange(len(pelvis))
     height = pelvis[:, 2] - np.polyval(np.polyfit(time, pelvis[:, 2], 1), time)
     feet = np.stack([_speed(joints[f"{side}_foot"][:, :2]) for side in ("left", "right")])
@@ -102,6 +99,16 @@ def gait_figures(joints: Places) -> Figures:
         "planted_foot_speed_mps": float(np.median(np.nanmin(planted, axis=0))),
         "left_right_ratio": float(np.ptp(knees["left"]) / np.ptp(knees["right"])),
     }
+
+
+def cadence_hz(joints: Places) -> float:
+    """Steps a second, from how far the ankles are apart along the way."""
+    pelvis = joints["pelvis"]
+    way = (pelvis[-1, :2] - pelvis[0, :2]) / np.linalg.norm(pelvis[-1, :2] - pelvis[0, :2])
+    scissors = (joints["left_ankle"] - joints["right_ankle"])[:, :2] @ way
+    scissors = scissors - scissors.mean()
+    spectrum = np.abs(np.fft.rfft(scissors * np.hanning(len(scissors)), 16 * len(scissors)))
+    return 2 * float(np.fft.rfftfreq(16 * len(scissors), 1 / RATE_HZ)[spectrum.argmax()])
 
 
 def jump_figures(joints: Places) -> Figures:

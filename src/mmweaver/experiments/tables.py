@@ -10,6 +10,7 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
@@ -315,7 +316,7 @@ def weaver_table(folder: Path) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
-    "several_people": people_table,
+    "several_people": people_table, "micro_doppler": micro_doppler_table,
     "affordances": affordances_table,
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
     "motiongpt": motiongpt_table,

@@ -35,13 +35,14 @@ def empty_floor() -> Scene:
 def act_out(text: str, *, duration_s: float, seed: int = 0, height_m: float | None = None) -> Motion:
     """The motion of a sentence on an empty floor; the radar stands at the origin, the floor lies 1.1 m below it.
 
-    Seats are stools, as nothing else stands there. Raises InputError where the sentence is not understood or does not
-    fit the time.
+    Seats are stools, as nothing else stands there, and a way to a door leads where there is room. Raises InputError
+    where the sentence is not understood or does not fit the time.
 
     >>> motion = act_out("a person bows", duration_s=2.0)
     >>> motion.plan.steps[0].lower, motion.pose.joints_m.shape
     ('bow', (245, 22, 3))
     """
     return compose(
-        text, empty_floor(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M, height_m=height_m
+        text, empty_floor(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M, height_m=height_m,
+        has_photo=False,
     )  # fmt: skip

@@ -13,6 +13,7 @@ from mmweaver.motion.obstacles import Obstacles
 from mmweaver.motion.placement import Placement, clearest, place
 from mmweaver.motion.plan import MotionPlan
 from mmweaver.motion.sentence import parse
+from mmweaver.motion.targets import without_things
 from mmweaver.motion.timing import schedule
 
 LONGEST_S = 600.0
@@ -37,17 +38,21 @@ def compose(
     start_m: tuple[float, float] | None = None,
     height_m: float | None = None,
     others: tuple[PoseSequence, ...] = (),
+    has_photo: bool = True,
 ) -> Motion:
     """Reads the sentence, shares out the time, finds room on the scene's floor, and moves the body.
 
     `range_window_m`: the slant ranges that the radar keeps; the body stays inside. `start_m`: where the person starts,
     (x, y). `height_m`: the body's height, else drawn from the seed between 1.63 and 1.96 m. `others`: people who are
-    there already; the way keeps clear of them (see `company`). Raises InputError where the
-    sentence is not understood, its steps do not fit the time, or the room has no place for it.
+    there already; the way keeps clear of them (see `company`). Without a photo behind the scene (`has_photo`) a thing
+    to go to cannot be looked for: the way then leads where there is room, and a note says so. Raises InputError where
+    the sentence is not understood, its steps do not fit the time, or the room has no place for it.
     """
     if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
         raise InputError(f"a duration of {duration_s:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
     plan = schedule(parse(text), duration_s)
+    if not has_photo:
+        plan = without_things(plan)
     if height_m is None:
         height_m = float(stream(seed, "motion", "height").uniform(SHORTEST_M, TALLEST_M))
     body = Body(height_m)

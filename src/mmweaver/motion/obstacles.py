@@ -28,8 +28,13 @@ _REFERENCE_HEIGHT_M = 1.75
 _SHARES = np.array([0.0, 0.33, 0.67, 1.0])
 _STEP_S = 0.1
 _ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
+_SEAT_AHEAD_M, _SEAT_UNDER_M = 0.12, 0.05  # before the pelvis, and no lower below it: not the seat itself
+_FARTHEST_M = 0.3
 _LOWEST_M = 0.09  # above the floor: soles meet the floor
 _MOST_POINTS = 34_000
+_GRAIN_M, _GRAINS = 0.015, np.array([1, 10_000, 100_000_000])  # one point in each
+_LOW_M, _LOW_DOWN_M = 0.64, (0.1, 0.17, 0.24)  # beds and low tables: nobody's knees are inside or under them
+_THICK_M = 0.04  # at least, of anything: a table's top below the points seen on it, a cupboard's front behind them
 
 
 @dataclass(frozen=True)
@@ -39,23 +44,50 @@ class Obstacles:
     scene: Scene
 
     @cached_property
-    def _tree(self) -> Any:
-        """For the nearest point; None where there is none."""
-        from scipy.spatial import KDTree
-
+    def _solid_m(self) -> Float[Array, "point 3"]:
+        """What was measured above the floor, and what must be just behind and under it."""
         photo = self.scene.photo
         step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
-        rows, columns = np.mgrid[0 : photo.depth_m.shape[0] : step, 0 : photo.depth_m.shape[1] : step]
+        # Every row, for a bed seen at a flat angle has few.
+        rows, columns = np.mgrid[0 : photo.depth_m.shape[0], 0 : photo.depth_m.shape[1] : step]
         depth, lens = photo.depth_m[rows, columns], photo.intrinsics
         camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
         points = camera[np.isfinite(depth) & (depth > 0.3)] @ self.scene.radar_from_camera.T
         points = points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
-        return KDTree(points) if len(points) else None
+        behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
+        low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
+        below = [points - np.array([0.0, 0.0, _THICK_M])]
+        below += [low - np.array([0.0, 0.0, down]) for down in _LOW_DOWN_M]
+        solid = np.concatenate([points, behind, *below])
+        solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+        _, one_each = np.unique(np.rint(solid / _GRAIN_M).astype(int) @ _GRAINS, return_index=True)
+        return solid[one_each]
 
-    def deepest_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = ()) -> float:
-        """How far the body gets into anything, at worst; 0 where it stays clear.
+    @cached_property
+    def _tree(self) -> Any:
+        """For the nearest point."""
+        from scipy.spatial import KDTree
 
-        About the places of `seats_m` trunk and thighs may sink in, for they sit there.
+        return KDTree(self._solid_m)
+
+    def _before_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> Any:
+        """For the nearest point about a seat that is not the seat's own: a table before it, above its surface."""
+        from scipy.spatial import KDTree
+
+        lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
+        knees = lowest[joint("left_knee")] + lowest[joint("right_knee")]
+        ahead = (knees - lowest[joint("left_hip")] - lowest[joint("right_hip")])[:2]
+        ahead = ahead / max(float(np.hypot(*ahead)), 1e-6)
+        away = self._solid_m[:, :2] - np.array(seat)
+        near = (np.hypot(*away.T) < _SEAT_REACH_M + 0.3) & (away @ ahead > _SEAT_AHEAD_M)
+        return KDTree(self._solid_m[near & (self._solid_m[:, 2] > lowest[joint("pelvis"), 2] - _SEAT_UNDER_M)])
+
+    def deepest_m(
+        self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
+    ) -> float:
+        """How far the body, thicker by a margin, gets into anything, at worst; 0 where it stays clear.
+
+        About the places of `seats_m` trunk and thighs may sink in, for they sit there, but not into a table before it.
         """
         rows = np.unique(np.searchsorted(pose.time_s, np.arange(max(pose.time_s[0], 0.0), pose.time_s[-1], _STEP_S)))
         joints = pose.joints_m[np.minimum(rows, len(pose.time_s) - 1)].astype(float)
@@ -70,23 +102,28 @@ class Obstacles:
             points.append(limb.reshape(-1, 3))
             radius.append(np.full(limb.shape[0] * limb.shape[1], thick * scale))
             soft.append(np.full(limb.shape[0] * limb.shape[1], start in _SEATED))
-        return self._worst(np.concatenate(points), np.concatenate(radius), np.concatenate(soft), seats_m)
+        limbs = np.concatenate(points), np.concatenate(radius), np.concatenate(soft)
+        tables = [(seat, self._before_seat(pose, seat)) for seat in dict.fromkeys(seats_m)]
+        return self._worst(*limbs, tables, margin_m)
 
     def _worst(
         self,
         points: Float[Array, "point 3"],
         radius: Float[Array, " point"],
         soft: np.ndarray,
-        seats_m: Sequence[tuple[float, float]],
+        tables: Sequence[tuple[tuple[float, float], Any]],
+        margin_m: float,
     ) -> float:
-        allowed = np.full(len(points), _ALLOWED_M)
-        for seat in seats_m:
-            at_seat = soft & (np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M)
-            allowed[at_seat] = _ON_SEAT_M
-        worst = 0.0
-        if self._tree is not None:
-            distance, _ = self._tree.query(points, distance_upper_bound=0.3)
-            worst = max(worst, float((radius - distance - allowed).max()))
+        allowed, worst = np.full(len(points), _ALLOWED_M - margin_m), 0.0
+        for seat, tree in tables:
+            at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
+            before, _ = tree.query(points, distance_upper_bound=_FARTHEST_M)
+            worst = max(worst, float((radius - before - allowed)[at_seat].max(initial=0.0)))
+        for seat, _ in tables:
+            at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
+            allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M)
+        distance, _ = self._tree.query(points, distance_upper_bound=_FARTHEST_M)
+        worst = max(worst, float((radius - distance - allowed).max()))
         for plane in self.scene.planes:
             if plane.kind == "wall":
                 away = points - plane.centre_m

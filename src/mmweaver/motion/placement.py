@@ -21,6 +21,7 @@ from mmweaver.motion.root_path import Move, RootPath
 from mmweaver.motion.seating import (
     STOOL_HEIGHT_M,
     Sitting,
+    as_it_may_be,
     preferred,
     reachable,
     seats_of,
@@ -42,7 +43,8 @@ from mmweaver.motion.way import (
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
-MOST_MOVED, WORTH_A_NOTE_M = 16, 0.03
+MOST_MOVED, WORTH_A_NOTE_M = 40, 0.03
+MARGIN_M = 0.03  # depth is noisy, and what stands there is seen from one side
 CLOSEST_FEET_M = 0.05
 
 
@@ -91,27 +93,31 @@ def place(
 def clearest(
     placements: Sequence[Placement], moved: Callable[[Placement], PoseSequence], obstacles: Obstacles
 ) -> tuple[Placement, PoseSequence, tuple[str, ...]]:
-    """The first placement whose motion meets nothing, hands and all; else the one that gets in least, and a note."""
+    """The first placement whose motion keeps a margin to everything, hands and all; else the one that comes nearest to
+    that, with a note where it gets in.
+    """
     best: tuple[float, Placement, PoseSequence] | None = None
     for placement in _varied(placements)[:MOST_MOVED]:
         pose = moved(placement)
-        deep_m = obstacles.deepest_m(pose, placement.seats_m)
+        deep_m = obstacles.deepest_m(pose, placement.seats_m, margin_m=MARGIN_M)
         if best is None or deep_m < best[0]:
             best = (deep_m, placement, pose)
         if deep_m <= 0.0:
             break
     assert best is not None
-    note = f"the body gets {100 * best[0]:.0f} cm into furniture or a wall, for the room leaves no better place"
-    return best[1], best[2], (note,) if best[0] > WORTH_A_NOTE_M else ()
+    deep_m = best[0] - MARGIN_M
+    note = f"the body gets {100 * deep_m:.0f} cm into furniture or a wall, for the room leaves no better place"
+    return best[1], best[2], (note,) if deep_m > WORTH_A_NOTE_M else ()
 
 
 def _varied(placements: Sequence[Placement]) -> list[Placement]:
     """The same in their order, but after two of a seat the others of that seat last."""
-    count: Counter[tuple[tuple[float, float], ...]] = Counter()
+    count: Counter[tuple[object, ...]] = Counter()
     first, later = [], []
     for placement in placements:
-        count[placement.seats_m] += 1
-        (later if placement.seats_m and count[placement.seats_m] > 2 else first).append(placement)
+        sat = (*placement.seats_m, round(placement.path.heading_rad, 2))
+        count[sat] += 1
+        (later if placement.seats_m and count[sat] > 2 else first).append(placement)
     return first + later
 
 
@@ -139,7 +145,7 @@ def _try(
     plan: MotionPlan, floor: FloorMap, body: Body, rng: np.random.Generator, start_m: tuple[float, float] | None
 ) -> Way:
     """One candidate: a start, and every step laid out from there."""
-    seats = seats_of(floor, body)
+    seats = [as_it_may_be(seat, rng) for seat in seats_of(floor, body)]
     way, sitting = _start(plan, floor, body, rng, start_m, seats)
     for k, step in enumerate(plan.steps):
         way.moves.append([])
@@ -161,6 +167,7 @@ def _try(
         way.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
         if sitting is not None:
             way.seats_m.append((float(sitting.seat_m[0]), float(sitting.seat_m[1])))
+            way.cost += sitting.cost
         if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
             wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
             way.cost += 2.0 * max(0.0, wanted - float(floor.clearance_at(way.place)))

@@ -1,6 +1,6 @@
 """Where a person sits: a seat of the scene, or a stool that is assumed and said so."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -15,6 +15,8 @@ STOOL_HEIGHT_M = 0.45
 LOWEST_M, HIGHEST_M = 0.3, 0.65
 _COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
 _COUCH_M, _BED_REACH_M = 0.8, 1.2
+_TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter at a table may look past it
+_BACK_M, _ROOM_BEHIND_M = 0.05, 0.4  # and sit back, where the seat is deep enough
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,6 +28,8 @@ class Sitting:
     height_m: float
     seat_m: Float[Array, "2"]
     width_m: float = 0.4
+    depth_m: float = 0.4
+    cost: float = 0.0  # against sitting like that
 
 
 def preferred(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
@@ -67,6 +71,26 @@ def _sitting(seat: Seat, floor: FloorMap, body: Body) -> Sitting:
         height_m=height,
         seat_m=place,
         width_m=float(seat.size_m[0]),
+        depth_m=float(seat.size_m[1]),
+    )
+
+
+def as_it_may_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
+    """The same seat sat on as it is made for, as often as not; else turned aside or sat on further back."""
+    kind = int(rng.integers(4))
+    if kind < 2 or (kind == 3 and sitting.depth_m < _ROOM_BEHIND_M):
+        return sitting
+    reach = sitting.feet_m - sitting.seat_m
+    if kind == 3:
+        back = rng.uniform(0.3, 1.0) * _BACK_M * reach / max(float(np.hypot(*reach)), 1e-6)
+        return replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
+    turn = float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0]))
+    across = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    return replace(
+        sitting,
+        feet_m=sitting.seat_m + across @ reach,
+        facing_rad=sitting.facing_rad + turn,
+        cost=0.3 + _TURN_COST * abs(turn),
     )
 
 

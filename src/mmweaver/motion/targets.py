@@ -1,6 +1,7 @@
 """Going to a thing of the room: the way to a landmark, straight or round one corner, and what to say without it."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
@@ -37,6 +38,17 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
             raise InputError(
                 f"for {step.clause or step.target!r}: no {step.target} was found in the photo; {_what_there_is(scene)}"
             )
+
+
+def without_things(plan: MotionPlan) -> MotionPlan:
+    """For where no photo is: each way to a thing leads anywhere instead, and a note says so."""
+    lost = [step for step in plan.steps if step.moves and goes_to_thing(step)]
+    notes = tuple(
+        f"for {step.clause or step.target!r}: without a photo there is no {step.target}; the way leads where room is"
+        for step in lost
+    )
+    steps = tuple(replace(step, target="") if step in lost else step for step in plan.steps)
+    return replace(plan, steps=steps, notes=plan.notes + notes)
 
 
 def start_for(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:

@@ -13,7 +13,7 @@ import numpy as np
 from jaxtyping import Int
 
 from mmweaver.fields.codec.entropy import BitModel, BitStream, LadderModel, Mixture
-from mmweaver.fields.codec.residual_coder import NUM_NEAR, NUM_SUMS, NUM_TRENDS, SUM_BOUNDS, TREND_BOUNDS
+from mmweaver.fields.codec.residual_coder import NUM_NEAR, NUM_SUMS, NUM_TRENDS, SUM_BOUNDS, TREND_BOUNDS, spread
 
 Levels = Int[np.ndarray, "2 beam frame range doppler"]
 Cells = Int[np.ndarray, "frame range doppler"]
@@ -164,7 +164,7 @@ class NumberCoder:
         for beam in range(beams):
             planes = np.zeros((2, wanted.shape[2]), np.int64)  # in fine steps
             size = np.zeros(wanted.shape[2], np.int64)
-            other = _spread(before).ravel()
+            other = spread(before).ravel()
             for group in groups:
                 self._code_group(stream, group, wanted[:, beam], planes, size, other, beam, wide)
             before = (before + 2 * size.reshape(before.shape)) // 2
@@ -268,15 +268,3 @@ def _trend(plane: Whole, at: Whole, wide: int, phase: int) -> Whole:
         corners = plane[at - wide - 1] + plane[at - wide + 1] + plane[at + wide - 1] + plane[at + wide + 1]
         return 4 * (across + along) - 2 * corners
     return 5 * (across if phase == 1 else along)
-
-
-def _spread(before: np.ndarray) -> np.ndarray:
-    """Sizes at and around each cell, in the frame, its neighbours in range, Doppler and time."""
-    out = 2 * before
-    out[:, 1:] += before[:, :-1]
-    out[:, :-1] += before[:, 1:]
-    out[:, :, 1:] += before[:, :, :-1]
-    out[:, :, :-1] += before[:, :, 1:]
-    out[1:] += before[:-1] // 2
-    out[:-1] += before[1:] // 2
-    return out // 2

@@ -55,7 +55,7 @@ class ResidualCoder:
         for beam in range(beams):
             plane = padded[:, beam]
             size = np.zeros(plane.shape[1:], np.int64)
-            other = _spread(before)
+            other = spread(before)
             for row in range(0, num_range, BLOCK_ROWS):
                 for phase in range(4):
                     self._code_cells(stream, levels, plane, size, other, near, beam, row, phase)
@@ -163,7 +163,7 @@ def _trend(plane: np.ndarray, rows: np.ndarray, bins: np.ndarray, phase: int) ->
     return 5 * (across if phase == 1 else along)
 
 
-def _spread(before: np.ndarray) -> np.ndarray:
+def spread(before: np.ndarray) -> np.ndarray:
     """Sizes at and around each cell, in the frame, its neighbours in range, Doppler and time."""
     out = 2 * before
     out[:, 1:] += before[:, :-1]
