@@ -13,6 +13,7 @@ import torch
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
 from mmweaver.data.store import plan_text
 from mmweaver.models.mean_power import MeanPower
@@ -146,6 +147,8 @@ class Training:
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         batch = draw_batch(self.rooms, recipe.seed, step, size=recipe.batch_size, frames=recipe.frames)
+        # the encoder drops whole blocks by chance; a step's chance follows from its number, wherever training began
+        torch.manual_seed(int(stream(recipe.seed, "dropout", step).integers(2**31)))
         self.network.train()
         terms = self._terms(batch)
         loss = torch.stack(list(terms.values())).sum()
