@@ -3,7 +3,8 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -11,8 +12,11 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
-from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.cube import adc_from_cube, radar_cube
 from mmweaver.simulation.simulator import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
+
+if TYPE_CHECKING:
+    from mmweaver.models.weaver_method import WovenRoom
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,8 +89,57 @@ class Physics:
         return self._ready[2]
 
 
+WOVEN_ASSUMPTIONS = (
+    "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn",
+    "ADC samples are those of least energy that give the network's cube",
+    "several people are superimposed: they do not hide each other",
+)
+
+
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
     return num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples
 
 
-METHODS: Registry[Callable[[], Method]] = Registry("method", [("physics", Physics)])
+class Woven:
+    """The network: a learned field, drawn and rendered. The room is encoded once and kept for the next call.
+
+    `weights` is a file that `mmweaver train` wrote; without one, those that come with mmweaver. Raises InputError for
+    files that are no such weights.
+    """
+
+    def __init__(self, weights: Path | None = None) -> None:
+        self.weights = weights
+        self._ready: tuple[Scene, RadarConfig, WovenRoom] | None = None
+
+    def __call__(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
+    ) -> Signal:
+        from mmweaver.models.weaver_method import FrameMotion
+
+        with stages("encode the room"):
+            room = self._room(scene, config)
+        with stages("weave the signal"):
+            motions = [FrameMotion.of(pose, config, num_frames) for pose in poses]
+            cube = room.cube(motions, seed=seed)
+            adc = adc_from_cube(cube) if keep_adc else None
+        return Signal(cube=cube, adc=adc, assumptions=WOVEN_ASSUMPTIONS)
+
+    def _room(self, scene: Scene, config: RadarConfig) -> "WovenRoom":
+        from mmweaver.models.weaver_method import WovenRoom
+        from mmweaver.models.weights import load_weights, shipped_weights
+
+        if self._ready is None or self._ready[0] is not scene or self._ready[1] != config:
+            network, _ = load_weights(self.weights or shipped_weights())
+            self._ready = (scene, config, WovenRoom(network, scene, config))
+        return self._ready[2]
+
+
+METHODS: Registry[Callable[[], Method]] = Registry("method", [("physics", Physics), ("weaver", Woven)])

@@ -24,7 +24,7 @@ from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect
 from mmweaver.formats.radar_file import load_firmware, load_radar
-from mmweaver.methods import METHODS
+from mmweaver.methods import METHODS, Woven
 from mmweaver.motion.company import MOST_PEOPLE, Place, compose_company
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
@@ -114,8 +114,8 @@ class Weaver:
 
     `method` is a name in METHODS, `radar` a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
     hears the name of each stage as it begins. `points` chooses the point cloud: "cfar", this project's own, or
-    "firmware", that of TI's demo; `firmware` are its settings (default: what the radar's .cfg or preset says). Raises
-    InputError for what is not known.
+    "firmware", that of TI's demo; `firmware` are its settings (default: what the radar's .cfg or preset says).
+    `weights`: a file of `mmweaver train`, for the method "weaver". Raises InputError for what is not known.
     """
 
     def __init__(
@@ -126,9 +126,12 @@ class Weaver:
         listener: Callable[[str], object] | None = None,
         points: str = "cfar",
         firmware: FirmwareSettings | None = None,
+        weights: str | Path | None = None,
     ):
         self.method_name = method
-        self.method = METHODS[method]()
+        if weights is not None and method != "weaver":
+            raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
+        self.method = Woven(Path(weights)) if weights is not None else METHODS[method]()
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
         check_points(points, self.radar)

@@ -94,7 +94,10 @@ def add_verb(verbs: Any) -> None:
     )
     radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
     radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
-    radar.add_argument("--method", default="physics", help="how the signal is made (default physics)")
+    radar.add_argument(
+        "--method", default="physics", help="how the signal is made: physics (default), or weaver, a trained network"
+    )
+    radar.add_argument("--weights", type=Path, metavar="FILE", help="weights of mmweaver train, for --method weaver")
     add_points_option(radar)
     radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     output = parser.add_argument_group("output")
@@ -123,7 +126,10 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.tx_order is not None:
             radar = replace(radar, tx_order=arguments.tx_order)
         firmware = load_firmware(arguments.radar) if arguments.points == "firmware" else None
-        weaver = Weaver(method=arguments.method, radar=radar, listener=bar, points=arguments.points, firmware=firmware)
+        weaver = Weaver(
+            method=arguments.method, radar=radar, listener=bar, points=arguments.points, firmware=firmware,
+            weights=arguments.weights,
+        )  # fmt: skip
         request = {
             "frames": arguments.frames,
             "fps": arguments.fps,

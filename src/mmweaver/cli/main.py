@@ -4,7 +4,20 @@ import os
 import sys
 from collections.abc import Sequence
 
-from mmweaver.cli import compress, decompress, evaluate, generate, info, motion, motions, process, radar, rooms
+from mmweaver.cli import (
+    compress,
+    dataset,
+    decompress,
+    evaluate,
+    generate,
+    info,
+    motion,
+    motions,
+    process,
+    radar,
+    rooms,
+    train,
+)
 from mmweaver.cli.arguments import Parser, glued
 from mmweaver.core.errors import InputError
 from mmweaver.core.version import __version__
@@ -47,7 +60,10 @@ def build_parser() -> Parser:
     parser = Parser(prog="mmweaver", description=DESCRIPTION, epilog=EXAMPLES)
     parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", title="verbs")
-    for module in (generate, process, radar, compress, decompress, info, rooms, motions, motion, evaluate):
+    verbs_in_order = (
+        generate, process, radar, compress, decompress, info, rooms, motions, motion, evaluate, dataset, train,
+    )  # fmt: skip
+    for module in verbs_in_order:
         module.add_verb(verbs)
     return parser
 

@@ -292,6 +292,27 @@ def _with_interval(metric: dict[str, Any]) -> str:
     return f"{value} ({_number(edges[0])} to {_number(edges[1])})" if edges else value
 
 
+WEAVER = (
+    ("ra_ssim", "RA SSIM"), ("rd_ssim", "RD SSIM"), ("rd_difference_db", "RD difference, dB"),
+    ("magnitude_nmse_db", "NMSE of magnitude, dB"), ("antenna_phase_error_rad", "antenna phase error, rad"),
+    ("chamfer_m", "Chamfer, m"), ("hausdorff_m", "Hausdorff, m"), ("cpu_s", "CPU, s"),
+)  # fmt: skip
+
+
+def weaver_table(folder: Path) -> str:
+    """One row a method in unseen kinds of rooms, mean and interval over rooms."""
+    (record,) = _records(folder / "weaver")
+    lines = [_line("method", *(text for _, text in WEAVER)), _line(*["---"] * (1 + len(WEAVER)))]
+    for row in record["rows"]:
+        cells = []
+        for name, _ in WEAVER:
+            metric = row["metrics"][name]
+            edges = f" ({metric['low']:.2f} to {metric['high']:.2f})" if name in ("ra_ssim", "rd_ssim") else ""
+            cells.append("-" if metric["value"] is None else f"{metric['value']:.2f}{edges}")
+        lines.append(_line(row["method"], *cells))
+    return "\n".join(lines)
+
+
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
@@ -302,6 +323,7 @@ TABLES = {
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
+    "weaver": weaver_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
-from mmweaver.core.shapes import PerFrame
+from mmweaver.core.shapes import Joints, PerFrame
 
 
 def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
@@ -22,3 +22,12 @@ def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
         )
     joints = np.asarray(CubicSpline(pose.time_s, pose.joints_m, axis=0)(time_s), dtype=float)
     return PoseSequence(time_s=time_s, joints_m=joints, height_m=pose.height_m, subject=pose.subject)
+
+
+def joints_and_velocities(pose: PoseSequence, time_s: PerFrame) -> tuple[Joints, Joints]:
+    """Joints in metres and their velocities in m/s at given times, (time, 22, 3) float32 each; held beyond the ends."""
+    from scipy.interpolate import CubicSpline
+
+    spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
+    time_s = np.clip(time_s, pose.time_s[0], pose.time_s[-1])
+    return spline(time_s).astype(np.float32), spline(time_s, 1).astype(np.float32)

@@ -41,10 +41,13 @@ class StaticEchoes:
 
 
 class Room:
-    """A scene made ready for one radar: its ray caster, its mirrors and its static echoes."""
+    """A scene made ready for one radar: its ray caster, its mirrors and its static echoes.
 
-    def __init__(self, scene: Scene, config: RadarConfig):
-        self.config = config
+    `micro_seed` draws the phases of its surfaces: another one is the same room seen with other micro-phases.
+    """
+
+    def __init__(self, scene: Scene, config: RadarConfig, micro_seed: int = 0):
+        self.config, self.micro_seed = config, micro_seed
         self.caster = RayCaster(scene.vertices_m, scene.faces)
         self.mirrors = mirrors_of(scene.planes)
         parts = [self._diffuse(scene), self._specular(), self._edges(scene)]
@@ -69,7 +72,7 @@ class Room:
 
     def _diffuse(self, scene: Scene) -> StaticEchoes:
         """Every cell of a grid of rays is a patch that scatters as Lambert's law says."""
-        rng = stream(0, "room", "diffuse")
+        rng = stream(self.micro_seed, "room", "diffuse")
         shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
         step_az, step_el = 2 * AZIMUTH_LIMIT_RAD / AZIMUTH_CELLS, 2 * ELEVATION_LIMIT_RAD / ELEVATION_CELLS
         azimuth = (np.arange(AZIMUTH_CELLS)[None] + rng.random(shape)) * step_az - AZIMUTH_LIMIT_RAD
@@ -125,7 +128,7 @@ class Room:
     def _edges(self, scene: Scene) -> StaticEchoes:
         """Rims and legs that lie across the line of sight flash: sigma = k a L^2 |Gamma|^2."""
         edges = find_edges(scene, self.caster)
-        rng = stream(0, "room", "edges")
+        rng = stream(self.micro_seed, "room", "edges")
         distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
         cos = np.abs((edges.direction * edges.place_m).sum(axis=1)) / distance
         gamma = np.array(

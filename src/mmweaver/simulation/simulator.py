@@ -46,11 +46,13 @@ class Simulator:
     The room's and the body's micro-phases belong to the room and the person; the seed draws the receiver's noise.
     """
 
-    def __init__(self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None):
+    def __init__(
+        self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0
+    ):
         self.config = config
         self.impairments = impairments or Impairments()
         self.clock = FrameClock(config)
-        self.room = Room(scene, config)
+        self.room = Room(scene, config, micro_seed)
         leak = self._leakage()
         self.room_adc = self.room.adc + leak
 

@@ -1,0 +1,95 @@
+"""mmweaver dataset: rooms, people and motions made up, and the radar signal of each."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from mmweaver.cli.arguments import whole
+from mmweaver.core.errors import InputError
+
+EXAMPLES = """examples:
+  mmweaver dataset data/ --layouts 10 --sequences 120 --workers 4
+  mmweaver dataset small/ --rooms "living_room,office" --layouts 2 --sequences 12
+  mmweaver dataset data/ --workers 4            # after a kill: goes on where it stopped
+"""
+
+
+def add_verb(verbs: Any) -> None:
+    """Declares the verb and its options."""
+    parser = verbs.add_parser(
+        "dataset",
+        help="make a data set of rooms, motions and radar signals",
+        epilog=EXAMPLES,
+        description="Makes furnished rooms, photographs them from the radar's place, lets people move in them and "
+        "writes the radar's signal, poses and photos as one Zarr group a room. The same settings give the same bits; "
+        "what is already there is kept, so it may be stopped and started again.",
+    )
+    parser.add_argument("out", type=Path, metavar="OUT", help="folder of the data set")
+    parser.add_argument("--rooms", metavar="KIND,...", help="kinds of rooms (default: all)")
+    parser.add_argument("--layouts", type=whole, default=10, help="rearrangements of each kind (default 10)")
+    parser.add_argument("--sequences", type=whole, default=120, help="sequences in each room (default 120)")
+    parser.add_argument("--frames", type=whole, default=20, help="radar frames of each sequence (default 20)")
+    parser.add_argument("--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
+    parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
+    parser.add_argument("--workers", type=whole, default=1, help="processes at once (default 1)")
+    parser.add_argument("--ray-address", metavar="ADDRESS", help="run on this Ray cluster; 'local' embeds one")
+    parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.set_defaults(run=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Makes what is missing. Raises InputError."""
+    import json
+
+    from tqdm import tqdm
+
+    from mmweaver.data.generate import generate
+    from mmweaver.data.plan import DatasetPlan
+    from mmweaver.formats.radar_file import load_radar
+
+    config = load_radar(arguments.radar)
+    plan = DatasetPlan(
+        kinds=_kinds(arguments.rooms), lightings=_lightings(), num_layouts=arguments.layouts,
+        sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
+    )  # fmt: skip
+    total = len(plan.kinds) * plan.num_layouts
+    with tqdm(total=total, unit="room", disable=arguments.quiet or None) as bar:
+        reports = generate(
+            arguments.out, plan, config, workers=max(1, arguments.workers), ray_address=arguments.ray_address,
+            listener=lambda report: bar.update(),
+        )  # fmt: skip
+    summary = {
+        "out": str(arguments.out),
+        "rooms_made": len(reports),
+        "rooms_already_there": total - len(reports),
+        "sequences_made": sum(report.num_sequences for report in reports),
+        "sequences_refused": sum(len(report.refused) for report in reports),
+    }
+    if arguments.json:
+        print(json.dumps(summary))
+    elif not arguments.quiet:
+        print(
+            f"{summary['sequences_made']} sequences in {len(reports)} new rooms ({summary['rooms_already_there']} were"
+            f" there) in {arguments.out}"
+        )
+    return 0
+
+
+def _kinds(text: str | None) -> tuple[str, ...]:
+    from mmweaver.scene.procedural.kinds import KINDS
+
+    known = tuple(KINDS)
+    if text is None:
+        return known
+    kinds = tuple(part.strip() for part in text.split(","))
+    for kind in kinds:
+        if kind not in known:
+            raise InputError(f"unknown kind of room {kind!r}; known: {', '.join(known)}")
+    return kinds
+
+
+def _lightings() -> tuple[str, ...]:
+    from mmweaver.scene.procedural.lighting import LIGHTINGS
+
+    return tuple(LIGHTINGS)

@@ -1,0 +1,106 @@
+"""One room of a data set: its photo, and the radar signal of everything that happens in it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto, Scene
+from mmweaver.data.plan import PEOPLE_HEIGHT_M, RoomSpec, SequenceSpec
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.motion.compose import compose
+from mmweaver.motion.resample import joints_and_velocities
+from mmweaver.scene.procedural.room import make_room
+from mmweaver.simulation.simulator import Simulator
+
+RETRIES = 5  # other places for a motion that a room has no place for
+
+
+@dataclass(frozen=True, kw_only=True)
+class MadeSequence:
+    """A sequence: cube in sqrt(mW), and joints at the middle of each radar frame."""
+
+    spec: SequenceSpec
+    cube: RadarCube
+    joints_m: np.ndarray  # (frame, 22, 3) float32
+    joint_velocity_mps: np.ndarray  # (frame, 22, 3) float32
+
+
+@dataclass(frozen=True, kw_only=True)
+class MadeRoom:
+    """A room with its sequences; `refused` says which specs had no place in it, and why."""
+
+    spec: RoomSpec
+    photo: RgbdPhoto
+    empty: np.ndarray  # complex64 (range, antenna), what stands still without a person, at zero Doppler's peak
+    sequences: tuple[MadeSequence, ...]
+    refused: tuple[tuple[int, str], ...]
+
+
+def make(spec: RoomSpec, config: RadarConfig, num_frames: int) -> MadeRoom:
+    """Makes a room and all its sequences by the simulator. Slow: about 0.4 s of CPU for each sequence."""
+    room = make_room(spec.kind, spec.layout, spec.seed)
+    truth = room.scene(spec.lighting)
+    simulator = Simulator(truth, config)
+    made, refused = [], []
+    for sequence in spec.sequences:
+        try:
+            made.append(make_sequence(sequence, truth, simulator, num_frames))
+        except InputError as error:
+            refused.append((sequence.index, str(error)))
+    return MadeRoom(
+        spec=spec, photo=room.photo(spec.lighting, noise=True), empty=_empty(simulator),
+        sequences=tuple(made), refused=tuple(refused),
+    )  # fmt: skip
+
+
+def make_sequence(
+    spec: SequenceSpec,
+    scene: Scene,
+    simulator: Simulator,
+    num_frames: int,
+    *,
+    subject: int | None = None,
+    noise_seed: int | None = None,
+) -> MadeSequence:
+    """One sequence; another `subject` has another skin and another `noise_seed` other noise (a twin).
+
+    Raises InputError where there is no room.
+    """
+    config = simulator.config
+    pose = pose_of(spec, scene, config, num_frames)
+    if subject is not None:
+        pose = replace(pose, subject=subject)
+    seed = spec.seed if noise_seed is None else noise_seed
+    parts = [radar_cube(chunk).values for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed)]
+    grid = CubeGrid.of(config, num_frames)
+    cube = RadarCube(values=np.concatenate(parts), grid=grid, config=config, scale=1.0)
+    joints, velocity = joints_and_velocities(pose, grid.frame_time_s + config.active_time_s / 2)
+    return MadeSequence(spec=spec, cube=cube, joints_m=joints, joint_velocity_mps=velocity)
+
+
+def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: int) -> PoseSequence:
+    """The person's motion in the scene. Raises InputError where none of a few tries finds a place."""
+    window = (float(config.range_m[0]), float(config.range_m[-1]))
+    for attempt in range(RETRIES):
+        try:
+            motion = compose(
+                spec.text, scene, duration_s=num_frames * config.frame_period_s, seed=spec.seed + attempt,
+                range_window_m=window, height_m=PEOPLE_HEIGHT_M[spec.person],
+            )  # fmt: skip
+            return replace(motion.pose, subject=spec.person)
+        except InputError:
+            if attempt == RETRIES - 1:
+                raise
+    raise AssertionError("unreachable")
+
+
+def _empty(simulator: Simulator) -> np.ndarray:
+    """(range, antenna) of the room alone: the range transform of what stays."""
+    from mmweaver.core.records import AdcCube
+
+    config = simulator.config
+    samples = np.repeat(simulator.room_adc[None, None], config.num_loops, axis=1).astype(np.complex64)
+    cube = radar_cube(AdcCube(samples=samples, config=config, scale=1.0))
+    return cube.values[0, :, config.num_loops // 2]

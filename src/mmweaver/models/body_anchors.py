@@ -1,0 +1,165 @@
+"""Where on a body, and in which mirrors, the moving points of a field are anchored, and what is known of each.
+
+An anchor is a place between two joints. Its direct echo hangs there; its ghosts hang between it and its images in the
+room's faces: a wave that goes out directly and comes back over a face has the mean of both ways.
+"""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mmweaver.core.skeleton import NUM_JOINTS, joint
+from mmweaver.models.room_view import NUM_PLANES, RoomView
+
+# from joint, to joint, how far along (above 1: past the second)
+_MIDDLE = (
+    ("hip", "knee", 0.35), ("hip", "knee", 0.7), ("knee", "ankle", 0.35), ("knee", "ankle", 0.7),
+    ("shoulder", "elbow", 0.5), ("elbow", "wrist", 0.5), ("elbow", "wrist", 1.4), ("ankle", "foot", 1.2),
+)  # fmt: skip
+_TORSO = (
+    ("neck", "head", 2.0), ("pelvis", "spine2", 0.5), ("left_hip", "spine3", 0.5), ("right_hip", "spine3", 0.5),
+    ("left_shoulder", "spine2", 0.5), ("right_shoulder", "spine2", 0.5),
+)  # fmt: skip
+ANCHORS: tuple[tuple[int, int, float], ...] = (
+    *((index, index, 0.0) for index in range(NUM_JOINTS)),
+    *((joint(f"{side}_{a}"), joint(f"{side}_{b}"), part) for a, b, part in _MIDDLE for side in ("left", "right")),
+    *((joint(a), joint(b), part) for a, b, part in _TORSO),
+)
+NUM_ANCHORS = len(ANCHORS)
+# the few anchors that stand for the body in mirrors
+MIRRORED = tuple(joint(name) for name in ("pelvis", "spine3", "head", "left_knee", "right_knee"))
+NUM_MIRRORS = 5  # the floor and the next largest faces
+NUM_GHOSTS = len(MIRRORED) * NUM_MIRRORS
+BODY_FEATURES, GHOST_FEATURES = 21, 15
+
+
+@dataclass(frozen=True, kw_only=True)
+class Anchors:
+    """Echoes to be (..., echo): their places as range, velocity and direction cosines, and what is known of them."""
+
+    range_m: Tensor
+    velocity_mps: Tensor
+    direction: Tensor  # (..., echo, 2) x and z
+    features: Tensor  # (..., echo, feature)
+    is_there: Tensor  # (..., echo) 0 or 1
+
+
+def anchor_places(joints: Tensor) -> Tensor:
+    """(..., 22, value) of the joints -> (..., anchor, value): places from places, velocities from velocities."""
+    first = torch.tensor([a for a, _, _ in ANCHORS], device=joints.device)
+    second = torch.tensor([b for _, b, _ in ANCHORS], device=joints.device)
+    share = torch.tensor([part for _, _, part in ANCHORS], device=joints.device)[:, None]
+    return joints[..., first, :] * (1 - share) + joints[..., second, :] * share
+
+
+def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anchors:
+    """Direct echoes. Joints (room, frame, 22, 3) in the radar's frame; `room` has a leading axis too."""
+    place, speed = anchor_places(joints_m), anchor_places(velocity_mps)
+    bone = _bones(joints_m)
+    distance = place.norm(dim=-1).clamp(min=0.2)
+    towards = -place / distance[..., None]
+    radial = -(speed * towards).sum(-1)
+    front = facing(joints_m)
+    side = (front[..., None, :] * towards).sum(-1)
+    clear, in_view = _clearance(place, distance, room)
+    floor = room.plane_centre_m[:, 0, 2]
+    length = bone.norm(dim=-1).clamp(min=1e-3)
+    unit = bone / length[..., None]
+    features = torch.stack(
+        [
+            *(place / 3).unbind(-1), distance / 3, 1 / distance, radial / 2, speed.norm(dim=-1) / 2,
+            *unit.unbind(-1), (unit * towards).sum(-1).abs(), side,
+            *front[..., None, :2].expand(*distance.shape, 2).unbind(-1),
+            place[..., 2] - floor[:, None, None], *clear.unbind(-1), in_view, _depth_behind(distance, towards),
+        ],
+        dim=-1,
+    )  # fmt: skip
+    return Anchors(
+        range_m=distance, velocity_mps=radial, direction=-towards[..., [0, 2]], features=features,
+        is_there=torch.ones_like(distance),
+    )  # fmt: skip
+
+
+def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anchors:
+    """Echoes over one face of the room: (room, frame, ghost)."""
+    place = joints_m[..., MIRRORED, :][..., None, :, :]  # (room, frame, 1, joint, 3)
+    speed = velocity_mps[..., MIRRORED, :][..., None, :, :]
+    centre = room.plane_centre_m[:, None, :NUM_MIRRORS, None]
+    axes = room.plane_axes[:, None, :NUM_MIRRORS, None]
+    normal = axes[..., 2, :]
+    height = ((place - centre) * normal).sum(-1)
+    own_height = -(centre * normal).sum(-1)  # of the radar above the face
+    image = place - 2 * height[..., None] * normal
+    moving = speed - 2 * (speed * normal).sum(-1, keepdim=True) * normal
+    far, near = image.norm(dim=-1).clamp(min=0.2), place.norm(dim=-1).clamp(min=0.2)
+    to_image, to_place = image / far[..., None], place / near[..., None]
+    # where the mirrored ray meets the face
+    share = own_height / (own_height + height).clamp(min=1e-3)
+    corner = share[..., None] * image - centre
+    half = room.plane_half_m[:, None, :NUM_MIRRORS, None]
+    margin = torch.stack([half[..., i] - (corner * axes[..., i, :]).sum(-1).abs() for i in (0, 1)], dim=-1)
+    valid = (height > 0.02) & (own_height > 0.02) & (half[..., 0] > 0)
+    radial = 0.5 * ((moving * to_image).sum(-1) + (speed * to_place).sum(-1))
+    cos = (to_image * normal).sum(-1).abs()
+    material = room.plane_features[:, None, :NUM_MIRRORS, None, :5].expand(*cos.shape, 5)
+    features = torch.stack(
+        [near.expand_as(far) / 3, far / 3, radial / 2, cos, *torch.tanh(3 * margin).unbind(-1), height / 2,
+         own_height.expand_as(far) / 2,
+         *to_image.unbind(-1)[::2]],
+        dim=-1,
+    )  # fmt: skip
+    return Anchors(
+        range_m=((near + far) / 2).flatten(-2),
+        velocity_mps=radial.flatten(-2),
+        direction=((to_image + to_place) / 2)[..., [0, 2]].flatten(-3, -2),
+        features=torch.cat([features, material], dim=-1).flatten(-3, -2),
+        is_there=valid.to(far.dtype).flatten(-2),
+    )
+
+
+def _bones(joints_m: Tensor) -> Tensor:
+    """(..., anchor, 3): the bone each anchor lies on; a joint's own is the one that ends there."""
+    from mmweaver.core.skeleton import PARENTS
+
+    parts = []
+    for first, second, _ in ANCHORS:
+        start = first if first != second else max(PARENTS[first], 0)
+        parts.append(joints_m[..., second, :] - joints_m[..., start, :])
+    return torch.stack(parts, dim=-2)
+
+
+def facing(joints_m: Tensor) -> Tensor:
+    """Where the chest looks, (..., 3): right shoulder to left shoulder, turned to the front."""
+    across = joints_m[..., joint("left_shoulder"), :] - joints_m[..., joint("right_shoulder"), :]
+    up = joints_m[..., joint("neck"), :] - joints_m[..., joint("pelvis"), :]
+    return torch.nn.functional.normalize(torch.linalg.cross(across, up), dim=-1)
+
+
+def _clearance(place: Tensor, distance: Tensor, room: RoomView) -> tuple[Tensor, Tensor]:
+    """How much farther than the anchor the photo's surface lies (at it, above, beside it), and whether in view."""
+    seen, inside = [], torch.zeros_like(distance)
+    for x, z in ((0.0, 0.0), (0.0, 0.1), (0.12, 0.0), (-0.12, 0.0)):
+        camera = (place + place.new_tensor([x, 0.0, z])) @ room.camera_from_radar[:, None].transpose(-1, -2)
+        depth = camera[..., 2].clamp(min=0.1)
+        column = room.camera[:, None, None, 0] * camera[..., 0] / depth + room.camera[:, None, None, 2]
+        row = room.camera[:, None, None, 1] * camera[..., 1] / depth + room.camera[:, None, None, 3]
+        rows, columns = room.depth_m.shape[-2:]
+        grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1)
+        surface = torch.nn.functional.grid_sample(room.depth_m[:, None], grid, mode="nearest", align_corners=False)[
+            :, 0
+        ]
+        inside = (grid.abs() < 1).all(dim=-1).to(distance.dtype)
+        known = (surface > 0.1) & (inside > 0)
+        seen.append(torch.where(known, torch.tanh(2 * (surface - depth)), torch.ones_like(surface)))
+    return torch.stack(seen, dim=-1), inside
+
+
+def _depth_behind(distance: Tensor, towards: Tensor) -> Tensor:
+    """How much of the body lies nearer in the same direction: 0 for the foremost anchor."""
+    near = (distance[..., :, None] - distance[..., None, :]).clamp(min=0)
+    angle = torch.cdist(towards, towards)
+    return (torch.exp(-((angle / 0.05) ** 2)) * torch.tanh(5 * near)).sum(-1) / 4
+
+
+assert NUM_MIRRORS <= NUM_PLANES

@@ -1,0 +1,65 @@
+"""Mean echoes -> one signal: the phases that nobody can know are drawn, the rest follows from geometry.
+
+A moving echo stands for several spots of skin that ride on one part of the body; their sum glitters as the part turns,
+as real skin does. Spots belong to the person, resting phases to the room, so that the same seed, person and room give
+the same signal, and a person's frames belong together. Reference: decisions 4 and 91.
+"""
+
+import math
+from dataclasses import replace
+
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid
+from mmweaver.core.seeding import stream
+from mmweaver.fields.scatterers.layers import Layers
+from mmweaver.fields.scatterers.response import PointResponse, Points
+from mmweaver.fields.scatterers.scatterer_field import ScattererField
+from mmweaver.fields.scatterers.stretch import Stretch
+from mmweaver.models.echoes import Echoes
+from mmweaver.models.radar_view import carrier, points_of
+
+SPOTS = 6  # of skin, for each echo
+SPOT_SPREAD_M = 0.04
+
+
+def draw_static(resting: Echoes, response: PointResponse, room_seed: int) -> Tensor:
+    """Resting echoes (echo,) -> the static layer (range, antenna), complex."""
+    rng = stream(room_seed, "weaver", "room")
+    count = resting.range_m.shape[-1]
+    axes = response.axes()
+    points = points_of(resting, response)
+    turns = torch.from_numpy(2 * math.pi * rng.random(count)).to(torch.float32)
+    points = replace(points, amplitude=torch.polar(points.amplitude, turns))
+    strong = points.amplitude.abs() > 1e-4 * points.amplitude.abs().max()
+    points = Points(
+        range_bin=points.range_bin[strong], doppler_bin=points.doppler_bin[strong],
+        direction=points.direction[strong], amplitude=points.amplitude[strong],
+    )  # fmt: skip
+    at_range, _, _, _, steer = response.factors(points, axes)
+    return at_range.to(steer.dtype).T @ (points.amplitude[:, None] * steer)
+
+
+def draw_moving(moving: Echoes, aspect: Tensor, response: PointResponse, subject: int) -> Points:
+    """Moving echoes (frame, echo) -> points with phases. `aspect` (frame, 3): the line of sight seen by the body."""
+    rng = stream(subject, "weaver", "skin")
+    count = moving.range_m.shape[-1]
+    offset = torch.from_numpy(rng.standard_normal((count, SPOTS, 3)) * SPOT_SPREAD_M).to(torch.float32)
+    spot = torch.from_numpy(rng.standard_normal((count, SPOTS, 2)) / math.sqrt(2 * SPOTS)).to(torch.float32)
+    points = points_of(moving, response)
+    along = torch.einsum("fc,esc->fes", aspect, offset)
+    glitter = (carrier(along, response.config) * torch.complex(spot[..., 0], spot[..., 1])).sum(dim=-1)
+    return replace(points, amplitude=points.amplitude * glitter * carrier(moving.range_m, response.config))
+
+
+def field_of(
+    static: Tensor, points: Points, config: RadarConfig, num_frames: int, noise_power: float
+) -> ScattererField:
+    """The field of drawn layers; its values are in sqrt(mW)."""
+    layers = Layers(
+        points=points, static=static, calibration=torch.ones(config.num_antennas, dtype=torch.complex64),
+        noise_power=noise_power,
+    )  # fmt: skip
+    return ScattererField(layers, Stretch.of(config, num_frames, 0), CubeGrid.of(config, num_frames), 1.0, 1.0)

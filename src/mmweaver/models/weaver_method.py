@@ -1,0 +1,84 @@
+"""Room and motion -> signal by the network: what `method="weaver"` runs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import PoseSequence, RadarCube, Scene
+from mmweaver.core.skeleton import joint
+from mmweaver.fields.scatterers.response import Points
+from mmweaver.fields.scatterers.scatterer_field import ScattererField
+from mmweaver.models.body_anchors import facing
+from mmweaver.models.drawing import draw_moving, draw_static, field_of
+from mmweaver.models.echoes import Echoes
+from mmweaver.models.mean_power import MeanPower
+from mmweaver.models.room_view import RoomView
+from mmweaver.models.weaver_network import RoomCode, WeaverNetwork
+from mmweaver.motion.resample import joints_and_velocities
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrameMotion:
+    """One person at the middle of each radar frame: joints and their velocities, (frame, 22, 3)."""
+
+    joints_m: np.ndarray
+    velocity_mps: np.ndarray
+    subject: int
+
+    @classmethod
+    def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int) -> "FrameMotion":
+        """A dense motion at so many radar frames."""
+        time_s = np.arange(num_frames) * config.frame_period_s + config.active_time_s / 2
+        joints_m, velocity_mps = joints_and_velocities(pose, time_s)
+        return cls(joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject)
+
+
+class WovenRoom:
+    """A room that the network has encoded for one radar; `field` may then be asked for many motions."""
+
+    def __init__(self, network: WeaverNetwork, scene: Scene, config: RadarConfig, *, room_seed: int = 0):
+        self.network, self.config = network, config
+        self.radar = MeanPower(config)
+        with torch.inference_mode():
+            self.code: RoomCode = network.encode_room(RoomView.stacked([RoomView.of(scene, config)]))
+            self.static = draw_static(_first(self.code.resting), self.radar.response, room_seed)
+
+    def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
+        """The field of everybody's motion; people are superimposed and do not hide each other."""
+        with torch.inference_mode():
+            points = [self._points(motion) for motion in motions]
+        together = Points(
+            range_bin=torch.cat([one.range_bin for one in points], dim=1),
+            doppler_bin=torch.cat([one.doppler_bin for one in points], dim=1),
+            direction=torch.cat([one.direction for one in points], dim=1),
+            amplitude=torch.cat([one.amplitude for one in points], dim=1),
+        )
+        return field_of(self.static, together, self.config, len(together.range_bin), self.radar.noise)
+
+    def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
+        """The signal of everybody's motion with the receiver's noise, in sqrt(mW)."""
+        field = self.field(motions)
+        cube = RadarCube(values=field.native(), grid=field.grid, config=self.config, scale=1.0)
+        return replace(field.with_noise(cube, seed), scale=1.0)
+
+    def _points(self, motion: FrameMotion) -> Points:
+        joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
+        moving = _first(self.network.moving(self.code, joints[None], velocity[None]))
+        return draw_moving(moving, aspect(joints), self.radar.response, motion.subject)
+
+
+def aspect(joints_m: Tensor) -> Tensor:
+    """Twice the line of sight as the body sees it (front, side, up), (frame, 3): what turns the phase of its skin."""
+    front = facing(joints_m)
+    up = torch.tensor([0.0, 0.0, 1.0], device=joints_m.device).expand_as(front)
+    side = torch.linalg.cross(up, front)
+    sight = torch.nn.functional.normalize(joints_m[:, joint("pelvis")], dim=-1)
+    return 2 * torch.stack([(sight * front).sum(-1), (sight * side).sum(-1), sight[:, 2]], dim=-1)
+
+
+def _first(echoes: Echoes) -> Echoes:
+    return Echoes(**{field.name: getattr(echoes, field.name)[0] for field in fields(Echoes)})

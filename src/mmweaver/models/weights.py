@@ -1,0 +1,105 @@
+"""Weight files: safetensors with what one must know about them in the header. Nothing is unpickled.
+
+The header holds format, recipe, version, licence, data set and radar; `WeightsCard` is its record.
+"""
+
+import json
+from dataclasses import asdict, dataclass, fields
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.models.weaver_network import WeaverNetwork
+
+FORMAT = "mmweaver weights"
+FORMAT_VERSION = 1
+SHIPPED = "weaver.safetensors"
+
+
+@dataclass(frozen=True, kw_only=True)
+class WeightsCard:
+    """What a weight file says of itself."""
+
+    recipe: str
+    licence: str
+    dataset_sha256: str  # of the data set's plan
+    radar: str
+    steps: int
+    seed: int
+    validation_loss: float
+    mmweaver_version: str
+
+
+def save_weights(file: Path, network: WeaverNetwork, card: WeightsCard, *, half: bool = True) -> None:
+    """Writes a network, whole or not at all; in half precision it is half as large and as good."""
+    from safetensors.torch import save_file
+
+    dtype = torch.float16 if half else torch.float32
+    tensors = {
+        name: (tensor.to(dtype) if tensor.is_floating_point() else tensor).contiguous()
+        for name, tensor in network.state_dict().items()
+    }
+    header = {"format": FORMAT, "format_version": str(FORMAT_VERSION), "card": json.dumps(asdict(card))}
+    partial = file.with_name("." + file.name)
+    save_file(tensors, partial, metadata=header)
+    partial.rename(file)
+
+
+def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
+    """Reads a network, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
+    card, tensors = _read(file)
+    network = WeaverNetwork()
+    wanted = network.state_dict()
+    wrong = [name for name in wanted if name not in tensors or tensors[name].shape != wanted[name].shape]
+    wrong += [name for name in tensors if name not in wanted]
+    if wrong:
+        raise InputError(
+            f"{file} does not fit this version's network ({len(wrong)} tensors differ, {wrong[0]!r} first); train anew"
+            " or take the mmweaver version that made it"
+        )
+    network.load_state_dict({name: tensor.to(wanted[name].dtype) for name, tensor in tensors.items()})
+    network.eval()
+    return network, card
+
+
+def shipped_weights() -> Path:
+    """The weights that come with mmweaver. Raises InputError where they are missing."""
+    file = Path(str(resources.files("mmweaver") / "weights" / SHIPPED))
+    if not file.is_file():
+        raise InputError("this installation has no weights; train some with: mmweaver train, then give --weights FILE")
+    return file
+
+
+def _read(file: Path) -> tuple[WeightsCard, dict[str, torch.Tensor]]:
+    from safetensors import SafetensorError, safe_open
+
+    if not file.is_file():
+        raise InputError(f"{file} does not exist; give a .safetensors file that mmweaver train wrote")
+    with file.open("rb") as opened:
+        first = opened.read(2)
+    if first in (b"PK", b"\x80\x02", b"\x80\x04"):
+        raise InputError(f"{file} holds pickled objects, which can run any program; mmweaver reads only safetensors")
+    try:
+        with safe_open(file, framework="pt") as opened:
+            header: dict[str, str] = opened.metadata() or {}
+            if header.get("format") != FORMAT:
+                raise InputError(f"{file} is not a weight file of mmweaver; give one that mmweaver train wrote")
+            if header.get("format_version") != str(FORMAT_VERSION):
+                raise InputError(
+                    f"{file} has weights of format {header.get('format_version')}, this mmweaver reads {FORMAT_VERSION}"
+                )
+            tensors = {name: opened.get_tensor(name) for name in opened.keys()}  # noqa: SIM118 - no mapping
+    except (SafetensorError, OSError, ValueError) as error:
+        raise InputError(f"{file} is damaged or no safetensors file ({error}); fetch or write it again") from None
+    return _card(header["card"], file), tensors
+
+
+def _card(text: str, file: Path) -> WeightsCard:
+    try:
+        values: dict[str, Any] = json.loads(text)
+        return WeightsCard(**{field.name: values[field.name] for field in fields(WeightsCard)})
+    except (ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{file} has a header that cannot be read ({error}); fetch or write it again") from None

@@ -1,0 +1,130 @@
+"""Batches for training the weaver, drawn from a data set; the same step always gives the same batch."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid, RadarCube
+from mmweaver.core.seeding import stream
+from mmweaver.data.store import StoredRoom, read_rooms
+from mmweaver.dsp.spectra import (
+    azimuth_axis_rad,
+    elevation_axis_rad,
+    has_elevation,
+    range_azimuth_power,
+    range_doppler_power,
+    range_elevation_power,
+)
+from mmweaver.models.mean_power import PowerMaps
+from mmweaver.models.room_view import RoomView
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.weaver_loss import Targets
+
+
+@dataclass(frozen=True, kw_only=True)
+class Batch:
+    """Rooms, whole motions, and the power maps of some of their frames."""
+
+    view: RoomView
+    joints_m: Tensor  # (sequence, frame, 22, 3), all frames
+    velocity_mps: Tensor
+    frames: Tensor  # (sequence, chosen) indices
+    targets: Targets
+
+
+class RoomExamples:
+    """One stored room: its view, and the sequences of one split."""
+
+    def __init__(self, room: StoredRoom, split: str):
+        self.room = room
+        self.indices = [index for index, name in enumerate(room.split) if name == split]
+
+    @cached_property
+    def view(self) -> RoomView:
+        """What the product would see of the room: its photo, reconstructed."""
+        return RoomView.of(reconstruct(self.room.photo), self.room.config)
+
+    @cached_property
+    def empty(self) -> PowerMaps:
+        """Maps (range, other) of the room without a person."""
+        config = self.room.config
+        values = np.zeros((1, len(self.room.empty), config.num_loops, config.num_antennas), np.complex64)
+        middle = config.num_loops // 2
+        # a Hann window's response to what rests: three bins
+        for step, share in ((-1, -0.5), (0, 1.0), (1, -0.5)):
+            values[0, :, middle + step] = share * self.room.empty
+        return _one(power_maps(values, config))
+
+
+def examples(folder: Path, split: str) -> list[RoomExamples]:
+    """The rooms of a data set that have sequences of a split. Raises InputError where there are none."""
+    rooms = [RoomExamples(room, split) for room in read_rooms(folder)]
+    rooms = [room for room in rooms if room.indices]
+    if not rooms:
+        raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
+    return rooms
+
+
+def draw_batch(rooms: list[RoomExamples], seed: int, step: int, *, size: int, frames: int) -> Batch:
+    """`size` sequences of as many rooms, and `frames` frames of each to look at."""
+    rng = stream(seed, "batch", step)
+    chosen = rng.choice(len(rooms), size=size, replace=len(rooms) < size)
+    views, joints, velocity, picked, maps, empty = [], [], [], [], [], []
+    for which in chosen:
+        one = rooms[int(which)]
+        index = one.indices[int(rng.integers(len(one.indices)))]
+        cube = one.room.cube(index)
+        some = np.sort(rng.choice(len(cube.values), size=min(frames, len(cube.values)), replace=False))
+        views.append(one.view)
+        joints.append(torch.from_numpy(one.room.joints_m[index]))
+        velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
+        picked.append(torch.from_numpy(some))
+        maps.append(power_maps(cube.values[some], cube.config))
+        empty.append(one.empty)
+    return Batch(
+        view=RoomView.stacked(views),
+        joints_m=torch.stack(joints),
+        velocity_mps=torch.stack(velocity),
+        frames=torch.stack(picked),
+        targets=Targets(maps=_stacked(maps), empty=_stacked(empty)),
+    )
+
+
+def power_maps(values: np.ndarray, config: RadarConfig) -> PowerMaps:
+    """The maps of a cube's values (frame, range, doppler, antenna)."""
+    cube = RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=1.0)
+    if has_elevation(config):
+        elevation = range_elevation_power(cube, elevation_axis_rad())
+    else:
+        elevation = np.zeros((*values.shape[:2], 0))
+    return PowerMaps(
+        range_doppler=_tensor(range_doppler_power(cube)),
+        range_azimuth=_tensor(range_azimuth_power(cube, azimuth_axis_rad())),
+        range_elevation=_tensor(elevation),
+    )
+
+
+def _tensor(values: np.ndarray) -> Tensor:
+    return torch.from_numpy(values.astype(np.float32))
+
+
+def _stacked(maps: list[PowerMaps]) -> PowerMaps:
+    return PowerMaps(
+        range_doppler=torch.stack([one.range_doppler for one in maps]),
+        range_azimuth=torch.stack([one.range_azimuth for one in maps]),
+        range_elevation=torch.stack([one.range_elevation for one in maps]),
+    )
+
+
+def _one(maps: PowerMaps) -> PowerMaps:
+    return PowerMaps(
+        range_doppler=maps.range_doppler[0],
+        range_azimuth=maps.range_azimuth[0],
+        range_elevation=maps.range_elevation[0],
+    )

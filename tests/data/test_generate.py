@@ -1,0 +1,70 @@
+"""A small data set: whole, the same again, and safe from a kill."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.data.generate import generate
+from mmweaver.data.plan import DatasetPlan
+from mmweaver.data.store import PLAN_FILE, read_rooms
+
+zarr = pytest.importorskip("zarr")
+PLAN = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=4)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data") / "set"
+    generate(folder, PLAN, AWR1843)
+    return folder
+
+
+def test_it_reads_with_plain_zarr_and_its_axes_have_units(folder: Path):
+    root = zarr.open_group(folder, mode="r")
+    assert root["range_m"].attrs["units"] == "m"
+    iq = root["office_000"]["iq"]
+    assert iq.metadata.dimension_names == ("sequence", "frame", "range", "doppler", "antenna", "part")
+    assert iq.dtype == np.float16
+    assert iq.shape[1:] == (4, 64, 32, 12, 2)
+    assert json.loads((folder / PLAN_FILE).read_text())["seed"] == 0
+
+
+def test_half_precision_keeps_the_noise(folder: Path):
+    room = read_rooms(folder)[0]
+    cube = room.cube(0)
+    assert np.isfinite(cube.values).all()
+    noise = np.median(np.abs(cube.values) ** 2)
+    expected = AWR1843.noise_power_mw * 1.5 / AWR1843.num_samples * 1.5 / AWR1843.num_loops * np.log(2)
+    assert 10 * np.log10(noise / expected) == pytest.approx(0, abs=1.5)
+
+
+def test_after_a_kill_the_rest_is_made_and_is_the_same_to_the_bit(folder: Path, tmp_path: Path):
+    again = tmp_path / "again"
+    shutil.copytree(folder, again)
+    shutil.rmtree(again / "office_001")
+    (again / ".office_001.4711").mkdir()  # what a killed process leaves
+    reports = generate(again, PLAN, AWR1843)
+    assert [report.name for report in reports] == ["office_001"]
+    assert not (again / ".office_001.4711").exists()
+    for first, second in zip(read_rooms(folder), read_rooms(again), strict=True):
+        assert np.array_equal(first.cube(1).values, second.cube(1).values)
+        assert np.array_equal(first.joints_m, second.joints_m)
+        assert np.array_equal(first.photo.rgb, second.photo.rgb)
+    assert generate(again, PLAN, AWR1843) == []
+
+
+def test_another_plan_and_a_full_folder_are_refused(folder: Path, tmp_path: Path):
+    other = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=5)
+    with pytest.raises(InputError, match="another plan"):
+        generate(folder, other, AWR1843)
+    (tmp_path / "mine.txt").write_text("keep me")
+    with pytest.raises(InputError, match="not empty"):
+        generate(tmp_path, PLAN, AWR1843)
+    assert (tmp_path / "mine.txt").read_text() == "keep me"
+    with pytest.raises(InputError, match="no data set"):
+        read_rooms(tmp_path)

@@ -1,0 +1,52 @@
+"""Weight files: there and back, and what is refused."""
+
+import pickle
+
+import pytest
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.weights import WeightsCard, load_weights, save_weights
+
+pytest.importorskip("transformers")
+CARD = WeightsCard(
+    recipe="weaver", licence="MIT", dataset_sha256="0" * 64, radar="awr1843", steps=1, seed=0, validation_loss=1.0,
+    mmweaver_version="0",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory):
+    file = tmp_path_factory.mktemp("weights") / "weights.safetensors"
+    torch.manual_seed(1)
+    save_weights(file, WeaverNetwork(), CARD)
+    return file
+
+
+def test_there_and_back(file):
+    torch.manual_seed(1)
+    made, (read, card) = WeaverNetwork(), load_weights(file)
+    assert card == CARD
+    for name, tensor in made.state_dict().items():
+        assert torch.allclose(tensor, read.state_dict()[name], atol=2e-3, rtol=2e-3), name
+
+
+def test_damaged_foreign_and_pickled_files_are_refused_in_one_line(file, tmp_path):
+    from safetensors.torch import save_file
+
+    short = tmp_path / "short.safetensors"
+    short.write_bytes(file.read_bytes()[:100_000])
+    foreign = tmp_path / "foreign.safetensors"
+    save_file({"a": torch.zeros(3)}, foreign)
+    pickled = tmp_path / "pickled.pt"
+    pickled.write_bytes(pickle.dumps({"a": 1}))
+    old = tmp_path / "old.safetensors"
+    save_file({"a": torch.zeros(3)}, old, metadata={"format": "mmweaver weights", "format_version": "0", "card": "{}"})
+    for wrong, told in (
+        (short, "damaged"), (foreign, "not a weight file"), (pickled, "pickled"), (old, "format 0"),
+        (tmp_path / "none", "does not exist"),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=told) as caught:
+            load_weights(wrong)
+        assert "\n" not in str(caught.value)

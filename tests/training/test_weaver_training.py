@@ -1,0 +1,65 @@
+"""Training on a tiny data set: it goes on exactly, and what it writes is read."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.data.generate import generate
+from mmweaver.data.plan import DatasetPlan
+from mmweaver.models.weights import load_weights
+from mmweaver.training.weaver_training import TrainingRecipe, train, write_weights
+
+pytest.importorskip("zarr")
+pytest.importorskip("transformers")
+RECIPE = TrainingRecipe(steps=4, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data") / "set"
+    plan = DatasetPlan(
+        kinds=("office", "dining_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4
+    )
+    generate(folder, plan, AWR1843)
+    return folder
+
+
+class StoppedError(Exception):
+    pass
+
+
+def test_interrupted_training_ends_where_the_other_does(data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)
+    whole = train(data, tmp_path / "whole", RECIPE)
+
+    def stop(progress):
+        if progress.step == 3:
+            raise StoppedError
+
+    with pytest.raises(StoppedError):
+        train(data, tmp_path / "parts", RECIPE, listener=stop)
+    steps: list[int] = []
+    parts = train(data, tmp_path / "parts", RECIPE, listener=lambda progress: steps.append(progress.step))
+    assert steps == [3, 4]  # the step that was not saved is done again
+    for (name, one), two in zip(whole.network.state_dict().items(), parts.network.state_dict().values(), strict=True):
+        assert torch.equal(one, two), name
+    assert whole.best.value == parts.best.value
+    network, card = load_weights(write_weights(tmp_path / "whole", data, whole))
+    assert card.steps == 4
+    assert torch.allclose(network.part, whole.network.part, atol=1e-3)
+
+
+def test_other_settings_do_not_go_on_from_a_checkpoint(data: Path, tmp_path: Path):
+    from dataclasses import replace
+
+    train(data, tmp_path, replace(RECIPE, steps=1))
+    with pytest.raises(InputError, match="other settings"):
+        train(data, tmp_path, replace(RECIPE, steps=2))
+
+
+def test_a_folder_without_data_is_refused(tmp_path: Path):
+    with pytest.raises(InputError, match="no data set"):
+        train(tmp_path, tmp_path / "out", RECIPE)
