@@ -79,7 +79,7 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
         subject, noise = spec.person + skin, spec.seed + TWIN
         made = make_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
         if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
-            raise InputError("the data set's people move otherwise in this version; make it again with mmweaver dataset")
+            raise InputError("the data set's people move otherwise in this version; make it again")
         return made.cube
 
     return method
