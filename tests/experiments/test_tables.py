@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
         ("docs/motion.md", "standing up from the knees"),
         ("docs/motiongpt.md", "ceiling"),
         ("docs/zero_shot.md", "blind"),
+        ("docs/weaver.md", "wrong_photo"),
     ],
 )
 def test_the_tables_of_the_documentation_are_those_of_the_results(document: str, told: str):

@@ -86,7 +86,7 @@ def _engine(workers: int, ray_address: str | None) -> Iterator[Callable[[Iterabl
 def _ray(workers: int, address: str) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
     """A room is one task; a lost one is tried again elsewhere, since writing is whole or not at all."""
     try:
-        import ray
+        import ray  # pyright: ignore[reportMissingImports]
     except ImportError as error:
         raise InputError("--ray-address needs Ray; install it with: pip install 'mmweaver[cluster]'") from error
     if address == "local":

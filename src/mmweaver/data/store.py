@@ -38,10 +38,18 @@ UNITS = {
 }  # fmt: skip
 
 
+def _zarr() -> Any:
+    """The library, imported late. Raises InputError where it is not installed."""
+    try:
+        import zarr
+    except ImportError as error:
+        raise InputError("data sets need Zarr; install it with: pip install 'mmweaver[dataset]'") from error
+    return zarr
+
+
 def start(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
     """Makes the data set's folder, or checks that the one there is of the same plan. Raises InputError if it is not."""
-    import zarr
-
+    zarr = _zarr()
     text = plan.to_json()
     file = folder / PLAN_FILE
     if file.is_file():
@@ -72,8 +80,7 @@ def is_done(folder: Path, name: str) -> bool:
 
 def write_room(folder: Path, made: MadeRoom) -> None:
     """Writes one room, whole or not at all."""
-    import zarr
-
+    zarr = _zarr()
     partial = folder / f".{made.spec.name}.{os.getpid()}"
     shutil.rmtree(partial, ignore_errors=True)
     group = zarr.open_group(partial, mode="w")
@@ -153,8 +160,7 @@ class StoredRoom:
 
     def cube(self, index: int) -> RadarCube:
         """The cube of one sequence, in sqrt(mW)."""
-        import zarr
-
+        zarr = _zarr()
         group: Any = zarr.open_group(self.folder, mode="r")
         pairs = np.asarray(group["iq"][index]).astype(np.float32) * np.float32(group["iq_scale"][index])
         values = np.ascontiguousarray(pairs).view(np.complex64)[..., 0]
@@ -163,8 +169,7 @@ class StoredRoom:
 
 def read_rooms(folder: Path) -> list[StoredRoom]:
     """All rooms of a data set. Raises InputError where the folder is none."""
-    import zarr
-
+    zarr = _zarr()
     if not (folder / PLAN_FILE).is_file():
         raise InputError(f"{folder} holds no data set (no {PLAN_FILE}); make one with: mmweaver dataset {folder}")
     root = zarr.open_group(folder, mode="r")
@@ -184,8 +189,7 @@ def read_plan(folder: Path) -> dict[str, Any]:
 
 
 def _room(folder: Path, config: RadarConfig) -> StoredRoom:
-    import zarr
-
+    zarr = _zarr()
     group = zarr.open_group(folder, mode="r")
     attrs: dict[str, Any] = dict(group.attrs)
     names = tuple(attrs["class_names"])
