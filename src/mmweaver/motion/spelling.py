@@ -130,6 +130,8 @@ def _forms(verbs: Iterable[str]) -> frozenset[str]:
     for verb in verbs:
         if verb.isalpha():
             stem, double = verb.removesuffix("e"), verb + verb[-1]
+            if verb.endswith("y") and verb[-2] not in "aeou":
+                forms |= {f"{verb[:-1]}ies", f"{verb[:-1]}ied"}
             forms |= {verb, f"{verb}s", f"{verb}es", f"{stem}ing", f"{stem}ed", f"{double}ing", f"{double}ed"}
     return frozenset(forms)
 

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.errors import InputError
-from mmweaver.core.records import ClassMask, RgbdPhoto
+from mmweaver.core.records import RgbdPhoto
 from mmweaver.geometry.rotations import pitch_and_roll_rad
 from mmweaver.scene.procedural.room import ProceduralRoom
 
@@ -26,28 +25,9 @@ def write_room(folder: Path, room: ProceduralRoom, photo: RgbdPhoto, lighting: s
     (folder / "camera.json").write_text(json.dumps(camera, indent=1) + "\n", encoding="utf-8")
     if photo.classes is not None:
         Image.fromarray(photo.classes.index).save(folder / "classes.png")
-        names = {"names": list(photo.classes.names)}
+        names = {str(number): name for number, name in enumerate(photo.classes.names)}
         (folder / "classes.json").write_text(json.dumps(names, indent=1) + "\n", encoding="utf-8")
     (folder / "truth.json").write_text(json.dumps(truth_of(room, lighting), indent=1) + "\n", encoding="utf-8")
-
-
-def read_classes(folder: Path) -> ClassMask:
-    """The mask that `write_room` wrote: classes.png holds indices into the names of classes.json.
-
-    Raises InputError where the two do not fit together.
-    """
-    from PIL import Image
-
-    try:
-        names = json.loads((folder / "classes.json").read_text(encoding="utf-8"))["names"]
-        index = np.array(Image.open(folder / "classes.png"))
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(
-            f"{folder} holds no class mask that can be read ({error}); make it with mmweaver rooms"
-        ) from error
-    if index.dtype != np.uint8 or index.ndim != 2 or not isinstance(names, list) or index.max() >= len(names):
-        raise InputError(f"{folder}: classes.png has values that classes.json does not name; make both again")
-    return ClassMask(index=index, names=tuple(str(name) for name in names))
 
 
 def truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
