@@ -33,7 +33,7 @@ def test_the_person_is_where_the_skeleton_is(real_data: Path, room: str):
         assert np.all(feet_m > place.scene.floor_z_m - 0.02)
         tracks.append(agreement(result))
         assert tracks[-1].moving > 0
-    # of all sentences, as results/real_rooms counts: a sitter who drinks moves in eight frames, and one of noise decides
+    # of all sentences, as results/real_rooms counts: a sitter who drinks moves in eight frames, one of noise among them
     assert sum(track.right for track in tracks) / sum(track.moving for track in tracks) >= 0.9
 
 
