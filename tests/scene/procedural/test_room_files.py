@@ -29,4 +29,3 @@ def test_what_is_written_is_read_back(tmp_path: Path):
     assert len(truth["seats"]) == len(room.seats)
     assert {mark["kind"] for mark in truth["landmarks"]} == {mark.kind for mark in room.landmarks}
     assert len(truth["boxes"]) == len(room.boxes)
-
