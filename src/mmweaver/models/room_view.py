@@ -1,7 +1,7 @@
 """What the networks see of a room: a small picture, the echoes of what it shows, and the flat faces."""
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 
 import numpy as np
 import torch
@@ -69,16 +69,6 @@ class RoomView:
     def stacked(cls, views: list["RoomView"]) -> "RoomView":
         """Several rooms as one batch."""
         return cls(**{f.name: torch.stack([getattr(view, f.name) for view in views]) for f in fields(cls)})
-
-    def without(self, *parts: str) -> "RoomView":
-        """The same room with some channels of its picture blank: "rgb", "depth", "mask" (ablations)."""
-        image = self.image.clone()
-        for part in parts:
-            image[..., {"rgb": slice(0, 3), "depth": slice(3, 4), "mask": slice(4, 5)}[part], :, :] = 0.0
-        return replace(self, image=image)
-
-    def to(self, device: str | torch.device) -> "RoomView":
-        return RoomView(**{f.name: getattr(self, f.name).to(device) for f in fields(self)})
 
 
 def _nearest(wanted: int, given: int) -> np.ndarray:
