@@ -9,8 +9,9 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.models.radar_view import pattern_db
 from mmweaver.scene.depth_grid import DepthGrid, make_grid
-from mmweaver.simulation.antenna import pattern, scatterer_gain
+from mmweaver.simulation.antenna import scatterer_gain
 from mmweaver.simulation.room import Room
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
@@ -99,8 +100,11 @@ def _points(room: Room, scene: Scene) -> dict[str, Tensor]:
     echoes, config = room.echoes, room.config
     order = np.argsort(-np.abs(echoes.amplitude))[:NUM_POINTS]
     distance = np.maximum(echoes.way_m[order].mean(axis=(1, 2)) / 2, 0.1)
-    towards = _unit(_unit(echoes.first_m[order]) + _unit(echoes.last_m[order]))
-    gain = scatterer_gain(config) * pattern(towards, config) ** 2
+    # a wave that leaves in one direction and comes back from another is heard, by an array of pairs, between them
+    towards = (_unit(echoes.first_m[order]) + _unit(echoes.last_m[order])) / 2
+    towards[:, 1] = np.sqrt(np.clip(1 - towards[:, 0] ** 2 - towards[:, 2] ** 2, 0, 1))
+    loss_db = pattern_db(_tensor(towards[:, [0, 2]]), config).numpy()
+    gain = scatterer_gain(config) * 10 ** (-loss_db / 10)  # as `radar_view.points_of` will apply it
     cross_section = (np.abs(echoes.amplitude[order]) * distance**2 / gain) ** 2
     place = towards * distance[:, None]
     kind = np.searchsorted(np.cumsum(list(room.counts.values())), order, side="right")
