@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.cli.arguments import number, whole
 
 if TYPE_CHECKING:
-    from mmweaver.training.weaver_training import Progress
+    from mmweaver.training.trainer import Progress
 
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
