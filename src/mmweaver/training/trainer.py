@@ -12,7 +12,7 @@ A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`. R
 import json
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -196,6 +196,11 @@ class Trainer:
             if picture is not None:
                 self.log.picture(step, picture)
         return value
+
+    def validation_batches(self) -> Iterator[Any]:
+        """The fixed batches, one after the other, on this process's device."""
+        for index in range(self.recipe.validation_batches):
+            yield self.workplace.moved(self._validation(index, (0, 1)))
 
     def validation_loss(self) -> float:
         """Mean loss over the fixed batches, shared among the processes."""
