@@ -17,6 +17,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
+from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
@@ -115,7 +116,8 @@ class Weaver:
     `method` is a name in METHODS, `radar` a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
     hears the name of each stage as it begins. `points` chooses the point cloud: "cfar", this project's own, or
     "firmware", that of TI's demo; `firmware` are its settings (default: what the radar's .cfg or preset says).
-    `weights`: a file of `mmweaver train`, for the method "weaver". Raises InputError for what is not known.
+    `weights`: a file or folder of `mmweaver train`, or a Hub name, for the method "weaver"; `from_pretrained` is the
+    short way. Raises InputError for what is not known.
     """
 
     def __init__(
@@ -131,7 +133,7 @@ class Weaver:
         self.method_name = method
         if weights is not None and method != "weaver":
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
-        self.method = Woven(Path(weights)) if weights is not None else METHODS[method]()
+        self.method = Woven(_found(weights)) if weights is not None else METHODS[method]()
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
         check_points(points, self.radar)
@@ -139,6 +141,23 @@ class Weaver:
         if points == "firmware" and firmware is None:
             firmware = FirmwareSettings() if isinstance(radar, RadarConfig) else load_firmware(str(radar))
         self.firmware = firmware
+
+    @classmethod
+    def from_pretrained(
+        cls, source: str | Path, radar: str | Path | RadarConfig | None = None, *, revision: str | None = None,
+        **options: Any,
+    ) -> "Weaver":  # fmt: skip
+        """A weaver whose signals a trained network writes.
+
+        `source`: a weight file, a folder of `mmweaver train`, or a name on the Hub (`revision`: which of its versions).
+        `radar` defaults to the one it was trained for; `options` as for the class. Raises InputError for files that are
+        damaged, foreign or of another version.
+        """
+        from mmweaver.models.weights import read_card
+
+        file = _found(source, revision)
+        trained_for = read_card(file).radar
+        return cls("weaver", radar or (trained_for if trained_for in PRESETS else "awr1843"), weights=file, **options)
 
     def read_room(
         self, rgb: str | Path, depth: str | Path | None = None, camera: str | Path | None = None, **seen: Any
@@ -274,6 +293,12 @@ class Weaver:
             cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, poses=poses,
             motions=motions, scene=room.scene, meta=meta, stages=stages,
         )  # fmt: skip
+
+
+def _found(weights: str | Path, revision: str | None = None) -> Path:
+    from mmweaver.models.find_weights import find_weights
+
+    return find_weights(weights, revision=revision)
 
 
 def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...]) -> list[str]:

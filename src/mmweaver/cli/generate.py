@@ -97,7 +97,9 @@ def add_verb(verbs: Any) -> None:
     radar.add_argument(
         "--method", default="physics", help="how the signal is made: physics (default), or weaver, a trained network"
     )
-    radar.add_argument("--weights", type=Path, metavar="FILE", help="weights of mmweaver train, for --method weaver")
+    radar.add_argument(
+        "--weights", metavar="FILE|DIR|HUB", help="weights of mmweaver train, for --method weaver; or their Hub name"
+    )
     add_points_option(radar)
     radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     output = parser.add_argument_group("output")

@@ -30,6 +30,7 @@ from mmweaver.models.body_anchors import (
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
+from mmweaver.models.precision import in_full_precision
 from mmweaver.models.room_view import PLANE_FEATURES, POINT_FEATURES, RoomView
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
@@ -113,6 +114,7 @@ class WeaverNetwork(nn.Module):
         return _resting(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
 
 
+@in_full_precision
 def _looked_up(places: Tensor, point_m: Tensor, view: RoomView) -> Tensor:
     """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
     camera = point_m @ view.camera_from_radar.transpose(-1, -2)

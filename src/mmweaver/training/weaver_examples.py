@@ -25,6 +25,7 @@ from mmweaver.models.mean_power import PowerMaps
 from mmweaver.models.room_view import RoomView
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.weaver_loss import Targets
+from mmweaver.training.workplace import Share
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,16 +72,21 @@ def examples(folder: Path, split: str) -> list[RoomExamples]:
     return rooms
 
 
-def draw_batch(rooms: list[RoomExamples], seed: int, step: int, *, size: int, frames: int) -> Batch:
-    """`size` sequences of as many rooms, and `frames` frames of each to look at."""
+def draw_batch(
+    rooms: list[RoomExamples], seed: int, step: int, *, size: int, frames: int, share: Share = (0, 1)
+) -> Batch:
+    """`size` sequences of as many rooms, and `frames` frames of each to look at; of them the share of one process."""
     rng = stream(seed, "batch", step)
     chosen = rng.choice(len(rooms), size=size, replace=len(rooms) < size)
     views, joints, velocity, picked, maps, empty = [], [], [], [], [], []
-    for which in chosen:
+    for number, which in enumerate(chosen):
         one = rooms[int(which)]
         index = one.indices[int(rng.integers(len(one.indices)))]
+        length = len(one.room.joints_m[index])
+        some = np.sort(rng.choice(length, size=min(frames, length), replace=False))
+        if number % share[1] != share[0]:
+            continue
         cube = one.room.cube(index)
-        some = np.sort(rng.choice(len(cube.values), size=min(frames, len(cube.values)), replace=False))
         views.append(one.view)
         joints.append(torch.from_numpy(one.room.joints_m[index]))
         velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
