@@ -42,13 +42,22 @@ class RoomExamples:
     """One stored room: its view, and the sequences of one split."""
 
     def __init__(self, room: StoredRoom, split: str):
-        self.room = room
+        self.room, self.split = room, split
         self.indices = [index for index, name in enumerate(room.split) if name == split]
 
     @cached_property
     def view(self) -> RoomView:
         """What the product would see of the room: its photo, reconstructed."""
-        return RoomView.of(reconstruct(self.room.photo), self.room.config)
+        geometry = self.room.geometry
+        scene = reconstruct(self.room.photo)
+        return RoomView.of(scene, self.room.config, None if geometry is None else geometry.photographed)
+
+    def cube(self, index: int, frames: np.ndarray, seed: int, step: int) -> RadarCube:
+        """Frames of a sequence. Where signals are made on the fly, training gets other phases and noise each time."""
+        twin = 0
+        if self.room.geometry is not None and self.split == "train":
+            twin = 1 + int(stream(seed, "twin", step, index).integers(2**31))
+        return self.room.cube(index, frames, twin=twin)
 
     @cached_property
     def empty(self) -> PowerMaps:
@@ -64,7 +73,8 @@ class RoomExamples:
 
 def examples(folder: Path, split: str) -> list[RoomExamples]:
     """The rooms of a data set that have sequences of a split. Raises InputError where there are none."""
-    rooms = [RoomExamples(room, split) for room in read_rooms(folder)]
+    device = "cuda" if torch.cuda.is_available() else "cpu"
+    rooms = [RoomExamples(room, split) for room in read_rooms(folder, device=device)]
     rooms = [room for room in rooms if room.indices]
     if not rooms:
         raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
@@ -79,13 +89,14 @@ def draw_batch(rooms: list[RoomExamples], seed: int, step: int, *, size: int, fr
     for which in chosen:
         one = rooms[int(which)]
         index = one.indices[int(rng.integers(len(one.indices)))]
-        cube = one.room.cube(index)
-        some = np.sort(rng.choice(len(cube.values), size=min(frames, len(cube.values)), replace=False))
+        there = len(one.room.joints_m[index])
+        some = np.sort(rng.choice(there, size=min(frames, there), replace=False))
+        cube = one.cube(index, some, seed, step)
         views.append(one.view)
         joints.append(torch.from_numpy(one.room.joints_m[index]))
         velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
         picked.append(torch.from_numpy(some))
-        maps.append(power_maps(cube.values[some], cube.config))
+        maps.append(power_maps(cube.values, cube.config))
         empty.append(one.empty)
     return Batch(
         view=RoomView.stacked(views),
