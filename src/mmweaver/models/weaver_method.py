@@ -75,7 +75,7 @@ class WovenRoom:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """20 frames are 30 ms of one thread; shared among several they are hardly quicker, and on a busy machine far slower."""
+    """20 frames are 30 ms of one thread; several are hardly quicker, and on a busy machine a hundred times slower."""
     before = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
