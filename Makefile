@@ -29,6 +29,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py
 	$(BIN)/python benchmarks/inr_decode.py
 	$(BIN)/python benchmarks/scatterer_decode.py
+	$(BIN)/python benchmarks/weaver.py
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

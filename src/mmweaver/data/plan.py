@@ -102,6 +102,7 @@ class DatasetPlan:
     radar: str = "awr1843"
     seed: int = 0
     withheld: Withheld = field(default_factory=Withheld)
+    geometry_only: bool = False  # signals are made while training, from prepared rooms
 
     def __post_init__(self) -> None:
         for name in ("num_layouts", "sequences_a_room", "num_frames"):
@@ -141,7 +142,10 @@ class DatasetPlan:
         )
 
     def to_json(self) -> str:
-        return json.dumps({"plan_version": PLAN_VERSION, **asdict(self)}, indent=1)
+        words = {"plan_version": PLAN_VERSION, **asdict(self)}
+        if not self.geometry_only:  # older sets do not name it
+            del words["geometry_only"]
+        return json.dumps(words, indent=1)
 
 
 def check_for_leaks(rooms: list[RoomSpec]) -> None:

@@ -7,6 +7,7 @@ the same signal, and a person's frames belong together. Reference: decisions 4 a
 
 import math
 from dataclasses import replace
+from functools import lru_cache
 
 import torch
 from torch import Tensor
@@ -62,4 +63,9 @@ def field_of(
         points=points, static=static, calibration=torch.ones(config.num_antennas, dtype=torch.complex64),
         noise_power=noise_power,
     )  # fmt: skip
-    return ScattererField(layers, Stretch.of(config, num_frames, 0), CubeGrid.of(config, num_frames), 1.0, 1.0)
+    return ScattererField(layers, *_cells(config, num_frames), 1.0, 1.0)
+
+
+@lru_cache(maxsize=8)
+def _cells(config: RadarConfig, num_frames: int) -> tuple[Stretch, CubeGrid]:
+    return Stretch.of(config, num_frames, 0), CubeGrid.of(config, num_frames)

@@ -12,7 +12,7 @@ from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.models.radar_view import pattern_db
 from mmweaver.scene.depth_grid import DepthGrid, make_grid
 from mmweaver.simulation.antenna import scatterer_gain
-from mmweaver.simulation.room import Room
+from mmweaver.simulation.room import RestingRoom, Room
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
 IMAGE_CHANNELS = 5  # red, green, blue, depth, class (paper: RGB + depth + mask)
@@ -40,15 +40,18 @@ class RoomView:
     plane_features: Tensor  # (plane, PLANE_FEATURES)
 
     @classmethod
-    def of(cls, scene: Scene, config: RadarConfig) -> "RoomView":
-        """The view of a scene's photo, with the scene's faces and the echoes that this radar would have of them."""
+    def of(cls, scene: Scene, config: RadarConfig, room: RestingRoom | None = None) -> "RoomView":
+        """The view of a scene's photo, with the scene's faces and the echoes that this radar would have of them.
+
+        `room` is the scene made ready before, where no rays are to be cast.
+        """
         grid = make_grid(scene.photo)
         rows = _nearest(IMAGE_ROWS, grid.depth_m.shape[0])
         columns = _nearest(IMAGE_COLUMNS, grid.depth_m.shape[1])
         camera = grid.intrinsics
         scale_x, scale_y = IMAGE_COLUMNS / camera.width, IMAGE_ROWS / camera.height
         view = np.ix_(rows, columns)
-        points = _points(Room(scene, config), scene)
+        points = _points(room or Room(scene, config), scene)
         planes = _planes(scene)
         return cls(
             image=_tensor(_image(grid, scene, view)),
@@ -92,7 +95,7 @@ def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGr
     return classes.index[row, column] / NUM_CLASSES
 
 
-def _points(room: Room, scene: Scene) -> dict[str, Tensor]:
+def _points(room: RestingRoom, scene: Scene) -> dict[str, Tensor]:
     """The strongest resting echoes that physics finds in the photographed room, each where it seems to stand.
 
     The network turns their strength; what the photo does not show it adds.

@@ -1,6 +1,7 @@
 """Room and motion -> signal by the network: what `method="weaver"` runs."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -43,13 +44,13 @@ class WovenRoom:
     def __init__(self, network: WeaverNetwork, scene: Scene, config: RadarConfig, *, room_seed: int = 0):
         self.network, self.config = network, config
         self.radar = MeanPower(config)
-        with torch.inference_mode():
+        with torch.inference_mode(), one_thread():
             self.code: RoomCode = network.encode_room(RoomView.stacked([RoomView.of(scene, config)]))
             self.static = draw_static(_first(self.code.resting), self.radar.response, room_seed)
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
         """The field of everybody's motion; people are superimposed and do not hide each other."""
-        with torch.inference_mode():
+        with torch.inference_mode(), one_thread():
             points = [self._points(motion) for motion in motions]
         together = Points(
             range_bin=torch.cat([one.range_bin for one in points], dim=1),
@@ -62,13 +63,25 @@ class WovenRoom:
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
         """The signal of everybody's motion with the receiver's noise, in sqrt(mW)."""
         field = self.field(motions)
-        cube = RadarCube(values=field.native(), grid=field.grid, config=self.config, scale=1.0)
+        with one_thread():
+            cube = RadarCube(values=field.native(), grid=field.grid, config=self.config, scale=1.0)
         return replace(field.with_noise(cube, seed), scale=1.0)
 
     def _points(self, motion: FrameMotion) -> Points:
         joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
         moving = _first(self.network.moving(self.code, joints[None], velocity[None]))
         return draw_moving(moving, aspect(joints), self.radar.response, motion.subject)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """20 frames are 30 ms of one thread; several are hardly quicker, and on a busy machine a hundred times slower."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def aspect(joints_m: Tensor) -> Tensor:

@@ -66,7 +66,7 @@ def compose(
             seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
         )  # fmt: skip
 
-    placement, pose, note = clearest(placements, moved, Obstacles(scene))
+    placement, pose, note = clearest(placements, moved, Obstacles.of(scene))
     return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions + note)
 
 

@@ -37,11 +37,21 @@ _LOW_M, _LOW_DOWN_M = 0.64, (0.1, 0.17, 0.24)  # beds and low tables: nobody's k
 _THICK_M = 0.04  # at least, of anything: a table's top below the points seen on it, a cupboard's front behind them
 
 
+_latest: list["Obstacles"] = []
+
+
 @dataclass(frozen=True)
 class Obstacles:
     """The measured points of a scene above its floor, and its walls."""
 
     scene: Scene
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Obstacles":
+        """Those of a scene; the last scene's are kept, for what it holds is gathered once for many motions."""
+        if not _latest or _latest[0].scene is not scene:
+            _latest[:] = [cls(scene)]
+        return _latest[0]
 
     @cached_property
     def _solid_m(self) -> Float[Array, "point 3"]:

@@ -1,7 +1,7 @@
 """Walls beyond the picture: what a photo shows of a room, closed to the box that rooms are.
 
 A radar's beam is wider than a camera's view, and what it hears most of a wall is the foot of the perpendicular from
-itself, which for the walls at its sides lies outside the picture. Reference: decision 95.
+itself, which for the walls at its sides lies outside the picture. Reference: decision 99.
 """
 
 from collections.abc import Sequence

@@ -1,6 +1,6 @@
 """Batches for training the weaver, drawn from a data set; the same step always gives the same batch."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -24,6 +24,7 @@ from mmweaver.dsp.spectra import (
 from mmweaver.models.mean_power import PowerMaps
 from mmweaver.models.room_view import RoomView
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.mirroring import mirrored_joints, mirrored_targets, mirrored_view
 from mmweaver.training.weaver_loss import Targets
 from mmweaver.training.workplace import Share
 
@@ -43,13 +44,22 @@ class RoomExamples:
     """One stored room: its view, and the sequences of one split."""
 
     def __init__(self, room: StoredRoom, split: str):
-        self.room = room
+        self.room, self.split = room, split
         self.indices = [index for index, name in enumerate(room.split) if name == split]
 
     @cached_property
     def view(self) -> RoomView:
         """What the product would see of the room: its photo, reconstructed."""
-        return RoomView.of(reconstruct(self.room.photo), self.room.config)
+        geometry = self.room.geometry
+        scene = reconstruct(self.room.photo)
+        return RoomView.of(scene, self.room.config, None if geometry is None else geometry.photographed)
+
+    def cube(self, index: int, frames: np.ndarray, seed: int, step: int) -> RadarCube:
+        """Frames of a sequence. Where signals are made on the fly, training gets other phases and noise each time."""
+        twin = 0
+        if self.room.geometry is not None and self.split == "train":
+            twin = 1 + int(stream(seed, "twin", step, index).integers(2**31))
+        return self.room.cube(index, frames, twin=twin)
 
     @cached_property
     def empty(self) -> PowerMaps:
@@ -65,7 +75,8 @@ class RoomExamples:
 
 def examples(folder: Path, split: str) -> list[RoomExamples]:
     """The rooms of a data set that have sequences of a split. Raises InputError where there are none."""
-    rooms = [RoomExamples(room, split) for room in read_rooms(folder)]
+    device = "cuda" if torch.cuda.is_available() else "cpu"
+    rooms = [RoomExamples(room, split) for room in read_rooms(folder, device=device)]
     rooms = [room for room in rooms if room.indices]
     if not rooms:
         raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
@@ -73,9 +84,19 @@ def examples(folder: Path, split: str) -> list[RoomExamples]:
 
 
 def draw_batch(
-    rooms: list[RoomExamples], seed: int, step: int, *, size: int, frames: int, share: Share = (0, 1)
+    rooms: list[RoomExamples],
+    seed: int,
+    step: int,
+    *,
+    size: int,
+    frames: int,
+    share: Share = (0, 1),
+    mirror: bool = False,
 ) -> Batch:
-    """`size` sequences of as many rooms, and `frames` frames of each to look at; of them the share of one process."""
+    """`size` sequences of as many rooms, and `frames` frames of each to look at; of them the share of one process.
+
+    With `mirror`, every second batch shows its rooms and people with left and right exchanged.
+    """
     rng = stream(seed, "batch", step)
     chosen = rng.choice(len(rooms), size=size, replace=len(rooms) < size)
     views, joints, velocity, picked, maps, empty = [], [], [], [], [], []
@@ -86,19 +107,30 @@ def draw_batch(
         some = np.sort(rng.choice(length, size=min(frames, length), replace=False))
         if number % share[1] != share[0]:
             continue
-        cube = one.room.cube(index)
+        cube = one.cube(index, some, seed, step)
         views.append(one.view)
         joints.append(torch.from_numpy(one.room.joints_m[index]))
         velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
         picked.append(torch.from_numpy(some))
-        maps.append(power_maps(cube.values[some], cube.config))
+        maps.append(power_maps(cube.values, cube.config))
         empty.append(one.empty)
-    return Batch(
+    batch = Batch(
         view=RoomView.stacked(views),
         joints_m=torch.stack(joints),
         velocity_mps=torch.stack(velocity),
         frames=torch.stack(picked),
         targets=Targets(maps=_stacked(maps), empty=_stacked(empty)),
+    )
+    return _mirrored(batch) if mirror and rng.random() < 0.5 else batch
+
+
+def _mirrored(batch: Batch) -> Batch:
+    return replace(
+        batch,
+        view=mirrored_view(batch.view),
+        joints_m=mirrored_joints(batch.joints_m),
+        velocity_mps=mirrored_joints(batch.velocity_mps),
+        targets=mirrored_targets(batch.targets),
     )
 
 

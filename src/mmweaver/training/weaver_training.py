@@ -36,6 +36,7 @@ class TrainingRecipe(LoopRecipe):
     name: str = "weaver"
     batch_size: int = 3  # sequences, each of another room
     frames: int = 8  # looked at in each
+    mirror: bool = True  # every second batch with left and right exchanged
 
 
 class WeaverLearner(Learner):
@@ -104,7 +105,8 @@ def train(
     validation = drawing(unseen, recipe, VALIDATION_SEED + recipe.seed)
     learner = WeaverLearner(begun(recipe, start), rooms[0].room.config, shown=lambda: validation(0, (0, 1)))
     trainer = Trainer(
-        learner, recipe, out, workplace=workplace, train=drawing(rooms, recipe, recipe.seed), validation=validation,
+        learner, recipe, out, workplace=workplace, train=drawing(rooms, recipe, recipe.seed, recipe.mirror),
+        validation=validation,
         **options,
     )  # fmt: skip
     trainer.run(listener)
@@ -120,10 +122,10 @@ def begun(recipe: LoopRecipe, start: dict[str, torch.Tensor] | None) -> WeaverNe
     return network
 
 
-def drawing(rooms: list[RoomExamples], recipe: TrainingRecipe, seed: int) -> Draw:
+def drawing(rooms: list[RoomExamples], recipe: TrainingRecipe, seed: int, mirror: bool = False) -> Draw:
     """Batches of rooms, by step."""
     size, frames = recipe.batch_size, recipe.frames
-    return lambda step, share: draw_batch(rooms, seed, step, size=size, frames=frames, share=share)
+    return lambda step, share: draw_batch(rooms, seed, step, size=size, frames=frames, share=share, mirror=mirror)
 
 
 def write_weights(out: Path, data: Path, trainer: Trainer, *, start: dict[str, torch.Tensor] | None = None) -> Path:
