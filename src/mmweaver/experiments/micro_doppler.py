@@ -77,6 +77,7 @@ LIBRARY_EACH = {"walking": 1, "running": 4, "jumping": 4}
 ACTIVITIES = tuple(LIBRARY_EACH)
 RIGID = 6  # clips of each gait that are also shown frozen
 RESAMPLES = 1000
+REFERENCE_M = 1.75
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,13 +123,24 @@ def library(like: Motion, activity: str, seed: int) -> Motion:
             ),
         )  # fmt: skip
     pose = assemble(
-        (step,), RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=moves), (moves,), (0.45,), Body(like.height_m),
+        (step,), RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=moves), (moves,), (0.45,), body_of(like),
         seed=seed, duration_s=seconds, floor_z_m=0.0,
     )  # fmt: skip
     inside = (pose.time_s >= -1e-9) & (pose.time_s < seconds - 1e-9)
     joints = pose.joints_m[inside]
     joints = about_the_top(joints) if activity == "jumping" else joints
     return replace(like, joints_m=joints, label=f"{activity}, seed {seed}")
+
+
+def body_of(like: Motion) -> Body:
+    """The library's body whose legs are as long: steps follow the legs. (The recordings' trunk is short for them.)"""
+    legs = [
+        np.linalg.norm(like.joints_m[:, joint(f"{side}_{start}")] - like.joints_m[:, joint(f"{side}_{end}")], axis=1)
+        for side in ("left", "right")
+        for start, end in (("hip", "knee"), ("knee", "ankle"))
+    ]
+    leg_m = float(np.mean(np.sum(legs, axis=0))) / 2
+    return Body(leg_m / Body(REFERENCE_M).leg_m * REFERENCE_M)
 
 
 def frozen(motion: Motion) -> Motion:
