@@ -19,7 +19,7 @@ PerTime = Float[Array, " n"]
 
 
 def waving(stage: Stage, controls: Controls) -> Controls:
-    """Upper arm out and ahead, forearm up, swinging from side to side; the upper arm rolls, so the hand nods as well."""
+    """Upper arm out and ahead, the forearm up and swinging from side to side; the upper arm rolls, so the hand nods."""
     time_s, rng = stage.time_s, stage.rng
     rate, end = cycles(stage, stage.tempo(1.0, 1.6, 2.2), 0.8, 2.5)
     swing = float(rng.uniform(0.35, 0.5)) * min(1.0, 1.5 / rate)
