@@ -159,7 +159,7 @@ def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
     count = stage.step.count or max(1, int((stage.duration_s - edge_s - flight_s) / between_s + 1.25))
     spare = max(stage.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
-    slower = min(0.5 * spare, 0.25)  # who has time goes down and comes up without haste
+    slower = min(0.5 * spare, 0.4)  # who has time goes down and comes up without haste
     crouch_s, recover_s, spare = crouch_s + slower, recover_s + slower, spare - 2 * slower
     period = between_s + (min(spare / (count - 1), 0.35) if count > 1 else 0.0)
     depth = float(rng.uniform(0.19, 0.25))
@@ -172,15 +172,16 @@ def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     hop_all(controls, stage, hops, dips, ready_m=-0.02 - 0.15 * max(height_m - 0.16, 0.0))
     pitch_rad, nod = float(rng.uniform(0.4, 0.75)), float(rng.uniform(0.1, 0.45))
     trunk = plateau(time_s, stage.start_s, first + 0.08, crouch_s, push_s + 0.2)
-    arms = -0.5 * plateau(time_s, stage.start_s, first + 0.02, crouch_s, push_s + 0.1)
+    forth = np.zeros_like(time_s)
+    back = plateau(time_s, stage.start_s, first + 0.06, crouch_s, push_s + 0.25)
     for hop in hops:
         gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
         after = recover_s if hop is hops[-1] else gap
         trunk = trunk + nod * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
-        arms = arms + plateau(time_s, hop.off_s - 0.3, hop.land_s + 0.15, 0.35, flight_s + 0.05)
+        forth = forth + plateau(time_s, hop.off_s - 0.4, hop.land_s + 0.2, 0.5, flight_s + 0.1)
     _bend(controls, trunk, pitch_rad)
-    controls.arm_rad[:, :, 0] += (1.1 * arms)[:, None]
-    controls.arm_rad[:, :, 3] += 1.0 * np.maximum(arms, 0)[:, None] + 0.3 * np.maximum(-arms, 0)[:, None]
+    controls.arm_rad[:, :, 0] += (1.0 * forth - 0.5 * back)[:, None]
+    controls.arm_rad[:, :, 3] += (0.75 * forth + 0.15 * back)[:, None]
     return controls, hops
 
 
