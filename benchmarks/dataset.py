@@ -73,9 +73,8 @@ def main() -> int:
         values[f"signals_sequences_a_s_{workers}_workers"] = made / wall
         values[f"signals_cpu_s_a_sequence_in_all_{workers}_workers"] = cpu / made
     dataset = {"name": f"{len(KINDS)} rooms, {PLAN.sequences_a_room} sequences of 20 frames each"}
-    report(
-        out, "dataset", dataset, values, {"sequences_a_room_of_10_million": A_ROOM, "load_before": os.getloadavg()[0]}
-    )
+    config = {"sequences_a_room_of_10_million": A_ROOM, "load_before": round(load, 1), "load_after": round(_load(), 1)}
+    report(out, "dataset", dataset, values, config)
     return 0
 
 
