@@ -1,7 +1,8 @@
-"""What making a sequence from a prepared room costs, on the CPU and on a GPU if there is one, without a ray caster.
+"""What a sequence costs on the CPU and on a GPU if there is one: made from a prepared room, and by the network.
 
-Rooms and motions are made up here, as many echoes as in a furnished room, so that it runs where nothing but numpy,
-scipy and torch is installed. Writes results/benchmark/on_the_fly_<device>.json and prints the same as a table.
+Rooms, motions and weights are made up here, as large as real ones, so that it runs where nothing but numpy, scipy,
+torch and transformers is installed: no ray caster. Writes results/benchmark/devices_<device>.json and prints the same
+as a table.
 """
 
 import os
@@ -20,6 +21,17 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.dsp.torch_cube import torch_cube
+from mmweaver.models.room_view import (
+    IMAGE_COLUMNS,
+    IMAGE_ROWS,
+    NUM_PLANES,
+    NUM_POINTS,
+    PLANE_FEATURES,
+    POINT_FEATURES,
+    RoomView,
+)
+from mmweaver.models.weaver_method import FrameMotion, WovenRoom
+from mmweaver.models.weaver_network import WeaverNetwork
 from mmweaver.simulation.body import DEFAULT_NUM_POINTS
 from mmweaver.simulation.echoes import GHOST_POINTS
 from mmweaver.simulation.mirrors import Mirror
@@ -96,9 +108,41 @@ def measured(device: str) -> dict[str, float]:
             wall.append(time.perf_counter() - began[1])
         values |= {f"{name}_cpu_s": min(cpu), f"{name}_wall_s": min(wall)}
     values["synthesis_of_rows_wall_s"] = rows_seconds(replay, look)
+    values |= network_seconds(device)
     if device == "cuda":
         values["peak_device_memory_gb"] = torch.cuda.max_memory_allocated() / 1e9
     return values
+
+
+def network_seconds(device: str) -> dict[str, float]:
+    """Motion to cube by the network, the room encoded once; its echoes are drawn and rendered on the CPU."""
+    generator = torch.Generator().manual_seed(0)
+    view = RoomView(
+        image=torch.rand(5, IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
+        depth_m=1 + 3 * torch.rand(IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
+        point_m=torch.rand(NUM_POINTS, 3, generator=generator) * 2.5 + torch.tensor([-1.2, 0.8, -1.2]),
+        point_cross_section_m2=1e-3 * torch.rand(NUM_POINTS, generator=generator),
+        point_features=torch.rand(NUM_POINTS, POINT_FEATURES, generator=generator),
+        camera_from_radar=torch.tensor([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
+        camera=torch.tensor([100.0, 100.0, 80.0, 60.0]),
+        plane_centre_m=torch.tensor([[0.0, 2.0, -1.2]]).repeat(NUM_PLANES, 1),
+        plane_axes=torch.eye(3).repeat(NUM_PLANES, 1, 1),
+        plane_half_m=torch.full((NUM_PLANES, 2), 2.0),
+        plane_features=torch.rand(NUM_PLANES, PLANE_FEATURES, generator=generator),
+    )
+    torch.manual_seed(0)
+    room = WovenRoom(WeaverNetwork().eval(), view, AWR1843, device=device)
+    joints = np.random.default_rng(0).normal((0.0, 2.3, -0.2), (0.2, 0.1, 0.4), (NUM_FRAMES, NUM_JOINTS, 3))
+    motion = FrameMotion(
+        joints_m=joints.astype(np.float32), velocity_mps=np.zeros_like(joints, dtype=np.float32), subject=0
+    )
+    cpu, wall = [], []
+    for seed in range(15):
+        began = time.process_time(), time.perf_counter()
+        room.cube([motion], seed=seed)
+        cpu.append(time.process_time() - began[0])
+        wall.append(time.perf_counter() - began[1])
+    return {"network_motion_to_cube_cpu_s": min(cpu), "network_motion_to_cube_wall_s": min(wall)}
 
 
 def rows_seconds(replay: Replay, look: Look) -> float:
@@ -124,7 +168,7 @@ def main() -> int:
     for device in ("cpu", "cuda") if torch.cuda.is_available() else ("cpu",):
         dataset = {"name": f"made-up room of {ECHOES} echoes and {FACES} faces, {NUM_FRAMES} frames"}
         name = torch.cuda.get_device_name() if device == "cuda" else "cpu, one thread"
-        report(out, f"on_the_fly_{device}", dataset, measured(device), {"device": name, "threads": 1})
+        report(out, f"devices_{device}", dataset, measured(device), {"device": name, "threads": 1})
     return 0
 
 
