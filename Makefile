@@ -30,6 +30,8 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/inr_decode.py
 	$(BIN)/python benchmarks/scatterer_decode.py
 	$(BIN)/python benchmarks/weaver.py
+	$(BIN)/python benchmarks/devices.py
+	$(BIN)/python benchmarks/dataset.py
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -10,6 +10,7 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.experiments.benchmark_tables import dataset_cost_table, weaver_speed_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
@@ -324,6 +325,7 @@ TABLES = {
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
     "weaver": weaver_table,
+    "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from typing import TypeVar
 
 import numpy as np
 import torch
@@ -39,14 +40,26 @@ class FrameMotion:
 
 
 class WovenRoom:
-    """A room that the network has encoded for one radar; `field` may then be asked for many motions."""
+    """A room that the network has encoded for one radar; `field` may then be asked for many motions.
 
-    def __init__(self, network: WeaverNetwork, scene: Scene, config: RadarConfig, *, room_seed: int = 0):
-        self.network, self.config = network, config
+    The network runs on `device` and is moved there; phases are drawn and echoes rendered on the CPU.
+    """
+
+    def __init__(
+        self,
+        network: WeaverNetwork,
+        scene: Scene | RoomView,
+        config: RadarConfig,
+        *,
+        room_seed: int = 0,
+        device: str = "cpu",
+    ):
+        self.network, self.config, self.device = network.to(device), config, device
         self.radar = MeanPower(config)
+        view = RoomView.stacked([scene if isinstance(scene, RoomView) else RoomView.of(scene, config)])
         with torch.inference_mode(), one_thread():
-            self.code: RoomCode = network.encode_room(RoomView.stacked([RoomView.of(scene, config)]))
-            self.static = draw_static(_first(self.code.resting), self.radar.response, room_seed)
+            self.code: RoomCode = network.encode_room(_on(view, device))
+            self.static = draw_static(_first(_on(self.code.resting, "cpu")), self.radar.response, room_seed)
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
         """The field of everybody's motion; people are superimposed and do not hide each other."""
@@ -69,8 +82,8 @@ class WovenRoom:
 
     def _points(self, motion: FrameMotion) -> Points:
         joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
-        moving = _first(self.network.moving(self.code, joints[None], velocity[None]))
-        return draw_moving(moving, aspect(joints), self.radar.response, motion.subject)
+        moving = self.network.moving(self.code, joints[None].to(self.device), velocity[None].to(self.device))
+        return draw_moving(_first(_on(moving, "cpu")), aspect(joints), self.radar.response, motion.subject)
 
 
 @contextmanager
@@ -91,6 +104,14 @@ def aspect(joints_m: Tensor) -> Tensor:
     side = torch.linalg.cross(up, front)
     sight = torch.nn.functional.normalize(joints_m[:, joint("pelvis")], dim=-1)
     return 2 * torch.stack([(sight * front).sum(-1), (sight * side).sum(-1), sight[:, 2]], dim=-1)
+
+
+TensorsT = TypeVar("TensorsT", RoomView, Echoes)
+
+
+def _on(tensors: TensorsT, device: str) -> TensorsT:
+    """A record of tensors on a device."""
+    return replace(tensors, **{field.name: getattr(tensors, field.name).to(device) for field in fields(tensors)})
 
 
 def _first(echoes: Echoes) -> Echoes:
