@@ -89,16 +89,27 @@ class StoredGeometry:
     ) -> np.ndarray:
         """Frames of a sequence's cube in sqrt(mW), complex64 (frame, range, doppler, antenna); see `Replay`."""
         from mmweaver.dsp.torch_cube import torch_cube
-        from mmweaver.simulation.replay import Look, Replay
+
+        look = self.look(index, person=person, height_m=height_m, seed=seed)
+        samples = self.replay(device).samples(look, frames, twin=twin)
+        return torch_cube(samples, self.config).cpu().numpy()
+
+    def replay(self, device: str) -> Any:
+        """The room's `Replay` on a device, made once."""
+        from mmweaver.simulation.replay import Replay
 
         if device not in self._replays:
             self._replays[device] = Replay(self.room, device)
-        packed = self._visibility[index]
+        return self._replays[device]
+
+    def look(self, index: int, *, person: int, height_m: float, seed: int) -> Any:
+        """The `Look` of one sequence."""
+        from mmweaver.simulation.replay import Look
+
         sizes = {"points": DEFAULT_NUM_POINTS, "faces": len(self.room.mirrors), "ghosts": GHOST_POINTS}
-        seen = Visibility.unpacked(packed, **sizes, echoes=len(self.room.echoes))
-        look = Look(joints_m=self.node_joints_m[index], visibility=seen, subject=person, height_m=height_m, seed=seed)
-        samples = self._replays[device].samples(look, frames, twin=twin)
-        return torch_cube(samples, self.config).cpu().numpy()
+        seen = Visibility.unpacked(self._visibility[index], **sizes, echoes=len(self.room.echoes))
+        joints_m = self.node_joints_m[index]
+        return Look(joints_m=joints_m, visibility=seen, subject=person, height_m=height_m, seed=seed)
 
     @cached_property
     def _group(self) -> Any:

@@ -184,6 +184,13 @@ class StoredRoom:
             values = values if frames is None else values[frames]
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
+    def echoes(self, index: int, frames: np.ndarray) -> Any:
+        """The person's echoes (`simulation.echoes.BodyEchoes`) in frames of one sequence, of a set with geometry."""
+        assert self.geometry is not None, "signals are stored, not geometry"
+        subject = int(self.person[index])
+        look = self.geometry.look(index, person=subject, height_m=PEOPLE_HEIGHT_M[subject], seed=int(self.seed[index]))
+        return self.geometry.replay("cpu").person(look, frames)
+
     def _stored(self, index: int) -> np.ndarray:
         zarr = _zarr()
         group: Any = zarr.open_group(self.folder, mode="r")

@@ -9,6 +9,7 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.models.apparent import between
 from mmweaver.models.radar_view import pattern_db
 from mmweaver.scene.depth_grid import DepthGrid, make_grid
 from mmweaver.simulation.antenna import scatterer_gain
@@ -103,9 +104,7 @@ def _points(room: RestingRoom, scene: Scene) -> dict[str, Tensor]:
     echoes, config = room.echoes, room.config
     order = np.argsort(-np.abs(echoes.amplitude))[:NUM_POINTS]
     distance = np.maximum(echoes.way_m[order].mean(axis=(1, 2)) / 2, 0.1)
-    # a wave that leaves in one direction and comes back from another is heard, by an array of pairs, between them
-    towards = (_unit(echoes.first_m[order]) + _unit(echoes.last_m[order])) / 2
-    towards[:, 1] = np.sqrt(np.clip(1 - towards[:, 0] ** 2 - towards[:, 2] ** 2, 0, 1))
+    towards = between(echoes.first_m[order], echoes.last_m[order])
     loss_db = pattern_db(_tensor(towards[:, [0, 2]]), config).numpy()
     gain = scatterer_gain(config) * 10 ** (-loss_db / 10)  # as `radar_view.points_of` will apply it
     cross_section = (np.abs(echoes.amplitude[order]) * distance**2 / gain) ** 2
@@ -123,10 +122,6 @@ def _points(room: RestingRoom, scene: Scene) -> dict[str, Tensor]:
         "point_cross_section_m2": _tensor(_padded(cross_section, count)),
         "point_features": _tensor(_padded(features, count)),
     }
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
 
 
 def _padded(values: np.ndarray, count: int) -> np.ndarray:

@@ -57,17 +57,24 @@ class Replay:
         body = _body(look.subject, look.height_m)
         if twin:
             body = _with_phases(body, stream(look.subject, "body", "other phases", twin))
-        unrest = Restlessness(look.subject, look.seed, SmallMotions())
-        joints_m, chest_m = lively(
-            unrest, look.joints_m[frames].astype(float), frames, self.synthesis.clock, look.height_m
-        )
-        person = BodyEchoes(room, body, joints_m, chest_m, known=look.visibility.frames(frames))
+        person = self._person(room, body, look, frames)
         still = resting - self.synthesis.resting([person.shadowed(index) for index in range(len(frames))])
         moving = self.synthesis.moving([person.rows(index) for index in range(len(frames))])
         seed = look.seed if twin == 0 else int(stream(look.seed, "twin", twin).integers(2**31))
         on_device = bool(twin) and self.synthesis.device.type != "cpu"
         receiver = Receiver(self.config, self.impairments, seed)
         return self.synthesis.received(moving, still, rate, receiver, frames, drawn_here=on_device)
+
+    def person(self, look: Look, frames: np.ndarray) -> BodyEchoes:
+        """The person's echoes, and what the person hides, in frames of these numbers."""
+        return self._person(self.room, _body(look.subject, look.height_m), look, frames)
+
+    def _person(self, room: RestingRoom, body: Body, look: Look, frames: np.ndarray) -> BodyEchoes:
+        unrest = Restlessness(look.subject, look.seed, SmallMotions())
+        joints_m, chest_m = lively(
+            unrest, look.joints_m[frames].astype(float), frames, self.synthesis.clock, look.height_m
+        )
+        return BodyEchoes(room, body, joints_m, chest_m, known=look.visibility.frames(frames))
 
     def _room(self, twin: int) -> tuple[RestingRoom, Tensor, Tensor]:
         key = 1 + twin % ROOM_TWINS if twin else 0

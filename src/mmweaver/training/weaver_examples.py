@@ -24,6 +24,7 @@ from mmweaver.dsp.spectra import (
 from mmweaver.models.mean_power import PowerMaps
 from mmweaver.models.room_view import RoomView
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.expected_maps import ExpectedMaps, stacked
 from mmweaver.training.mirroring import mirrored_joints, mirrored_targets, mirrored_view
 from mmweaver.training.weaver_loss import Targets
 from mmweaver.training.workplace import Share
@@ -44,7 +45,7 @@ class RoomExamples:
     """One stored room: its view, and the sequences of one split."""
 
     def __init__(self, room: StoredRoom, split: str):
-        self.room, self.split = room, split
+        self.room = room
         self.indices = [index for index, name in enumerate(room.split) if name == split]
 
     @cached_property
@@ -54,16 +55,18 @@ class RoomExamples:
         scene = reconstruct(self.room.photo)
         return RoomView.of(scene, self.room.config, None if geometry is None else geometry.photographed)
 
-    def cube(self, index: int, frames: np.ndarray, seed: int, step: int) -> RadarCube:
-        """Frames of a sequence. Where signals are made on the fly, training gets other phases and noise each time."""
-        twin = 0
-        if self.room.geometry is not None and self.split == "train":
-            twin = 1 + int(stream(seed, "twin", step, index).integers(2**31))
-        return self.room.cube(index, frames, twin=twin)
+    def maps(self, index: int, frames: np.ndarray) -> PowerMaps:
+        """Maps (frame, range, other) of frames of a sequence: of its one recorded draw, or the mean of all draws."""
+        if self._expected is not None:
+            return self._expected.frames(index, frames)
+        cube = self.room.cube(index, frames)
+        return power_maps(cube.values, cube.config)
 
     @cached_property
     def empty(self) -> PowerMaps:
         """Maps (range, other) of the room without a person."""
+        if self._expected is not None:
+            return self._expected.empty
         config = self.room.config
         values = np.zeros((1, len(self.room.empty), config.num_loops, config.num_antennas), np.complex64)
         middle = config.num_loops // 2
@@ -71,6 +74,10 @@ class RoomExamples:
         for step, share in ((-1, -0.5), (0, 1.0), (1, -0.5)):
             values[0, :, middle + step] = share * self.room.empty
         return _one(power_maps(values, config))
+
+    @cached_property
+    def _expected(self) -> ExpectedMaps | None:
+        return None if self.room.geometry is None else ExpectedMaps(self.room)
 
 
 def examples(folder: Path, split: str) -> list[RoomExamples]:
@@ -107,19 +114,18 @@ def draw_batch(
         some = np.sort(rng.choice(length, size=min(frames, length), replace=False))
         if number % share[1] != share[0]:
             continue
-        cube = one.cube(index, some, seed, step)
         views.append(one.view)
         joints.append(torch.from_numpy(one.room.joints_m[index]))
         velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
         picked.append(torch.from_numpy(some))
-        maps.append(power_maps(cube.values, cube.config))
+        maps.append(one.maps(index, some))
         empty.append(one.empty)
     batch = Batch(
         view=RoomView.stacked(views),
         joints_m=torch.stack(joints),
         velocity_mps=torch.stack(velocity),
         frames=torch.stack(picked),
-        targets=Targets(maps=_stacked(maps), empty=_stacked(empty)),
+        targets=Targets(maps=stacked(maps), empty=stacked(empty)),
     )
     return _mirrored(batch) if mirror and rng.random() < 0.5 else batch
 
@@ -150,14 +156,6 @@ def power_maps(values: np.ndarray, config: RadarConfig) -> PowerMaps:
 
 def _tensor(values: np.ndarray) -> Tensor:
     return torch.from_numpy(values.astype(np.float32))
-
-
-def _stacked(maps: list[PowerMaps]) -> PowerMaps:
-    return PowerMaps(
-        range_doppler=torch.stack([one.range_doppler for one in maps]),
-        range_azimuth=torch.stack([one.range_azimuth for one in maps]),
-        range_elevation=torch.stack([one.range_elevation for one in maps]),
-    )
 
 
 def _one(maps: PowerMaps) -> PowerMaps:
