@@ -141,9 +141,14 @@ class DatasetPlan:
             text=str(rng.choice(ACTIVITIES[activity])),
             seed=int(rng.integers(2**31)),
             split=self.withheld.split(
-                kind=room.kind, layouts_after=self.num_layouts - 1 - room.layout, person=person, activity=activity
+                kind=room.kind, layouts_after=self._layouts_after(room.layout), person=person, activity=activity
             ),
         )
+
+    def _layouts_after(self, layout: int) -> int:
+        """Of a kind with fewer than six layouts, at most a third is withheld."""
+        spared = max(self.withheld.test_layouts - self.num_layouts // 3, 0)
+        return self.num_layouts - 1 - layout + spared
 
     def to_json(self) -> str:
         words = {"plan_version": PLAN_VERSION, **asdict(self)}
