@@ -294,7 +294,8 @@ def _with_interval(metric: dict[str, Any]) -> str:
 
 
 WEAVER = (
-    ("ra_ssim", "RA SSIM"), ("rd_ssim", "RD SSIM"), ("rd_difference_db", "RD difference, dB"),
+    ("ra_ssim", "RA SSIM"), ("rd_ssim", "RD SSIM"), ("ra_ssim_all_cells", "RA, all cells"),
+    ("rd_ssim_all_cells", "RD, all cells"), ("rd_difference_db", "RD difference, dB"),
     ("magnitude_nmse_db", "NMSE of magnitude, dB"), ("antenna_phase_error_rad", "antenna phase error, rad"),
     ("chamfer_m", "Chamfer, m"), ("hausdorff_m", "Hausdorff, m"), ("cpu_s", "CPU, s"),
 )  # fmt: skip
@@ -302,16 +303,44 @@ WEAVER = (
 
 def weaver_table(folder: Path) -> str:
     """One row a method in unseen kinds of rooms, mean and interval over rooms."""
-    (record,) = _records(folder / "weaver")
+    record = _split(folder, "test_room")
     lines = [_line("method", *(text for _, text in WEAVER)), _line(*["---"] * (1 + len(WEAVER)))]
     for row in record["rows"]:
-        cells = []
-        for name, _ in WEAVER:
-            metric = row["metrics"][name]
-            edges = f" ({metric['low']:.2f} to {metric['high']:.2f})" if name in ("ra_ssim", "rd_ssim") else ""
-            cells.append("-" if metric["value"] is None else f"{metric['value']:.2f}{edges}")
+        cells = [_bounded(row["metrics"][name], name in ("ra_ssim", "rd_ssim")) for name, _ in WEAVER]
         lines.append(_line(row["method"], *cells))
     return "\n".join(lines)
+
+
+UNSEEN = {
+    "test_room": "kind of room", "test_layout": "layout of a seen kind", "test_person": "person",
+    "test_activity": "activity",
+}  # fmt: skip
+BESIDE = ("nearest_training_pose", "weaver", "physics_in_photographed_room", "twin")
+
+
+def weaver_unseen_table(folder: Path) -> str:
+    """What else was withheld from training: one row each."""
+    lines = [_line("unseen", "sequences", *(f"{name}, {view}" for name in BESIDE for view in ("RA", "RD")))]
+    lines.append(_line(*["---"] * (2 + 2 * len(BESIDE))))
+    for split, text in UNSEEN.items():
+        rows = {row["method"]: row for row in _split(folder, split)["rows"]}
+        cells = [
+            _bounded(rows[name]["metrics"][metric], name == "weaver")
+            for name in BESIDE
+            for metric in ("ra_ssim", "rd_ssim")
+        ]
+        lines.append(_line(text, str(rows["weaver"]["n"]), *cells))
+    return "\n".join(lines)
+
+
+def _split(folder: Path, split: str) -> dict[str, Any]:
+    return next(record for record in _records(folder / "weaver") if record["method"] == split)
+
+
+def _bounded(metric: dict[str, Any], with_edges: bool) -> str:
+    if metric["value"] is None:
+        return "-"
+    return f"{metric['value']:.2f}" + (f" ({metric['low']:.2f} to {metric['high']:.2f})" if with_edges else "")
 
 
 TABLES = {
@@ -324,7 +353,7 @@ TABLES = {
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
-    "weaver": weaver_table,
+    "weaver": weaver_table, "weaver_unseen": weaver_unseen_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
