@@ -12,6 +12,7 @@ import torch
 from mmweaver.data.store import StoredRoom
 from mmweaver.models.apparent import moving_points, resting_points
 from mmweaver.models.mean_power import MeanPower, PowerMaps
+from mmweaver.simulation.echoes import BodyEchoes
 from mmweaver.simulation.synthesis import FrameClock
 
 
@@ -25,12 +26,13 @@ class ExpectedMaps:
         self.resting = room.geometry.room.echoes
         self.empty = self.radar.maps(resting_points(self.resting, self.radar.response))
 
-    def frames(self, index: int, frames: np.ndarray) -> PowerMaps:
-        """Maps (frame, range, other) of frames of a sequence: room, person and noise."""
+    def frames(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps]:
+        """Maps (frame, range, other) of frames of a sequence: of room, person and noise, and of the person alone."""
         person = self.room.echoes(index, frames)
-        return stacked([self._frame(person, number) for number in range(len(frames))])
+        both = [self._frame(person, number) for number in range(len(frames))]
+        return stacked([whole for whole, _ in both]), stacked([alone for _, alone in both])
 
-    def _frame(self, person, number: int) -> PowerMaps:
+    def _frame(self, person: BodyEchoes, number: int) -> tuple[PowerMaps, PowerMaps]:
         response = self.radar.response
         moving = self.radar.maps(moving_points(person.rows(number), self.node_s, response))
         hidden = self.radar.maps(resting_points(person.shadowed(number), response))
@@ -40,7 +42,7 @@ class ExpectedMaps:
             empty = getattr(self.empty, name)
             left = (empty - getattr(hidden, name)).clamp(min=0)
             maps[name] = left + getattr(moving, name) + noise
-        return PowerMaps(**maps)
+        return PowerMaps(**maps), moving
 
 
 def stacked(maps: list[PowerMaps]) -> PowerMaps:

@@ -42,7 +42,8 @@ def mirrored_joints(joints: Tensor) -> Tensor:
 
 def mirrored_targets(targets: Targets) -> Targets:
     """Azimuth runs the other way; range, Doppler and elevation stay."""
-    return Targets(maps=_azimuth_flipped(targets.maps), empty=_azimuth_flipped(targets.empty))
+    person = None if targets.person is None else _azimuth_flipped(targets.person)
+    return Targets(maps=_azimuth_flipped(targets.maps), empty=_azimuth_flipped(targets.empty), person=person)
 
 
 def _azimuth_flipped(maps: PowerMaps) -> PowerMaps:

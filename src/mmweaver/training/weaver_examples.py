@@ -55,12 +55,15 @@ class RoomExamples:
         scene = reconstruct(self.room.photo)
         return RoomView.of(scene, self.room.config, None if geometry is None else geometry.photographed)
 
-    def maps(self, index: int, frames: np.ndarray) -> PowerMaps:
-        """Maps (frame, range, other) of frames of a sequence: of its one recorded draw, or the mean of all draws."""
+    def maps(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps | None]:
+        """Maps (frame, range, other) of frames of a sequence, and of the person alone where geometry is stored.
+
+        Stored signals give those of their one draw, stored geometry the mean of all draws.
+        """
         if self._expected is not None:
             return self._expected.frames(index, frames)
         cube = self.room.cube(index, frames)
-        return power_maps(cube.values, cube.config)
+        return power_maps(cube.values, cube.config), None
 
     @cached_property
     def empty(self) -> PowerMaps:
@@ -107,6 +110,7 @@ def draw_batch(
     rng = stream(seed, "batch", step)
     chosen = rng.choice(len(rooms), size=size, replace=len(rooms) < size)
     views, joints, velocity, picked, maps, empty = [], [], [], [], [], []
+    alone: list[PowerMaps | None] = []
     for number, which in enumerate(chosen):
         one = rooms[int(which)]
         index = one.indices[int(rng.integers(len(one.indices)))]
@@ -118,16 +122,23 @@ def draw_batch(
         joints.append(torch.from_numpy(one.room.joints_m[index]))
         velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
         picked.append(torch.from_numpy(some))
-        maps.append(one.maps(index, some))
+        whole, person = one.maps(index, some)
+        maps.append(whole)
+        alone.append(person)
         empty.append(one.empty)
     batch = Batch(
         view=RoomView.stacked(views),
         joints_m=torch.stack(joints),
         velocity_mps=torch.stack(velocity),
         frames=torch.stack(picked),
-        targets=Targets(maps=stacked(maps), empty=stacked(empty)),
+        targets=Targets(maps=stacked(maps), empty=stacked(empty), person=_all_or_none(alone)),
     )
     return _mirrored(batch) if mirror and rng.random() < 0.5 else batch
+
+
+def _all_or_none(maps: list[PowerMaps | None]) -> PowerMaps | None:
+    known = [one for one in maps if one is not None]
+    return stacked(known) if len(known) == len(maps) else None
 
 
 def _mirrored(batch: Batch) -> Batch:
