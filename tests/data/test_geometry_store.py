@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.data.generate import generate
 from mmweaver.data.plan import DatasetPlan
@@ -62,9 +63,13 @@ def test_a_sequence_takes_little(folders: dict[bool, Path]):
     assert without < with_signals / 50
 
 
-def test_the_same_command_does_not_mix_both(folders: dict[bool, Path]):
-    from mmweaver.core.errors import InputError
+def test_geometry_of_other_people_is_refused(folders: dict[bool, Path], monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("mmweaver.data.geometry_store.skin_mark", lambda: "another")
+    with pytest.raises(InputError, match="another version"):
+        read_rooms(folders[True])[0].cube(0)
 
+
+def test_the_same_command_does_not_mix_both(folders: dict[bool, Path]):
     with pytest.raises(InputError, match="another plan"):
         generate(folders[True], DatasetPlan(**SETTINGS, num_frames=4), AWR1843)
 

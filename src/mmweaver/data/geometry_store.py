@@ -8,17 +8,19 @@
 No ray caster is needed to read it. Reference: decision 93.
 """
 
+import hashlib
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.data.make import LookedSequence, RoomGeometry
-from mmweaver.simulation.body import DEFAULT_NUM_POINTS
-from mmweaver.simulation.echoes import GHOST_POINTS
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS, REFERENCE_HEIGHT_M, Body
+from mmweaver.simulation.echoes import GHOST_POINTS, ghost_points
 from mmweaver.simulation.prepared import room_arrays, room_of, room_words
 from mmweaver.simulation.room import RestingRoom
 from mmweaver.simulation.visibility import Visibility
@@ -30,6 +32,7 @@ ROOMS = ("room", "photographed")
 def write_geometry(group: Any, geometry: RoomGeometry, sequences: tuple[LookedSequence, ...]) -> None:
     """Puts all of it below a room's Zarr group."""
     below = group.create_group(GEOMETRY)
+    below.attrs.update({"skin": skin_mark()})
     if sequences:
         axes = ("sequence", "frame", "node", "joint", "axis")
         _put(below, "node_joints_m", np.stack([sequence.node_joints_m for sequence in sequences]), axes)
@@ -55,6 +58,14 @@ def _put(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...])
     array[...] = np.ascontiguousarray(values)
     if name.endswith("_m"):
         array.attrs["units"] = "m"
+
+
+@lru_cache(maxsize=1)
+def skin_mark() -> str:
+    """Names the skin points that visibility is about: another number or place of them has another mark."""
+    body = Body(0, REFERENCE_HEIGHT_M)
+    parts = (body.part, np.round(1e6 * body.along).astype(np.int64), np.round(1e6 * body.angle_rad).astype(np.int64))
+    return hashlib.sha256(np.concatenate([*parts, ghost_points(body)]).astype("<i8").tobytes()).hexdigest()[:16]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +126,13 @@ class StoredGeometry:
     def _group(self) -> Any:
         import zarr
 
-        return zarr.open_group(self.folder / GEOMETRY, mode="r")
+        group = zarr.open_group(self.folder / GEOMETRY, mode="r")
+        if group.attrs.get("skin") != skin_mark():
+            raise InputError(
+                f"{self.folder} was made by another version of mmweaver, whose people have another skin; make the data"
+                " set again"
+            )
+        return group
 
     def _read(self, name: str) -> RestingRoom:
         group = self._group[name]
