@@ -21,7 +21,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import PoseSequence, RadarCube, RgbdPhoto
+from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.data.store import StoredRoom
 from mmweaver.dsp.cube import radar_cube
@@ -67,9 +67,11 @@ class RecordedRoom(StoredRoom):
         cube = self._cube(self.values)
         return float(np.median(range_doppler_power(cube)[:, :, moving_doppler(cube)]))
 
-    def cube(self, index: int) -> RadarCube:
-        frames = self.joints_m.shape[1]
-        return self._cube(self.values[index * frames : (index + 1) * frames])
+    def cube(self, index: int, frames: np.ndarray | None = None, *, twin: int = 0) -> RadarCube:
+        """A sequence, or some of its frames; a recording has no twin."""
+        length = self.joints_m.shape[1]
+        values = self.values[index * length : (index + 1) * length]
+        return self._cube(values if frames is None else values[frames])
 
     def times(self, gain: float) -> "RecordedRoom":
         """The same with all amplitudes times `gain`."""
@@ -77,8 +79,6 @@ class RecordedRoom(StoredRoom):
         return replace(self, values=self.values * factor, empty=self.empty * factor, is_calibrated=True)
 
     def _cube(self, values: np.ndarray) -> RadarCube:
-        from mmweaver.core.records import CubeGrid
-
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
 

@@ -6,7 +6,7 @@
     best.safetensors     the weights that were best on validation
     log.jsonl, tensorboard/, pictures/     what to look at
 
-A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`. Reference: decision 95.
+A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`. Reference: decision 94.
 """
 
 import json

@@ -105,12 +105,13 @@ def train(
     Goes on from `out`/checkpoint.pt where there is one. `start`: weights to fine-tune. `options` go to `Trainer`.
     Raises InputError for folders that hold no data, and where gradients stay without meaning.
     """
+    options = {"is_tuning": start is not None} | options
     rooms, unseen = examples(data, "train"), examples(data, "validation")
     validation = drawing(unseen, recipe, VALIDATION_SEED + recipe.seed)
     learner = WeaverLearner(begun(recipe, start), rooms[0].room.config, shown=lambda: validation(0, (0, 1)))
     trainer = Trainer(
         learner, recipe, out, workplace=workplace, train=drawing(rooms, recipe, recipe.seed), validation=validation,
-        is_tuning=start is not None, **options,
+        **options,
     )  # fmt: skip
     trainer.run(listener)
     return trainer
