@@ -14,6 +14,8 @@ import torch
 
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
+from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.weaver import Weaver
 
 pytest.importorskip("zarr")
@@ -98,3 +100,42 @@ def test_from_pretrained_refuses_before_any_room_is_read(tmp_path: Path):
     (tmp_path / "weights.safetensors").write_bytes(b"PK\x03\x04 a pickle in a zip")
     with pytest.raises(InputError, match="pickled"):
         Weaver.from_pretrained(tmp_path)
+
+
+def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    torch.manual_seed(0)
+    start = tmp_path / "start"
+    start.mkdir()
+    card = WeightsCard(recipe="weaver", licence="CC-BY-4.0", dataset_sha256="", radar="awr1843", steps=0, seed=0,
+                       validation_loss=0.0, mmweaver_version="0")  # fmt: skip
+    save_weights(start / "weights.safetensors", WeaverNetwork(), card)
+    text = "a person walks towards the radar"
+    for name in ("one", "two"):
+        words = ["generate", "--demo", "--text", text, "--frames", "6", "--out", str(tmp_path / name), "--quiet"]
+        assert main(words) == 0
+    capsys.readouterr()
+    words = ["train", "weaver", "--from", str(start), "--captures", str(tmp_path / "one"), str(tmp_path / "two")]
+    assert main([*words, "--out", str(tmp_path / "tuned"), "--steps", "3", "--batch", "1", "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["captures"], summary["with_joints"]) == (2, 2)
+    assert summary["validation_loss"] < summary["loss_before"]
+    assert "license: cc-by-4.0" in (tmp_path / "tuned" / "README.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "what to train on"), (["--captures", "a"], "give them with --from"),
+        (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "photo of --captures"),
+        (["--captures", "a", "--from", "w", "--rgb", "p.png"], "belong together"),
+        (["--data", "d", "--save-every", "-1"], "0 or more seconds"), (["--data", "d", "--device", "no"], "device"),
+    ],
+)  # fmt: skip
+def test_options_that_contradict_are_one_line(
+    words: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    assert main(["train", "weaver", "--out", str(tmp_path / "out"), *words]) == 2
+    error = capsys.readouterr().err.strip()
+    assert told in error
+    assert error.count("\n") == 0
+    assert not (tmp_path / "out").exists()

@@ -34,27 +34,34 @@ def test_it_learns_logs_and_draws(tmp_path: Path):
     assert made.validation_loss() == pytest.approx(made.best.value)  # the best weights are those left
 
 
-def test_two_processes_are_one_with_the_same_batch(tmp_path: Path):
-    pytest.importorskip("accelerate")
+def two_processes(*words: str) -> subprocess.CompletedProcess[str]:
     script = Path(__file__).with_name("toy_learner.py")
     roots = [str(Path(__file__).parents[2]), str(Path(__file__).parents[2] / "src")]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(roots), "OMP_NUM_THREADS": "1"}
-    words = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", str(script)]
-    done = subprocess.run([*words, str(tmp_path / "two")], env=environment, capture_output=True, text=True, timeout=120)
+    command = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", str(script)]
+    return subprocess.run([*command, *words], env=environment, capture_output=True, text=True, timeout=120)
+
+
+def test_two_processes_are_one_with_the_same_batch_even_after_a_kill(tmp_path: Path):
+    pytest.importorskip("accelerate")
+    killed = two_processes(str(tmp_path / "two"), "5")
+    assert killed.returncode != 0
+    assert torch.load(tmp_path / "two" / "checkpoint.pt", weights_only=True)["done"] == 4
+    done = two_processes(str(tmp_path / "two"))
     assert done.returncode == 0, done.stderr[-2000:]
     one = trainer(tmp_path / "one")
     one.run()
     both = weights(tmp_path / "two")
     for name, tensor in weights(tmp_path / "one").items():
         assert torch.allclose(tensor, both[name], atol=1e-6), name
-    rows = [(tmp_path / which / "log.jsonl").read_text().splitlines() for which in ("one", "two")]
-    assert len(rows[0]) == len(rows[1])  # one process wrote
-    first, second = (json.loads(lines[-1]) for lines in rows)
-    assert first["loss"] == pytest.approx(second["loss"], rel=1e-5)
-    assert first["validation"] == pytest.approx(second["validation"], rel=1e-5)
-    # gone on with by one process, it is where the one would be
-    longer = replace(RECIPE, steps=8)
-    assert trainer(tmp_path / "two", longer).step == 8
+    rows = [
+        [json.loads(line) for line in (tmp_path / which / "log.jsonl").read_text().splitlines()]
+        for which in ("one", "two")
+    ]
+    assert [row["step"] for row in rows[1]] == [4, 8]  # one process wrote
+    for first, second in zip(*rows, strict=True):
+        assert first["loss"] == pytest.approx(second["loss"], rel=1e-5)
+        assert first["validation"] == pytest.approx(second["validation"], rel=1e-5)
 
 
 def test_a_batch_that_cannot_be_shared_is_refused(tmp_path: Path):

@@ -1,5 +1,10 @@
-"""A learner that takes no time: a small network fits a line. Run by torchrun, it is one of several processes."""
+"""A learner that takes no time: a small network fits a line. Run by torchrun, it is one of several processes.
 
+toy_learner.py OUT [STEP]     the first process kills itself after STEP
+"""
+
+import os
+import signal
 import sys
 from pathlib import Path
 
@@ -8,7 +13,7 @@ import torch
 from torch import Tensor, nn
 
 from mmweaver.core.seeding import stream
-from mmweaver.training.trainer import Learner, LoopRecipe, Trainer
+from mmweaver.training.trainer import Learner, LoopRecipe, Progress, Trainer
 from mmweaver.training.workplace import Share, Workplace
 
 RECIPE = LoopRecipe(
@@ -46,4 +51,9 @@ def trainer(out: Path, recipe: LoopRecipe = RECIPE, **options) -> Trainer:
 if __name__ == "__main__":
     torch.set_num_threads(1)
     made = trainer(Path(sys.argv[1]), workplace=Workplace.chosen("cpu"), save_every_s=0.0)
-    made.run()
+
+    def killing(progress: Progress) -> None:
+        if made.workplace.is_first and sys.argv[2:] == [str(progress.step)]:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    made.run(killing)

@@ -6,7 +6,7 @@
     best.safetensors     the weights that were best on validation
     log.jsonl, tensorboard/, pictures/     what to look at
 
-A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`. Reference: decision 95.
+A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`. Reference: decision 94.
 """
 
 import json
@@ -89,7 +89,8 @@ class Trainer:
     """One run: its learner, its recipe, how far it is.
 
     `train(step, share)` draws the part of a step's batch that belongs to one of several processes, `validation(index,
-    share)` one of a few fixed batches. Raises InputError for a checkpoint of other settings.
+    share)` one of a few fixed batches. With `is_tuning` the weights it begins with are the ones to beat. Raises
+    InputError for a checkpoint of other settings.
     """
 
     def __init__(
@@ -101,6 +102,7 @@ class Trainer:
         train: Draw,
         validation: Draw,
         workplace: Workplace | None = None,
+        is_tuning: bool = False,
         tensorboard: bool = False,
         save_every_s: float | None = None,
     ):
@@ -115,7 +117,7 @@ class Trainer:
         chosen = [parameter for parameter in learner.parameters() if parameter.requires_grad]
         self.optimiser = torch.optim.AdamW(chosen, lr=recipe.learning_rate, weight_decay=recipe.weight_decay)
         self.best = Best({**asdict(recipe), "precision": self.workplace.precision})
-        self.skips = 0
+        self.skips, self.is_tuning = 0, is_tuning
         out.mkdir(parents=True, exist_ok=True)
         parts = {"network": learner, "optimiser": self.optimiser, "best": self.best}
         first = self.workplace.is_first
@@ -131,6 +133,8 @@ class Trainer:
     def run(self, listener: Listener | None = None) -> None:
         """Goes on from the last checkpoint to the end, and leaves the best weights in `learner`."""
         began, recipe = time.monotonic(), self.recipe
+        if self.is_tuning and self.step == 0:
+            self._validated(0)
         if self.best.since >= recipe.patience:
             self.resumable.stop()
         for step in self.resumable.steps(recipe.steps):

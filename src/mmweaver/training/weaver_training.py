@@ -13,10 +13,11 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.version import __version__
 from mmweaver.data.store import plan_text, read_plan
+from mmweaver.models.echoes import Echoes
 from mmweaver.models.mean_power import MeanPower, PowerMaps
 from mmweaver.models.precision import exactly
 from mmweaver.models.radar_view import points_of
-from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.weaver_network import RoomCode, WeaverNetwork
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
 from mmweaver.training.model_card import Figures, model_card
 from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
@@ -60,14 +61,18 @@ class WeaverLearner(Learner):
 
     def terms(self, batch: Batch) -> dict[str, torch.Tensor]:
         code = self.network.encode_room(batch.view)
-        moving = self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
+        moving = self.moving(code, batch)
         with exactly(batch.joints_m):
             return weaver_loss(self.radar, code.resting, moving, batch.targets)
+
+    def moving(self, code: RoomCode, batch: Batch) -> Echoes:
+        """Echoes of the people of a batch."""
+        return self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
 
     def predicted(self, batch: Batch) -> PowerMaps:
         """Mean maps (sequence, frame, range, other) of room, person and noise."""
         code = self.network.encode_room(batch.view)
-        moving = self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
+        moving = self.moving(code, batch)
         with exactly(batch.joints_m):
             still = self.radar.maps(points_of(code.resting, self.radar.response))
             person = self.radar.maps(points_of(moving, self.radar.response))
@@ -101,6 +106,7 @@ def train(
     Goes on from `out`/checkpoint.pt where there is one. `start`: weights to fine-tune. `options` go to `Trainer`.
     Raises InputError for folders that hold no data, and where gradients stay without meaning.
     """
+    options = {"is_tuning": start is not None} | options
     rooms, unseen = examples(data, "train"), examples(data, "validation")
     validation = drawing(unseen, recipe, VALIDATION_SEED + recipe.seed)
     learner = WeaverLearner(begun(recipe, start), rooms[0].room.config, shown=lambda: validation(0, (0, 1)))
@@ -161,9 +167,10 @@ def card_of(trainer: Trainer, dataset_sha256: str, **more: str) -> WeightsCard:
     learner = trainer.learner
     assert isinstance(learner, WeaverLearner)
     return WeightsCard(
-        recipe=trainer.recipe.name, licence="MIT", dataset_sha256=dataset_sha256, radar=learner.radar.config.name,
-        steps=trainer.step, seed=trainer.recipe.seed, validation_loss=trainer.best.value, mmweaver_version=__version__,
-        settings=asdict(trainer.recipe) | {"precision": trainer.workplace.precision}, **more,
+        recipe=trainer.recipe.name, licence=more.get("licence", "MIT"), dataset_sha256=dataset_sha256,
+        radar=learner.radar.config.name, steps=trainer.step, seed=trainer.recipe.seed,
+        validation_loss=trainer.best.value, mmweaver_version=__version__, tuned_from=more.get("tuned_from", ""),
+        settings=asdict(trainer.recipe) | {"precision": trainer.workplace.precision},
     )  # fmt: skip
 
 
@@ -171,11 +178,14 @@ def compared(trainer: Trainer, start: WeaverNetwork) -> Figures:
     """Differences in dB on the validation batches: of the network, of what it began with, of an empty map."""
     learner = trainer.learner
     assert isinstance(learner, WeaverLearner)
-    first = WeaverLearner(start, learner.radar.config).to(learner.device).eval()
     rows: dict[str, list[dict[str, float]]] = {}
+    trained = learner.network
     with torch.inference_mode():
         for batch in trainer.validation_batches():
-            truth, own, before = batch.targets.maps, learner.predicted(batch), first.predicted(batch)
+            truth, own = batch.targets.maps, learner.predicted(batch)
+            learner.network = start.to(learner.device).eval()
+            before = learner.predicted(batch)
+            learner.network = trained
             nothing = PowerMaps(**{name: 0 * value for name, value in vars(truth).items()})
             for who, maps in (("this network", own), ("what it began with", before), ("empty maps", nothing)):
                 rows.setdefault(who, []).append(differences_db(truth, maps))
