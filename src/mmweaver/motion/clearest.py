@@ -11,7 +11,7 @@ from mmweaver.motion.placement import Placement
 
 MOST_MOVED, WORTH_A_NOTE_M = 40, 0.03
 MARGIN_M = 0.03  # depth is noisy, and what stands there is seen from one side
-_AGAIN_M = -0.025  # whoever comes nearer is placed once more, with other ways and ways to sit
+_AGAIN_M = 0.0  # whoever gets in is placed once more, with other ways and ways to sit
 
 
 @dataclass(frozen=True, kw_only=True)

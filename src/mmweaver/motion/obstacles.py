@@ -128,7 +128,7 @@ class Obstacles:
             worst = max(worst, float((radius - before - allowed)[at_seat].max(initial=0.0)))
         for seat, _ in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
-            allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M)
+            allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M - margin_m)
         distance, _ = self._tree.query(points, distance_upper_bound=_FARTHEST_M)
         worst = max(worst, float((radius - distance - allowed).max()))
         for plane in self.scene.planes:
