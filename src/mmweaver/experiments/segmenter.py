@@ -102,6 +102,7 @@ def draw(path: Path, folders: list[Path]) -> None:
     """The real photos over what the network says of them."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.colors import to_hex
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
@@ -121,7 +122,7 @@ def draw(path: Path, folders: list[Path]) -> None:
         above.set_title(folder.name.replace("_", " "), fontsize=8)
         for one in (above, below):
             one.axis("off")
-    patches = [Patch(color=mpl.colors.to_hex(colours[group]), label=GROUP_NAMES[group]) for group in sorted(seen)]
+    patches = [Patch(color=to_hex(colours[group]), label=GROUP_NAMES[group]) for group in sorted(seen)]
     figure.legend(handles=patches, loc="outside lower center", ncols=8, fontsize=7, frameon=False)
     save_small(figure, path)
 
