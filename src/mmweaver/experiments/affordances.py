@@ -9,9 +9,12 @@ from their photos (real_rooms_truth.json).
 
 import argparse
 import dataclasses
+import functools
 import json
+import multiprocessing
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -174,21 +177,32 @@ def _measure_placements(room: ProceduralRoom, scene: Scene, tally: Tally) -> Non
         tally.arms_clear.append(met.arms_m <= 0)
 
 
-def procedural_row(kinds: tuple[str, ...], number: int, split: str, *, with_mask: bool, place: bool) -> dict[str, Any]:
-    """So many rooms, each kind in turn; every room another layout and seed."""
-    tally, lightings = Tally(), tuple(LIGHTINGS)
+def procedural_row(
+    kinds: tuple[str, ...], number: int, split: str, *, with_mask: bool, place: bool, workers: int = 1
+) -> dict[str, Any]:
+    """So many rooms, each kind in turn; every room another layout and seed. Several processes make the same row."""
+    tally = Tally()
     by_kind: dict[str, Tally] = {}
-    for index in range(number):
-        kind = kinds[index % len(kinds)]
-        room = make_room(kind, layout=index // len(kinds) % 10, seed=FIRST_SEED + index)
-        one = Tally()
-        measure_room(room, one, lighting=lightings[index % 4], with_mask=with_mask, place=place)
-        for total in (tally, by_kind.setdefault(kind, Tally())):
+    one_room = functools.partial(_one_room, kinds=kinds, with_mask=with_mask, place=place)
+    if workers > 1:
+        with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+            parts = list(pool.map(one_room, range(number)))
+    else:
+        parts = [one_room(index) for index in range(number)]
+    for index, one in enumerate(parts):
+        for total in (tally, by_kind.setdefault(kinds[index % len(kinds)], Tally())):
             _add(total, one)
     row = _row(f"procedural, {split}", f"kinds {', '.join(kinds)}", number, tally)
     row["dataset"]["input"] = "depth with noise and true class mask" if with_mask else "colour and depth with noise"
     row["by_kind"] = {kind: _shares(part) for kind, part in by_kind.items()}
     return row
+
+
+def _one_room(index: int, *, kinds: tuple[str, ...], with_mask: bool, place: bool) -> Tally:
+    kind, tally = kinds[index % len(kinds)], Tally()
+    room = make_room(kind, layout=index // len(kinds) % 10, seed=FIRST_SEED + index)
+    measure_room(room, tally, lighting=tuple(LIGHTINGS)[index % 4], with_mask=with_mask, place=place)
+    return tally
 
 
 def _add(total: Tally, one: Tally) -> None:
@@ -277,14 +291,18 @@ def share_of(name: str, values: list[bool], definition: str) -> dict[str, Any]:
     return {**metric, "of": len(values), "interval": [round(float(low), 4), round(float(high), 4)]}
 
 
-def run(out: Path, folders: list[Path], number: int, methods: tuple[str, ...] = METHODS) -> list[Path]:
+def run(
+    out: Path, folders: list[Path], number: int, methods: tuple[str, ...] = METHODS, workers: int = 1
+) -> list[Path]:
     """A file each: depth alone (with the real rooms and placements), and with the true mask."""
     written = []
     for method in methods:
         with_mask = method == "mask"
         rows = [
-            procedural_row(REPORT, number, "report", with_mask=with_mask, place=not with_mask),
-            procedural_row(DEVELOP, max(number // 4, 1), "develop", with_mask=with_mask, place=not with_mask),
+            procedural_row(REPORT, number, "report", with_mask=with_mask, place=not with_mask, workers=workers),
+            procedural_row(
+                DEVELOP, max(number // 4, 1), "develop", with_mask=with_mask, place=not with_mask, workers=workers
+            ),
         ]
         rows += [] if with_mask else [real_row(folder) for folder in folders]
         config = {"sentences": list(SENTENCES), "seconds": SECONDS, "range_window_m": list(RANGE_WINDOW_M)}
@@ -297,6 +315,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results"))
     parser.add_argument("--rooms", type=Path, default=None, help="folder of the real rooms")
     parser.add_argument("--number", type=int, default=200, help="how many rooms to report on")
+    parser.add_argument("--workers", type=int, default=1, help="processes")
     parser.add_argument("--methods", nargs="*", choices=METHODS, default=METHODS)
     arguments = parser.parse_args()
     folders = [] if arguments.rooms is None else sorted(arguments.rooms.iterdir())
@@ -305,6 +324,7 @@ def main() -> None:
         [folder for folder in folders if (folder / "camera.json").is_file()],
         arguments.number,
         tuple(arguments.methods),
+        arguments.workers,
     )
 
 

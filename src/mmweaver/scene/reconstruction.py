@@ -1,11 +1,14 @@
 """Photo -> Scene. Read `reconstruct` first: it names the steps in order."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.scene.class_evidence import sittable_squares
+from mmweaver.scene.closed_room import close_room, wall_faces
 from mmweaver.scene.depth_grid import GridBool, GridVectors, make_grid
 from mmweaver.scene.free_space import find_free_space
 from mmweaver.scene.height_map import make_height_map
@@ -54,15 +57,16 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     planes = [with_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True)]
     rays = _rays(grid.intrinsics, radar_from_camera)
     vertices_m, faces, face_material = make_mesh(level, rays, surfaces, is_floor, material)
-    corners_m, two_faces = floor_faces(floor)
+    closed = close_room(level, planes)
+    corners_m, large_faces, large_material = _rectangles(floor, closed.added)
     return Scene(
         photo=photo,
         radar_from_camera=radar_from_camera,
         vertices_m=np.concatenate([vertices_m, corners_m]),
-        faces=np.concatenate([faces, two_faces + len(vertices_m)]),
-        face_material=np.append(face_material, [MATERIAL_NAMES.index(floor.material)] * 2),
+        faces=np.concatenate([faces, large_faces + len(vertices_m)]),
+        face_material=np.concatenate([face_material, large_material]),
         material_names=MATERIAL_NAMES,
-        planes=(floor, *planes),
+        planes=(floor, *closed.planes),
         floor_z_m=gravity.floor_z_m,
         free_space=free_space,
         seats=seats,
@@ -72,8 +76,21 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
         assumptions=(
             *assumptions,
             *gravity.assumptions,
+            *closed.assumptions,
             *_own_assumptions(floor, has_classes=photo.classes is not None),
         ),
+    )
+
+
+def _rectangles(floor: Plane, walls: Sequence[Plane]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The whole floor and the walls that close the room, two triangles each."""
+    corners_m, triangles = floor_faces(floor)
+    wall_corners_m, wall_triangles = wall_faces(walls)
+    names = [plane.material for plane in (floor, *walls) for _ in range(2)]
+    return (
+        np.concatenate([corners_m, wall_corners_m]),
+        np.concatenate([triangles, wall_triangles + len(corners_m)]),
+        np.array([MATERIAL_NAMES.index(name) for name in names]),
     )
 
 
