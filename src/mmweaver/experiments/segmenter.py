@@ -102,7 +102,6 @@ def draw(path: Path, folders: list[Path]) -> None:
     """The real photos over what the network says of them."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.colors import to_hex
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
 
@@ -122,9 +121,13 @@ def draw(path: Path, folders: list[Path]) -> None:
         above.set_title(folder.name.replace("_", " "), fontsize=8)
         for one in (above, below):
             one.axis("off")
-    patches = [Patch(color=to_hex(colours[group]), label=GROUP_NAMES[group]) for group in sorted(seen)]
+    patches = [Patch(color=_hex(colours[group]), label=GROUP_NAMES[group]) for group in sorted(seen)]
     figure.legend(handles=patches, loc="outside lower center", ncols=8, fontsize=7, frameon=False)
     save_small(figure, path)
+
+
+def _hex(colour: np.ndarray) -> str:
+    return "#" + "".join(f"{round(255 * float(part)):02x}" for part in colour[:3])
 
 
 def _row(dataset: str, method: str, number: int, metrics: dict[str, Any]) -> dict[str, Any]:
