@@ -24,15 +24,15 @@ class _Known(Obstacles):
         return max(pose.height_m - 1.0 + margin_m, 0.0)
 
 
-def _chosen(first: list[float], again: list[float] | None):
-    """`first` and `again`: how deep the placements of the two draws get in."""
-    drawn: list[bool] = []
+def _chosen(*deep_m: list[float]):
+    """`deep_m`: how deep the placements of each draw get in; further draws find no way."""
+    drawn: list[int] = []
 
-    def draw(second: bool) -> list[Placement]:
-        drawn.append(second)
-        if second and again is None:
+    def draw(again: int) -> list[Placement]:
+        drawn.append(again)
+        if again >= len(deep_m):
             raise InputError("no other")
-        return [_placement(deep) for deep in ((again or []) if second else first)]
+        return [_placement(deep) for deep in deep_m[again]]
 
     def moved(placement: Placement) -> PoseSequence:
         return PoseSequence(
@@ -48,24 +48,31 @@ def _placement(deep_m: float) -> Placement:
 
 
 def test_the_first_that_keeps_the_margin_is_taken():
-    best, drawn = _chosen([0.01, -MARGIN_M - 0.001, -0.3], None)
+    best, drawn = _chosen([0.01, -MARGIN_M - 0.001, -0.3])
     assert best.placement.path.heading_rad == -MARGIN_M - 0.001
-    assert drawn == [False]
+    assert drawn == [0]
     assert best.notes == ()
 
 
 def test_others_are_drawn_where_none_keeps_clear():
     best, drawn = _chosen([0.05, 0.02], [0.04, -0.2])
-    assert drawn == [False, True]
+    assert drawn == [0, 1]
     assert best.placement.path.heading_rad == -0.2
 
 
-@pytest.mark.parametrize("again", [None, [0.08]])
-def test_the_better_of_bad_ones_is_taken_and_said(again: list[float] | None):
-    best, _ = _chosen([0.07, 0.05], again)
+def test_seats_are_left_only_where_one_gets_in_so_far_that_it_is_said():
+    best, drawn = _chosen([0.02, 0.05], [0.015], [-0.2])
+    assert (best.placement.path.heading_rad, drawn) == (0.015, [0, 1])
+    best, drawn = _chosen([0.05], [0.04], [-0.2])
+    assert (best.placement.path.heading_rad, drawn) == (-0.2, [0, 1, 2])
+
+
+@pytest.mark.parametrize("others", [[], [[0.08]]])
+def test_the_better_of_bad_ones_is_taken_and_said(others: list[list[float]]):
+    best, _ = _chosen([0.07, 0.05], *others)
     assert best.deep_m == pytest.approx(0.05, abs=1e-6)
     assert "5 cm into furniture" in best.notes[0]
 
 
 def test_numbers_are_numbers():
-    assert np.isfinite(_chosen([0.0], None)[0].deep_m)
+    assert np.isfinite(_chosen([0.0])[0].deep_m)

@@ -32,20 +32,23 @@ class Moved:
 
 
 def clearest(
-    draw: Callable[[bool], Sequence[Placement]], moved: Callable[[Placement], PoseSequence], obstacles: Obstacles
+    draw: Callable[[int], Sequence[Placement]], moved: Callable[[Placement], PoseSequence], obstacles: Obstacles
 ) -> Moved:
     """The first placement whose motion keeps a margin to everything, hands and all; else the one that comes nearest.
 
-    `draw(False)` gives placements, the best first; where none of them keeps clear, `draw(True)` gives others.
+    `draw(0)` gives placements, the best first; where none of them keeps clear, `draw(1)` gives others, and where those
+    get in so far that it must be said, `draw(2)` such that leave the room's seats.
     """
-    best = _best(draw(False), moved, obstacles)
-    if best.deep_m <= _AGAIN_M:
-        return best
-    try:
-        other = _best(draw(True), moved, obstacles)
-    except InputError:  # there is no other way
-        return best
-    return other if other.deep_m < best.deep_m else best
+    best = _best(draw(0), moved, obstacles)
+    for again, enough_m in ((1, _AGAIN_M), (2, WORTH_A_NOTE_M)):
+        if best.deep_m <= enough_m:
+            break
+        try:
+            other = _best(draw(again), moved, obstacles)
+        except InputError:  # there is no other way
+            continue
+        best = other if other.deep_m < best.deep_m else best
+    return best
 
 
 def _best(placements: Sequence[Placement], moved: Callable[[Placement], PoseSequence], obstacles: Obstacles) -> Moved:

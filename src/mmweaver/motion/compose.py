@@ -60,7 +60,7 @@ def compose(
     floor = FloorMap(scene, range_window_m, height_m)
     plan, spot_notes = _jogging_without_a_way(plan)
 
-    def draw(again: bool) -> list[Placement]:
+    def draw(again: int) -> list[Placement]:
         return place(plan, floor, body, seed=seed, start_m=start_m, others=others, again=again)
 
     def moved(placement: Placement) -> PoseSequence:

@@ -58,12 +58,12 @@ class Placement:
 
 def place(
     plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None,
-    others: tuple[PoseSequence, ...] = (), again: bool = False,
+    others: tuple[PoseSequence, ...] = (), again: int = 0,
 ) -> list[Placement]:  # fmt: skip
     """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
-    `start_m` fixes where the person starts. `again` draws others, with more ways to sit, and leaves out seats at
-    random. Raises InputError where the start is not free or out of view, where
+    `start_m` fixes where the person starts. `again` draws others, with more ways to sit: 1 leaves out some seats, 2 perhaps
+    all where the sentence names none. Raises InputError where the start is not free or out of view, where
     there is no room, or where the room lacks what a step goes to, saying what there is.
     """
     check_targets(plan, floor.scene)
@@ -71,7 +71,7 @@ def place(
         raise InputError(_no_floor(floor))
     if start_m is not None:
         _check_start(floor, start_m)
-    rng = stream(seed, "motion", "placement again" if again else "placement")
+    rng = stream(seed, "motion", f"placement {again}" if again else "placement")
     ways: list[Way] = []
     for _ in range(TRIES):
         try:
@@ -110,14 +110,15 @@ def _starts_seated(plan: MotionPlan) -> bool:
 
 def _try(
     plan: MotionPlan, floor: FloorMap, body: Body, rng: np.random.Generator, start_m: tuple[float, float] | None,
-    *, again: bool,
+    *, again: int,
 ) -> Way:  # fmt: skip
     """One candidate: a start, and every step laid out from there."""
     seats = seats_of(floor, body)
     if again:
         named = next((step.seat for step in plan.steps if step.seat), "")
         seats = [
-            as_it_can_be(seat, rng) for seat in some_of(preferred(seats, named, floor.scene), rng, all_may_go=not named)
+            as_it_can_be(seat, rng)
+            for seat in some_of(preferred(seats, named, floor.scene), rng, all_may_go=again > 1 and not named)
         ]
     else:
         seats = [as_it_may_be(seat, rng) for seat in seats]
