@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, whole
+from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, told, whole
 from mmweaver.cli.own_motion import (
     add_motion_options,
     check_motion_options,
@@ -67,6 +67,11 @@ def add_verb(verbs: Any) -> None:
         help="instead: what finds it: builtin, or a SegFormer, MaskFormer, Mask2Former ... by folder or Hub name",
     )
     room.add_argument("--sam", metavar="DIR|HUB", help="a SAM model whose masks sharpen the segmenter's edges")
+    room.add_argument(
+        "--landmark", type=told, action="append", default=[], metavar="KIND=X,Y",
+        help="where a door, window, table, counter or bed is, if the photo does not show it well: metres right of and"
+        " ahead of the radar, for example door=0.9,2.8",
+    )  # fmt: skip
     room.add_argument(
         "--capture", type=Path, metavar="DIR",
         help="instead: a capture folder of mmwave-capture-std; its RealSense's photo and depth",
@@ -205,6 +210,11 @@ def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
 
 
 def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
+    room = _seen_room(weaver, arguments)
+    return room.with_landmarks(*arguments.landmark) if arguments.landmark else room
+
+
+def _seen_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     if arguments.demo:
         return weaver.sample_room()
     seen = {"classes": arguments.classes, "segmenter": arguments.segmenter, "sam": arguments.sam}

@@ -13,6 +13,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.experiments.benchmark_tables import dataset_cost_table, weaver_speed_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
+from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
@@ -348,6 +349,7 @@ TABLES = {
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
     "several_people": people_table, "micro_doppler": micro_doppler_table,
     "affordances": affordances_table,
+    "segmenter": segmenter_table, "segmenter_affordances": segmenter_affordances_table,
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
     "motiongpt": motiongpt_table,
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
