@@ -19,6 +19,7 @@ from mmweaver.models.drawing import draw_moving, draw_static, field_of
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.mean_power import MeanPower
 from mmweaver.models.room_view import RoomView
+from mmweaver.models.shadow import hidden
 from mmweaver.models.weaver_network import RoomCode, WeaverNetwork
 from mmweaver.motion.resample import joints_and_velocities
 
@@ -59,10 +60,12 @@ class WovenRoom:
         view = RoomView.stacked([scene if isinstance(scene, RoomView) else RoomView.of(scene, config)])
         with torch.inference_mode(), one_thread():
             self.code: RoomCode = network.encode_room(_on(view, device))
-            self.static = draw_static(_first(_on(self.code.resting, "cpu")), self.radar.response, room_seed)
+            self.resting = _first(_on(self.code.resting, "cpu"))
+            self._drawn = draw_static(self.resting, self.radar.response, room_seed)
+            self.static = self._drawn.layer()
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
-        """The field of everybody's motion; people are superimposed and do not hide each other."""
+        """The field of everybody's motion; people are superimposed and hide neither each other nor the room."""
         with torch.inference_mode(), one_thread():
             points = [self._points(motion) for motion in motions]
         together = Points(
@@ -74,11 +77,22 @@ class WovenRoom:
         return field_of(self.static, together, self.config, len(together.range_bin), self.radar.noise)
 
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
-        """The signal of everybody's motion with the receiver's noise, in sqrt(mW)."""
+        """The signal of everybody, the shadows they cast on the room, and the receiver's noise, in sqrt(mW)."""
         field = self.field(motions)
-        with one_thread():
-            cube = RadarCube(values=field.native(), grid=field.grid, config=self.config, scale=1.0)
+        with torch.inference_mode(), one_thread():
+            values = field.native()
+            values -= self._shadows(motions)
+            cube = RadarCube(values=values, grid=field.grid, config=self.config, scale=1.0)
         return replace(field.with_noise(cube, seed), scale=1.0)
+
+    def _shadows(self, motions: Sequence[FrameMotion]) -> np.ndarray:
+        """What the room does not return because somebody stands before it, (frame, range, doppler, antenna)."""
+        is_hidden = [hidden(self.resting, torch.from_numpy(motion.joints_m).float()) for motion in motions]
+        lost = self._drawn.hidden(torch.stack(is_hidden).any(dim=0))
+        response = self.radar.response
+        axes = response.axes()
+        at_rest = response.doppler_kernel(axes.doppler_bin)[0]
+        return (lost[:, :, None] * at_rest[:, None] * response.turn(axes)).numpy()
 
     def _points(self, motion: FrameMotion) -> Points:
         joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
