@@ -2,11 +2,11 @@
 
 import numpy as np
 import torch
+from tests.rooms import STANDING_M
 
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.shadow import hidden
-from tests.rooms import STANDING_M
 
 
 def _echoes(places: list[tuple[float, float, float]]) -> Echoes:
