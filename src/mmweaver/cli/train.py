@@ -50,7 +50,11 @@ def add_verb(verbs: Any) -> None:
     loop = parser.add_argument_group("the loop")
     loop.add_argument("--steps", type=whole, help="steps in all (default 6000; captures 300)")
     loop.add_argument("--batch", type=whole, help="sequences a step, of all processes together (default 3; captures 2)")
-    loop.add_argument("--learning-rate", type=number, help="of Adam, at its highest (default 1e-3; captures 2e-4)")
+    loop.add_argument(
+        "--learning-rate",
+        type=number,
+        help="of Adam, at its highest (default 1e-3; captures 2e-4, without joints 5e-3)",
+    )
     loop.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
     loop.add_argument("--validate-every", type=whole, metavar="STEPS", help="(default 250; captures 25)")
     loop.add_argument("--save-every", type=number, default=60.0, metavar="S", help="seconds between checkpoints (60)")
@@ -105,7 +109,7 @@ def _check(arguments: argparse.Namespace) -> None:
 def _on_data(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
     from mmweaver.training.weaver_training import TrainingRecipe, train, write_weights
 
-    recipe = _recipe(TrainingRecipe, arguments)
+    recipe = TrainingRecipe(**_given(arguments))
     start = None if arguments.start is None else _start(arguments.start)[0]
     with _bar(recipe.steps, is_quiet) as told:
         trainer = train(
@@ -116,13 +120,13 @@ def _on_data(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) 
 
 
 def _on_captures(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
-    from mmweaver.training.capture_training import CaptureRecipe, tune, write_tuned
+    from mmweaver.training.capture_training import recipe_for, tune, write_tuned
     from mmweaver.training.captures import read_capture
 
-    recipe = _recipe(CaptureRecipe, arguments)
     start, licence = _start(arguments.start)
     photo = {"rgb": arguments.rgb, "depth": arguments.depth, "camera": arguments.camera}
     captures = [read_capture(folder, **photo) for folder in arguments.captures]
+    recipe = recipe_for(captures, **_given(arguments))
     with _bar(recipe.steps, is_quiet) as told:
         tuned = tune(
             captures, arguments.out, recipe, start=start, listener=told, workplace=place, **_options(arguments)
@@ -137,12 +141,13 @@ def _on_captures(arguments: argparse.Namespace, place: "Workplace", is_quiet: bo
     }  # fmt: skip
 
 
-def _recipe(kind: Any, arguments: argparse.Namespace) -> Any:
+def _given(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What of the recipe was said."""
     given = {
         "steps": arguments.steps, "batch_size": arguments.batch, "learning_rate": arguments.learning_rate,
         "seed": arguments.seed, "validate_every": arguments.validate_every,
     }  # fmt: skip
-    return kind(**{name: value for name, value in given.items() if value is not None})
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def _options(arguments: argparse.Namespace) -> dict[str, Any]:

@@ -31,7 +31,7 @@ from mmweaver.models.weights import WeightsCard, load_weights
 from mmweaver.scene.procedural.room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.simulation.simulator import Simulator
-from mmweaver.training.capture_training import CaptureRecipe, tune
+from mmweaver.training.capture_training import recipe_for, tune
 from mmweaver.training.captures import read_capture
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "chamfer_m")
@@ -82,7 +82,7 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
             for file in ("rgb.png", "depth.npy", "camera.json"):
                 (folder / file).symlink_to((work / file).resolve())
         captures = [read_capture(folder) for folder in folders]
-        recipe = CaptureRecipe() if arguments.steps is None else CaptureRecipe(steps=arguments.steps)
+        recipe = recipe_for(captures, **({} if arguments.steps is None else {"steps": arguments.steps}))
         tuned = tune(captures, work / name / "run", recipe, start=start.state_dict())
         networks[name] = getattr(tuned.trainer.learner, "network")  # noqa: B009 - any learner of this recipe has one
         print(f"{work.name} {name}: {tuned.loss_before:.3f} -> {tuned.trainer.best.value:.3f}", flush=True)  # noqa: T201

@@ -59,6 +59,18 @@ class CaptureRecipe(TrainingRecipe):
 
 
 @dataclass(frozen=True, kw_only=True)
+class RestingRecipe(CaptureRecipe):
+    """The same for two small heads, which bear larger steps."""
+
+    learning_rate: float = 5e-3
+
+
+def recipe_for(captures: Sequence[Capture], **given: Any) -> CaptureRecipe:
+    """The recipe for captures with joints, or for none; `given` replaces its values."""
+    return CaptureRecipe(**given) if any(one.pose is not None for one in captures) else RestingRecipe(**given)
+
+
+@dataclass(frozen=True, kw_only=True)
 class CaptureBatch(Batch):
     """A batch of captures; where a person is not `known` the maps are those of the room at rest."""
 
