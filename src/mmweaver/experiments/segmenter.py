@@ -33,22 +33,22 @@ from mmweaver.scene.procedural.room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.segmenter_features import EVERY, grid_features
 from mmweaver.training.segmenter import TEST_KINDS, TEST_SEED
-from mmweaver.training.segmenter_data import make_examples
+from mmweaver.training.segmenter_data import Example, make_examples
 from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
 
 REAL_TRUTH = Path(__file__).with_name("real_rooms_classes.json")
 Guess = Callable[[np.ndarray], np.ndarray]
 
 
-def unseen_row(name: str, guess: Guess, per_kind: int) -> dict[str, Any]:
+def unseen_row(name: str, guess: Guess, examples: list[Example]) -> dict[str, Any]:
     """Cells of rendered rooms of unseen kinds."""
-    found = scores(confusion(make_examples(TEST_KINDS, per_kind, TEST_SEED), guess))
+    found = scores(confusion(examples, guess))
     metrics = {
         "miou": _metric(found["miou"], "mean intersection over union of the groups that occur"),
         "right": _metric(found["right"], "share of cells whose group is right"),
     }
     metrics |= {f"iou_{group}": _metric(value, "intersection over union") for group, value in found["iou"].items()}
-    return _row("procedural, unseen kinds", name, per_kind * len(TEST_KINDS), metrics)
+    return _row("procedural, unseen kinds", name, len(examples), metrics)
 
 
 def real_rows(name: str, guess: Guess, folders: list[Path]) -> list[dict[str, Any]]:
@@ -144,7 +144,8 @@ def run(out: Path, folders: list[Path], per_kind: int, number: int) -> Path:
     guesses: dict[str, Guess] = {
         "network": lambda features: groups_of_cells(features, network), "geometry": by_geometry,
     }  # fmt: skip
-    rows = [unseen_row(name, guess, per_kind) for name, guess in guesses.items()]
+    examples = make_examples(TEST_KINDS, per_kind, TEST_SEED)
+    rows = [unseen_row(name, guess, examples) for name, guess in guesses.items()]
     for name, guess in guesses.items():
         rows += real_rows(name, guess, folders)
     rows += [affordance_row(name, number) for name in ("none", "network", "true")]

@@ -233,17 +233,19 @@ def affordances_table(folder: Path) -> str:
     heads = [f"{row['dataset']['name']}, {method} ({row['n']})" for method, row in rows]
     lines = [_line("what", *heads), _line(*["---"] * (1 + len(rows)))]
     for name, text, form in AFFORDANCES:
-        lines.append(_line(text, *(_share_cell(row["metrics"].get(name), form) for _, row in rows)))
+        cells = [_share_cell(row["metrics"].get(name), form, edges=name == "placements_clear") for _, row in rows]
+        lines.append(_line(text, *cells))
     return "\n".join(lines)
 
 
-def _share_cell(metric: dict[str, Any] | None, form: str) -> str:
+def _share_cell(metric: dict[str, Any] | None, form: str, *, edges: bool) -> str:
     if metric is None:
         return "-"
     if form != "share":
         return form.format(metric["value"])
     of = f" of {metric['of']}" if "of" in metric else ""
-    return f"{100 * metric['value']:.1f} %{of}"
+    low, high = (100 * edge for edge in metric["interval"]) if edges else (0.0, 0.0)
+    return f"{100 * metric['value']:.1f} %{of}" + (f" ({low:.1f} to {high:.1f})" if edges else "")
 
 
 def motiongpt_table(folder: Path) -> str:
