@@ -41,6 +41,45 @@ def add_verb(verbs: Any) -> None:
         description="Makes the signal that a radar at the camera would have recorded of a person doing what the text "
         "says, in the room that the photo shows.",
     )
+    _add_room_options(parser)
+    person = parser.add_argument_group("the person")
+    person.add_argument(
+        "--text",
+        action="append",
+        help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
+    )
+    person.add_argument(
+        "--at",
+        type=place,
+        action="append",
+        metavar="X,Y",
+        help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
+        " the first --at is the first one's",
+    )
+    add_motion_options(person)
+    radar = parser.add_argument_group("the radar")
+    radar.add_argument(
+        "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
+    )
+    radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
+    radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
+    radar.add_argument(
+        "--method", default="physics", help="how the signal is made: physics (default), or weaver, a trained network"
+    )
+    radar.add_argument(
+        "--weights", metavar="FILE|DIR|HUB", help="weights of mmweaver train, for --method weaver; or their Hub name"
+    )
+    add_points_option(radar)
+    radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
+    output = parser.add_argument_group("output")
+    output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
+    output.add_argument("--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would")
+    add_layout_options(output)
+    add_output_options(output)
+    parser.set_defaults(run=run)
+
+
+def _add_room_options(parser: argparse.ArgumentParser) -> None:
     room = parser.add_argument_group("the room")
     room.add_argument("--rgb", type=Path, metavar="PNG", help="colour picture")
     room.add_argument(
@@ -78,41 +117,6 @@ def add_verb(verbs: Any) -> None:
     )  # fmt: skip
     room.add_argument("--photo", type=whole, default=0, metavar="N", help="which photo of the capture (default 0)")
     room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
-    person = parser.add_argument_group("the person")
-    person.add_argument(
-        "--text",
-        action="append",
-        help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
-    )
-    person.add_argument(
-        "--at",
-        type=place,
-        action="append",
-        metavar="X,Y",
-        help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
-        " the first --at is the first one's",
-    )
-    add_motion_options(person)
-    radar = parser.add_argument_group("the radar")
-    radar.add_argument(
-        "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
-    )
-    radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
-    radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
-    radar.add_argument(
-        "--method", default="physics", help="how the signal is made: physics (default), or weaver, a trained network"
-    )
-    radar.add_argument(
-        "--weights", metavar="FILE|DIR|HUB", help="weights of mmweaver train, for --method weaver; or their Hub name"
-    )
-    add_points_option(radar)
-    radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
-    output = parser.add_argument_group("output")
-    output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
-    output.add_argument("--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would")
-    add_layout_options(output)
-    add_output_options(output)
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
