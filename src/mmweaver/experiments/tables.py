@@ -10,6 +10,7 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.experiments.capture_tuning_table import capture_tuning_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
@@ -323,7 +324,7 @@ TABLES = {
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
-    "weaver": weaver_table,
+    "weaver": weaver_table, "capture_tuning": capture_tuning_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 
