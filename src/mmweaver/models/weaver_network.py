@@ -29,6 +29,7 @@ from mmweaver.models.body_anchors import (
     body_anchors,
     ghost_anchors,
 )
+from mmweaver.models.body_prior import BodyPrior, body_prior
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
@@ -38,6 +39,7 @@ from mmweaver.models.room_view import PLANE_FEATURES, POINT_FEATURES, RoomView
 WIDTH, HEADS, LAYERS = 128, 4, 2
 PARTS = ("faces", "ghosts", "correction", "colour", "depth", "mask")  # that can be left out
 LARGEST_STEP = 12.0  # of a logarithm of power
+FAINTEST_M2 = 1e-4  # of a part of the body, before the network says otherwise
 LARGEST_CORRECTION = 2.0  # the same, for what physics says of the photographed room
 
 
@@ -66,7 +68,7 @@ class WeaverNetwork(nn.Module):
         self.pose = PoseEncoder()
         self.point = _mlp(POINT_FEATURES + MAP_CHANNELS, 96, 1)
         self.face = _mlp(PLANE_FEATURES, 64, 1)
-        self.body_in, self.ghost_in = nn.Linear(BODY_FEATURES, WIDTH), nn.Linear(GHOST_FEATURES, WIDTH)
+        self.body_in, self.ghost_in = nn.Linear(BODY_FEATURES + 2, WIDTH), nn.Linear(GHOST_FEATURES, WIDTH)
         self.part = nn.Parameter(0.02 * torch.randn(NUM_ANCHORS + NUM_GHOSTS, WIDTH))
         self.from_env, self.from_pose = nn.Linear(Z_ENV, WIDTH), nn.Linear(Z_POSE, WIDTH)
         layer = nn.TransformerEncoderLayer(
@@ -101,13 +103,16 @@ class WeaverNetwork(nn.Module):
         if frames is not None:
             z_pose, joints_m, velocity_mps = (_picked(part, frames) for part in (z_pose, joints_m, velocity_mps))
         body = body_anchors(joints_m, velocity_mps, code.view)
+        prior = body_prior(joints_m)
         ghosts = ghost_anchors(joints_m, velocity_mps, code.view)
-        token = torch.cat([self.body_in(body.features), self.ghost_in(ghosts.features)], dim=-2) + self.part
+        told = torch.stack([torch.log10(prior.cross_section_m2 + FAINTEST_M2) / 2, 5 * prior.offset_m], dim=-1)
+        of_body = self.body_in(torch.cat([body.features, told], dim=-1))
+        token = torch.cat([of_body, self.ghost_in(ghosts.features)], dim=-2) + self.part
         token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
         if "ghosts" in self.without:
             ghosts = replace(ghosts, is_there=0 * ghosts.is_there)
-        return _placed(self.out(mixed), body, ghosts)
+        return _placed(self.out(mixed), body, ghosts, prior)
 
     def _shown(self, image: Tensor) -> Tensor:
         kept = torch.ones(image.shape[1], device=image.device)
@@ -159,16 +164,15 @@ def _resting(distance: Tensor, direction: Tensor, cross_section: Tensor) -> Echo
     )
 
 
-def _placed(out: Tensor, body: Anchors, ghosts: Anchors) -> Echoes:
+def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior) -> Echoes:
     """Network's words: level, and small steps in range, velocity and direction."""
     level, step_r, step_v, step_x, step_z = out.unbind(-1)
     there = torch.cat([body.is_there, ghosts.is_there], -1)
-    start = torch.cat(
-        [torch.full_like(body.range_m, math.log(0.02)), torch.full_like(ghosts.range_m, math.log(2e-4))], -1
-    )
-    range_m = torch.cat([body.range_m, ghosts.range_m], -1)
+    known = (prior.cross_section_m2 + FAINTEST_M2).log()
+    start = torch.cat([known, torch.full_like(ghosts.range_m, math.log(2e-4))], -1)
+    range_m = torch.cat([body.range_m + prior.offset_m, ghosts.range_m - 0.06], -1)
     return Echoes(
-        range_m=range_m - 0.06 + 0.2 * torch.tanh(step_r),
+        range_m=range_m + 0.2 * torch.tanh(step_r),
         velocity_mps=torch.cat([body.velocity_mps, ghosts.velocity_mps], -1) + 0.5 * torch.tanh(step_v),
         direction=torch.cat([body.direction, ghosts.direction], -2)
         + 0.1 * torch.tanh(torch.stack([step_x, step_z], -1)) / range_m[..., None],

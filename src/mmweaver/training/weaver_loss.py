@@ -20,6 +20,7 @@ from mmweaver.models.radar_view import points_of
 STEEPEST = 8.0
 LIKELIHOOD = 0.2  # share of the divergence beside the difference of logarithms
 FLOOR = 1e-5  # of the peak: what a 50 dB picture no longer shows counts for nothing
+OF_PERSON = 2.0  # weight of the person's own maps: what the network has most to learn about
 FLOOR_OF_PERSON = 1e-4  # the same, of the person's own peak
 # The range-Doppler picture is empty but for a seventh, and two rows of antennas tell elevation poorly.
 WEIGHT = {"range_doppler": 4.0, "range_azimuth": 1.0, "range_elevation": 0.4}
@@ -71,7 +72,7 @@ def weaver_loss(radar: MeanPower, resting: Echoes, moving: Echoes, targets: Targ
         if targets.person is not None:
             alone = getattr(targets.person, name)
             least = noise + FLOOR_OF_PERSON * alone.amax(dim=(1, 2, 3), keepdim=True)
-            terms[f"{name}_person"] = WEIGHT[name] * difference(getattr(person, name), alone, least)
+            terms[f"{name}_person"] = OF_PERSON * WEIGHT[name] * difference(getattr(person, name), alone, least)
     return terms
 
 

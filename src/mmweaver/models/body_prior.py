@@ -1,0 +1,55 @@
+"""What physics says of a body's parts before the network does: how strongly each returns, and where its skin lies.
+
+The simulator's skin on a person of middle height, without rays: whatever faces the radar counts, nothing hides it. The
+network turns this up and down, as it does with what physics says of the room's surfaces. Reference: decisions 42, 96.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.models.body_anchors import NUM_ANCHORS, anchor_places
+from mmweaver.simulation.body import REFERENCE_HEIGHT_M, Body
+
+NUM_POINTS = 600
+SUBJECT = 90_000  # nobody's skin
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyPrior:
+    """Of each anchor (..., frame, anchor): cross section in square metres, and how far its skin lies behind it in m."""
+
+    cross_section_m2: Tensor
+    offset_m: Tensor  # negative: before the anchor, as skin is
+
+
+def body_prior(joints_m: Tensor) -> BodyPrior:
+    """The prior of motions, joints (sequence, frame, 22, 3) in the radar's frame."""
+    with torch.no_grad():
+        anchors = anchor_places(joints_m.detach().cpu()).double().numpy()
+        parts = [_one(joints, place) for joints, place in zip(joints_m.detach().cpu().numpy(), anchors, strict=True)]
+    stacked = [np.stack(each).astype(np.float32) for each in zip(*parts, strict=True)]
+    section, offset = (torch.from_numpy(each).to(joints_m) for each in stacked)
+    return BodyPrior(cross_section_m2=section, offset_m=offset)
+
+
+def _one(joints_m: np.ndarray, anchors_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    body = _body()
+    skin = body.skin(joints_m.astype(float))
+    distance = np.linalg.norm(skin.place_m, axis=-1)
+    cos = -(skin.normal * skin.place_m).sum(-1) / np.maximum(distance, 1e-6)
+    section = body.echo.back(cos) * body.area_m2 * body.brightness  # (frame, point)
+    gap = np.linalg.norm(skin.place_m[0][:, None] - anchors_m[0][None], axis=-1)
+    of = np.zeros((len(body.part), NUM_ANCHORS))
+    of[np.arange(len(of)), gap.argmin(axis=1)] = 1.0
+    total = section @ of
+    behind = (section * distance) @ of / np.maximum(total, 1e-12) - np.linalg.norm(anchors_m, axis=-1)
+    return total, np.where(total > 1e-9, np.clip(behind, -0.3, 0.3), 0.0)
+
+
+@lru_cache(maxsize=1)
+def _body() -> Body:
+    return Body(SUBJECT, REFERENCE_HEIGHT_M, NUM_POINTS)
