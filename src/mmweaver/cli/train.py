@@ -13,6 +13,8 @@ EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
   mmweaver train weaver --data data/ --out run/
   mmweaver train weaver --data mine/ --out tuned/ --start run/weights.safetensors --steps 300 --learning-rate 2e-4
+  mmweaver train activity --data data/ --out judge/
+  mmweaver train paper --data data/ --out paper/ --features judge/weights.safetensors
   mmweaver generate --demo --method weaver --weights run/weights.safetensors --out woven/
 """
 
@@ -26,13 +28,19 @@ def add_verb(verbs: Any) -> None:
         description="Trains the network on a data set of mmweaver dataset and writes its weights. It may be stopped at "
         "any time: the same command goes on from its last checkpoint.",
     )
-    parser.add_argument("recipe", choices=("weaver",), help="what is trained")
+    parser.add_argument(
+        "recipe", choices=("weaver", "activity", "paper"),
+        help="what is trained: the network, a recogniser of twelve activities, or the paper's network",
+    )  # fmt: skip
     parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="a data set of mmweaver dataset")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for checkpoint, log and weights")
     parser.add_argument("--start", type=Path, metavar="FILE", help="weights to fine-tune (default: from nothing)")
-    parser.add_argument("--steps", type=whole, default=6000, help="steps in all (default 6000)")
-    parser.add_argument("--batch", type=whole, default=3, help="sequences a step, each of another room (default 3)")
-    parser.add_argument("--learning-rate", type=number, default=1e-3, help="of Adam, at its highest (default 1e-3)")
+    parser.add_argument("--features", type=Path, metavar="FILE", help="weights of recipe activity, for recipe paper")
+    parser.add_argument("--steps", type=whole, help="steps in all (default 6000; activity 800)")
+    parser.add_argument("--batch", type=whole, help="sequences a step (default 3; activity 16, paper 4)")
+    parser.add_argument(
+        "--learning-rate", type=number, help="of Adam, at its highest (default 1e-3; activity 2e-3, paper 1e-4)"
+    )
     parser.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
@@ -41,6 +49,13 @@ def add_verb(verbs: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Trains and writes the weights. Raises InputError."""
+    if arguments.recipe != "weaver":
+        from mmweaver.cli import train_recipes
+
+        return train_recipes.run(arguments)
+    for name, value in (("steps", 6000), ("batch", 3), ("learning_rate", 1e-3)):
+        if getattr(arguments, name) is None:
+            setattr(arguments, name, value)
     import json
 
     from tqdm import tqdm

@@ -169,13 +169,16 @@ class StoredRoom:
 
 def read_rooms(folder: Path) -> list[StoredRoom]:
     """All rooms of a data set. Raises InputError where the folder is none."""
-    zarr = _zarr()
     if not (folder / PLAN_FILE).is_file():
         raise InputError(f"{folder} holds no data set (no {PLAN_FILE}); make one with: mmweaver dataset {folder}")
-    root = zarr.open_group(folder, mode="r")
-    config = RadarConfig.from_json(json.dumps(root.attrs["radar"]))
+    config = read_radar(folder)
     names = sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and (path / "iq").is_dir())
     return [_room(folder / name, config) for name in names]
+
+
+def read_radar(folder: Path) -> RadarConfig:
+    """The radar of a data set."""
+    return RadarConfig.from_json(json.dumps(_zarr().open_group(folder, mode="r").attrs["radar"]))
 
 
 def plan_text(folder: Path) -> str:

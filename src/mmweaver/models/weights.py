@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import torch
+from torch import nn
 
 from mmweaver.core.errors import InputError
 from mmweaver.models.weaver_network import WeaverNetwork
@@ -33,7 +34,7 @@ class WeightsCard:
     mmweaver_version: str
 
 
-def save_weights(file: Path, network: WeaverNetwork, card: WeightsCard, *, half: bool = True) -> None:
+def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: bool = True) -> None:
     """Writes a network, whole or not at all; in half precision it is half as large and as good."""
     from safetensors.torch import save_file
 
@@ -49,9 +50,17 @@ def save_weights(file: Path, network: WeaverNetwork, card: WeightsCard, *, half:
 
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
-    """Reads a network, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
-    card, tensors = _read(file)
+    """Reads a weaver, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
     network = WeaverNetwork()
+    return network, load_into(network, file)
+
+
+def load_into(network: nn.Module, file: Path, *, recipe: str | None = None) -> WeightsCard:
+    """Reads weights into any network and makes it ready to use. Raises InputError for files that do not fit it, and
+    for those of another recipe than the one named."""
+    card, tensors = _read(file)
+    if recipe is not None and card.recipe != recipe:
+        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train {recipe}")
     wanted = network.state_dict()
     wrong = [name for name in wanted if name not in tensors or tensors[name].shape != wanted[name].shape]
     wrong += [name for name in tensors if name not in wanted]
@@ -62,7 +71,7 @@ def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
         )
     network.load_state_dict({name: tensor.to(wanted[name].dtype) for name, tensor in tensors.items()})
     network.eval()
-    return network, card
+    return card
 
 
 def shipped_weights() -> Path:
