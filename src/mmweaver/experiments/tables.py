@@ -12,6 +12,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
+from mmweaver.experiments.weaver_use_tables import activity_table, gain_table, paper_table, told_apart_table
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
@@ -323,7 +324,8 @@ TABLES = {
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
-    "weaver": weaver_table,
+    "weaver": weaver_table, "weaver_paper": paper_table,
+    "activity_accuracy": activity_table, "activity_gain": gain_table, "real_or_generated": told_apart_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 

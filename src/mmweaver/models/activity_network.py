@@ -32,7 +32,7 @@ class ActivityNetwork(nn.Module):
 
     def __init__(self, config: RadarConfig):
         super().__init__()
-        self.maps = LogMaps(config)
+        self.config, self.maps = config, LogMaps(config)
         self.doppler = MapFeatures(1)
         self.angle = MapFeatures(NUM_ANGLE_MAPS)
         per_frame = WIDTHS[-1] * 2 * 8 + WIDTHS[-1] * 2
