@@ -1,7 +1,8 @@
 """Training the paper's network as the paper says: recipe `paper`."""
 
 import math
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,17 +48,17 @@ def train_paper(
     torch.manual_seed(recipe.seed)
     network = PaperNetwork()
 
-    def parts(batch: PaperBatch) -> dict[str, Tensor]:
-        return paper_loss(patches(network, batch), batch.truth, batch.span, perceiver, unit_sqrt_mw(config))
+    def cost(made: Tensor, batch: PaperBatch) -> dict[str, Tensor]:
+        return paper_loss(made, batch.truth, batch.span, perceiver, unit_sqrt_mw(config))
 
     def terms(step: int) -> dict[str, Tensor]:
-        return parts(draw_paper_batch(rooms, recipe.seed, step, size=recipe.batch_size))
+        batch = draw_paper_batch(rooms, recipe.seed, step, size=recipe.batch_size)
+        return cost(patches(network, batch), batch)
 
     def validate() -> dict[str, float]:
-        return _validation(network, parts, [
-            draw_paper_batch(unseen, VALIDATION_SEED + recipe.seed, index, size=recipe.batch_size)
-            for index in range(VALIDATION_BATCHES)
-        ])  # fmt: skip
+        seed, size = VALIDATION_SEED + recipe.seed, recipe.batch_size
+        batches = (draw_paper_batch(unseen, seed, index, size=size) for index in range(VALIDATION_BATCHES))
+        return _validation(network, cost, batches)
 
     loop = RecipeLoop(network, recipe, out, terms=terms, validate=validate)
     loop.run(listener)
@@ -75,18 +76,22 @@ def patches(network: PaperNetwork, batch: PaperBatch) -> Tensor:
 
 
 def _validation(
-    network: PaperNetwork, parts: Callable[[PaperBatch], dict[str, Tensor]], batches: list[PaperBatch]
+    network: PaperNetwork, cost: Callable[[Tensor, PaperBatch], dict[str, Tensor]], batches: Iterable[PaperBatch]
 ) -> dict[str, float]:
-    """Mean loss and its terms; and how much of the truth's energy is there, which tells a collapse."""
-    sums: dict[str, float] = {"loss": 0.0}
-    energy = {"made": 0.0, "truth": 0.0, "error": 0.0}
+    """Mean loss and its terms, beside the loss of all zeros and how much of the truth's energy there is: both tell a
+    collapse."""
+    sums: dict[str, float] = defaultdict(float)
+    energy: dict[str, float] = defaultdict(float)
     for batch in batches:
-        terms = {name: float(term) for name, term in parts(batch).items()}
         made = patches(network, batch)
-        for name, value in (*terms.items(), ("loss", sum(terms.values()))):
-            sums[name] = sums.get(name, 0.0) + value / len(batches)
+        terms = {name: float(term) for name, term in cost(made, batch).items()}
+        nothing = sum(float(term) for term in cost(torch.zeros_like(made), batch).values())
+        for name, value in (("loss", sum(terms.values())), ("zeros_loss", nothing), *terms.items()):
+            sums[name] += value / VALIDATION_BATCHES
         for name, value in (("made", made), ("truth", batch.truth), ("error", made - batch.truth)):
             energy[name] += float(value.abs().square().sum())
-    sums["nmse_db"] = 10 * math.log10(energy["error"] / energy["truth"])
-    sums["energy_db"] = 10 * math.log10(max(energy["made"], 1e-30) / energy["truth"])
-    return sums
+    return {
+        **sums,
+        "nmse_db": 10 * math.log10(energy["error"] / energy["truth"]),
+        "energy_db": 10 * math.log10(max(energy["made"], 1e-30) / energy["truth"]),
+    }
