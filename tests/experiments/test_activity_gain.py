@@ -49,7 +49,10 @@ def test_rows_of_a_room(data: Path):
     torch.manual_seed(0)
     network = ActivityNetwork(AWR1843).eval()
     methods = {"true_room": simulated_in(lambda one: one.true_scene(one.room), micro_seed=0)}
-    found = gains(network, _base(2, network.head.first.in_features), [room], methods, each=1)
+    told: list[int] = []
+    base = _base(2, network.head.first.in_features)
+    found = gains(network, base, [room], methods, each=1, after=lambda one: told.append(len(one[ALONE])))
+    assert told == [1]
     rows = rows_of(found, [room])
     assert [row["method"] for row in rows] == [ALONE, "true_room"]
     assert rows[0]["metrics"]["gain"]["value"] == 0

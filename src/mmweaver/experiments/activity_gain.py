@@ -207,9 +207,12 @@ def gains(
     *,
     each: int,
     split: str = "test_room",
-    tell: Callable[[str], object] = lambda line: None,
+    after: Callable[[dict[str, np.ndarray]], object] = lambda found: None,
 ) -> dict[str, np.ndarray]:
-    """{method: accuracy and log loss in each room, (room, 2)}; besides, the head trained on with nothing generated."""
+    """{method: accuracy and log loss in each room, (room, 2)}; besides, the head trained on with nothing generated.
+
+    `after` is given what is there after each room, so that a long run that is stopped has told something.
+    """
     found: dict[str, list[np.ndarray]] = {name: [] for name in (ALONE, *methods)}
     for room in rooms:
         indices = [index for index, name in enumerate(room.room.split) if name == split]
@@ -224,14 +227,13 @@ def gains(
         for name, own in made.items():
             each_seed = [judged(network, base, own, test, seed) for seed in range(REPEATS)]
             found[name].append(np.mean(each_seed, axis=0))
-        told = (f"{name} {values[-1][0]:.2f}" for name, values in found.items())
-        tell(f"{room.name:18} {len(motions):3} motions " + " ".join(told))
+        after({name: np.stack(values) for name, values in found.items()})
     return {name: np.stack(values) for name, values in found.items()}
 
 
 def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[str, Any]]:
     """One row a method: accuracy and log loss, and how much better than trained on other rooms alone."""
-    names, rows = [room.name for room in rooms], []
+    names, rows = [room.name for room in rooms][: len(found[ALONE])], []
     for method, values in found.items():
         better = values - found[ALONE]
         columns = {
@@ -243,7 +245,7 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[
             mean, low, high = interval(each, names)
             metrics[metric] = {"value": mean, "low": low, "high": high, "unit": unit}
         metrics["accuracy"]["floor"] = 1 / len(ACTIVITY_NAMES)
-        rows.append({"method": method, "num_rooms": len(rooms), "metrics": metrics})
+        rows.append({"method": method, "num_rooms": len(names), "metrics": metrics})
     return rows
 
 
@@ -273,13 +275,15 @@ def main() -> None:
     }
     if arguments.paper is not None:
         methods["paper"] = paper_in(arguments.paper)
-    found = gains(judge, base, rooms, methods, each=arguments.each, tell=lambda line: print(line, flush=True))  # noqa: T201
-    rows = rows_of(found, rooms)
-    write_result(
-        arguments.out, experiment="activity_gain", method="test_room",
-        config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each, "steps": STEPS}, rows=rows,
-    )  # fmt: skip
-    for row in rows:
+    about = {"weights": card.__dict__, "data_plan": plan, "each": arguments.each, "steps": STEPS}
+
+    def write(found: dict[str, np.ndarray]) -> None:
+        rows = rows_of(found, rooms)
+        write_result(arguments.out, experiment="activity_gain", method="test_room", config=about, rows=rows)
+        room = rooms[len(found[ALONE]) - 1].name
+        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)  # noqa: T201
+
+    for row in rows_of(gains(judge, base, rooms, methods, each=arguments.each, after=write), rooms):
         values = (f"{name} {m['value']:.3f} ({m['low']:.3f} to {m['high']:.3f})" for name, m in row["metrics"].items())
         print(f"{row['method']:30}", *values)  # noqa: T201
 
