@@ -13,8 +13,15 @@ if TYPE_CHECKING:
 
 def run(arguments: argparse.Namespace) -> int:
     """Trains recipe `activity` or `paper` and writes the weights. Raises InputError."""
-    if arguments.start is not None:
-        raise InputError(f"--start is for recipe weaver; recipe {arguments.recipe} begins from nothing")
+    if arguments.start is not None or arguments.captures is not None:
+        raise InputError(f"--from and --captures are for recipe weaver; recipe {arguments.recipe} begins from nothing")
+    if arguments.data is None:
+        raise InputError("what to train on? give --data, a data set of mmweaver dataset")
+    unknown = {"--device": arguments.device not in ("auto", "cpu"), "--precision": arguments.precision == "bf16",
+               "--tensorboard": arguments.tensorboard}  # fmt: skip
+    if any(unknown.values()):
+        named = ", ".join(name for name, is_asked in unknown.items() if is_asked)
+        raise InputError(f"{named}: recipe {arguments.recipe} trains on the CPU in float32 and writes log.jsonl only")
     if arguments.recipe == "paper" and arguments.features is None:
         raise InputError(
             "recipe paper needs --features FILE, the weights of: mmweaver train activity (for its perceptual loss)"
@@ -60,6 +67,6 @@ def _given(arguments: argparse.Namespace) -> dict:
     """What was asked for; the rest is the recipe's own."""
     asked = {
         "steps": arguments.steps, "batch_size": arguments.batch, "learning_rate": arguments.learning_rate,
-        "seed": arguments.seed,
+        "seed": arguments.seed, "validate_every": arguments.validate_every,
     }  # fmt: skip
     return {name: value for name, value in asked.items() if value is not None}
