@@ -18,6 +18,8 @@ EXAMPLES = """examples:
   mmweaver train weaver --data data/ --out run/ --tensorboard
   mmweaver train weaver --from run/ --captures take1/ take2/ take3/ --out tuned/
   torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
+  mmweaver train activity --data data/ --out judge/
+  mmweaver train paper --data data/ --out paper/ --features judge/weights.safetensors
   mmweaver generate --demo --method weaver --weights run/ --out woven/
 """
 
@@ -32,12 +34,16 @@ def add_verb(verbs: Any) -> None:
         "card. It may be stopped or killed at any time: the same command goes on from its last checkpoint. What it has "
         "learned is drawn beside the truth in OUT/pictures at every validation.",
     )
-    parser.add_argument("recipe", choices=("weaver",), help="what is trained")
+    parser.add_argument(
+        "recipe", choices=("weaver", "activity", "paper"),
+        help="what is trained: the network, a recogniser of twelve activities, or the paper's network",
+    )  # fmt: skip
     parser.add_argument("--data", type=Path, metavar="DIR", help="a data set of mmweaver dataset")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for checkpoint, log and weights")
     parser.add_argument(
         "--from", "--start", dest="start", metavar="FILE|DIR|HUB", help="weights to fine-tune (default: from nothing)"
     )
+    parser.add_argument("--features", type=Path, metavar="FILE", help="weights of recipe activity, for recipe paper")
     own = parser.add_argument_group("your own recordings instead of --data (needs --from)")
     own.add_argument(
         "--captures", type=Path, nargs="+", metavar="DIR",
@@ -72,6 +78,10 @@ def add_verb(verbs: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Trains and writes the weights. Raises InputError."""
+    if arguments.recipe != "weaver":
+        from mmweaver.cli import train_recipes
+
+        return train_recipes.run(arguments)
     import json
 
     _check(arguments)

@@ -203,17 +203,20 @@ def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
 
     Raises InputError where the folder is no data set.
     """
-    zarr = _zarr()
     if not (folder / PLAN_FILE).is_file():
         raise InputError(f"{folder} holds no data set (no {PLAN_FILE}); make one with: mmweaver dataset {folder}")
-    root = zarr.open_group(folder, mode="r")
-    config = RadarConfig.from_json(json.dumps(root.attrs["radar"]))
+    config = read_radar(folder)
     names = sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and _has_sequences(path))
     return [_room(folder / name, config, device) for name in names]
 
 
 def _has_sequences(room: Path) -> bool:
     return (room / "iq").is_dir() or (room / GEOMETRY / "visibility").is_dir()
+
+
+def read_radar(folder: Path) -> RadarConfig:
+    """The radar of a data set."""
+    return RadarConfig.from_json(json.dumps(_zarr().open_group(folder, mode="r").attrs["radar"]))
 
 
 def plan_text(folder: Path) -> str:

@@ -15,6 +15,7 @@ from mmweaver.experiments.capture_tuning_table import capture_tuning_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
+from mmweaver.experiments.weaver_use_tables import activity_table, gain_table, paper_table, told_apart_table
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
@@ -361,6 +362,8 @@ TABLES = {
     "weaver": weaver_table, "weaver_unseen": weaver_unseen_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "capture_tuning": capture_tuning_table,
+    "weaver_paper": paper_table,
+    "activity_accuracy": activity_table, "activity_gain": gain_table, "real_or_generated": told_apart_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 

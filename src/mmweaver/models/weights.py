@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import torch
+from torch import nn
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
@@ -39,7 +40,7 @@ class WeightsCard:
     tuned_from: str = ""  # sha256 of the tensors that fine-tuning began with
 
 
-def save_weights(file: Path, network: WeaverNetwork, card: WeightsCard, *, half: bool = True) -> None:
+def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: bool = True) -> None:
     """Writes a network, whole or not at all; in half precision it is half as large and as good."""
     from safetensors.torch import save_file
 
@@ -67,9 +68,17 @@ def sha256_of(tensors: dict[str, torch.Tensor]) -> str:
 
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
-    """Reads a network, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
-    card, tensors = _read(file)
+    """Reads a weaver, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
     network = WeaverNetwork()
+    return network, load_into(network, file)
+
+
+def load_into(network: nn.Module, file: Path, *, recipe: str | None = None) -> WeightsCard:
+    """Reads weights into any network and makes it ready to use. Raises InputError for files that do not fit it, and
+    for those of another recipe than the one named."""
+    card, tensors = _read(file)
+    if recipe is not None and card.recipe != recipe:
+        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train {recipe}")
     wanted = network.state_dict()
     wrong = [name for name in wanted if name not in tensors or tensors[name].shape != wanted[name].shape]
     wrong += [name for name in tensors if name not in wanted]
@@ -80,7 +89,7 @@ def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
         )
     network.load_state_dict({name: tensor.to(wanted[name].dtype) for name, tensor in tensors.items()})
     network.eval()
-    return network, card
+    return card
 
 
 def read_card(file: Path) -> WeightsCard:

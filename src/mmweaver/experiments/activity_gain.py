@@ -1,0 +1,292 @@
+"""What generated data is worth: a recogniser of activities in a room that nobody has recorded.
+
+    python -m mmweaver.experiments.activity_gain --data DATASET --weights WEAVER --judge ACTIVITY --out results
+
+The recogniser (`mmweaver train activity`) has seen other rooms. For each room of an unseen kind its head is trained on,
+once with the other rooms' recordings alone and once with generated ones of this room beside them, and judged on the
+room's true (simulated) signals. All methods generate the same motions, placed in the room as its photo shows it; they
+differ in what surrounds the radar. `true_room` is the simulator in the true room: the ceiling. Convolutions stay as
+they are, and every head is trained on for the same number of steps.
+"""
+
+import argparse
+import copy
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.data.make import pose_of
+from mmweaver.data.plan import ACTIVITIES, PEOPLE_HEIGHT_M, SequenceSpec
+from mmweaver.data.store import StoredRoom, read_plan, read_rooms
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.experiments.results import write_result
+from mmweaver.experiments.weaver_table import TWIN, interval
+from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, load_activity
+from mmweaver.models.paper_method import load_paper, paper_field
+from mmweaver.models.weaver_method import FrameMotion, WovenRoom
+from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.weights import load_weights
+from mmweaver.scene.procedural.room import make_room
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.simulation.simulator import Simulator
+from mmweaver.training.activity_examples import activity_examples, maps_of
+from mmweaver.training.activity_training import TRAIN_SPLITS
+
+# chosen on rooms of the validation kind
+STEPS, OTHERS, OWN, LEARNING_RATE, REPEATS = 200, 24, 8, 3e-4, 2
+ALONE = "other_rooms"  # the head trained on without anything generated
+
+
+@dataclass(frozen=True)
+class UnseenRoom:
+    """A room that is to be recognised in, and one of another kind whose photo is the wrong one."""
+
+    room: StoredRoom
+    other: StoredRoom
+    generic: StoredRoom
+    plan_seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.room.kind}_{self.room.layout}"
+
+    @cached_property
+    def photographed(self) -> Scene:
+        return reconstruct(self.room.photo)
+
+    def true_scene(self, room: StoredRoom) -> Scene:
+        """What a stored room is like, beyond its photo."""
+        return make_room(room.kind, room.layout, self.plan_seed).scene(room.lighting)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Labelled:
+    """What the network sees of each frame of sequences, and what they show."""
+
+    frames: Tensor  # (sequence, frame, feature)
+    label: Tensor
+
+
+Maker = Callable[[PoseSequence, int], RadarCube]  # a motion and a seed
+Method = Callable[[UnseenRoom], Maker]
+
+
+def motions_in(room: UnseenRoom, each: int, seed: int) -> list[tuple[str, PoseSequence]]:
+    """`each` motions of every activity, placed in the room as its photo shows it; what has no place is left out."""
+    rng, motions = stream(seed, "activity gain", room.name), []
+    withheld = set(read_plan(room.room.folder.parent)["withheld"]["test_people"])
+    people = [person for person in range(len(PEOPLE_HEIGHT_M)) if person not in withheld]
+    for activity, sentences in ACTIVITIES.items():
+        for number in range(each):
+            spec = SequenceSpec(
+                index=number, person=int(rng.choice(people)), activity=activity, text=str(rng.choice(sentences)),
+                seed=int(rng.integers(2**31)), split="",
+            )  # fmt: skip
+            try:
+                pose = pose_of(spec, room.photographed, room.room.config, room.room.joints_m.shape[1])
+            except InputError:
+                continue
+            motions.append((activity, replace(pose, subject=TWIN + spec.person)))
+    return motions
+
+
+def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) -> Method:
+    """Our physics in some room."""
+
+    def method(room: UnseenRoom) -> Maker:
+        simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed)
+        num_frames = room.room.joints_m.shape[1]
+
+        def make(pose: PoseSequence, seed: int) -> RadarCube:
+            chunks = simulator.chunks(pose, num_frames=num_frames, seed=seed)
+            values = np.concatenate([radar_cube(chunk).values for chunk in chunks])
+            grid = CubeGrid.of(simulator.config, num_frames)
+            return RadarCube(values=values, grid=grid, config=simulator.config, scale=1.0)
+
+        return make
+
+    return method
+
+
+def woven_in(network: WeaverNetwork, scene_of: Callable[[UnseenRoom], Scene]) -> Method:
+    """The network, given a photo."""
+
+    def method(room: UnseenRoom) -> Maker:
+        config, num_frames = room.room.config, room.room.joints_m.shape[1]
+        woven = WovenRoom(network, scene_of(room), config, room_seed=1)
+        return lambda pose, seed: woven.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
+
+    return method
+
+
+def paper_in(weights: Path) -> Method:
+    """The paper's network."""
+    network = load_paper(weights)
+
+    def method(room: UnseenRoom) -> Maker:
+        config, num_frames = room.room.config, room.room.joints_m.shape[1]
+
+        def make(pose: PoseSequence, seed: int) -> RadarCube:
+            motion = FrameMotion.of(pose, config, num_frames)
+            return paper_field(network, room.photographed, config, motion.joints_m, motion.velocity_mps).cube()
+
+        return make
+
+    return method
+
+
+def unseen_rooms(
+    rooms: list[StoredRoom], plan: dict[str, Any], most: int, split: str = "test_room"
+) -> list[UnseenRoom]:
+    """Rooms of unseen kinds, the kinds in turn, each with a wrong photo of another of these kinds."""
+    chosen = sorted((room for room in rooms if split in room.split), key=lambda room: (room.layout, room.kind))
+    if not chosen:
+        raise InputError(f"the data set has no sequences of split {split!r}")
+    generic = next(room for room in rooms if "train" in room.split)
+    found = []
+    for room in chosen[:most]:
+        others = [other for other in chosen if other.kind != room.kind] or [generic]
+        found.append(UnseenRoom(room, others[room.layout % len(others)], generic, plan["seed"]))
+    return found
+
+
+def labelled(network: ActivityNetwork, cubes: Iterable[RadarCube], names: list[str]) -> Labelled:
+    """Cubes as the network's convolutions see them."""
+    doppler, angle = maps_of(cubes, network.config)
+    return Labelled(frames=seen(network, doppler, angle), label=torch.tensor([ACTIVITY_NAMES.index(n) for n in names]))
+
+
+def seen(network: ActivityNetwork, doppler: Tensor, angle: Tensor) -> Tensor:
+    """Features of each frame, a few sequences at a time."""
+    with torch.no_grad():
+        parts = zip(doppler.split(32), angle.split(32), strict=True)
+        return torch.cat([network.frames(one.float(), other.float()) for one, other in parts])
+
+
+def judged(
+    network: ActivityNetwork, base: Labelled, own: Labelled | None, test: Labelled, seed: int
+) -> tuple[float, float]:
+    """Accuracy and log loss on test sequences once the head has been trained on; a quarter of a batch is the room's."""
+    torch.manual_seed(seed)
+    head, rng = copy.deepcopy(network.head), stream(seed, "activity gain head")
+    adam = torch.optim.AdamW(head.parameters(), lr=LEARNING_RATE, weight_decay=1e-2)
+    head.train()
+    for _ in range(STEPS):
+        parts = [_drawn(base, OTHERS, rng), _drawn(base if own is None else own, OWN, rng)]
+        frames, label = (torch.cat(each) for each in zip(*parts, strict=True))
+        loss = torch.nn.functional.cross_entropy(head(frames), label, label_smoothing=0.1)
+        adam.zero_grad()
+        loss.backward()
+        adam.step()
+    head.eval()
+    with torch.no_grad():
+        scores = head(test.frames)
+    hits = (scores.argmax(dim=1) == test.label).float().mean()
+    return float(hits), float(torch.nn.functional.cross_entropy(scores, test.label))
+
+
+def _drawn(examples: Labelled, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
+    chosen = torch.from_numpy(rng.integers(len(examples.label), size=count))
+    return examples.frames[chosen], examples.label[chosen]
+
+
+def gains(
+    network: ActivityNetwork,
+    base: Labelled,
+    rooms: list[UnseenRoom],
+    methods: dict[str, Method],
+    *,
+    each: int,
+    split: str = "test_room",
+    after: Callable[[dict[str, np.ndarray]], object] = lambda found: None,
+) -> dict[str, np.ndarray]:
+    """{method: accuracy and log loss in each room, (room, 2)}; besides, the head trained on with nothing generated.
+
+    `after` is given what is there after each room, so that a long run that is stopped has told something.
+    """
+    found: dict[str, list[np.ndarray]] = {name: [] for name in (ALONE, *methods)}
+    for room in rooms:
+        indices = [index for index, name in enumerate(room.room.split) if name == split]
+        cubes = (room.room.cube(index) for index in indices)
+        test = labelled(network, cubes, [room.room.activity[index] for index in indices])
+        motions = motions_in(room, each, seed=0)
+        made: dict[str, Labelled | None] = {ALONE: None}
+        for name, method in methods.items():
+            make = method(room)
+            cubes = [make(pose, number) for number, (_, pose) in enumerate(motions)]
+            made[name] = labelled(network, cubes, [activity for activity, _ in motions])
+        for name, own in made.items():
+            each_seed = [judged(network, base, own, test, seed) for seed in range(REPEATS)]
+            found[name].append(np.mean(each_seed, axis=0))
+        after({name: np.stack(values) for name, values in found.items()})
+    return {name: np.stack(values) for name, values in found.items()}
+
+
+def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[str, Any]]:
+    """One row a method: accuracy and log loss, and how much better than trained on other rooms alone."""
+    names, rows = [room.name for room in rooms][: len(found[ALONE])], []
+    for method, values in found.items():
+        better = values - found[ALONE]
+        columns = {
+            "accuracy": (values[:, 0], "1"), "gain": (better[:, 0], "1"),
+            "log_loss": (values[:, 1], "nat"), "log_loss_gain": (-better[:, 1], "nat"),
+        }  # fmt: skip
+        metrics = {}
+        for metric, (each, unit) in columns.items():
+            mean, low, high = interval(each, names)
+            metrics[metric] = {"value": mean, "low": low, "high": high, "unit": unit}
+        metrics["accuracy"]["floor"] = 1 / len(ACTIVITY_NAMES)
+        rows.append({"method": method, "num_rooms": len(names), "metrics": metrics})
+    return rows
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--weights", type=Path, required=True, help="of recipe weaver")
+    parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
+    parser.add_argument("--paper", type=Path, help="of recipe paper")
+    parser.add_argument("--rooms", type=int, default=15)
+    parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    torch.set_num_threads(1)
+    stored, plan = read_rooms(arguments.data), read_plan(arguments.data)
+    rooms = unseen_rooms(stored, plan, arguments.rooms)
+    weaver, card = load_weights(arguments.weights)
+    judge = load_activity(arguments.judge, stored[0].config)
+    examples = activity_examples(arguments.data, TRAIN_SPLITS)
+    base = Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label)
+    methods: dict[str, Method] = {
+        "weaver": woven_in(weaver, lambda room: room.photographed),
+        "wrong_photo": woven_in(weaver, lambda room: reconstruct(room.other.photo)),
+        "generic_room_physics": simulated_in(lambda room: room.true_scene(room.generic), micro_seed=1),
+        "physics_in_photographed_room": simulated_in(lambda room: room.photographed, micro_seed=1),
+        "true_room": simulated_in(lambda room: room.true_scene(room.room), micro_seed=0),
+    }
+    if arguments.paper is not None:
+        methods["paper"] = paper_in(arguments.paper)
+    about = {"weights": card.__dict__, "data_plan": plan, "each": arguments.each, "steps": STEPS}
+
+    def write(found: dict[str, np.ndarray]) -> None:
+        rows = rows_of(found, rooms)
+        write_result(arguments.out, experiment="activity_gain", method="test_room", config=about, rows=rows)
+        room = rooms[len(found[ALONE]) - 1].name
+        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)  # noqa: T201
+
+    for row in rows_of(gains(judge, base, rooms, methods, each=arguments.each, after=write), rooms):
+        values = (f"{name} {m['value']:.3f} ({m['low']:.3f} to {m['high']:.3f})" for name, m in row["metrics"].items())
+        print(f"{row['method']:30}", *values)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+"""Which of twelve activities a cube shows: a small convolutional network on its log maps.
+
+    range-Doppler  (frame, 1, 64, 32) --convolutions--> (frame, 64, 8, 8) --over range--> (frame, 512)--+
+    range-azimuth  (frame, 2, 64, 32) --convolutions--> (frame, 64, 8, 8) --over both---> (frame, 64)---+
+                                                                                                        |
+        activity (12) <--linear-- mean, largest <--convolutions over frames (20, 128) <-----------------+
+
+The convolutional maps are also the features of the paper recipe's perceptual loss ("custom convolution-based mmWave
+feature extractor").
+"""
+
+from pathlib import Path
+
+import torch
+from torch import Tensor, nn
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.models.log_maps import NUM_ANGLE_MAPS, LogMaps
+from mmweaver.models.weights import load_into
+
+ACTIVITY_NAMES = (
+    "walking", "jogging", "waving", "clapping", "jumping jacks", "left-hand raise", "right-hand raise", "jumping",
+    "drinking seated", "sitting down", "squatting", "punching",
+)  # fmt: skip
+WIDTHS = (16, 32, 64)
+FRAME_WIDTH = 128
+DROPPED = 0.4
+
+
+class ActivityNetwork(nn.Module):
+    """Log maps (sequence, frame, 1, range, doppler) and (sequence, frame, 2, range, azimuth) -> (sequence, 12)."""
+
+    def __init__(self, config: RadarConfig):
+        super().__init__()
+        self.config, self.maps = config, LogMaps(config)
+        self.doppler = MapFeatures(1)
+        self.angle = MapFeatures(NUM_ANGLE_MAPS)
+        per_frame = WIDTHS[-1] * 2 * 8 + WIDTHS[-1] * 2
+        self.head = TimeHead(per_frame)
+
+    def of_cubes(self, values: Tensor) -> Tensor:
+        """Complex cubes (sequence, frame, range, doppler, antenna) in sqrt(mW) -> (sequence, 12)."""
+        return self(*self.maps(values))
+
+    def forward(self, doppler: Tensor, angle: Tensor) -> Tensor:
+        return self.head(self.frames(doppler, angle))
+
+    def frames(self, doppler: Tensor, angle: Tensor) -> Tensor:
+        """What is seen in each frame, (sequence, frame, feature)."""
+        shape = doppler.shape[:2]
+        speeds = self.doppler(doppler.flatten(0, 1))[-1]
+        places = self.angle(angle.flatten(0, 1))[-1]
+        seen = torch.cat([_pooled(speeds, (2,)), _pooled(places, (2, 3))], dim=1)
+        return seen.unflatten(0, shape)
+
+    def perceived(self, values: Tensor) -> list[Tensor]:
+        """Convolutional features of complex maps (map, range, doppler, antenna), for a perceptual loss."""
+        doppler, angle = self.maps(values)
+        return self.doppler(doppler) + self.angle(angle)
+
+
+class MapFeatures(nn.Module):
+    """Three convolutions over (map, channel, range, other); each map is told where range and the other axis begin."""
+
+    def __init__(self, channels: int):
+        super().__init__()
+        strides, before = ((2, 1), (2, 2), (2, 2)), channels + 1
+        blocks = []
+        for width, stride in zip(WIDTHS, strides, strict=True):
+            convolution = nn.Conv2d(before, width, 3, stride=stride, padding=1, bias=False)
+            blocks.append(nn.Sequential(convolution, nn.GroupNorm(4, width), nn.SiLU()))
+            before = width
+        self.blocks = nn.ModuleList(blocks)
+
+    def forward(self, maps: Tensor) -> list[Tensor]:
+        """Features after each convolution."""
+        along = torch.linspace(-1, 1, maps.shape[-1], device=maps.device).expand(len(maps), 1, maps.shape[-2], -1)
+        features, x = [], torch.cat([maps, along], dim=1)
+        for block in self.blocks:
+            x = block(x)
+            features.append(x)
+        return features
+
+
+class TimeHead(nn.Module):
+    """(sequence, frame, feature) -> (sequence, 12): convolutions over frames, their mean and largest."""
+
+    def __init__(self, features: int):
+        super().__init__()
+        self.first = nn.Linear(features, FRAME_WIDTH)
+        self.over_time = nn.Sequential(
+            nn.SiLU(), nn.Dropout(DROPPED), nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=1), nn.SiLU(),
+            nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=2, dilation=2), nn.SiLU(),
+        )  # fmt: skip
+        self.last = nn.Sequential(nn.Dropout(DROPPED), nn.Linear(2 * FRAME_WIDTH, len(ACTIVITY_NAMES)))
+
+    def forward(self, frames: Tensor) -> Tensor:
+        return self.last(self.summary(frames))
+
+    def summary(self, frames: Tensor) -> Tensor:
+        """(sequence, 256), what the decision is made from."""
+        x = self.over_time(self.first(frames).transpose(1, 2))
+        return torch.cat([x.mean(dim=2), x.amax(dim=2)], dim=1)
+
+
+def _pooled(maps: Tensor, axes: tuple[int, ...]) -> Tensor:
+    """Mean and largest over axes, the rest in a row."""
+    return torch.cat([maps.mean(dim=axes).flatten(1), maps.amax(dim=axes).flatten(1)], dim=1)
+
+
+def load_activity(file: Path, config: RadarConfig) -> ActivityNetwork:
+    """Reads weights of recipe `activity`. Raises InputError for any other file."""
+    network = ActivityNetwork(config)
+    load_into(network, file, recipe="activity")
+    return network

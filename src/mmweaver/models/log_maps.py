@@ -1,0 +1,58 @@
+"""A cube's pictures for networks: range-Doppler and range-azimuth in decibels above the receiver's noise.
+
+Everything is scaled by constants of the radar, never by the sequence itself, so that how strong a signal is stays
+visible. Differentiable in the cube.
+"""
+
+import math
+
+import torch
+from torch import Tensor, nn
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.virtual_array import azimuth_row
+from mmweaver.dsp.windows import hann
+
+NUM_AZIMUTHS, WIDEST_DEG = 32, 60.0
+NUM_ANGLE_MAPS = 2  # all that is there, and what moves
+MIDDLE_DB, SPREAD_DB = 20.0, 15.0  # above the noise; these two turn decibels to numbers around 0
+RESTING_BINS = 1  # to either side of zero Doppler a Hann window leaves what rests
+
+
+class LogMaps(nn.Module):
+    """Complex cubes in sqrt(mW) (..., range, doppler, antenna) -> range-Doppler (..., 1, range, doppler) and
+    range-azimuth (..., 2, range, azimuth), in units of 15 dB about 20 dB above the noise."""
+
+    def __init__(self, config: RadarConfig):
+        super().__init__()
+        place = config.antenna_position_m
+        row = azimuth_row(place, config.wavelength_m)
+        sine = torch.linspace(-WIDEST_DEG, WIDEST_DEG, NUM_AZIMUTHS).deg2rad().sin()
+        x = torch.tensor(2 * math.pi / config.wavelength_m * place[row, 0], dtype=torch.float32)
+        moving = (torch.arange(config.num_loops) - config.num_loops // 2).abs() > RESTING_BINS
+        self.noise_mw = config.noise_power_mw * _noise_share(config.num_samples) * _noise_share(config.num_loops)
+        self.row: Tensor
+        self.steering: Tensor
+        self.is_moving: Tensor
+        self.register_buffer("row", torch.from_numpy(row.astype("int64")), persistent=False)
+        self.register_buffer("steering", torch.polar(torch.ones(()), x[:, None] * sine) / len(row), persistent=False)
+        self.register_buffer("is_moving", moving.float(), persistent=False)
+
+    def forward(self, values: Tensor) -> tuple[Tensor, Tensor]:
+        power = values.abs().square().mean(dim=-1)
+        beams = (values[..., self.row] @ self.steering).abs().square()
+        count = float(len(self.is_moving))
+        everything, moving = beams.sum(dim=-2), (beams * self.is_moving[:, None]).sum(dim=-2)
+        noise = self.noise_mw * count / len(self.row)
+        angle = torch.stack([everything, moving], dim=-3)
+        return _numbers(power / self.noise_mw)[..., None, :, :], _numbers(angle / noise)
+
+
+def _numbers(ratio: Tensor) -> Tensor:
+    return (10 * torch.log10(ratio + 1) - MIDDLE_DB) / SPREAD_DB
+
+
+def _noise_share(num: int) -> float:
+    """Power of white noise after a normalised Hann window and its transform."""
+    window = hann(num)
+    return float((window**2).sum() / window.sum() ** 2)

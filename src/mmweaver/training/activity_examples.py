@@ -1,0 +1,78 @@
+"""Labelled log maps of a data set, for training and judging the activity network."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import RadarCube
+from mmweaver.data.store import read_rooms
+from mmweaver.models.activity_network import ACTIVITY_NAMES
+from mmweaver.models.log_maps import LogMaps
+
+GAIN_SPREAD_DB, SHIFT_BINS, SHIFT_FRAMES = 2.0, 6, 3  # how examples are varied
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActivityExamples:
+    """Sequences as log maps in half precision, about 0.25 MB each, with what each shows and where it was."""
+
+    doppler: Tensor  # (sequence, frame, 1, range, doppler)
+    angle: Tensor  # (sequence, frame, 2, range, azimuth)
+    label: Tensor  # (sequence,) index into ACTIVITY_NAMES
+    room: tuple[str, ...]
+    person: tuple[int, ...]
+    config: RadarConfig
+
+    def __len__(self) -> int:
+        return len(self.label)
+
+
+def maps_of(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[Tensor, Tensor]:
+    """Log maps of cubes in sqrt(mW), in half precision."""
+    maps, doppler, angle = LogMaps(config), [], []
+    with torch.no_grad():
+        for cube in cubes:
+            one, other = maps(torch.from_numpy(cube.values))
+            doppler.append(one.half())
+            angle.append(other.half())
+    return torch.stack(doppler), torch.stack(angle)
+
+
+def activity_examples(folder: Path, splits: tuple[str, ...]) -> ActivityExamples:
+    """The sequences of a data set that belong to some splits. Raises InputError where there are none."""
+    rooms = read_rooms(folder)
+    chosen = [(room, index) for room in rooms for index, split in enumerate(room.split) if split in splits]
+    if not chosen:
+        raise InputError(f"{folder} has no sequences of {' or '.join(splits)}; make more with: mmweaver dataset")
+    unknown = {room.activity[index] for room, index in chosen} - set(ACTIVITY_NAMES)
+    if unknown:
+        raise InputError(f"{folder} shows activities that this version does not know: {', '.join(sorted(unknown))}")
+    config = rooms[0].config
+    doppler, angle = maps_of((room.cube(index) for room, index in chosen), config)
+    return ActivityExamples(
+        doppler=doppler,
+        angle=angle,
+        label=torch.tensor([ACTIVITY_NAMES.index(room.activity[index]) for room, index in chosen]),
+        room=tuple(f"{room.kind}_{room.layout}" for room, _ in chosen),
+        person=tuple(int(room.person[index]) for room, index in chosen),
+        config=config,
+    )
+
+
+def varied(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
+    """The same scenes a little louder or fainter, nearer or farther, earlier or later; what leaves comes in again."""
+    from mmweaver.models.log_maps import SPREAD_DB
+
+    gain = torch.from_numpy(rng.normal(0, GAIN_SPREAD_DB / SPREAD_DB, (len(doppler), 1, 1, 1, 1)).astype(np.float32))
+    doppler, angle = doppler.float() + gain, angle.float() + gain
+    for one, other in zip(doppler, angle, strict=True):
+        steps = int(rng.integers(-SHIFT_FRAMES, SHIFT_FRAMES + 1)), int(rng.integers(-SHIFT_BINS, SHIFT_BINS + 1))
+        one.copy_(torch.roll(one, steps, (0, 2)))
+        other.copy_(torch.roll(other, steps, (0, 2)))
+    return doppler, angle

@@ -1,0 +1,81 @@
+"""The use experiment on a tiny data set: motions in the photographed room, the same for all; a gain that is one."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.data.generate import generate
+from mmweaver.data.plan import ACTIVITIES, DatasetPlan
+from mmweaver.data.store import read_plan, read_rooms
+from mmweaver.experiments.activity_gain import (
+    ALONE,
+    Labelled,
+    gains,
+    judged,
+    motions_in,
+    rows_of,
+    simulated_in,
+    unseen_rooms,
+)
+from mmweaver.models.activity_network import ActivityNetwork
+
+pytest.importorskip("zarr")
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data") / "set"
+    plan = DatasetPlan(
+        kinds=("office", "living_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4
+    )
+    generate(folder, plan, AWR1843)
+    return folder
+
+
+def _base(per_class: int, width: int) -> Labelled:
+    label = torch.arange(12).repeat(per_class)
+    return Labelled(frames=torch.randn(len(label), 4, width), label=label)
+
+
+def test_rows_of_a_room(data: Path):
+    (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
+    assert room.name == "living_room_0"
+    assert room.generic.kind == "office"
+    motions = motions_in(room, 1, seed=0)
+    assert {activity for activity, _ in motions} <= set(ACTIVITIES)
+    assert len(motions) >= 10
+    torch.manual_seed(0)
+    network = ActivityNetwork(AWR1843).eval()
+    methods = {"true_room": simulated_in(lambda one: one.true_scene(one.room), micro_seed=0)}
+    told: list[int] = []
+    base = _base(2, network.head.first.in_features)
+    found = gains(network, base, [room], methods, each=1, after=lambda one: told.append(len(one[ALONE])))
+    assert told == [1]
+    rows = rows_of(found, [room])
+    assert [row["method"] for row in rows] == [ALONE, "true_room"]
+    assert rows[0]["metrics"]["gain"]["value"] == 0
+    gain = rows[1]["metrics"]["gain"]["value"]
+    assert gain == pytest.approx(float(found["true_room"][0, 0] - found[ALONE][0, 0]))
+
+
+def test_data_of_the_room_helps_where_the_room_differs():
+    """In the room every activity looks like nothing elsewhere: only its own data can tell."""
+    torch.manual_seed(0)
+    network = ActivityNetwork(AWR1843)
+    width = network.head.first.in_features
+    centres = 3 * torch.randn(12, width)
+
+    def drawn(of: torch.Tensor, count: int) -> Labelled:
+        label = torch.arange(12).repeat(count)
+        return Labelled(frames=of[label][:, None] + 0.1 * torch.randn(len(label), 4, width), label=label)
+
+    elsewhere, here = centres, 3 * torch.randn(12, width)
+    base, test = drawn(elsewhere, 4), drawn(here, 2)
+    alone, loss = judged(network, base, None, test, 0)
+    helped, lower = judged(network, base, drawn(here, 4), test, 0)
+    assert alone < 0.5
+    assert helped > alone + 0.2
+    assert lower < loss
+    assert judged(network, base, None, test, 0) == (alone, loss)

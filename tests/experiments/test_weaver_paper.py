@@ -1,0 +1,40 @@
+"""Rows of the recipe `paper`: floors beside it, energy, learning curve."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.cubes import point_cube
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.experiments.weaver_paper import learning_curve, rows_of, scores_of
+from mmweaver.metrics.floors import all_zeros
+
+
+def _case(seed: int) -> Any:
+    cube = point_cube(AWR1843, num_frames=3, seed=seed)
+    room = SimpleNamespace(kind="office", layout=seed, cube=lambda index: cube)
+    return SimpleNamespace(room=room, index=0)
+
+
+def test_a_method_that_writes_zeros_scores_as_zeros_do():
+    cases = [_case(seed) for seed in (0, 1)]
+    scores = scores_of.__wrapped__(cases, lambda case: all_zeros(case.room.cube(0)))  # type: ignore[attr-defined]
+    rows = rows_of.__wrapped__(scores, cases)  # type: ignore[attr-defined]
+    assert [row["method"] for row in rows] == ["zeros", "static_mean", "paper"]
+    zeros, _, paper = (row["metrics"] for row in rows)
+    assert paper["cssim"]["value"] == zeros["cssim"]["value"] > 0.8
+    assert paper["nmse_db"]["value"] == pytest.approx(0.0)
+    assert paper["energy_db"]["value"] < -100
+    assert rows[0]["num_rooms"] == 2
+    assert np.isfinite([metric["value"] for metric in paper.values()]).all()
+
+
+def test_a_learning_curve_is_the_validations_of_the_log(tmp_path: Path):
+    assert learning_curve(tmp_path) == []
+    lines = [{"step": 20, "validation": None}, {"step": 40, "validation": {"loss": 0.5}}]
+    (tmp_path / "log.jsonl").write_text("\n".join(json.dumps(line) for line in lines))
+    assert learning_curve(tmp_path) == [{"step": 40, "loss": 0.5}]

@@ -1,0 +1,43 @@
+"""Tables of the network's use, made of small results."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.experiments.weaver_use_tables import activity_table, gain_table, paper_table, told_apart_table
+
+
+def _metric(value: float) -> dict:
+    return {"value": value, "low": value - 0.1, "high": value + 0.1, "floor": {"chance": 1 / 12}}
+
+
+def _put(folder: Path, name: str, rows: list[dict]) -> None:
+    file = folder / name
+    file.parent.mkdir(parents=True)
+    file.write_text(json.dumps({"rows": rows}))
+
+
+def test_they_show_values_with_intervals(tmp_path: Path):
+    accuracy = {"accuracy": _metric(0.5)}
+    _put(tmp_path, "activity_accuracy/activity.json",
+         [{"split": "test_room", "n": 4, "num_rooms": 2, "metrics": accuracy}])  # fmt: skip
+    gain = {**accuracy, "gain": _metric(0.05), "log_loss_gain": _metric(0.2)}
+    gains = [{"method": name, "metrics": gain} for name in ("other_rooms", "weaver")]
+    _put(tmp_path, "activity_gain/test_room.json", gains)
+    _put(tmp_path, "real_or_generated/test_room.json", [{"method": "twin", "metrics": accuracy}])
+    names = ("cssim", "psnr_db", "nmse_db", "nmse_active_db", "nmse_moving_db", "rd_ssim", "ra_ssim")
+    _put(tmp_path, "weaver_paper/test_room.json",
+         [{"method": "zeros", "metrics": {name: _metric(0.25) for name in names}}])  # fmt: skip
+    assert "| kinds of rooms | 4 | 2 | 50.0 % (40.0 to 60.0) | 8 % |" in activity_table(tmp_path)
+    shown = gain_table(tmp_path).splitlines()
+    assert shown[2] == "| other_rooms | 50.0 % (40.0 to 60.0) |  |  |"
+    assert shown[3].endswith("| +5.0 (-5.0 to +15.0) | +0.200 (+0.100 to +0.300) |")
+    assert "| twin | 50.0 % (40.0 to 60.0) | 50 % |" in told_apart_table(tmp_path)
+    assert "| zeros | 0.250 | 0.2 |" in paper_table(tmp_path)
+
+
+def test_without_results_they_say_so(tmp_path: Path):
+    with pytest.raises(InputError, match="run the experiment"):
+        gain_table(tmp_path)

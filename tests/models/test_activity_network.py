@@ -1,0 +1,46 @@
+"""The activity network reads cubes, and its file is no one else's."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.data.plan import ACTIVITIES
+from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, load_activity
+from mmweaver.models.weights import WeightsCard, save_weights
+
+
+def test_it_knows_the_activities_of_data_sets():
+    assert set(ACTIVITY_NAMES) == set(ACTIVITIES)
+
+
+def test_a_cube_gives_twelve_scores_whatever_its_frames():
+    network = ActivityNetwork(AWR1843).eval()
+    for frames in (20, 7):
+        cubes = 1e-4 * torch.randn(2, frames, 64, 32, 12, dtype=torch.complex64)
+        assert network.of_cubes(cubes).shape == (2, 12)
+
+
+def test_its_features_pass_slopes_to_the_cube():
+    network = ActivityNetwork(AWR1843).eval().requires_grad_(False)
+    patch = (1e-4 * torch.randn(2, 21, 32, 12, dtype=torch.complex64)).requires_grad_()
+    torch.stack([part.square().mean() for part in network.perceived(patch)]).sum().backward()
+    assert patch.grad is not None
+    assert float(patch.grad.abs().sum()) > 0
+
+
+def test_a_file_comes_back_and_others_are_refused(tmp_path: Path):
+    network = ActivityNetwork(AWR1843).eval()
+    card = WeightsCard(
+        recipe="activity", licence="MIT", dataset_sha256="", radar="awr1843", steps=1, seed=0, validation_loss=1.0,
+        mmweaver_version="0",
+    )  # fmt: skip
+    save_weights(tmp_path / "a.safetensors", network, card, half=False)
+    again = load_activity(tmp_path / "a.safetensors", AWR1843)
+    cubes = 1e-4 * torch.randn(1, 4, 64, 32, 12, dtype=torch.complex64)
+    assert torch.equal(again.of_cubes(cubes), network.of_cubes(cubes))
+    save_weights(tmp_path / "b.safetensors", network, WeightsCard(**{**card.__dict__, "recipe": "paper"}))
+    with pytest.raises(InputError, match="mmweaver train activity"):
+        load_activity(tmp_path / "b.safetensors", AWR1843)
