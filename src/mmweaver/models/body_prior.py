@@ -1,7 +1,7 @@
 """What physics says of a body's parts before the network does: how strongly each returns, and where its skin lies.
 
 The simulator's skin on a person of middle height, without rays: whatever faces the radar counts, nothing hides it. The
-network turns this up and down, as it does with what physics says of the room's surfaces. Reference: decisions 42, 96.
+network turns this up and down, as it does with what physics says of the room's surfaces. Reference: decisions 42, 100.
 """
 
 from dataclasses import dataclass
