@@ -24,13 +24,15 @@ from mmweaver.models.radar_view import carrier, points_of
 
 SPOTS = 6  # of skin, for each echo
 SPOT_SPREAD_M = 0.04
+HEARD, MISSED = 1e-4, 2e-3  # of the strongest resting echo's amplitude: in the layer; in a shadow
 
 
 @dataclass(frozen=True, kw_only=True)
 class StaticDraw:
     """Resting echoes with their phases: what the room returns, and what of it somebody hides."""
 
-    is_heard: Tensor  # (echo,) bool: those of which rows are kept
+    heard: Tensor  # (row,) which echoes have rows, the strongest first
+    num_strong: int  # rows that a shadow is noticed of
     at_range: Tensor  # (row, range)
     echo: Tensor  # (row, antenna) complex
 
@@ -38,10 +40,15 @@ class StaticDraw:
         """(range, antenna), complex."""
         return self.at_range.T @ self.echo
 
+    @property
+    def strong(self) -> Tensor:
+        """Those echoes that a shadow is noticed of."""
+        return self.heard[: self.num_strong]
+
     def hidden(self, is_hidden: Tensor) -> Tensor:
-        """What the hidden echoes (frame, echo) would have added to the layer, (frame, range, antenna)."""
-        rows = is_hidden[:, self.is_heard]
-        return torch.stack([self.at_range[row].T @ self.echo[row] for row in rows])
+        """What the hidden ones of the strong echoes (frame, echo) would have added to the layer."""
+        at_range, echo = self.at_range[: self.num_strong], self.echo[: self.num_strong]
+        return torch.stack([at_range[row].T @ echo[row] for row in is_hidden])
 
 
 def draw_static(resting: Echoes, response: PointResponse, room_seed: int) -> StaticDraw:
@@ -51,13 +58,17 @@ def draw_static(resting: Echoes, response: PointResponse, room_seed: int) -> Sta
     points = points_of(resting, response)
     turns = torch.from_numpy(2 * math.pi * rng.random(count)).to(torch.float32)
     points = replace(points, amplitude=torch.polar(points.amplitude, turns))
-    strong = points.amplitude.abs() > 1e-4 * points.amplitude.abs().max()
+    size = points.amplitude.abs() / points.amplitude.abs().max()
+    heard = size.argsort(descending=True)[: int((size > HEARD).sum())]
     points = Points(
-        range_bin=points.range_bin[strong], doppler_bin=points.doppler_bin[strong],
-        direction=points.direction[strong], amplitude=points.amplitude[strong],
+        range_bin=points.range_bin[heard], doppler_bin=points.doppler_bin[heard],
+        direction=points.direction[heard], amplitude=points.amplitude[heard],
     )  # fmt: skip
     at_range, _, _, _, steer = response.factors(points, response.axes())
-    return StaticDraw(is_heard=strong, at_range=at_range.to(steer.dtype), echo=points.amplitude[:, None] * steer)
+    return StaticDraw(
+        heard=heard, num_strong=int((size > MISSED).sum()), at_range=at_range.to(steer.dtype),
+        echo=points.amplitude[:, None] * steer,
+    )  # fmt: skip
 
 
 def draw_moving(moving: Echoes, aspect: Tensor, response: PointResponse, subject: int) -> Points:

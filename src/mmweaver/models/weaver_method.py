@@ -60,8 +60,9 @@ class WovenRoom:
         view = RoomView.stacked([scene if isinstance(scene, RoomView) else RoomView.of(scene, config)])
         with torch.inference_mode(), one_thread():
             self.code: RoomCode = network.encode_room(_on(view, device))
-            self.resting = _first(_on(self.code.resting, "cpu"))
-            self._drawn = draw_static(self.resting, self.radar.response, room_seed)
+            resting = _first(_on(self.code.resting, "cpu"))
+            self._drawn = draw_static(resting, self.radar.response, room_seed)
+            self._strong = _chosen(resting, self._drawn.strong)
             self.static = self._drawn.layer()
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
@@ -87,7 +88,7 @@ class WovenRoom:
 
     def _shadows(self, motions: Sequence[FrameMotion]) -> np.ndarray:
         """What the room does not return because somebody stands before it, (frame, range, doppler, antenna)."""
-        is_hidden = [hidden(self.resting, torch.from_numpy(motion.joints_m).float()) for motion in motions]
+        is_hidden = [hidden(self._strong, torch.from_numpy(motion.joints_m).float()) for motion in motions]
         lost = self._drawn.hidden(torch.stack(is_hidden).any(dim=0))
         response = self.radar.response
         axes = response.axes()
@@ -126,6 +127,10 @@ TensorsT = TypeVar("TensorsT", RoomView, Echoes)
 def _on(tensors: TensorsT, device: str) -> TensorsT:
     """A record of tensors on a device."""
     return replace(tensors, **{field.name: getattr(tensors, field.name).to(device) for field in fields(tensors)})
+
+
+def _chosen(echoes: Echoes, which: Tensor) -> Echoes:
+    return Echoes(**{field.name: getattr(echoes, field.name)[which] for field in fields(Echoes)})
 
 
 def _first(echoes: Echoes) -> Echoes:
