@@ -26,8 +26,7 @@ from mmweaver.tasks.radhar import radhar_recipe
 from mmweaver.tasks.recording_files import read_recordings
 from mmweaver.tasks.scoring import Judged, balanced_accuracy, judge, report
 from mmweaver.tasks.variation import Draw, draw
-from mmweaver.tasks.window_features import feature_matrix
-from mmweaver.tasks.zero_shot import TrainingSet, own_cache, training_set
+from mmweaver.tasks.zero_shot import TrainingSet, measured, own_cache, training_set
 
 METRICS = {
     "window": "balanced accuracy of windows of 2 s, one after the other",
@@ -139,9 +138,7 @@ def freeze(name: str, caches: list[Path], out: Path) -> Path:
         recipe = radhar_recipe()
         files = sorted(cache.glob("*_*_*.npz"))
         windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
-        features, names = feature_matrix(windows)
-        labels = np.array([window.label for window in windows])
-        made.append(TrainingSet(features=features, labels=labels, names=names))
+        made.append(measured(windows))
         sources.append(
             {
                 "commit": (cache / "commit.txt").read_text(encoding="utf-8").strip(),

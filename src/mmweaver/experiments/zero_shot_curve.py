@@ -55,7 +55,7 @@ def run(name: str, recordings: Path, out: Path) -> Path:
     people = read_recordings(recordings, frozen.labels)
     windows = [window for one in people for window in one.windows(frozen.window_s)]
     owner = np.repeat(np.arange(len(people)), [len(one.windows(frozen.window_s)) for one in people])
-    features, _ = feature_matrix(windows)
+    features, _ = feature_matrix(windows, frozen.made.names)
     labels = np.array([window.label for window in windows])
     kinds = np.array([one.label for one in people])
     rows: list[dict[str, Any]] = []

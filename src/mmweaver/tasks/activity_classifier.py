@@ -29,10 +29,14 @@ class ClassifierSettings:
 
 
 class ActivityClassifier:
-    """Extremely randomised trees and gradient boosting. `classes` are the labels in the order of the columns."""
+    """Extremely randomised trees and gradient boosting. `classes` are the labels in the order of the columns.
 
-    def __init__(self, settings: ClassifierSettings | None = None):
+    `names` of its features say what is to be measured of a window; None = all that are measured.
+    """
+
+    def __init__(self, settings: ClassifierSettings | None = None, names: tuple[str, ...] | None = None):
         self.settings = settings or ClassifierSettings()
+        self.names = names
         self.classes: tuple[str, ...] = ()
         self._models: list[Any] = []
         self._used = np.zeros(0, bool)
