@@ -22,6 +22,7 @@ from mmweaver.experiments.results import commit, write_result
 from mmweaver.tasks.activity_classifier import ClassifierSettings
 from mmweaver.tasks.frozen_activity import FOLDER, load_frozen, save_frozen
 from mmweaver.tasks.generation import Recipe, generate_window, read_window, write_window
+from mmweaver.tasks.point_recording import PointRecording
 from mmweaver.tasks.radhar import radhar_recipe
 from mmweaver.tasks.recording_files import read_recordings
 from mmweaver.tasks.scoring import Judged, balanced_accuracy, judge, report
@@ -133,20 +134,9 @@ def freeze(name: str, caches: list[Path], out: Path) -> Path:
 
     results/zero_shot/frozen.json says the same, with the digest of the features.
     """
-    made, sources = [], []
-    for cache in caches:
-        recipe = radhar_recipe()
-        files = sorted(cache.glob("*_*_*.npz"))
-        windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
-        made.append(measured(windows))
-        sources.append(
-            {
-                "commit": (cache / "commit.txt").read_text(encoding="utf-8").strip(),
-                "seed": int(files[0].stem.split("_")[1]),
-                "windows": len(files),
-                "recipe": json.loads((cache / "recipe.json").read_text(encoding="utf-8")),
-            }
-        )
+    read = [read_cache(cache) for cache in caches]
+    made = [measured(windows) for windows, _ in read]
+    sources = [source for _, source in read]
     pooled = TrainingSet(
         features=np.concatenate([one.features for one in made]),
         labels=np.concatenate([one.labels for one in made]),
@@ -154,6 +144,21 @@ def freeze(name: str, caches: list[Path], out: Path) -> Path:
     )
     save_frozen(name, pooled, {"classifier": asdict(ClassifierSettings()), "sources": sources})
     return tell_frozen(name, out)
+
+
+def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
+    """The windows of a cache, and where they come from: commit, seed, how many, core seconds, recipe."""
+    recipe = radhar_recipe()
+    files = sorted(cache.glob("*_*_*.npz"))
+    windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
+    source = {
+        "commit": (cache / "commit.txt").read_text(encoding="utf-8").strip(),
+        "seed": int(files[0].stem.split("_")[1]),
+        "windows": len(files),
+        "core_seconds": sum(float(path.read_text(encoding="utf-8")) for path in cache.glob("seconds_*.txt")),
+        "recipe": json.loads((cache / "recipe.json").read_text(encoding="utf-8")),
+    }
+    return windows, source
 
 
 def tell_frozen(name: str, out: Path) -> Path:
@@ -168,11 +173,16 @@ def generate(recipe: Recipe, cache: Path, *, each: int, seed: int, part: int = 0
     """Fills a cache; several processes may share one, each with its part. Says in it what made it."""
     own_cache(cache, recipe)
     (cache / "commit.txt").write_text(f"{commit()}\n", encoding="utf-8")
+    note = cache / f"seconds_{part}.txt"
+    spent_s = float(note.read_text(encoding="utf-8")) if note.exists() else 0.0
     for index in range(part, each, parts):
         for label in recipe.activities:
             path = cache / f"{label}_{seed}_{index}.npz"
             if not path.exists():
+                began = time.process_time()
                 write_window(path, generate_window(recipe, label, index, seed))
+                spent_s += time.process_time() - began
+                note.write_text(f"{spent_s:.1f}\n", encoding="utf-8")
 
 
 def main() -> None:

@@ -17,9 +17,12 @@ ACTIVITIES = {
     ),
     "squats": ("a person squats", "a person squats quickly", "a person squats slowly"),
     "walk": (
-        "a person walks slowly back and forth", "a person walks back and forth", "a person walks slowly back and forth",
-        "a person walks slowly", "a person walks slowly towards the radar", "a person walks towards the radar",
-        "a person walks slowly away", "a person walks slowly in a circle",
+        "a person walks slowly back and forth", "a person walks back and forth",
+        "a person walks slowly towards the radar", "a person walks towards the radar", "a person walks slowly away",
+        "a person walks slowly towards the radar, stops, turns around and walks slowly away",
+        "a person walks towards the radar, stops, turns around and walks away",
+        "a person walks slowly away, stops, turns around and walks slowly towards the radar",
+        "a person walks slowly away, turns around and walks slowly towards the radar",
     ),
 }  # fmt: skip
 

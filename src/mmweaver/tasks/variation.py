@@ -20,25 +20,25 @@ class Variation:
     and how bright arms and legs are beside the trunk.
     """
 
-    tempo: Span = (0.55, 1.6)
+    tempo: Span = (0.75, 1.6)
     way_tempo: float = 0.85
-    vigour: Span = (0.8, 1.15)
+    vigour: Span = (0.6, 1.15)
     turn_deg: float = 25.0
     roam_mps: Span = (0.0, 0.06)
     distance_m: Span = (1.1, 2.6)
     azimuth_deg: Span = (-22.0, 22.0)
     height_m: Span = (1.5, 1.95)
-    radar_height_m: Span = (0.8, 1.4)
+    radar_height_m: Span = (1.0, 1.5)
     tilt_deg: Span = (-10.0, 10.0)
-    elevation_beamwidth_deg: Span = (22.0, 44.0)
-    noise_db: Span = (8.0, 20.0)
-    clutter_db: Span = (-20.0, 5.0)
+    elevation_beamwidth_deg: Span = (20.0, 40.0)
+    noise_db: Span = (10.0, 22.0)
+    clutter_db: Span = (-15.0, 5.0)
     threshold_db: Span = (-4.0, 3.0)
     gain_db: Span = (-16.0, 4.0)
     albedo_db: Span = (-6.0, 4.0)
-    skin_exponents: tuple[float, ...] = (40.0, 100.0, 200.0, 400.0)
+    skin_exponents: tuple[float, ...] = (40.0, 100.0, 200.0)
     arms_db: Span = (-8.0, 6.0)
-    legs_db: Span = (-24.0, -6.0)
+    legs_db: Span = (-14.0, 0.0)
     skin_points: int = 4000
     wall_m: Span = (2.9, 5.4)
     wall_share: float = 0.3

@@ -17,6 +17,7 @@ STILL_MPS = 0.1
 SPEED_EDGES_MPS = (0.1, 0.9, 1.5, 2.2, 3.2, 99.0)  # of one, two, three, four and five, and more bins of 0.615 m/s
 SEGMENTS = 4
 FEWEST = 3  # points for a spread
+UNFORETOLD = {"up", "uneven"}  # words in names of features that are left out by default
 
 
 def window_features(window: PointRecording) -> Row:
@@ -37,12 +38,13 @@ def window_features(window: PointRecording) -> Row:
 def feature_matrix(
     windows: list[PointRecording], names: tuple[str, ...] | None = None
 ) -> tuple[Float[np.ndarray, "window feature"], tuple[str, ...]]:
-    """Features of many windows, float32, and their names; by default all but what hangs on a height.
+    """Features of many windows, float32, and their names; by default all but what no simulation can foretell.
 
-    Heights come from the phase between two rows of antennas: a tilted radar or an uncalibrated board shifts them.
+    That are heights (the phase between two rows of antennas: a tilted radar or an uncalibrated board shifts them), and
+    how unevenly points are spread over time, which is the vertical beam's doing.
     """
     rows = [{**window_features(window), **body_features(window, STILL_MPS)} for window in windows]
-    chosen = names or tuple(name for name in rows[0] if "up" not in name.split("_"))
+    chosen = names or tuple(name for name in rows[0] if not UNFORETOLD & set(name.split("_")))
     return np.array([[row[name] for name in chosen] for row in rows], np.float32), chosen
 
 

@@ -51,12 +51,14 @@ def training_set(
     return measured(windows, copies=copies, seed=seed)
 
 
-def measured(windows: list[PointRecording], *, copies: int = COPIES, seed: int = 0) -> TrainingSet:
-    """Features of windows and of so many disturbed copies of each."""
+def measured(
+    windows: list[PointRecording], *, copies: int = COPIES, seed: int = 0, names: tuple[str, ...] | None = None
+) -> TrainingSet:
+    """Features of windows, and after them of the first disturbed copies of all, the second, and so on."""
     copied = [
-        disturbed(window, stream(seed, "disturbed", window.name, copy)) for window in windows for copy in range(copies)
+        disturbed(window, stream(seed, "disturbed", window.name, copy)) for copy in range(copies) for window in windows
     ]
-    features, names = feature_matrix([*windows, *copied])
+    features, names = feature_matrix([*windows, *copied], names)
     return TrainingSet(
         features=kept_digits(features), labels=np.array([one.label for one in [*windows, *copied]]), names=names
     )
