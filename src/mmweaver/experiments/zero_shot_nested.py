@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.experiments.results import write_result
-from mmweaver.experiments.zero_shot import digest, read_cache, was_looked_at
+from mmweaver.experiments.zero_shot import digest, in_first_half, read_cache
 from mmweaver.tasks.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.tasks.body_features import body_features
 from mmweaver.tasks.point_recording import PointRecording
@@ -91,7 +91,7 @@ def run(caches: list[Path], recordings: Path, out: Path) -> Path:
     windows = [window for one, _ in read for window in one]
     people = read_recordings(recordings, sorted({window.label for window in windows}))
     real = [window for one in people for window in one.windows(windows[0].duration_s)]
-    first = np.array([was_looked_at(window.name) for window in real])
+    first = np.array([in_first_half(window.name) for window in real])
     truth = np.array([window.label for window in real])
     found = guesses(windows, real)
     chosen = nested(found, truth, first)
