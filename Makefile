@@ -29,6 +29,9 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py
 	$(BIN)/python benchmarks/inr_decode.py
 	$(BIN)/python benchmarks/scatterer_decode.py
+	$(BIN)/python benchmarks/weaver.py
+	$(BIN)/python benchmarks/devices.py
+	$(BIN)/python benchmarks/dataset.py
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

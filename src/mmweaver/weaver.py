@@ -17,6 +17,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
+from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
@@ -37,6 +38,7 @@ from mmweaver.motion.timing import schedule
 from mmweaver.pictures.view import View
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.capture_photo import read_capture_photo
+from mmweaver.scene.landmarks import with_told
 from mmweaver.scene.panes import with_panes
 from mmweaver.scene.photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
@@ -56,6 +58,14 @@ class Room:
     scene: Scene
     inputs: dict[str, Any]
     seconds: dict[str, float]
+
+    def with_landmarks(self, *told: tuple[str, Place]) -> "Room":
+        """The room with things at places that you know: `("door", (0.9, 2.8))`, metres right of and ahead of the radar.
+
+        They take the place of what was found of that kind. Raises InputError for what no sentence goes to.
+        """
+        inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in told]}
+        return replace(self, scene=with_told(self.scene, told), inputs=inputs)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,7 +125,8 @@ class Weaver:
     `method` is a name in METHODS, `radar` a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
     hears the name of each stage as it begins. `points` chooses the point cloud: "cfar", this project's own, or
     "firmware", that of TI's demo; `firmware` are its settings (default: what the radar's .cfg or preset says).
-    `weights`: a file of `mmweaver train`, for the method "weaver". Raises InputError for what is not known.
+    `weights`: a file or folder of `mmweaver train`, or a Hub name, for the method "weaver"; `from_pretrained` is the
+    short way. Raises InputError for what is not known.
     """
 
     def __init__(
@@ -131,7 +142,7 @@ class Weaver:
         self.method_name = method
         if weights is not None and method != "weaver":
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
-        self.method = Woven(Path(weights)) if weights is not None else METHODS[method]()
+        self.method = Woven(_found(weights)) if weights is not None else METHODS[method]()
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
         check_points(points, self.radar)
@@ -139,6 +150,23 @@ class Weaver:
         if points == "firmware" and firmware is None:
             firmware = FirmwareSettings() if isinstance(radar, RadarConfig) else load_firmware(str(radar))
         self.firmware = firmware
+
+    @classmethod
+    def from_pretrained(
+        cls, source: str | Path, radar: str | Path | RadarConfig | None = None, *, revision: str | None = None,
+        **options: Any,
+    ) -> "Weaver":  # fmt: skip
+        """A weaver whose signals a trained network writes.
+
+        `source`: a weight file, a folder of `mmweaver train`, or a name on the Hub (`revision`: which of its versions).
+        `radar` defaults to the one it was trained for; `options` as for the class. Raises InputError for files that are
+        damaged, foreign or of another version.
+        """
+        from mmweaver.models.weights import read_card
+
+        file = _found(source, revision)
+        trained_for = read_card(file).radar
+        return cls("weaver", radar or (trained_for if trained_for in PRESETS else "awr1843"), weights=file, **options)
 
     def read_room(
         self, rgb: str | Path, depth: str | Path | None = None, camera: str | Path | None = None, **seen: Any
@@ -209,15 +237,15 @@ class Weaver:
         seed: int = 0,
         at: Place | Sequence[Place | None] | None = None,
         heading_rad: float | None = None,
-        height_m: float | None = None,
+        height_m: float | Sequence[float | None] | None = None,
         as_recorded: bool = False,
         keep_adc: bool = True,
     ) -> Generation:
         """The signal of who does in the room what the text says (one text a person), or what a `motion` shows.
 
-        A `motion` comes from `read_motion` or a motion model; a text beside it only names it. `heading_rad`
-        (from +x towards +y) is where its body faces first, `as_recorded` takes its places as the radar's own.
-        `height_m` is the one body's height; a recorded one is scaled to it.
+        A `motion` comes from `read_motion` or a motion model; it is the first person's, and the first text only names
+        it. `heading_rad` (from +x towards +y) is where its body faces first, `as_recorded` takes its places as the
+        radar's own. `height_m` is the body's height, for several people a list; a recorded body is scaled to it.
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
@@ -234,19 +262,18 @@ class Weaver:
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
+            texts, starts, heights = texts_of(text), places_of(text, at), heights_of(text, height_m)
+            recorded = None
             if motion is not None:
-                clip = motion if height_m is None else motion.scaled_to(height_m)
-                people: tuple[Motion, ...] = (
-                    place_clip(
-                        clip, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
-                        start_m=places_of(text, at)[0], heading_rad=heading_rad, as_recorded=as_recorded,
-                    ),
+                clip = motion if heights[0] is None else motion.scaled_to(heights[0])
+                recorded = place_clip(
+                    clip, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
+                    start_m=starts[0], heading_rad=heading_rad, as_recorded=as_recorded,
                 )  # fmt: skip
-            else:
-                people = compose_company(
-                    texts_of(text), room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
-                    starts_m=places_of(text, at), height_m=height_m,
-                )  # fmt: skip
+            people = compose_company(
+                texts, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m, starts_m=starts,
+                heights_m=heights, first=recorded,
+            )  # fmt: skip
         motions = tuple(person.pose for person in people)
         signal = self.method(
             room.scene, motions, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
@@ -274,6 +301,12 @@ class Weaver:
             cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, poses=poses,
             motions=motions, scene=room.scene, meta=meta, stages=stages,
         )  # fmt: skip
+
+
+def _found(weights: str | Path, revision: str | None = None) -> Path:
+    from mmweaver.models.find_weights import find_weights
+
+    return find_weights(weights, revision=revision)
 
 
 def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...]) -> list[str]:
@@ -333,6 +366,17 @@ def places_of(text: str | Sequence[str] | None, at: Place | Sequence[Place | Non
     )
 
 
+def heights_of(text: str | Sequence[str] | None, height_m: float | Sequence[float | None] | None) -> list[float | None]:
+    """Each person's height, None = drawn. Raises InputError for more heights than people."""
+    given = [height_m] if height_m is None or isinstance(height_m, int | float) else list(height_m)
+    texts = texts_of(text)
+    if len(given) > len(texts):
+        raise InputError(f"{len(texts)} people need at most {len(texts)} heights, not {len(given)}")
+    if len(given) == 1 and given[0] is not None and len(texts) > 1 and isinstance(height_m, int | float):
+        raise InputError(f"{len(texts)} people need a list of heights, one for each (--height for each)")
+    return [None if height is None else float(height) for height in given] + [None] * (len(texts) - len(given))
+
+
 def check_request(
     radar: RadarConfig,
     *,
@@ -371,10 +415,7 @@ def check_request(
             f" {most} are made at a time"
         )
     if motion is not None:
-        if len(texts) > 1:
-            raise InputError("a recorded motion is one person's; give one text with it, or none")
         check_lasts(motion, frames * config.frame_period_s)
-    else:
-        for one in texts:
-            schedule(parse(one), frames * config.frame_period_s)
+    for one in texts[0 if motion is None else 1 :]:
+        schedule(parse(one), frames * config.frame_period_s)
     return config

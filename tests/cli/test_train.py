@@ -1,12 +1,22 @@
 """mmweaver train, and generate with what it wrote."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+import torch
 
 from mmweaver.cli.main import main
+from mmweaver.core.errors import InputError
+from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.weights import WeightsCard, save_weights
+from mmweaver.weaver import Weaver
 
 pytest.importorskip("zarr")
 pytest.importorskip("transformers")
@@ -25,6 +35,14 @@ def test_train_then_generate(tmp_path: Path, capsys: pytest.CaptureFixture[str])
         assert np.isfinite(radar["cube"]).all()
     meta = json.loads((out / "meta.json").read_text())
     assert meta["method"] == "weaver"
+    assert list((run / "pictures").glob("*.png"))
+    assert (run / "README.md").read_text().startswith("---\nlicense: mit")
+    # the same by the folder, in Python
+    weaver = Weaver.from_pretrained(run)
+    assert (weaver.method_name, weaver.radar.name) == ("weaver", "awr1843")
+    text, room = meta["text"], weaver.sample_room()
+    with np.load(out / "radar.npz") as radar:
+        assert np.array_equal(weaver.generate(room, text, frames=16).cube.values, radar["cube"])
 
 
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
@@ -39,3 +57,85 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
         assert told in error
         assert error.count("\n") == 0
     assert not (tmp_path / "g").exists()
+
+
+def test_killed_and_called_again_it_ends_with_the_same_bits(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """A process that is killed with no chance to say good-bye."""
+    from safetensors.torch import load_file
+
+    data = str(tmp_path / "data")
+    rooms = ["--rooms", "office,dining_room", "--layouts", "1", "--sequences", "2", "--frames", "3", "--quiet"]
+    assert main(["dataset", data, *rooms]) == 0
+    words = ["train", "weaver", "--data", data, "--steps", "6", "--batch", "1", "--save-every", "0", "--json"]
+    words += ["--validate-every", "3"]
+    assert main([*words, "--out", str(tmp_path / "whole")]) == 0
+    whole = json.loads(capsys.readouterr().out)
+    out = tmp_path / "killed"
+    command = [sys.executable, "-m", "mmweaver", *words, "--out", str(out)]
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2] / "src"), "OMP_NUM_THREADS": "1"}
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120
+    while process.poll() is None and time.monotonic() < deadline:
+        if (out / "checkpoint.pt").is_file():
+            process.send_signal(signal.SIGKILL)
+            break
+        time.sleep(0.01)
+    assert process.wait(timeout=60) == -signal.SIGKILL
+    assert not (out / "weights.safetensors").exists()
+    done = torch.load(out / "checkpoint.pt", weights_only=True)["done"]
+    assert 1 <= done < 6
+    assert main([*words, "--out", str(out)]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["validation_loss"] == whole["validation_loss"]
+    for name in ("weights.safetensors", "best.safetensors"):
+        one, other = load_file(out / name), load_file(tmp_path / "whole" / name)
+        assert one.keys() == other.keys()
+        assert all(torch.equal(tensor, other[own]) for own, tensor in one.items())
+    steps = [[json.loads(line)["step"] for line in (run / "log.jsonl").read_text().splitlines()]
+             for run in (out, tmp_path / "whole")]  # fmt: skip
+    assert steps[0] == steps[1] == [3, 6]
+
+
+def test_from_pretrained_refuses_before_any_room_is_read(tmp_path: Path):
+    (tmp_path / "weights.safetensors").write_bytes(b"PK\x03\x04 a pickle in a zip")
+    with pytest.raises(InputError, match="pickled"):
+        Weaver.from_pretrained(tmp_path)
+
+
+def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    torch.manual_seed(0)
+    start = tmp_path / "start"
+    start.mkdir()
+    card = WeightsCard(recipe="weaver", licence="CC-BY-4.0", dataset_sha256="", radar="awr1843", steps=0, seed=0,
+                       validation_loss=0.0, mmweaver_version="0")  # fmt: skip
+    save_weights(start / "weights.safetensors", WeaverNetwork(), card)
+    text = "a person walks towards the radar"
+    for name in ("one", "two"):
+        words = ["generate", "--demo", "--text", text, "--frames", "6", "--out", str(tmp_path / name), "--quiet"]
+        assert main(words) == 0
+    capsys.readouterr()
+    words = ["train", "weaver", "--from", str(start), "--captures", str(tmp_path / "one"), str(tmp_path / "two")]
+    assert main([*words, "--out", str(tmp_path / "tuned"), "--steps", "3", "--batch", "1", "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["captures"], summary["with_joints"]) == (2, 2)
+    assert summary["validation_loss"] < summary["loss_before"]
+    assert "license: cc-by-4.0" in (tmp_path / "tuned" / "README.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ([], "what to train on"), (["--captures", "a"], "give them with --from"),
+        (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "photo of --captures"),
+        (["--captures", "a", "--from", "w", "--rgb", "p.png"], "belong together"),
+        (["--data", "d", "--save-every", "-1"], "0 or more seconds"), (["--data", "d", "--device", "no"], "device"),
+    ],
+)  # fmt: skip
+def test_options_that_contradict_are_one_line(
+    words: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    assert main(["train", "weaver", "--out", str(tmp_path / "out"), *words]) == 2
+    error = capsys.readouterr().err.strip()
+    assert told in error
+    assert error.count("\n") == 0
+    assert not (tmp_path / "out").exists()

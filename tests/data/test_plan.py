@@ -43,7 +43,7 @@ def test_a_leak_is_found(split: str):
 
 
 def test_what_shows_two_withheld_things_is_not_made():
-    both = Withheld().split(kind="living_room", layout=0, person=0, activity="jumping")
+    both = Withheld().split(kind="living_room", layouts_after=5, person=0, activity="jumping")
     assert both == ""
 
 

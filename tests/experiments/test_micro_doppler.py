@@ -26,6 +26,7 @@ def walk() -> Motion:
     """A library walk at 1.2 m/s along x."""
     joints = np.zeros((round(SECONDS * RATE_HZ), 22, 3))
     joints[..., 0] = (np.arange(len(joints)) / RATE_HZ * SPEED_MPS)[:, None]
+    joints[:, [4, 5], 2], joints[:, [7, 8], 2] = -0.41, -0.82  # knees and ankles: legs have a length
     return library(Motion(joints_m=joints, height_m=1.75, subject=3, label="made up"), "walking", 1)
 
 

@@ -7,7 +7,7 @@ import torch
 
 from mmweaver.core.errors import InputError
 from mmweaver.models.weaver_network import WeaverNetwork
-from mmweaver.models.weights import WeightsCard, load_weights, save_weights
+from mmweaver.models.weights import WeightsCard, load_weights, read_card, save_weights
 
 pytest.importorskip("transformers")
 CARD = WeightsCard(
@@ -50,3 +50,44 @@ def test_damaged_foreign_and_pickled_files_are_refused_in_one_line(file, tmp_pat
         with pytest.raises(InputError, match=told) as caught:
             load_weights(wrong)
         assert "\n" not in str(caught.value)
+
+
+def test_values_that_changed_are_found(file, tmp_path):
+    """A flipped bit fits the network as well as the right one; only the sum tells."""
+    flipped = bytearray(file.read_bytes())
+    flipped[-1000] ^= 1
+    wrong = tmp_path / "flipped.safetensors"
+    wrong.write_bytes(flipped)
+    with pytest.raises(InputError, match="not those that were written"):
+        load_weights(wrong)
+
+
+def test_cards_of_before_are_read(file, tmp_path):
+    """Fields that came later have defaults; others must be there."""
+    import json
+
+    from safetensors.torch import save_file
+
+    own = {"recipe": "weaver", "licence": "MIT", "dataset_sha256": "", "radar": "awr1843", "steps": 1, "seed": 0,
+           "validation_loss": 1.0, "mmweaver_version": "0"}  # fmt: skip
+    for card, is_read in ((own, True), ({"recipe": "weaver"}, False)):
+        header = {"format": "mmweaver weights", "format_version": "1", "card": json.dumps(card)}
+        save_file({"a": torch.zeros(3)}, tmp_path / "old.safetensors", metadata=header)
+        if is_read:
+            assert read_card(tmp_path / "old.safetensors").tuned_from == ""
+        else:
+            with pytest.raises(InputError, match="header"):
+                read_card(tmp_path / "old.safetensors")
+
+
+def test_others_may_read_the_file(file):
+    assert file.stat().st_mode & 0o400
+    assert file.stat().st_mode & 0o777 == 0o666 & ~_umask()
+
+
+def _umask() -> int:
+    import os
+
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

@@ -64,3 +64,19 @@ def test_a_crowd_is_refused_and_so_are_places_too_near():
         compose_company([TEXTS[3]] * 2, SCENE, seed=0, starts_m=[(0.0, 2.0), (0.1, 2.0)], **REST)
     with pytest.raises(InputError, match="walk"):
         compose_company(["a person photosynthesises", TEXTS[0]], SCENE, seed=0, **REST)
+
+
+def test_heights_are_each_persons_own():
+    one, two, three = compose_company(TEXTS[:3], SCENE, seed=0, heights_m=[1.7, None, 1.9], **REST)
+    assert (one.pose.height_m, three.pose.height_m) == (1.7, 1.9)
+    assert 1.6 < two.pose.height_m < 2.0
+
+
+def test_who_is_there_already_stays_and_the_others_keep_clear():
+    recorded = compose(TEXTS[0], SCENE, seed=9, **REST)
+    people = compose_company(["", *TEXTS[1:3]], SCENE, seed=0, first=recorded, **REST)
+    assert people[0] is recorded
+    assert [person.pose.subject for person in people] == [0, 1, 2]
+    for one, other in combinations(people, 2):
+        assert gaps_m(one.pose, other.pose)[0] >= 0.5
+    assert compose_company([""], SCENE, seed=0, first=recorded, **REST) == (recorded,)

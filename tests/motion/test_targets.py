@@ -49,6 +49,8 @@ def test_what_the_room_lacks_is_refused_with_what_it_has():
         _placed(scene, "window")
     with pytest.raises(InputError, match="say a direction instead"):
         _placed(room(), "door")
+    with pytest.raises(InputError, match="--landmark window=X,Y"):
+        _placed(scene, "window")
     assert _placed(scene, "desk").path  # a desk is a table
 
 

@@ -7,20 +7,15 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.scene.builtin_segmenter import (
-    CHANNELS,
     GROUP_NAMES,
     GROUPS,
     WEIGHTS,
-    grid_features,
     group_of_classes,
     load_network,
     segment_builtin,
 )
 from mmweaver.scene.coco_stuff import NAMES
-from mmweaver.scene.depth_grid import make_grid
-from mmweaver.scene.gravity import find_gravity
 from mmweaver.scene.procedural.room import make_room
-from mmweaver.scene.sample import sample_photo
 
 pytest.importorskip("safetensors")
 
@@ -30,21 +25,6 @@ def test_groups_are_classes_of_coco_stuff_and_each_class_is_in_one():
     assert set(members) <= set(NAMES)
     assert len(members) == len(set(members))
     assert group_of_classes(("couch", "pillow", "person")).tolist() == [GROUP_NAMES.index("couch")] * 2 + [0]
-
-
-def test_features_tell_height_slope_and_what_was_measured():
-    photo, _ = sample_photo()
-    grid = make_grid(photo)
-    gravity = find_gravity(grid)
-    from mmweaver.geometry.rotations import level_from_camera
-
-    features = grid_features(grid, level_from_camera(gravity.up_camera), gravity.floor_z_m)
-    assert features.shape == (CHANNELS, *grid.depth_m[::2, ::2].shape)
-    assert np.isfinite(features).all()
-    assert np.array_equal(features[6] > 0, np.isfinite(grid.depth_m[::2, ::2]))
-    bottom = features[:, -5:, 30:50]
-    assert np.median(2.5 * bottom[3]) == pytest.approx(0.0, abs=0.03)
-    assert np.median(bottom[4]) > 0.95
 
 
 def test_it_finds_floor_and_walls_of_a_kind_of_room_it_never_saw():

@@ -5,7 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
+from mmweaver.scene.landmarks import with_told
 from mmweaver.scene.procedural.room import ProceduralRoom, make_room
 from mmweaver.scene.reconstruction import reconstruct
 
@@ -51,3 +53,19 @@ def test_a_mask_rules_out_a_box_as_a_seat():
     cartons = np.array([name == "carton" for name in room.boxes.names])
     for seat in scene.seats:
         assert room.boxes.distance_m(seat.position_m[None])[0][cartons].min() > 0.05
+
+
+def test_what_a_person_tells_takes_the_place_of_what_was_found(office: ProceduralRoom):
+    scene = reconstruct(office.photo("lamps"))
+    told = with_told(scene, [("door", (0.2, 2.0))])
+    (door,) = [mark for mark in told.landmarks if mark.kind == "door"]
+    assert door.position_m[:2] == pytest.approx([0.2, 2.0])
+    assert np.hypot(*(np.array(door.approach_m) - [0.2, 2.0])) < 1.2
+    assert [mark.kind for mark in told.landmarks].count("table") == [mark.kind for mark in scene.landmarks].count(
+        "table"
+    )
+    assert "told, not found" in told.assumptions[-1]
+    with pytest.raises(InputError, match="known: door, window"):
+        with_told(scene, [("lamp", (0.2, 2.0))])
+    with pytest.raises(InputError, match="not before the radar"):
+        with_told(scene, [("door", (0.2, -2.0))])

@@ -69,9 +69,20 @@ def test_turning_an_arm_spins_no_skin():
 
 
 def test_arms_and_legs_have_a_brightness_of_their_own():
-    plain, dim = Body(0, 1.75), Body(0, 1.75, echo=SkinEcho(arms_db=3.0, legs_db=-10.0))
+    plain = Body(0, 1.75, echo=SkinEcho(arms_db=0.0, legs_db=0.0))
+    dim = Body(0, 1.75, echo=SkinEcho(arms_db=3.0, legs_db=-10.0))
     assert np.all(plain.brightness == 1)
     names = np.array([capsule.end.rsplit("_", 1)[-1] for capsule in CAPSULES])[dim.part]
     assert np.allclose(dim.brightness[np.isin(names, ["elbow", "wrist"])], 10**0.3)
     assert np.allclose(dim.brightness[np.isin(names, ["knee", "ankle", "foot"])], 0.1)
     assert np.all(dim.brightness[np.isin(names, ["head", "neck", "spine1", "hip", "shoulder"])] == 1)
+
+
+def test_skin_of_a_tapering_limb_faces_its_thin_end():
+    """Of a truncated cone normals are square to its flanks, not to its axis."""
+    body = Body(0, 1.75, 4000)
+    skin = body.skin(JOINTS[:1])
+    shin = next(k for k, c in enumerate(CAPSULES) if (c.start, c.end) == ("left_knee", "left_ankle"))
+    axis = JOINTS[0, 7] - JOINTS[0, 4]
+    lean = skin.normal[0][body.part == shin] @ (axis / np.linalg.norm(axis))
+    assert np.degrees(np.arcsin(lean)) == pytest.approx(np.degrees(np.arctan((0.055 - 0.038) / 0.4)), abs=0.05)

@@ -42,7 +42,7 @@ def test_a_person_is_as_bright_as_published():
     for degrees in (0, 30, 60, 90):
         towards = np.array([np.sin(np.radians(degrees)), -np.cos(np.radians(degrees)), 0.0])
         clear = hull.is_clear(skin.place_m[0] + 5 * towards, skin.place_m[0], 0.03)
-        total.append((body.echo.back(skin.normal[0] @ towards) * clear).sum() * body.area_m2)
+        total.append((body.echo.back(skin.normal[0] @ towards) * clear * body.brightness).sum() * body.area_m2)
     assert -8 < 10 * np.log10(np.mean(total)) < -4
 
 

@@ -1,23 +1,12 @@
-"""The built-in segmenter's training: what is measured, and that it learns."""
+"""The built-in segmenter's training."""
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from mmweaver.scene.builtin_segmenter import GROUP_NAMES, load_network
-from mmweaver.training.segmenter import (
-    TEST_KINDS,
-    TRAIN_KINDS,
-    Example,
-    Recipe,
-    by_geometry,
-    confusion,
-    make_example,
-    save_weights,
-    scores,
-    train,
-)
+from mmweaver.scene.builtin_segmenter import load_network
+from mmweaver.training.segmenter import TEST_KINDS, TRAIN_KINDS, Recipe, save_weights, train
+from mmweaver.training.segmenter_data import Example, make_example
 
 pytest.importorskip("torch")
 pytest.importorskip("safetensors")
@@ -33,25 +22,10 @@ def test_no_kind_is_in_both_parts():
     assert len(TRAIN_KINDS) == 8
 
 
-def test_scores_of_perfect_and_of_constant_guesses(example: Example):
-    perfect = scores(confusion([example], lambda features: example.groups))
-    assert (perfect["miou"], perfect["right"]) == (1.0, 1.0)
-    wall = GROUP_NAMES.index("wall-other")
-    constant = scores(confusion([example], lambda features: np.full(example.groups.shape, wall)))
-    share = float((example.groups == wall).mean())
-    assert constant["iou"]["wall-other"] == pytest.approx(share, abs=1e-3)
-    assert constant["right"] == pytest.approx(share, abs=1e-3)
-
-
-def test_geometry_alone_finds_the_floor(example: Example):
-    found = scores(confusion([example], by_geometry))
-    assert found["iou"]["floor-other"] > 0.6
-
-
 def test_it_learns_and_its_weights_come_back(example: Example, tmp_path: Path):
     recipe = Recipe(epochs=6, batch=2)
     network, losses = train([example] * 4, recipe)
-    assert losses[-1] < 0.8 * losses[0]
+    assert losses[-1] < 0.9 * losses[0]
     again, same = train([example] * 4, recipe)
     assert losses == same
     save_weights(network, tmp_path / "weights.safetensors")
@@ -62,3 +36,20 @@ def test_it_learns_and_its_weights_come_back(example: Example, tmp_path: Path):
     with torch.inference_mode():
         assert torch.allclose(back(cells), network(cells), atol=0.3)
         assert torch.allclose(again(cells), network(cells))
+
+
+def test_a_stopped_training_goes_on_to_the_same_end(example: Example, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)
+    recipe = Recipe(epochs=3, batch=2)
+    _, whole = train([example] * 4, recipe)
+
+    def stop(line: str) -> None:
+        if line.startswith("epoch   2"):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train([example] * 4, recipe, tmp_path, stop)
+    heard: list[str] = []
+    _, losses = train([example] * 4, recipe, tmp_path, heard.append)
+    assert losses == whole
+    assert len(heard) == 2

@@ -9,8 +9,11 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.data.generate import generate
 from mmweaver.data.plan import DatasetPlan
+from mmweaver.models.weaver_network import WeaverNetwork
 from mmweaver.models.weights import load_weights
-from mmweaver.training.weaver_training import TrainingRecipe, train, write_weights
+from mmweaver.training.weaver_examples import draw_batch, examples
+from mmweaver.training.weaver_training import TrainingRecipe, WeaverLearner, train, write_weights
+from mmweaver.training.workplace import Workplace, moved
 
 pytest.importorskip("zarr")
 pytest.importorskip("transformers")
@@ -44,12 +47,12 @@ def test_interrupted_training_ends_where_the_other_does(data: Path, tmp_path: Pa
     steps: list[int] = []
     parts = train(data, tmp_path / "parts", RECIPE, listener=lambda progress: steps.append(progress.step))
     assert steps == [3, 4]  # the step that was not saved is done again
-    for (name, one), two in zip(whole.network.state_dict().items(), parts.network.state_dict().values(), strict=True):
+    for (name, one), two in zip(whole.learner.state_dict().items(), parts.learner.state_dict().values(), strict=True):
         assert torch.equal(one, two), name
     assert whole.best.value == parts.best.value
     network, card = load_weights(write_weights(tmp_path / "whole", data, whole))
     assert card.steps == 4
-    assert torch.allclose(network.part, whole.network.part, atol=1e-3)
+    assert torch.allclose(network.part, whole.learner.network.part, atol=1e-3)
 
 
 def test_other_settings_do_not_go_on_from_a_checkpoint(data: Path, tmp_path: Path):
@@ -63,3 +66,34 @@ def test_other_settings_do_not_go_on_from_a_checkpoint(data: Path, tmp_path: Pat
 def test_a_folder_without_data_is_refused(tmp_path: Path):
     with pytest.raises(InputError, match="no data set"):
         train(tmp_path, tmp_path / "out", RECIPE)
+
+
+def test_everything_moves_to_the_device_that_was_chosen(data: Path):
+    """The meta device computes nothing and refuses to meet tensors of the CPU, as a GPU would."""
+    rooms = examples(data, "train")
+    batch = draw_batch(rooms, 0, 0, size=1, frames=2)
+    learner = WeaverLearner(WeaverNetwork(), rooms[0].room.config).to("meta")
+    terms = learner(moved(batch, torch.device("meta")))
+    torch.stack(list(terms.values())).sum().backward()
+    assert {parameter.grad.device.type for parameter in learner.parameters() if parameter.grad is not None} == {"meta"}
+
+
+def test_bf16_does_no_harm(data: Path):
+    rooms = examples(data, "train")
+    batch = draw_batch(rooms, 0, 0, size=1, frames=2)
+    torch.manual_seed(0)
+    learner = WeaverLearner(WeaverNetwork(), rooms[0].room.config).eval()
+    exact = sum(float(term.detach()) for term in learner(batch).values())
+    with torch.inference_mode(), Workplace(precision="bf16").arithmetic():
+        mixed = learner(batch)
+    assert all(term.dtype == torch.float32 for term in mixed.values())
+    assert sum(float(term) for term in mixed.values()) == pytest.approx(exact, rel=5e-3)
+
+
+def test_processes_share_a_batch(data: Path):
+    rooms = examples(data, "train")
+    whole = draw_batch(rooms, 0, 5, size=4, frames=2)
+    parts = [draw_batch(rooms, 0, 5, size=4, frames=2, share=(rank, 2)) for rank in (0, 1)]
+    for rank, part in enumerate(parts):
+        assert torch.equal(part.joints_m, whole.joints_m[rank::2])
+        assert torch.equal(part.targets.maps.range_doppler, whole.targets.maps.range_doppler[rank::2])

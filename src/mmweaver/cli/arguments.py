@@ -44,6 +44,14 @@ def place(word: str) -> tuple[float, float]:
     return x, y
 
 
+def told(word: str) -> tuple[str, tuple[float, float]]:
+    """'door=0.9,2.8' -> ("door", (0.9, 2.8))."""
+    kind, equals, where = word.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{word!r} is no landmark; write KIND=X,Y in metres, for example door=0.9,2.8")
+    return kind.strip().lower(), place(where)
+
+
 def turns(word: str) -> tuple[int, ...]:
     """'0,2,1' -> (0, 2, 1)."""
     try:

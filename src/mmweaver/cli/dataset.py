@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 120 --workers 4
   mmweaver dataset small/ --rooms "living_room,office" --layouts 2 --sequences 12
+  mmweaver dataset light/ --geometry-only       # signals are made while training
   mmweaver dataset data/ --workers 4            # after a kill: goes on where it stopped
 """
 
@@ -31,6 +32,11 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--frames", type=whole, default=20, help="radar frames of each sequence (default 20)")
     parser.add_argument("--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
     parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
+    parser.add_argument(
+        "--geometry-only", action="store_true",
+        help="keep prepared rooms, motions and what hides what, but no signals: mmweaver train makes these as it goes,"
+        " with new micro-phases each time, without a ray caster, on a GPU if there is one",
+    )  # fmt: skip
     parser.add_argument("--workers", type=whole, default=1, help="processes at once (default 1)")
     parser.add_argument("--ray-address", metavar="ADDRESS", help="run on this Ray cluster; 'local' embeds one")
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
@@ -52,6 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     plan = DatasetPlan(
         kinds=_kinds(arguments.rooms), lightings=_lightings(), num_layouts=arguments.layouts,
         sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
+        geometry_only=arguments.geometry_only,
     )  # fmt: skip
     total = len(plan.kinds) * plan.num_layouts
     with tqdm(total=total, unit="room", disable=arguments.quiet or None) as bar:

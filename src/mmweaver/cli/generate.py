@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, whole
+from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, told, whole
 from mmweaver.cli.own_motion import (
     add_motion_options,
     check_motion_options,
@@ -41,6 +41,45 @@ def add_verb(verbs: Any) -> None:
         description="Makes the signal that a radar at the camera would have recorded of a person doing what the text "
         "says, in the room that the photo shows.",
     )
+    _add_room_options(parser)
+    person = parser.add_argument_group("the person")
+    person.add_argument(
+        "--text",
+        action="append",
+        help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
+    )
+    person.add_argument(
+        "--at",
+        type=place,
+        action="append",
+        metavar="X,Y",
+        help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
+        " the first --at is the first one's",
+    )
+    add_motion_options(person)
+    radar = parser.add_argument_group("the radar")
+    radar.add_argument(
+        "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
+    )
+    radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
+    radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
+    radar.add_argument(
+        "--method", default="physics", help="how the signal is made: physics (default), or weaver, a trained network"
+    )
+    radar.add_argument(
+        "--weights", metavar="FILE|DIR|HUB", help="weights of mmweaver train, for --method weaver; or their Hub name"
+    )
+    add_points_option(radar)
+    radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
+    output = parser.add_argument_group("output")
+    output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
+    output.add_argument("--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would")
+    add_layout_options(output)
+    add_output_options(output)
+    parser.set_defaults(run=run)
+
+
+def _add_room_options(parser: argparse.ArgumentParser) -> None:
     room = parser.add_argument_group("the room")
     room.add_argument("--rgb", type=Path, metavar="PNG", help="colour picture")
     room.add_argument(
@@ -68,44 +107,16 @@ def add_verb(verbs: Any) -> None:
     )
     room.add_argument("--sam", metavar="DIR|HUB", help="a SAM model whose masks sharpen the segmenter's edges")
     room.add_argument(
+        "--landmark", type=told, action="append", default=[], metavar="KIND=X,Y",
+        help="where a door, window, table, counter or bed is, if the photo does not show it well: metres right of and"
+        " ahead of the radar, for example door=0.9,2.8",
+    )  # fmt: skip
+    room.add_argument(
         "--capture", type=Path, metavar="DIR",
         help="instead: a capture folder of mmwave-capture-std; its RealSense's photo and depth",
     )  # fmt: skip
     room.add_argument("--photo", type=whole, default=0, metavar="N", help="which photo of the capture (default 0)")
     room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
-    person = parser.add_argument_group("the person")
-    person.add_argument(
-        "--text",
-        action="append",
-        help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
-    )
-    person.add_argument(
-        "--at",
-        type=place,
-        action="append",
-        metavar="X,Y",
-        help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
-        " the first --at is the first one's",
-    )
-    add_motion_options(person)
-    radar = parser.add_argument_group("the radar")
-    radar.add_argument(
-        "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
-    )
-    radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
-    radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
-    radar.add_argument(
-        "--method", default="physics", help="how the signal is made: physics (default), or weaver, a trained network"
-    )
-    radar.add_argument("--weights", type=Path, metavar="FILE", help="weights of mmweaver train, for --method weaver")
-    add_points_option(radar)
-    radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
-    output = parser.add_argument_group("output")
-    output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
-    output.add_argument("--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would")
-    add_layout_options(output)
-    add_output_options(output)
-    parser.set_defaults(run=run)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -203,6 +214,11 @@ def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
 
 
 def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
+    room = _seen_room(weaver, arguments)
+    return room.with_landmarks(*arguments.landmark) if arguments.landmark else room
+
+
+def _seen_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     if arguments.demo:
         return weaver.sample_room()
     seen = {"classes": arguments.classes, "segmenter": arguments.segmenter, "sam": arguments.sam}

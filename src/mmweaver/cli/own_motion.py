@@ -21,7 +21,8 @@ def add_motion_options(parser: Options) -> None:
         "--motion",
         type=Path,
         metavar="FILE",
-        help="a recorded motion instead of --text: .bvh, .npz (AMASS, SMPL, CMU, joints), .npy (22 joints, HumanML3D)",
+        help="a recorded motion instead of the first --text, which then only names it: .bvh, .npz (AMASS, SMPL, CMU,"
+        " joints), .npy (22 joints, HumanML3D)",
     )
     parser.add_argument(
         "--motion-model",
@@ -47,8 +48,9 @@ def add_motion_options(parser: Options) -> None:
         " (default: chosen)",
     )
     parser.add_argument(
-        "--height", type=number, metavar="M", help="the person's height (default: by seed, or recorded)"
-    )
+        "--height", type=number, action="append", metavar="M",
+        help="the person's height (default: by seed, or recorded); of several people once for each",
+    )  # fmt: skip
     parser.add_argument(
         "--as-recorded",
         action="store_true",
@@ -99,4 +101,10 @@ def motion_of_model(arguments: argparse.Namespace, text: str | None, duration_s:
 def placing_options(arguments: argparse.Namespace) -> dict[str, Any]:
     """What `Weaver.generate` is told about body and place."""
     heading = None if arguments.heading is None else math.radians(arguments.heading) - math.pi / 2
-    return {"heading_rad": heading, "height_m": arguments.height, "as_recorded": arguments.as_recorded}
+    return {"heading_rad": heading, "height_m": _heights(arguments), "as_recorded": arguments.as_recorded}
+
+
+def _heights(arguments: argparse.Namespace) -> Any:
+    """One height of one person, or a list of several people's."""
+    height = arguments.height
+    return height[0] if height is not None and len(height) == 1 and len(arguments.text or [""]) == 1 else height

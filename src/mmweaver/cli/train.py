@@ -1,19 +1,24 @@
-"""mmweaver train: the network's weights from a data set."""
+"""mmweaver train: the network's weights from a data set, or from recordings of one's own room."""
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import number, whole
+from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
-    from mmweaver.training.weaver_training import Progress
+    from mmweaver.training.trainer import Listener, Progress
+    from mmweaver.training.workplace import Workplace
 
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
-  mmweaver train weaver --data data/ --out run/
-  mmweaver train weaver --data mine/ --out tuned/ --start run/weights.safetensors --steps 300 --learning-rate 2e-4
-  mmweaver generate --demo --method weaver --weights run/weights.safetensors --out woven/
+  mmweaver train weaver --data data/ --out run/ --tensorboard
+  mmweaver train weaver --from run/ --captures take1/ take2/ take3/ --out tuned/
+  torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
+  mmweaver generate --demo --method weaver --weights run/ --out woven/
 """
 
 
@@ -23,19 +28,45 @@ def add_verb(verbs: Any) -> None:
         "train",
         help="train the network on a data set",
         epilog=EXAMPLES,
-        description="Trains the network on a data set of mmweaver dataset and writes its weights. It may be stopped at "
-        "any time: the same command goes on from its last checkpoint.",
+        description="Trains the network on a data set of mmweaver dataset and writes its weights with their model "
+        "card. It may be stopped or killed at any time: the same command goes on from its last checkpoint. What it has "
+        "learned is drawn beside the truth in OUT/pictures at every validation.",
     )
     parser.add_argument("recipe", choices=("weaver",), help="what is trained")
-    parser.add_argument("--data", type=Path, required=True, metavar="DIR", help="a data set of mmweaver dataset")
+    parser.add_argument("--data", type=Path, metavar="DIR", help="a data set of mmweaver dataset")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for checkpoint, log and weights")
-    parser.add_argument("--start", type=Path, metavar="FILE", help="weights to fine-tune (default: from nothing)")
-    parser.add_argument("--steps", type=whole, default=6000, help="steps in all (default 6000)")
-    parser.add_argument("--batch", type=whole, default=3, help="sequences a step, each of another room (default 3)")
-    parser.add_argument("--learning-rate", type=number, default=1e-3, help="of Adam, at its highest (default 1e-3)")
-    parser.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
-    parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument(
+        "--from", "--start", dest="start", metavar="FILE|DIR|HUB", help="weights to fine-tune (default: from nothing)"
+    )
+    own = parser.add_argument_group("your own recordings instead of --data (needs --from)")
+    own.add_argument(
+        "--captures", type=Path, nargs="+", metavar="DIR",
+        help="folders of mmweaver process or generate (radar.npz), or of mmwave-capture-std; with pose.npz where the "
+        "joints are known, else only the resting room is tuned; the last one is kept aside for validation",
+    )  # fmt: skip
+    own.add_argument("--rgb", type=Path, metavar="PNG", help="photo of the room, where the folders hold none")
+    own.add_argument("--depth", type=Path, metavar="FILE", help="its depth")
+    own.add_argument("--camera", type=Path, metavar="JSON", help="its fx, fy, cx, cy")
+    loop = parser.add_argument_group("the loop")
+    loop.add_argument("--steps", type=whole, help="steps in all (default 6000; captures 300)")
+    loop.add_argument("--batch", type=whole, help="sequences a step, of all processes together (default 3; captures 2)")
+    loop.add_argument(
+        "--learning-rate",
+        type=number,
+        help="of Adam, at its highest (default 1e-3; captures 2e-4, without joints 5e-3)",
+    )
+    loop.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
+    loop.add_argument("--validate-every", type=whole, metavar="STEPS", help="(default 250; captures 25)")
+    loop.add_argument("--save-every", type=number, default=60.0, metavar="S", help="seconds between checkpoints (60)")
+    place = parser.add_argument_group("where")
+    place.add_argument("--device", default="auto", help="cpu, cuda, cuda:1 ... (default auto: a GPU if there is one)")
+    place.add_argument(
+        "--precision", choices=("auto", "float32", "bf16"), default="auto", help="(default auto: bf16 on a GPU)"
+    )
+    output = parser.add_argument_group("output")
+    output.add_argument("--tensorboard", action="store_true", help="also write TensorBoard's files to OUT/tensorboard")
+    output.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
+    output.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
 
 
@@ -43,27 +74,105 @@ def run(arguments: argparse.Namespace) -> int:
     """Trains and writes the weights. Raises InputError."""
     import json
 
-    from tqdm import tqdm
+    _check(arguments)
+    from mmweaver.training.workplace import Workplace
 
-    from mmweaver.models.weights import load_weights
+    place = Workplace.chosen(arguments.device, arguments.precision)
+    is_quiet = arguments.quiet or not place.is_first
+    summary = _on_captures(arguments, place, is_quiet) if arguments.captures else _on_data(arguments, place, is_quiet)
+    if not place.is_first:
+        return 0
+    if arguments.json:
+        print(json.dumps(summary))
+    elif not is_quiet:
+        where = summary.get("judged_on", "unseen rooms")
+        print(f"{summary['weights']}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}")
+    return 0
+
+
+def _check(arguments: argparse.Namespace) -> None:
+    if (arguments.data is None) == (arguments.captures is None):
+        raise InputError(
+            "what to train on? give --data, a data set of mmweaver dataset, or --captures, your recordings"
+        )
+    if arguments.captures is not None and arguments.start is None:
+        raise InputError("--captures tunes weights that are there; give them with --from")
+    photo = (arguments.rgb, arguments.depth, arguments.camera)
+    if arguments.captures is None and any(given is not None for given in photo):
+        raise InputError("--rgb, --depth and --camera are the photo of --captures; a data set has its own")
+    if (arguments.rgb is None) != (arguments.depth is None):
+        raise InputError("--rgb and --depth belong together: the photo of the room and its distances")
+    if not arguments.save_every >= 0:
+        raise InputError(f"--save-every must be 0 or more seconds, not {arguments.save_every:g}")
+
+
+def _on_data(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
     from mmweaver.training.weaver_training import TrainingRecipe, train, write_weights
 
-    recipe = TrainingRecipe(
-        steps=arguments.steps, batch_size=arguments.batch, learning_rate=arguments.learning_rate, seed=arguments.seed
-    )
-    start = None if arguments.start is None else load_weights(arguments.start)[0].state_dict()
-    with tqdm(total=recipe.steps, unit="step", disable=arguments.quiet or None) as bar:
+    recipe = TrainingRecipe(**_given(arguments))
+    start = None if arguments.start is None else _start(arguments.start)[0]
+    with _bar(recipe.steps, is_quiet) as told:
+        trainer = train(
+            arguments.data, arguments.out, recipe, start=start, listener=told, workplace=place, **_options(arguments)
+        )
+    file = write_weights(arguments.out, arguments.data, trainer, start=start) if place.is_first else None
+    return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
+
+
+def _on_captures(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
+    from mmweaver.training.capture_training import recipe_for, tune, write_tuned
+    from mmweaver.training.captures import read_capture
+
+    start, licence = _start(arguments.start)
+    photo = {"rgb": arguments.rgb, "depth": arguments.depth, "camera": arguments.camera}
+    captures = [read_capture(folder, **photo) for folder in arguments.captures]
+    recipe = recipe_for(captures, **_given(arguments))
+    with _bar(recipe.steps, is_quiet) as told:
+        tuned = tune(
+            captures, arguments.out, recipe, start=start, listener=told, workplace=place, **_options(arguments)
+        )
+    file = write_tuned(arguments.out, tuned, start=start, licence_of_start=licence) if place.is_first else None
+    held_out = tuned.held_out
+    return {
+        "weights": str(file), "steps": tuned.trainer.step, "validation_loss": tuned.trainer.best.value,
+        "loss_before": tuned.loss_before, "with_joints": sum(room.has_joints for room in tuned.rooms),
+        "captures": len(tuned.rooms), "gain": tuned.gain,
+        "judged_on": "the captures themselves" if held_out is None else f"{held_out.folder.name}, kept aside,",
+    }  # fmt: skip
+
+
+def _given(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What of the recipe was said."""
+    given = {
+        "steps": arguments.steps, "batch_size": arguments.batch, "learning_rate": arguments.learning_rate,
+        "seed": arguments.seed, "validate_every": arguments.validate_every,
+    }  # fmt: skip
+    return {name: value for name, value in given.items() if value is not None}
+
+
+def _options(arguments: argparse.Namespace) -> dict[str, Any]:
+    return {"tensorboard": arguments.tensorboard, "save_every_s": arguments.save_every}
+
+
+@contextmanager
+def _bar(steps: int, is_quiet: bool) -> "Iterator[Listener]":
+    """What is called at every step, and shows it."""
+    from tqdm import tqdm
+
+    with tqdm(total=steps, unit="step", disable=is_quiet or None) as bar:
 
         def told(progress: "Progress") -> None:
             bar.update(progress.step - bar.n)
             if progress.validation is not None:
                 bar.set_postfix(loss=f"{progress.loss:.3f}", validation=f"{progress.validation:.3f}")
 
-        training = train(arguments.data, arguments.out, recipe, start=start, listener=told)
-    file = write_weights(arguments.out, arguments.data, training)
-    summary = {"weights": str(file), "steps": training.step, "validation_loss": training.best.value}
-    if arguments.json:
-        print(json.dumps(summary))
-    elif not arguments.quiet:
-        print(f"{file}: {training.step} steps, loss in unseen rooms {training.best.value:.3f}")
-    return 0
+        yield told
+
+
+def _start(source: str) -> tuple[Any, str]:
+    """Weights to begin with, and their licence."""
+    from mmweaver.models.find_weights import find_weights
+    from mmweaver.models.weights import load_weights
+
+    network, card = load_weights(find_weights(source))
+    return network.state_dict(), card.licence

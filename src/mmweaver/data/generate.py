@@ -42,7 +42,7 @@ def generate(
         if leftover.is_dir():
             shutil.rmtree(leftover, ignore_errors=True)
     missing = [room for room in rooms if not is_done(folder, room.name)]
-    tasks = ((folder, room, config, plan.num_frames) for room in missing)
+    tasks = ((folder, room, config, plan.num_frames, plan.geometry_only) for room in missing)
     reports = []
     with _engine(workers, ray_address) as run:
         for report in run(tasks):
@@ -52,7 +52,7 @@ def generate(
     return reports
 
 
-Task = tuple[Path, RoomSpec, RadarConfig, int]
+Task = tuple[Path, RoomSpec, RadarConfig, int, bool]
 
 
 def make_one(task: Task) -> RoomReport:
@@ -61,9 +61,9 @@ def make_one(task: Task) -> RoomReport:
 
     from mmweaver.data.make import make
 
-    folder, spec, config, num_frames = task
+    folder, spec, config, num_frames, geometry_only = task
     with threadpool_limits(limits=1):
-        made = make(spec, config, num_frames)
+        made = make(spec, config, num_frames, geometry_only=geometry_only)
     write_room(folder, made)
     return RoomReport(name=spec.name, num_sequences=len(made.sequences), refused=made.refused)
 

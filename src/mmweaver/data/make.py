@@ -12,7 +12,10 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.compose import compose
 from mmweaver.motion.resample import joints_and_velocities
 from mmweaver.scene.procedural.room import make_room
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.simulation.room import RestingRoom, Room
 from mmweaver.simulation.simulator import Simulator
+from mmweaver.simulation.visibility import Visibility
 
 RETRIES = 5  # other places for a motion that a room has no place for
 
@@ -28,31 +31,74 @@ class MadeSequence:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LookedSequence:
+    """A sequence whose signal is not made yet: joints as in `MadeSequence`, and what `simulation.replay` needs."""
+
+    spec: SequenceSpec
+    joints_m: np.ndarray
+    joint_velocity_mps: np.ndarray
+    node_joints_m: np.ndarray  # (frame, node, 22, 3) float32
+    visibility: Visibility
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoomGeometry:
+    """A room after its rays were cast: as it is, and as its photo shows it."""
+
+    room: RestingRoom
+    photographed: RestingRoom
+
+
+@dataclass(frozen=True, kw_only=True)
 class MadeRoom:
-    """A room with its sequences; `refused` says which specs had no place in it, and why."""
+    """A room with its sequences; `refused` says which specs had no place in it, and why.
+
+    With `geometry` the sequences are looked at, without it they have their cubes.
+    """
 
     spec: RoomSpec
     photo: RgbdPhoto
     empty: np.ndarray  # complex64 (range, antenna), what stands still without a person, at zero Doppler's peak
-    sequences: tuple[MadeSequence, ...]
+    sequences: tuple[MadeSequence, ...] | tuple[LookedSequence, ...]
     refused: tuple[tuple[int, str], ...]
+    geometry: RoomGeometry | None = None
 
 
-def make(spec: RoomSpec, config: RadarConfig, num_frames: int) -> MadeRoom:
-    """Makes a room and all its sequences by the simulator. Slow: about 0.4 s of CPU for each sequence."""
+def make(spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False) -> MadeRoom:
+    """Makes a room and all its sequences by the simulator. Slow: about 0.3 s of CPU for each sequence.
+
+    With `geometry_only` signals are left to be made from what is kept, for a third of it.
+    """
     room = make_room(spec.kind, spec.layout, spec.seed)
     truth = room.scene(spec.lighting)
     simulator = Simulator(truth, config)
+    photo = room.photo(spec.lighting, noise=True)
+    one = look_at_sequence if geometry_only else make_sequence
     made, refused = [], []
     for sequence in spec.sequences:
         try:
-            made.append(make_sequence(sequence, truth, simulator, num_frames))
+            made.append(one(sequence, truth, simulator, num_frames))
         except InputError as error:
             refused.append((sequence.index, str(error)))
     return MadeRoom(
-        spec=spec, photo=room.photo(spec.lighting, noise=True), empty=_empty(simulator),
-        sequences=tuple(made), refused=tuple(refused),
+        spec=spec, photo=photo, empty=_empty(simulator), sequences=tuple(made), refused=tuple(refused),
+        geometry=_geometry(simulator, photo) if geometry_only else None,
     )  # fmt: skip
+
+
+def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
+    stored = replace(photo, depth_m=photo.depth_m.astype(np.float32).astype(np.float64))  # as it will be read
+    return RoomGeometry(room=simulator.room, photographed=Room(reconstruct(stored), simulator.config))
+
+
+def look_at_sequence(spec: SequenceSpec, scene: Scene, simulator: Simulator, num_frames: int) -> LookedSequence:
+    """One sequence without its signal. Raises InputError where there is no room."""
+    pose = pose_of(spec, scene, simulator.config, num_frames)
+    nodes_m, visibility = simulator.look(pose, num_frames=num_frames, seed=spec.seed)
+    joints, velocity = _at_frames(pose, CubeGrid.of(simulator.config, num_frames), simulator.config)
+    return LookedSequence(
+        spec=spec, joints_m=joints, joint_velocity_mps=velocity, node_joints_m=nodes_m, visibility=visibility
+    )
 
 
 def make_sequence(
@@ -76,8 +122,13 @@ def make_sequence(
     parts = [radar_cube(chunk).values for chunk in simulator.chunks(pose, num_frames=num_frames, seed=seed)]
     grid = CubeGrid.of(config, num_frames)
     cube = RadarCube(values=np.concatenate(parts), grid=grid, config=config, scale=1.0)
-    joints, velocity = joints_and_velocities(pose, grid.frame_time_s + config.active_time_s / 2)
+    joints, velocity = _at_frames(pose, grid, config)
     return MadeSequence(spec=spec, cube=cube, joints_m=joints, joint_velocity_mps=velocity)
+
+
+def _at_frames(pose: PoseSequence, grid: CubeGrid, config: RadarConfig) -> tuple[np.ndarray, np.ndarray]:
+    """Joints and their velocities at the middle of each frame, (frame, 22, 3)."""
+    return joints_and_velocities(pose, grid.frame_time_s + config.active_time_s / 2)
 
 
 def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: int) -> PoseSequence:

@@ -8,7 +8,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 
-PLAN_VERSION = 1
+PLAN_VERSION = 2
 # The paper's activities and three more; each in the words of several people.
 ACTIVITIES: dict[str, tuple[str, ...]] = {
     "walking": ("a person walks towards the radar", "a person walks to the left", "a person walks to the right",
@@ -39,23 +39,25 @@ class Withheld:
     test_kinds: tuple[str, ...] = ("living_room", "classroom", "workshop")
     test_people: tuple[int, ...] = (3,)
     test_activities: tuple[str, ...] = ("right-hand raise", "jumping")
-    first_test_layout: int = 8
+    test_layouts: int = 2  # the last ones of each kind
 
-    def split(self, *, kind: str, layout: int, person: int, activity: str) -> str:
+    def split(self, *, kind: str, layouts_after: int, person: int, activity: str) -> str:
         """The split of a sequence, or "" for one that would show two withheld things at once and is not made.
 
-        >>> Withheld().split(kind="office", layout=0, person=0, activity="walking")
+        `layouts_after`: how many layouts of the room's kind come after its own.
+
+        >>> Withheld().split(kind="office", layouts_after=9, person=0, activity="walking")
         'train'
-        >>> Withheld().split(kind="living_room", layout=0, person=0, activity="walking")
+        >>> Withheld().split(kind="living_room", layouts_after=9, person=0, activity="walking")
         'test_room'
-        >>> Withheld().split(kind="living_room", layout=0, person=3, activity="walking")
+        >>> Withheld().split(kind="living_room", layouts_after=9, person=3, activity="walking")
         ''
         """
         is_other_kind = kind in self.validation_kinds + self.test_kinds
         withheld = {
             "validation": kind in self.validation_kinds,
             "test_room": kind in self.test_kinds,
-            "test_layout": layout >= self.first_test_layout and not is_other_kind,
+            "test_layout": layouts_after < self.test_layouts and not is_other_kind,
             "test_person": person in self.test_people,
             "test_activity": activity in self.test_activities,
         }
@@ -102,6 +104,7 @@ class DatasetPlan:
     radar: str = "awr1843"
     seed: int = 0
     withheld: Withheld = field(default_factory=Withheld)
+    geometry_only: bool = False  # signals are made while training, from prepared rooms
 
     def __post_init__(self) -> None:
         for name in ("num_layouts", "sequences_a_room", "num_frames"):
@@ -137,11 +140,21 @@ class DatasetPlan:
             activity=activity,
             text=str(rng.choice(ACTIVITIES[activity])),
             seed=int(rng.integers(2**31)),
-            split=self.withheld.split(kind=room.kind, layout=room.layout, person=person, activity=activity),
+            split=self.withheld.split(
+                kind=room.kind, layouts_after=self._layouts_after(room.layout), person=person, activity=activity
+            ),
         )
 
+    def _layouts_after(self, layout: int) -> int:
+        """Of a kind with fewer than six layouts, at most a third is withheld."""
+        spared = max(self.withheld.test_layouts - self.num_layouts // 3, 0)
+        return self.num_layouts - 1 - layout + spared
+
     def to_json(self) -> str:
-        return json.dumps({"plan_version": PLAN_VERSION, **asdict(self)}, indent=1)
+        words = {"plan_version": PLAN_VERSION, **asdict(self)}
+        if not self.geometry_only:  # older sets do not name it
+            del words["geometry_only"]
+        return json.dumps(words, indent=1)
 
 
 def check_for_leaks(rooms: list[RoomSpec]) -> None:

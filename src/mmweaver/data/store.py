@@ -8,6 +8,7 @@
         person, seed, activity, text, split    (sequence,)
         photo_rgb, photo_depth_m, photo_class  (row, column[, colour])
         empty_iq    (range, antenna, part)  the room without a person
+        geometry/   instead of iq: what signals are drawn from on the fly (`geometry_store`)
 
 A room is written under another name and renamed when it is whole, so that a kill at any point loses only the rooms
 that were being made. Reference: Zarr v3, xarray's `_ARRAY_DIMENSIONS`; decision 92.
@@ -26,8 +27,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CameraIntrinsics, ClassMask, CubeGrid, RadarCube, RgbdPhoto
 from mmweaver.core.skeleton import JOINT_NAMES
-from mmweaver.data.make import MadeRoom
-from mmweaver.data.plan import DatasetPlan
+from mmweaver.data.geometry_store import GEOMETRY, StoredGeometry, write_geometry
+from mmweaver.data.make import LookedSequence, MadeRoom, MadeSequence
+from mmweaver.data.plan import PEOPLE_HEIGHT_M, DatasetPlan
 
 PLAN_FILE = "plan.json"
 SEQUENCES_A_SHARD = 8
@@ -85,10 +87,15 @@ def write_room(folder: Path, made: MadeRoom) -> None:
     shutil.rmtree(partial, ignore_errors=True)
     group = zarr.open_group(partial, mode="w")
     sequences = made.sequences
-    iq, scale = _packed(np.stack([s.cube.values for s in sequences])) if sequences else (np.zeros((0,)), np.zeros(0))
-    if sequences:
+    looked = tuple(s for s in sequences if isinstance(s, LookedSequence))
+    signals = [s.cube.values for s in sequences if isinstance(s, MadeSequence)]
+    if signals:
+        iq, scale = _packed(np.stack(signals))
         _put(group, "iq", iq, ("sequence", "frame", "range", "doppler", "antenna", "part"), each=True)
         _put(group, "iq_scale", scale, ("sequence",))
+    if made.geometry is not None:
+        write_geometry(group, made.geometry, looked)
+    if sequences:
         pose = ("sequence", "frame", "joint", "axis")
         _put(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
         _put(group, "joint_velocity_mps", np.stack([s.joint_velocity_mps for s in sequences]), pose)
@@ -157,25 +164,56 @@ class StoredRoom:
     split: tuple[str, ...]
     seed: np.ndarray
     config: RadarConfig
+    geometry: StoredGeometry | None = None  # of a set without signals
+    device: str = "cpu"  # where signals are made from geometry
 
-    def cube(self, index: int) -> RadarCube:
-        """The cube of one sequence, in sqrt(mW)."""
+    def cube(self, index: int, frames: np.ndarray | None = None, *, twin: int = 0) -> RadarCube:
+        """The cube of one sequence, in sqrt(mW), or some of its frames.
+
+        Where signals are not stored they are made, and another `twin` has other micro-phases and noise.
+        """
+        if self.geometry is not None:
+            wanted = np.arange(len(self.joints_m[index])) if frames is None else frames
+            person = int(self.person[index])
+            values = self.geometry.cube_values(
+                index, wanted, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]), twin=twin,
+                device=self.device,
+            )  # fmt: skip
+        else:
+            values = self._stored(index)
+            values = values if frames is None else values[frames]
+        return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
+
+    def echoes(self, index: int, frames: np.ndarray) -> Any:
+        """The person's echoes (`simulation.echoes.BodyEchoes`) in frames of one sequence, of a set with geometry."""
+        assert self.geometry is not None, "signals are stored, not geometry"
+        subject = int(self.person[index])
+        look = self.geometry.look(index, person=subject, height_m=PEOPLE_HEIGHT_M[subject], seed=int(self.seed[index]))
+        return self.geometry.replay("cpu").person(look, frames)
+
+    def _stored(self, index: int) -> np.ndarray:
         zarr = _zarr()
         group: Any = zarr.open_group(self.folder, mode="r")
         pairs = np.asarray(group["iq"][index]).astype(np.float32) * np.float32(group["iq_scale"][index])
-        values = np.ascontiguousarray(pairs).view(np.complex64)[..., 0]
-        return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
+        return np.ascontiguousarray(pairs).view(np.complex64)[..., 0]
 
 
-def read_rooms(folder: Path) -> list[StoredRoom]:
-    """All rooms of a data set. Raises InputError where the folder is none."""
+def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
+    """All rooms of a data set; without stored signals these are made on `device`.
+
+    Raises InputError where the folder is no data set.
+    """
     zarr = _zarr()
     if not (folder / PLAN_FILE).is_file():
         raise InputError(f"{folder} holds no data set (no {PLAN_FILE}); make one with: mmweaver dataset {folder}")
     root = zarr.open_group(folder, mode="r")
     config = RadarConfig.from_json(json.dumps(root.attrs["radar"]))
-    names = sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and (path / "iq").is_dir())
-    return [_room(folder / name, config) for name in names]
+    names = sorted(path.name for path in folder.iterdir() if not path.name.startswith(".") and _has_sequences(path))
+    return [_room(folder / name, config, device) for name in names]
+
+
+def _has_sequences(room: Path) -> bool:
+    return (room / "iq").is_dir() or (room / GEOMETRY / "visibility").is_dir()
 
 
 def plan_text(folder: Path) -> str:
@@ -188,7 +226,7 @@ def read_plan(folder: Path) -> dict[str, Any]:
     return json.loads(plan_text(folder))
 
 
-def _room(folder: Path, config: RadarConfig) -> StoredRoom:
+def _room(folder: Path, config: RadarConfig, device: str) -> StoredRoom:
     zarr = _zarr()
     group = zarr.open_group(folder, mode="r")
     attrs: dict[str, Any] = dict(group.attrs)
@@ -205,4 +243,5 @@ def _room(folder: Path, config: RadarConfig) -> StoredRoom:
         joints_m=np.asarray(group["joints_m"]), joint_velocity_mps=np.asarray(group["joint_velocity_mps"]),
         person=np.asarray(group["person"]), activity=tuple(attrs["activity"]), text=tuple(attrs["text"]),
         split=tuple(attrs["split"]), seed=np.asarray(group["seed"]), config=config,
+        geometry=StoredGeometry(folder=folder, config=config) if GEOMETRY in group else None, device=device,
     )  # fmt: skip

@@ -46,7 +46,7 @@ def _spectra(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
     kept = spectrum[..., config.first_range_bin : config.first_range_bin + config.num_range_bins]
     frames, loops = kept.shape[:2]
     slow = kept.reshape(frames, loops, config.num_antennas, config.num_range_bins).transpose(0, 3, 1, 2)
-    return _fft(slow * _doppler_weight(loops)[:, None], 2)
+    return _fft(slow * doppler_weight(loops)[:, None], 2)
 
 
 def adc_from_cube(cube: RadarCube) -> AdcCube:
@@ -59,7 +59,7 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     config = cube.config
     turned = cube.values.astype(np.complex128) * tdm_compensation(config).conj()
     loops = _inverse_fft(turned, 2)
-    weight = _doppler_weight(config.num_loops).astype(np.complex128)
+    weight = doppler_weight(config.num_loops).astype(np.complex128)
     loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > SMALLEST_SINGULAR_VALUE)[:, None]
     slow = loops.transpose(0, 2, 3, 1)
     inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
@@ -89,7 +89,7 @@ def remove_static(cube: RadarCube, how: str = "mean_chirp") -> RadarCube:
         return cube
     config = cube.config
     compensation = tdm_compensation(config)
-    weight = _doppler_weight(config.num_loops).astype(np.complex128)
+    weight = doppler_weight(config.num_loops).astype(np.complex128)
     seen = np.abs(weight) > SMALLEST_SINGULAR_VALUE
     # mean of the loops seen = sum over doppler of (mean_of_doppler * spectrum)
     share = np.divide(1, weight, out=np.zeros_like(weight), where=seen) / seen.sum()
@@ -122,7 +122,7 @@ def _inverse_fft(values: np.ndarray, axis: int) -> np.ndarray:
     return np.asarray(fft.ifft(values, axis=axis))
 
 
-def _doppler_weight(num_loops: int) -> Complex[np.ndarray, " loop"]:
+def doppler_weight(num_loops: int) -> Complex[np.ndarray, " loop"]:
     """Hann over loops, normalised, with the turn that moves zero Doppler to bin num_loops // 2."""
     window = hann(num_loops)
     loop = np.arange(num_loops)

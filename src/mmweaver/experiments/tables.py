@@ -10,8 +10,10 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.experiments.benchmark_tables import dataset_cost_table, weaver_speed_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
+from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
@@ -231,17 +233,19 @@ def affordances_table(folder: Path) -> str:
     heads = [f"{row['dataset']['name']}, {method} ({row['n']})" for method, row in rows]
     lines = [_line("what", *heads), _line(*["---"] * (1 + len(rows)))]
     for name, text, form in AFFORDANCES:
-        lines.append(_line(text, *(_share_cell(row["metrics"].get(name), form) for _, row in rows)))
+        cells = [_share_cell(row["metrics"].get(name), form, edges=name == "placements_clear") for _, row in rows]
+        lines.append(_line(text, *cells))
     return "\n".join(lines)
 
 
-def _share_cell(metric: dict[str, Any] | None, form: str) -> str:
+def _share_cell(metric: dict[str, Any] | None, form: str, *, edges: bool) -> str:
     if metric is None:
         return "-"
     if form != "share":
         return form.format(metric["value"])
     of = f" of {metric['of']}" if "of" in metric else ""
-    return f"{100 * metric['value']:.1f} %{of}"
+    low, high = (100 * edge for edge in metric["interval"]) if edges else (0.0, 0.0)
+    return f"{100 * metric['value']:.1f} %{of}" + (f" ({low:.1f} to {high:.1f})" if edges else "")
 
 
 def motiongpt_table(folder: Path) -> str:
@@ -293,7 +297,8 @@ def _with_interval(metric: dict[str, Any]) -> str:
 
 
 WEAVER = (
-    ("ra_ssim", "RA SSIM"), ("rd_ssim", "RD SSIM"), ("rd_difference_db", "RD difference, dB"),
+    ("ra_ssim", "RA SSIM"), ("rd_ssim", "RD SSIM"), ("ra_ssim_all_cells", "RA, all cells"),
+    ("rd_ssim_all_cells", "RD, all cells"), ("rd_difference_db", "RD difference, dB"),
     ("magnitude_nmse_db", "NMSE of magnitude, dB"), ("antenna_phase_error_rad", "antenna phase error, rad"),
     ("chamfer_m", "Chamfer, m"), ("hausdorff_m", "Hausdorff, m"), ("cpu_s", "CPU, s"),
 )  # fmt: skip
@@ -301,16 +306,44 @@ WEAVER = (
 
 def weaver_table(folder: Path) -> str:
     """One row a method in unseen kinds of rooms, mean and interval over rooms."""
-    (record,) = _records(folder / "weaver")
+    record = _split(folder, "test_room")
     lines = [_line("method", *(text for _, text in WEAVER)), _line(*["---"] * (1 + len(WEAVER)))]
     for row in record["rows"]:
-        cells = []
-        for name, _ in WEAVER:
-            metric = row["metrics"][name]
-            edges = f" ({metric['low']:.2f} to {metric['high']:.2f})" if name in ("ra_ssim", "rd_ssim") else ""
-            cells.append("-" if metric["value"] is None else f"{metric['value']:.2f}{edges}")
+        cells = [_bounded(row["metrics"][name], name in ("ra_ssim", "rd_ssim")) for name, _ in WEAVER]
         lines.append(_line(row["method"], *cells))
     return "\n".join(lines)
+
+
+UNSEEN = {
+    "test_room": "kind of room", "test_layout": "layout of a seen kind", "test_person": "person",
+    "test_activity": "activity",
+}  # fmt: skip
+BESIDE = ("nearest_training_pose", "weaver", "physics_in_photographed_room", "twin")
+
+
+def weaver_unseen_table(folder: Path) -> str:
+    """What else was withheld from training: one row each."""
+    lines = [_line("unseen", "sequences", *(f"{name}, {view}" for name in BESIDE for view in ("RA", "RD")))]
+    lines.append(_line(*["---"] * (2 + 2 * len(BESIDE))))
+    for split, text in UNSEEN.items():
+        rows = {row["method"]: row for row in _split(folder, split)["rows"]}
+        cells = [
+            _bounded(rows[name]["metrics"][metric], name == "weaver")
+            for name in BESIDE
+            for metric in ("ra_ssim", "rd_ssim")
+        ]
+        lines.append(_line(text, str(rows["weaver"]["n"]), *cells))
+    return "\n".join(lines)
+
+
+def _split(folder: Path, split: str) -> dict[str, Any]:
+    return next(record for record in _records(folder / "weaver") if record["method"] == split)
+
+
+def _bounded(metric: dict[str, Any], with_edges: bool) -> str:
+    if metric["value"] is None:
+        return "-"
+    return f"{metric['value']:.2f}" + (f" ({metric['low']:.2f} to {metric['high']:.2f})" if with_edges else "")
 
 
 TABLES = {
@@ -318,12 +351,14 @@ TABLES = {
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
     "several_people": people_table, "micro_doppler": micro_doppler_table,
     "affordances": affordances_table,
+    "segmenter": segmenter_table, "segmenter_affordances": segmenter_affordances_table,
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
     "motiongpt": motiongpt_table,
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
-    "weaver": weaver_table,
+    "weaver": weaver_table, "weaver_unseen": weaver_unseen_table,
+    "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 

@@ -1,6 +1,7 @@
 """The table that decides: the network in rooms it has never seen, beside floors, rivals and the ceiling.
 
     python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --out results
+    python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --split test_person --most 40
 
 Truth is the simulator in the true room. Everybody is given the exact joints. `twin` is the same simulator with other
 surface micro-phases of room and person: the best that anyone can do who does not know them. `twin_skin` knows the
@@ -33,8 +34,8 @@ from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.simulation.simulator import Simulator
 
 COLUMNS = (
-    "rd_ssim", "ra_ssim", "rd_difference_db", "ra_difference_db", "magnitude_nmse_db", "antenna_phase_error_rad",
-    "chamfer_m", "hausdorff_m",
+    "rd_ssim", "ra_ssim", "rd_ssim_all_cells", "ra_ssim_all_cells", "rd_difference_db", "ra_difference_db",
+    "magnitude_nmse_db", "antenna_phase_error_rad", "chamfer_m", "hausdorff_m",
 )  # fmt: skip
 SAME_M = 1e-4
 TWIN = 1000  # added to a person's number for other skin
@@ -159,10 +160,16 @@ def interval(values: np.ndarray, rooms: list[str], seed: int = 0) -> tuple[float
     return float(np.nanmean(means)), float(np.percentile(draws, 2.5)), float(np.percentile(draws, 97.5))
 
 
-def cases_of(rooms: list[StoredRoom], split: str, each: int, plan: dict[str, Any], seed: int) -> list[Case]:
-    """`each` sequences of every room that has the split; the wrong photo is that of a room of another kind."""
-    chosen = [room for room in rooms if split in room.split]
+def cases_of(
+    rooms: list[StoredRoom], split: str, each: int, plan: dict[str, Any], seed: int, most: int | None = None
+) -> list[Case]:
+    """`each` sequences of every room that has the split, or of at most so many rooms; the wrong photo is that of a
+    room of another kind.
+    """
     rng = stream(seed, "cases", split)
+    chosen = [room for room in rooms if split in room.split]
+    if most is not None and most < len(chosen):
+        chosen = [chosen[int(index)] for index in np.sort(rng.choice(len(chosen), size=most, replace=False))]
     cases = []
     for room in chosen:
         others = [other for other in chosen if other.kind != room.kind] or [o for o in rooms if o.kind != room.kind]
@@ -178,13 +185,15 @@ def main() -> None:
     parser.add_argument("--data", type=Path, required=True)
     parser.add_argument("--weights", type=Path)
     parser.add_argument("--split", default="test_room")
-    parser.add_argument("--each", type=int, default=3, help="sequences of each room")
+    parser.add_argument("--each", type=int, default=1, help="sequences of each room")
+    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--only", nargs="*", help="rows (default: all)")
     parser.add_argument("--out", type=Path, default=Path("results"))
     arguments = parser.parse_args()
     weights = arguments.weights or shipped_weights()
     network, card = load_weights(weights)
     rooms, plan = read_rooms(arguments.data), read_plan(arguments.data)
-    cases = cases_of(rooms, arguments.split, arguments.each, plan, 0)
+    cases = cases_of(rooms, arguments.split, arguments.each, plan, 0, arguments.most)
     generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods: dict[str, Method] = {
@@ -196,6 +205,8 @@ def main() -> None:
         "twin_skin": simulated(lambda case: case.true_scene, skin=TWIN),
         "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),
     }
+    if arguments.only:
+        methods = {name: methods[name] for name in arguments.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
     table = scored(cases, methods)
     rows = [_row(name, values, names, arguments.split) for name, values in table.items()]

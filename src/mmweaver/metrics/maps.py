@@ -23,14 +23,15 @@ def shown_db(power: PowerMaps, peak_power: float) -> PowerMaps:
     return 10 * np.log10(np.maximum(power, lowest) / lowest)
 
 
-def log_map_ssim(prediction: PowerMaps, truth: PowerMaps) -> float:
+def log_map_ssim(prediction: PowerMaps, truth: PowerMaps, *, all_cells: bool = False) -> float:
     """Mean SSIM of the 50 dB pictures over the cells where either shows something; 1 is perfect.
 
     The top of both pictures is the truth's peak over all frames, the data range is 50 dB. Cells that are empty in
-    both are left out, for they would make all zeros look good.
+    both are left out, for they would make all zeros look good; `all_cells` counts them too.
     """
     p, t, drawn = _pictures(prediction, truth)
-    return float(ssim_map(p, t, data_range=SHOWN_DB)[drawn].mean())
+    similar = ssim_map(p, t, data_range=SHOWN_DB)
+    return float((similar if all_cells else similar[drawn]).mean())
 
 
 def log_map_difference_db(prediction: PowerMaps, truth: PowerMaps) -> float:

@@ -144,6 +144,20 @@ METRICS: Mapping[str, Metric] = {
         is_headline=True,
         score=lambda p, t: log_map_difference_db(p.range_azimuth, t.range_azimuth),
     ),
+    "rd_ssim_all_cells": Metric(
+        unit="1",
+        definition="as rd_ssim, cells that are empty in both counted too",
+        perfect=1.0,
+        is_headline=False,
+        score=lambda p, t: log_map_ssim(p.range_doppler, t.range_doppler, all_cells=True),
+    ),
+    "ra_ssim_all_cells": Metric(
+        unit="1",
+        definition="as ra_ssim, cells that are empty in both counted too",
+        perfect=1.0,
+        is_headline=False,
+        score=lambda p, t: log_map_ssim(p.range_azimuth, t.range_azimuth, all_cells=True),
+    ),
     "antenna_phase_error_rad": Metric(
         unit="rad",
         definition="mean absolute error of the phase step between neighbouring antennas at cells detected in the truth"

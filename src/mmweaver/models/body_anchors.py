@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.skeleton import NUM_JOINTS, joint
+from mmweaver.models.precision import in_full_precision
 from mmweaver.models.room_view import NUM_PLANES, RoomView
 
 # from joint, to joint, how far along (above 1: past the second)
@@ -53,6 +54,7 @@ def anchor_places(joints: Tensor) -> Tensor:
     return joints[..., first, :] * (1 - share) + joints[..., second, :] * share
 
 
+@in_full_precision
 def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anchors:
     """Direct echoes. Joints (room, frame, 22, 3) in the radar's frame; `room` has a leading axis too."""
     place, speed = anchor_places(joints_m), anchor_places(velocity_mps)
@@ -81,6 +83,7 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anch
     )  # fmt: skip
 
 
+@in_full_precision
 def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anchors:
     """Echoes over one face of the room: (room, frame, ghost)."""
     place = joints_m[..., MIRRORED, :][..., None, :, :]  # (room, frame, 1, joint, 3)

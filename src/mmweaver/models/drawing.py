@@ -6,7 +6,8 @@ the same signal, and a person's frames belong together. Reference: decisions 4 a
 """
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import torch
 from torch import Tensor
@@ -25,11 +26,28 @@ SPOTS = 6  # of skin, for each echo
 SPOT_SPREAD_M = 0.04
 
 
-def draw_static(resting: Echoes, response: PointResponse, room_seed: int) -> Tensor:
-    """Resting echoes (echo,) -> the static layer (range, antenna), complex."""
+@dataclass(frozen=True, kw_only=True)
+class StaticDraw:
+    """Resting echoes with their phases: what the room returns, and what of it somebody hides."""
+
+    is_heard: Tensor  # (echo,) bool: those of which rows are kept
+    at_range: Tensor  # (row, range)
+    echo: Tensor  # (row, antenna) complex
+
+    def layer(self) -> Tensor:
+        """(range, antenna), complex."""
+        return self.at_range.T @ self.echo
+
+    def hidden(self, is_hidden: Tensor) -> Tensor:
+        """What the hidden echoes (frame, echo) would have added to the layer, (frame, range, antenna)."""
+        rows = is_hidden[:, self.is_heard]
+        return torch.stack([self.at_range[row].T @ self.echo[row] for row in rows])
+
+
+def draw_static(resting: Echoes, response: PointResponse, room_seed: int) -> StaticDraw:
+    """Draws the phases of resting echoes (echo,)."""
     rng = stream(room_seed, "weaver", "room")
     count = resting.range_m.shape[-1]
-    axes = response.axes()
     points = points_of(resting, response)
     turns = torch.from_numpy(2 * math.pi * rng.random(count)).to(torch.float32)
     points = replace(points, amplitude=torch.polar(points.amplitude, turns))
@@ -38,8 +56,8 @@ def draw_static(resting: Echoes, response: PointResponse, room_seed: int) -> Ten
         range_bin=points.range_bin[strong], doppler_bin=points.doppler_bin[strong],
         direction=points.direction[strong], amplitude=points.amplitude[strong],
     )  # fmt: skip
-    at_range, _, _, _, steer = response.factors(points, axes)
-    return at_range.to(steer.dtype).T @ (points.amplitude[:, None] * steer)
+    at_range, _, _, _, steer = response.factors(points, response.axes())
+    return StaticDraw(is_heard=strong, at_range=at_range.to(steer.dtype), echo=points.amplitude[:, None] * steer)
 
 
 def draw_moving(moving: Echoes, aspect: Tensor, response: PointResponse, subject: int) -> Points:
@@ -62,4 +80,9 @@ def field_of(
         points=points, static=static, calibration=torch.ones(config.num_antennas, dtype=torch.complex64),
         noise_power=noise_power,
     )  # fmt: skip
-    return ScattererField(layers, Stretch.of(config, num_frames, 0), CubeGrid.of(config, num_frames), 1.0, 1.0)
+    return ScattererField(layers, *_cells(config, num_frames), 1.0, 1.0)
+
+
+@lru_cache(maxsize=8)
+def _cells(config: RadarConfig, num_frames: int) -> tuple[Stretch, CubeGrid]:
+    return Stretch.of(config, num_frames, 0), CubeGrid.of(config, num_frames)

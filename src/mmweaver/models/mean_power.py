@@ -4,7 +4,7 @@ Echoes whose phases are independent add in power. Reference: speckle statistics 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import torch
 from torch import Tensor
@@ -42,6 +42,13 @@ class MeanPower:
         self._sin_elevation = torch.tensor(elevation_axis_rad(), dtype=torch.float32).sin()
         self.noise = config.noise_power_mw * _noise_share(config.num_samples) * _noise_share(config.num_loops)
         self._row_length = len(row)
+
+    def to(self, device: torch.device) -> "MeanPower":
+        """Itself, on a device."""
+        self.axes = Axes(**{field.name: getattr(self.axes, field.name).to(device) for field in fields(Axes)})
+        for name in ("_row_x", "_sin_azimuth", "_sin_elevation"):
+            setattr(self, name, getattr(self, name).to(device))
+        return self
 
     def maps(self, points: Points) -> PowerMaps:
         """Points (..., point) in bins of the response; their amplitudes' absolute square is the mean power."""

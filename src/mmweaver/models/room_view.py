@@ -9,9 +9,11 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.models.apparent import between
+from mmweaver.models.radar_view import pattern_db
 from mmweaver.scene.depth_grid import DepthGrid, make_grid
-from mmweaver.simulation.antenna import pattern, scatterer_gain
-from mmweaver.simulation.room import Room
+from mmweaver.simulation.antenna import scatterer_gain
+from mmweaver.simulation.room import RestingRoom, Room
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
 IMAGE_CHANNELS = 5  # red, green, blue, depth, class (paper: RGB + depth + mask)
@@ -39,15 +41,18 @@ class RoomView:
     plane_features: Tensor  # (plane, PLANE_FEATURES)
 
     @classmethod
-    def of(cls, scene: Scene, config: RadarConfig) -> "RoomView":
-        """The view of a scene's photo, with the scene's faces and the echoes that this radar would have of them."""
+    def of(cls, scene: Scene, config: RadarConfig, room: RestingRoom | None = None) -> "RoomView":
+        """The view of a scene's photo, with the scene's faces and the echoes that this radar would have of them.
+
+        `room` is the scene made ready before, where no rays are to be cast.
+        """
         grid = make_grid(scene.photo)
         rows = _nearest(IMAGE_ROWS, grid.depth_m.shape[0])
         columns = _nearest(IMAGE_COLUMNS, grid.depth_m.shape[1])
         camera = grid.intrinsics
         scale_x, scale_y = IMAGE_COLUMNS / camera.width, IMAGE_ROWS / camera.height
         view = np.ix_(rows, columns)
-        points = _points(Room(scene, config), scene)
+        points = _points(room or Room(scene, config), scene)
         planes = _planes(scene)
         return cls(
             image=_tensor(_image(grid, scene, view)),
@@ -91,7 +96,7 @@ def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGr
     return classes.index[row, column] / NUM_CLASSES
 
 
-def _points(room: Room, scene: Scene) -> dict[str, Tensor]:
+def _points(room: RestingRoom, scene: Scene) -> dict[str, Tensor]:
     """The strongest resting echoes that physics finds in the photographed room, each where it seems to stand.
 
     The network turns their strength; what the photo does not show it adds.
@@ -99,8 +104,9 @@ def _points(room: Room, scene: Scene) -> dict[str, Tensor]:
     echoes, config = room.echoes, room.config
     order = np.argsort(-np.abs(echoes.amplitude))[:NUM_POINTS]
     distance = np.maximum(echoes.way_m[order].mean(axis=(1, 2)) / 2, 0.1)
-    towards = _unit(_unit(echoes.first_m[order]) + _unit(echoes.last_m[order]))
-    gain = scatterer_gain(config) * pattern(towards, config) ** 2
+    towards = between(echoes.first_m[order], echoes.last_m[order])
+    loss_db = pattern_db(_tensor(towards[:, [0, 2]]), config).numpy()
+    gain = scatterer_gain(config) * 10 ** (-loss_db / 10)  # as `radar_view.points_of` will apply it
     cross_section = (np.abs(echoes.amplitude[order]) * distance**2 / gain) ** 2
     place = towards * distance[:, None]
     kind = np.searchsorted(np.cumsum(list(room.counts.values())), order, side="right")
@@ -116,10 +122,6 @@ def _points(room: Room, scene: Scene) -> dict[str, Tensor]:
         "point_cross_section_m2": _tensor(_padded(cross_section, count)),
         "point_features": _tensor(_padded(features, count)),
     }
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
 
 
 def _padded(values: np.ndarray, count: int) -> np.ndarray:

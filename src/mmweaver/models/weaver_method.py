@@ -1,7 +1,9 @@
 """Room and motion -> signal by the network: what `method="weaver"` runs."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from typing import TypeVar
 
 import numpy as np
 import torch
@@ -17,6 +19,7 @@ from mmweaver.models.drawing import draw_moving, draw_static, field_of
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.mean_power import MeanPower
 from mmweaver.models.room_view import RoomView
+from mmweaver.models.shadow import hidden
 from mmweaver.models.weaver_network import RoomCode, WeaverNetwork
 from mmweaver.motion.resample import joints_and_velocities
 
@@ -38,18 +41,32 @@ class FrameMotion:
 
 
 class WovenRoom:
-    """A room that the network has encoded for one radar; `field` may then be asked for many motions."""
+    """A room that the network has encoded for one radar; `field` may then be asked for many motions.
 
-    def __init__(self, network: WeaverNetwork, scene: Scene, config: RadarConfig, *, room_seed: int = 0):
-        self.network, self.config = network, config
+    The network runs on `device` and is moved there; phases are drawn and echoes rendered on the CPU.
+    """
+
+    def __init__(
+        self,
+        network: WeaverNetwork,
+        scene: Scene | RoomView,
+        config: RadarConfig,
+        *,
+        room_seed: int = 0,
+        device: str = "cpu",
+    ):
+        self.network, self.config, self.device = network.to(device), config, device
         self.radar = MeanPower(config)
-        with torch.inference_mode():
-            self.code: RoomCode = network.encode_room(RoomView.stacked([RoomView.of(scene, config)]))
-            self.static = draw_static(_first(self.code.resting), self.radar.response, room_seed)
+        view = RoomView.stacked([scene if isinstance(scene, RoomView) else RoomView.of(scene, config)])
+        with torch.inference_mode(), one_thread():
+            self.code: RoomCode = network.encode_room(_on(view, device))
+            self.resting = _first(_on(self.code.resting, "cpu"))
+            self._drawn = draw_static(self.resting, self.radar.response, room_seed)
+            self.static = self._drawn.layer()
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
-        """The field of everybody's motion; people are superimposed and do not hide each other."""
-        with torch.inference_mode():
+        """The field of everybody's motion; people are superimposed and hide neither each other nor the room."""
+        with torch.inference_mode(), one_thread():
             points = [self._points(motion) for motion in motions]
         together = Points(
             range_bin=torch.cat([one.range_bin for one in points], dim=1),
@@ -60,15 +77,38 @@ class WovenRoom:
         return field_of(self.static, together, self.config, len(together.range_bin), self.radar.noise)
 
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
-        """The signal of everybody's motion with the receiver's noise, in sqrt(mW)."""
+        """The signal of everybody, the shadows they cast on the room, and the receiver's noise, in sqrt(mW)."""
         field = self.field(motions)
-        cube = RadarCube(values=field.native(), grid=field.grid, config=self.config, scale=1.0)
+        with torch.inference_mode(), one_thread():
+            values = field.native()
+            values -= self._shadows(motions)
+            cube = RadarCube(values=values, grid=field.grid, config=self.config, scale=1.0)
         return replace(field.with_noise(cube, seed), scale=1.0)
+
+    def _shadows(self, motions: Sequence[FrameMotion]) -> np.ndarray:
+        """What the room does not return because somebody stands before it, (frame, range, doppler, antenna)."""
+        is_hidden = [hidden(self.resting, torch.from_numpy(motion.joints_m).float()) for motion in motions]
+        lost = self._drawn.hidden(torch.stack(is_hidden).any(dim=0))
+        response = self.radar.response
+        axes = response.axes()
+        at_rest = response.doppler_kernel(axes.doppler_bin)[0]
+        return (lost[:, :, None] * at_rest[:, None] * response.turn(axes)).numpy()
 
     def _points(self, motion: FrameMotion) -> Points:
         joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
-        moving = _first(self.network.moving(self.code, joints[None], velocity[None]))
-        return draw_moving(moving, aspect(joints), self.radar.response, motion.subject)
+        moving = self.network.moving(self.code, joints[None].to(self.device), velocity[None].to(self.device))
+        return draw_moving(_first(_on(moving, "cpu")), aspect(joints), self.radar.response, motion.subject)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """20 frames are 30 ms of one thread; several are hardly quicker, and on a busy machine a hundred times slower."""
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def aspect(joints_m: Tensor) -> Tensor:
@@ -78,6 +118,14 @@ def aspect(joints_m: Tensor) -> Tensor:
     side = torch.linalg.cross(up, front)
     sight = torch.nn.functional.normalize(joints_m[:, joint("pelvis")], dim=-1)
     return 2 * torch.stack([(sight * front).sum(-1), (sight * side).sum(-1), sight[:, 2]], dim=-1)
+
+
+TensorsT = TypeVar("TensorsT", RoomView, Echoes)
+
+
+def _on(tensors: TensorsT, device: str) -> TensorsT:
+    """A record of tensors on a device."""
+    return replace(tensors, **{field.name: getattr(tensors, field.name).to(device) for field in fields(tensors)})
 
 
 def _first(echoes: Echoes) -> Echoes:

@@ -11,11 +11,13 @@ Reference: paper, section "Generalization via Hypernetworks"; decisions 90 and 9
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor, nn
 
+from mmweaver.core.errors import InputError
 from mmweaver.models.body_anchors import (
     BODY_FEATURES,
     GHOST_FEATURES,
@@ -30,9 +32,11 @@ from mmweaver.models.body_anchors import (
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
+from mmweaver.models.precision import in_full_precision
 from mmweaver.models.room_view import PLANE_FEATURES, POINT_FEATURES, RoomView
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
+PARTS = ("faces", "ghosts", "correction", "colour", "depth", "mask")  # that can be left out
 LARGEST_STEP = 12.0  # of a logarithm of power
 LARGEST_CORRECTION = 2.0  # the same, for what physics says of the photographed room
 
@@ -47,10 +51,17 @@ class RoomCode:
 
 
 class WeaverNetwork(nn.Module):
-    """Rooms and motions -> mean echoes. `encode_room` once a room, then `moving` for each motion."""
+    """Rooms and motions -> mean echoes. `encode_room` once a room, then `moving` for each motion.
 
-    def __init__(self) -> None:
+    `without` leaves parts out (`PARTS`), to see what they are worth.
+    """
+
+    def __init__(self, without: Iterable[str] = ()) -> None:
         super().__init__()
+        self.without = frozenset(without)
+        unknown = self.without - set(PARTS)
+        if unknown:
+            raise InputError(f"unknown parts {', '.join(sorted(unknown))}; known: {', '.join(PARTS)}")
         self.environment = EnvironmentEncoder()
         self.pose = PoseEncoder()
         self.point = _mlp(POINT_FEATURES + MAP_CHANNELS, 96, 1)
@@ -71,7 +82,7 @@ class WeaverNetwork(nn.Module):
 
     def encode_room(self, view: RoomView) -> RoomCode:
         """Rooms (room, ...) -> their code; resting echoes (room, echo)."""
-        z_env, places = self.environment(view.image)
+        z_env, places = self.environment(self._shown(view.image))
         parts = [self._points(view, places), self._faces(view)]
         resting = Echoes(
             range_m=torch.cat([part.range_m for part in parts], -1),
@@ -94,12 +105,23 @@ class WeaverNetwork(nn.Module):
         token = torch.cat([self.body_in(body.features), self.ghost_in(ghosts.features)], dim=-2) + self.part
         token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
+        if "ghosts" in self.without:
+            ghosts = replace(ghosts, is_there=0 * ghosts.is_there)
         return _placed(self.out(mixed), body, ghosts)
+
+    def _shown(self, image: Tensor) -> Tensor:
+        kept = torch.ones(image.shape[1], device=image.device)
+        for name, channels in (("colour", [0, 1, 2]), ("depth", [3]), ("mask", [4])):
+            if name in self.without:
+                kept[channels] = 0.0
+        return image * kept[:, None, None]
 
     def _points(self, view: RoomView, places: Tensor) -> Echoes:
         local = _looked_up(places, view.point_m, view)
         level = self.point(torch.cat([view.point_features, local], dim=-1))[..., 0]
         distance = view.point_m.norm(dim=-1).clamp(min=0.1)
+        if "correction" in self.without:
+            level = 0 * level
         cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, LARGEST_CORRECTION))
         return _resting(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
 
@@ -108,11 +130,12 @@ class WeaverNetwork(nn.Module):
         level = self.face(view.plane_features)[..., 0]
         normal = view.plane_axes[..., 2, :]
         distance = -(view.plane_centre_m * normal).sum(-1)
-        there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0)
+        there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0) & ("faces" not in self.without)
         cross_section = there * torch.exp(_bounded(level) - 8.0)
         return _resting(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
 
 
+@in_full_precision
 def _looked_up(places: Tensor, point_m: Tensor, view: RoomView) -> Tensor:
     """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
     camera = point_m @ view.camera_from_radar.transpose(-1, -2)

@@ -1,22 +1,26 @@
 """Weight files: safetensors with what one must know about them in the header. Nothing is unpickled.
 
-The header holds format, recipe, version, licence, data set and radar; `WeightsCard` is its record.
+The header holds format, recipe, version, licence, data set and radar, of which `WeightsCard` is the record, and the
+sha256 of the tensors.
 """
 
+import hashlib
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import MISSING, asdict, dataclass, field, fields
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import torch
 
+from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.models.weaver_network import WeaverNetwork
 
 FORMAT = "mmweaver weights"
 FORMAT_VERSION = 1
 SHIPPED = "weaver.safetensors"
+WEIGHTS_FILE = "weights.safetensors"  # in a folder of mmweaver train, and in a repository on the Hub
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,12 +29,14 @@ class WeightsCard:
 
     recipe: str
     licence: str
-    dataset_sha256: str  # of the data set's plan
+    dataset_sha256: str  # of the data set's plan, or of the captures' cubes
     radar: str
     steps: int
     seed: int
     validation_loss: float
     mmweaver_version: str
+    settings: dict[str, Any] = field(default_factory=dict)  # the recipe's
+    tuned_from: str = ""  # sha256 of the tensors that fine-tuning began with
 
 
 def save_weights(file: Path, network: WeaverNetwork, card: WeightsCard, *, half: bool = True) -> None:
@@ -42,10 +48,22 @@ def save_weights(file: Path, network: WeaverNetwork, card: WeightsCard, *, half:
         name: (tensor.to(dtype) if tensor.is_floating_point() else tensor).contiguous()
         for name, tensor in network.state_dict().items()
     }
-    header = {"format": FORMAT, "format_version": str(FORMAT_VERSION), "card": json.dumps(asdict(card))}
-    partial = file.with_name("." + file.name)
-    save_file(tensors, partial, metadata=header)
-    partial.rename(file)
+    header = {
+        "format": FORMAT, "format_version": str(FORMAT_VERSION), "card": json.dumps(asdict(card)),
+        "sha256": sha256_of(tensors),
+    }  # fmt: skip
+    with atomic_file(file) as partial:
+        save_file(tensors, partial, metadata=header)
+
+
+def sha256_of(tensors: dict[str, torch.Tensor]) -> str:
+    """The sha256 of names, types, shapes and values."""
+    digest = hashlib.sha256()
+    for name in sorted(tensors):
+        tensor = tensors[name].detach().cpu().contiguous()
+        digest.update(f"{name} {tensor.dtype} {tuple(tensor.shape)}\n".encode())
+        digest.update(tensor.numpy().tobytes())
+    return digest.hexdigest()
 
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
@@ -63,6 +81,11 @@ def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
     network.load_state_dict({name: tensor.to(wanted[name].dtype) for name, tensor in tensors.items()})
     network.eval()
     return network, card
+
+
+def read_card(file: Path) -> WeightsCard:
+    """What a weight file says of itself. Raises InputError as `load_weights` does."""
+    return _read(file)[0]
 
 
 def shipped_weights() -> Path:
@@ -92,6 +115,8 @@ def _read(file: Path) -> tuple[WeightsCard, dict[str, torch.Tensor]]:
                     f"{file} has weights of format {header.get('format_version')}, this mmweaver reads {FORMAT_VERSION}"
                 )
             tensors = {name: opened.get_tensor(name) for name in opened.keys()}  # noqa: SIM118 - no mapping
+        if header.get("sha256", "") not in ("", sha256_of(tensors)):
+            raise InputError(f"{file} is damaged: its values are not those that were written; fetch or write it again")
     except (SafetensorError, OSError, ValueError) as error:
         raise InputError(f"{file} is damaged or no safetensors file ({error}); fetch or write it again") from None
     return _card(header["card"], file), tensors
@@ -100,6 +125,8 @@ def _read(file: Path) -> tuple[WeightsCard, dict[str, torch.Tensor]]:
 def _card(text: str, file: Path) -> WeightsCard:
     try:
         values: dict[str, Any] = json.loads(text)
-        return WeightsCard(**{field.name: values[field.name] for field in fields(WeightsCard)})
+        wanted = [own.name for own in fields(WeightsCard) if own.default is own.default_factory is MISSING]
+        known = [own.name for own in fields(WeightsCard) if own.name in values or own.name in wanted]
+        return WeightsCard(**{name: values[name] for name in known})
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(f"{file} has a header that cannot be read ({error}); fetch or write it again") from None

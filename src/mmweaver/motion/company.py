@@ -6,11 +6,11 @@ are drawn anew, and that one goes first.
 Clear means at all times: pelvises at least 0.5 m apart, and no part of one body within 2 cm of the other.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import Scene
+from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.apart import PELVISES_APART_M, are_apart
 from mmweaver.motion.compose import Motion, compose
@@ -28,32 +28,37 @@ def compose_company(
     seed: int,
     range_window_m: tuple[float, float],
     starts_m: Sequence[Place | None] | None = None,
-    height_m: float | None = None,
+    heights_m: Sequence[float | None] | None = None,
+    first: Motion | None = None,
 ) -> tuple[Motion, ...]:
     """One motion for each sentence, in their order; the first is what it would be alone, wherever that leaves room.
 
-    `starts_m`: where each starts, None = chosen. Each person has a body of their own: subjects 0, 1, 2 ..., a height
-    drawn from the seed. Raises InputError as `compose` does, and where the people cannot be kept apart.
+    `starts_m`: where each starts, `heights_m`: how tall each is, None = chosen. Each person has a body of their own:
+    subjects 0, 1, 2 ... `first` is the first person's motion where it is there already (a recorded one); it stays as
+    it is. Raises InputError as `compose` does, and where the people cannot be kept apart.
     """
-    if len(texts) == 1 or height_m is not None:
-        return (_alone(texts, scene, duration_s, seed, range_window_m, starts_m, height_m),)
     starts = [None] * len(texts) if starts_m is None else list(starts_m)
-    order = sorted(range(len(texts)), key=lambda index: starts[index] is None)
+    heights = [None] * len(texts) if heights_m is None else list(heights_m)
+
+    def alone(index: int, draw: int, others: tuple[PoseSequence, ...]) -> Motion:
+        return compose(
+            texts[index], scene, duration_s=duration_s, seed=draw, range_window_m=range_window_m,
+            start_m=starts[index], height_m=heights[index], others=others,
+        )  # fmt: skip
+
+    if len(texts) == 1:
+        return (alone(0, seed, ()) if first is None else first,)
+    there = {} if first is None else {0: first}
+    order = sorted(set(range(len(texts))) - set(there), key=lambda index: starts[index] is None)
     crowded = order[0]
     for attempt in range(TRIES_ALL):
-        people: dict[int, Motion] = {}
+        people = dict(there)
         for index in order:
             try:
-                people[index] = _join(
-                    list(people.values()), texts[index], scene, duration_s, (seed, index, attempt), range_window_m,
-                    starts[index],
-                )  # fmt: skip
+                people[index] = _join(list(people.values()), alone, texts[index], (seed, index, attempt))
             except InputError:
                 if attempt == 0:  # what is wrong even alone is said as such
-                    compose(
-                        texts[index], scene, duration_s=duration_s, seed=_seed_of(seed, index, 0, 0),
-                        range_window_m=range_window_m, start_m=starts[index],
-                    )  # fmt: skip
+                    alone(index, _seed_of(seed, index, 0, 0), ())
                 crowded = index
                 order.sort(key=lambda one: (starts[one] is None, one != crowded))  # it goes first the next time
                 break
@@ -66,31 +71,15 @@ def compose_company(
     )
 
 
-def _alone(
-    texts: Sequence[str], scene: Scene, duration_s: float, seed: int, range_window_m: tuple[float, float],
-    starts_m: Sequence[Place | None] | None, height_m: float | None,
-) -> Motion:  # fmt: skip
-    if len(texts) > 1:
-        raise InputError("a body height is for one person; leave it out for several, who draw their own")
-    start = starts_m[0] if starts_m else None
-    return compose(
-        texts[0], scene, duration_s=duration_s, seed=seed, range_window_m=range_window_m, start_m=start,
-        height_m=height_m,
-    )  # fmt: skip
-
-
 def _join(
-    people: list[Motion], text: str, scene: Scene, duration_s: float, draw: tuple[int, int, int],
-    range_window_m: tuple[float, float], start_m: Place | None,
+    people: list[Motion], alone: Callable[[int, int, tuple[PoseSequence, ...]], Motion], text: str,
+    draw: tuple[int, int, int],
 ) -> Motion:  # fmt: skip
     """One more person, clear of the others."""
     seed, index, attempt = draw
     others = tuple(one.pose for one in people)
     for again in range(TRIES_EACH):
-        motion = compose(
-            text, scene, duration_s=duration_s, seed=_seed_of(seed, index, attempt, again),
-            range_window_m=range_window_m, start_m=start_m, others=others,
-        )  # fmt: skip
+        motion = alone(index, _seed_of(seed, index, attempt, again), others)
         motion = replace(motion, pose=replace(motion.pose, subject=index))
         if all(are_apart(motion.pose, other) for other in others):
             return motion

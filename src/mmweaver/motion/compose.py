@@ -8,9 +8,10 @@ from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.assemble import assemble
 from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
+from mmweaver.motion.clearest import clearest
 from mmweaver.motion.floor_map import FloorMap
 from mmweaver.motion.obstacles import Obstacles
-from mmweaver.motion.placement import Placement, clearest, place
+from mmweaver.motion.placement import Placement, place
 from mmweaver.motion.plan import MotionPlan
 from mmweaver.motion.sentence import parse
 from mmweaver.motion.targets import without_things
@@ -58,7 +59,9 @@ def compose(
     body = Body(height_m)
     floor = FloorMap(scene, range_window_m, height_m)
     plan, spot_notes = _jogging_without_a_way(plan)
-    placements = place(plan, floor, body, seed=seed, start_m=start_m, others=others)
+
+    def draw(again: int) -> list[Placement]:
+        return place(plan, floor, body, seed=seed, start_m=start_m, others=others, again=again)
 
     def moved(placement: Placement) -> PoseSequence:
         return assemble(
@@ -66,8 +69,9 @@ def compose(
             seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
         )  # fmt: skip
 
-    placement, pose, note = clearest(placements, moved, Obstacles(scene))
-    return Motion(pose=pose, plan=plan, assumptions=plan.notes + spot_notes + placement.assumptions + note)
+    best = clearest(draw, moved, Obstacles.of(scene))
+    notes = plan.notes + spot_notes + best.placement.assumptions + best.notes
+    return Motion(pose=best.pose, plan=plan, assumptions=notes)
 
 
 def _jogging_without_a_way(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:

@@ -13,6 +13,7 @@ Places = Float[Array, "*shape 2"]
 
 BODY_RADIUS_M = 0.25  # half the width of the shoulders
 AZIMUTH_LIMIT_RAD = np.radians(40.0)
+_UNSEEN = 1.5  # what a place costs whose floor is not seen
 TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
 
@@ -61,7 +62,7 @@ class FloorMap:
         floor = self.scene.floor_z_m
         farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
         low, high = self.range_window_m
-        dislike = 0.7 * ~self.scene.free_space.is_seen
+        dislike = _UNSEEN * self._unseen_share
         dislike = (
             dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
         )
@@ -70,6 +71,14 @@ class FloorMap:
         for height in (0.03, self.height_m):
             dislike = dislike + 0.8 * ~self._in_picture(self.places_m, floor + height, margin=0.01, vertical=True)
         return dislike
+
+    @cached_property
+    def _unseen_share(self) -> Float[Array, "y x"]:
+        """How much of the floor under a body was only assumed."""
+        from scipy.ndimage import uniform_filter
+
+        across = 2 * round(BODY_RADIUS_M / self.cell_m) + 1
+        return np.asarray(uniform_filter((~self.scene.free_space.is_seen).astype(float), across, mode="nearest"))
 
     def sees(self, places: Places) -> Bool[Array, "*shape"]:
         """The torso is inside the range window, within 40 degrees of the axis and the picture's width."""

@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
+from mmweaver.motion.hidden_parts import feet_of, legs_of
 
 Array = np.ndarray
 # Radii of a person of 1.75 m about the bones, and what may be pressed by them.
@@ -29,6 +30,7 @@ _SHARES = np.array([0.0, 0.33, 0.67, 1.0])
 _STEP_S = 0.1
 _ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
 _SEAT_AHEAD_M, _SEAT_UNDER_M = 0.12, 0.05  # before the pelvis, and no lower below it: not the seat itself
+_OVER_ARMRESTS_M = 0.2  # over the pelvis: what is beside the trunk there is not the seat's either
 _FARTHEST_M = 0.3
 _LOWEST_M = 0.09  # above the floor: soles meet the floor
 _MOST_POINTS = 34_000
@@ -37,11 +39,21 @@ _LOW_M, _LOW_DOWN_M = 0.64, (0.1, 0.17, 0.24)  # beds and low tables: nobody's k
 _THICK_M = 0.04  # at least, of anything: a table's top below the points seen on it, a cupboard's front behind them
 
 
+_latest: list["Obstacles"] = []
+
+
 @dataclass(frozen=True)
 class Obstacles:
     """The measured points of a scene above its floor, and its walls."""
 
     scene: Scene
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Obstacles":
+        """Those of a scene; the last scene's are kept, for what it holds is gathered once for many motions."""
+        if not _latest or _latest[0].scene is not scene:
+            _latest[:] = [cls(scene)]
+        return _latest[0]
 
     @cached_property
     def _solid_m(self) -> Float[Array, "point 3"]:
@@ -60,6 +72,9 @@ class Obstacles:
         below += [low - np.array([0.0, 0.0, down]) for down in _LOW_DOWN_M]
         solid = np.concatenate([points, behind, *below])
         solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+        solid = np.concatenate(
+            [solid, feet_of(np.concatenate([points, behind]), self.scene.floor_z_m), legs_of(self.scene)]
+        )
         _, one_each = np.unique(np.rint(solid / _GRAIN_M).astype(int) @ _GRAINS, return_index=True)
         return solid[one_each]
 
@@ -79,8 +94,10 @@ class Obstacles:
         ahead = (knees - lowest[joint("left_hip")] - lowest[joint("right_hip")])[:2]
         ahead = ahead / max(float(np.hypot(*ahead)), 1e-6)
         away = self._solid_m[:, :2] - np.array(seat)
-        near = (np.hypot(*away.T) < _SEAT_REACH_M + 0.3) & (away @ ahead > _SEAT_AHEAD_M)
-        return KDTree(self._solid_m[near & (self._solid_m[:, 2] > lowest[joint("pelvis"), 2] - _SEAT_UNDER_M)])
+        near, height = np.hypot(*away.T) < _SEAT_REACH_M + 0.3, self._solid_m[:, 2] - lowest[joint("pelvis"), 2]
+        before = (away @ ahead > _SEAT_AHEAD_M) & (height > -_SEAT_UNDER_M)
+        beside = (away @ ahead > 0.0) & (height > _OVER_ARMRESTS_M)
+        return KDTree(self._solid_m[near & (before | beside)])
 
     def deepest_m(
         self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
@@ -121,7 +138,7 @@ class Obstacles:
             worst = max(worst, float((radius - before - allowed)[at_seat].max(initial=0.0)))
         for seat, _ in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
-            allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M)
+            allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M - margin_m)
         distance, _ = self._tree.query(points, distance_upper_bound=_FARTHEST_M)
         worst = max(worst, float((radius - distance - allowed).max()))
         for plane in self.scene.planes:

@@ -1,7 +1,5 @@
 """Where in the room a plan is acted out: many starts are tried, the best way is taken."""
 
-from collections import Counter
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,17 +12,18 @@ from mmweaver.motion.activities import CLEARANCE_M
 from mmweaver.motion.apart import keeps_clear
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
-from mmweaver.motion.obstacles import Obstacles
 from mmweaver.motion.other_ways import check_floor, is_other, lay_other, turn_by
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
 from mmweaver.motion.seating import (
     STOOL_HEIGHT_M,
     Sitting,
+    as_it_can_be,
     as_it_may_be,
     preferred,
     reachable,
     seats_of,
+    some_of,
     stool_at,
     stool_fits,
     stool_note,
@@ -43,8 +42,6 @@ from mmweaver.motion.way import (
 
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
-MOST_MOVED, WORTH_A_NOTE_M = 40, 0.03
-MARGIN_M = 0.03  # depth is noisy, and what stands there is seen from one side
 CLOSEST_FEET_M = 0.05
 
 
@@ -61,11 +58,12 @@ class Placement:
 
 def place(
     plan: MotionPlan, floor: FloorMap, body: Body, *, seed: int, start_m: tuple[float, float] | None,
-    others: tuple[PoseSequence, ...] = (),
+    others: tuple[PoseSequence, ...] = (), again: int = 0,
 ) -> list[Placement]:  # fmt: skip
     """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
-    `start_m` fixes where the person starts. Raises InputError where the start is not free or out of view, where
+    `start_m` fixes where the person starts. `again` draws others, with more ways to sit: 1 leaves out some seats, 2
+    perhaps all where the sentence names none. Raises InputError where the start is not free or out of view, where
     there is no room, or where the room lacks what a step goes to, saying what there is.
     """
     check_targets(plan, floor.scene)
@@ -73,11 +71,11 @@ def place(
         raise InputError(_no_floor(floor))
     if start_m is not None:
         _check_start(floor, start_m)
-    rng = stream(seed, "motion", "placement")
+    rng = stream(seed, "motion", f"placement {again}" if again else "placement")
     ways: list[Way] = []
     for _ in range(TRIES):
         try:
-            way = _try(plan, floor, body, rng, start_m)
+            way = _try(plan, floor, body, rng, start_m, again=again)
         except NoWay:
             continue
         if others and not _is_clear_of(way, plan, others):
@@ -88,37 +86,6 @@ def place(
     if not ways:
         raise InputError(_no_room(plan, floor, start_m))
     return [_placement(way) for way in sorted(ways, key=lambda way: way.cost)]
-
-
-def clearest(
-    placements: Sequence[Placement], moved: Callable[[Placement], PoseSequence], obstacles: Obstacles
-) -> tuple[Placement, PoseSequence, tuple[str, ...]]:
-    """The first placement whose motion keeps a margin to everything, hands and all; else the one that comes nearest to
-    that, with a note where it gets in.
-    """
-    best: tuple[float, Placement, PoseSequence] | None = None
-    for placement in _varied(placements)[:MOST_MOVED]:
-        pose = moved(placement)
-        deep_m = obstacles.deepest_m(pose, placement.seats_m, margin_m=MARGIN_M)
-        if best is None or deep_m < best[0]:
-            best = (deep_m, placement, pose)
-        if deep_m <= 0.0:
-            break
-    assert best is not None
-    deep_m = best[0] - MARGIN_M
-    note = f"the body gets {100 * deep_m:.0f} cm into furniture or a wall, for the room leaves no better place"
-    return best[1], best[2], (note,) if deep_m > WORTH_A_NOTE_M else ()
-
-
-def _varied(placements: Sequence[Placement]) -> list[Placement]:
-    """The same in their order, but after two of a seat the others of that seat last."""
-    count: Counter[tuple[object, ...]] = Counter()
-    first, later = [], []
-    for placement in placements:
-        sat = (*placement.seats_m, round(placement.path.heading_rad, 2))
-        count[sat] += 1
-        (later if placement.seats_m and count[sat] > 2 else first).append(placement)
-    return first + later
 
 
 def _placement(way: Way) -> Placement:
@@ -142,10 +109,19 @@ def _starts_seated(plan: MotionPlan) -> bool:
 
 
 def _try(
-    plan: MotionPlan, floor: FloorMap, body: Body, rng: np.random.Generator, start_m: tuple[float, float] | None
-) -> Way:
+    plan: MotionPlan, floor: FloorMap, body: Body, rng: np.random.Generator, start_m: tuple[float, float] | None,
+    *, again: int,
+) -> Way:  # fmt: skip
     """One candidate: a start, and every step laid out from there."""
-    seats = [as_it_may_be(seat, rng) for seat in seats_of(floor, body)]
+    seats = seats_of(floor, body)
+    if again:
+        named = next((step.seat for step in plan.steps if step.seat), "")
+        seats = [
+            as_it_can_be(seat, rng)
+            for seat in some_of(preferred(seats, named, floor.scene), rng, all_may_go=again > 1 and not named)
+        ]
+    else:
+        seats = [as_it_may_be(seat, rng) for seat in seats]
     way, sitting = _start(plan, floor, body, rng, start_m, seats)
     for k, step in enumerate(plan.steps):
         way.moves.append([])

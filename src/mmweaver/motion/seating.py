@@ -16,6 +16,7 @@ LOWEST_M, HIGHEST_M = 0.3, 0.65
 _COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
 _COUCH_M, _BED_REACH_M = 0.8, 1.2
 _TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter at a table may look past it
+_WIDEST_TURN_RAD, _BODY_ON_SEAT_M, _LEFT_OUT = 0.9, 0.4, 0.4
 _BACK_M, _ROOM_BEHIND_M = 0.05, 0.4  # and sit back, where the seat is deep enough
 
 
@@ -84,7 +85,29 @@ def as_it_may_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     if kind == 3:
         back = rng.uniform(0.3, 1.0) * _BACK_M * reach / max(float(np.hypot(*reach)), 1e-6)
         return replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
-    turn = float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0]))
+    return _turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
+
+
+def as_it_can_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
+    """The same seat sat on in any way that one can: turned, and forward or back, left or right of its middle."""
+    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    aside = np.array([-ahead[1], ahead[0]])
+    spare = np.clip((np.array([sitting.depth_m, sitting.width_m]) - _BODY_ON_SEAT_M) / 2, 0.03, 0.3)
+    shift = rng.uniform(-1, 1, 2) * spare
+    moved = shift[0] * ahead + shift[1] * aside
+    sitting = replace(sitting, feet_m=sitting.feet_m + moved, seat_m=sitting.seat_m + moved)
+    return _turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
+
+
+def some_of(seats: list[Sitting], rng: np.random.Generator, *, all_may_go: bool) -> list[Sitting]:
+    """The seats without some, at random."""
+    kept = [seat for seat in seats if rng.random() > _LEFT_OUT]
+    return kept if kept or all_may_go else seats
+
+
+def _turned(sitting: Sitting, turn: float) -> Sitting:
+    """Turned about the seat; the feet go with it."""
+    reach = sitting.feet_m - sitting.seat_m
     across = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     return replace(
         sitting,

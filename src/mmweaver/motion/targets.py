@@ -35,8 +35,10 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
     """Raises InputError where a step goes to something that the room does not show, naming what it has."""
     for step in plan.steps:
         if step.moves and goes_to_thing(step) and not _marks(scene, step):
+            told = f"--landmark {kinds_for(step.target)[0]}=X,Y (metres right of and ahead of the radar)"
             raise InputError(
-                f"for {step.clause or step.target!r}: no {step.target} was found in the photo; {_what_there_is(scene)}"
+                f"for {step.clause or step.target!r}: no {step.target} was found in the photo; {_what_there_is(scene)};"
+                f" where one is can be told by {told} or a class mask (--classes)"
             )
 
 

@@ -1,10 +1,9 @@
-"""A small segmenter of our own: colours, heights and slopes of the depth grid in, a class for each cell out.
+"""A small segmenter of our own: mostly the geometry of the depth grid in, a class for each cell out.
 
-    7 channels a cell (about 80 x 60)                       class scores a cell
-      colour 3, height over the floor, |up . normal|,            |
-      1 / depth, measured or not                                 |
+    13 channels a cell (about 80 x 60)                      class scores a cell
+      see `segmenter_features`                                   |
          |                                                       |
-        24 --/2-- 32 --/2-- 64 --/2-- 96 --x2-- 64 --x2-- 32 --x2-- 24
+        32 --/2-- 48 --/2-- 80 --/2-- 128 -x2-- 80 --x2-- 48 --x2-- 32
                    \\________________\\____________/______________/
 
 It works offline and knows thirteen groups of COCO-Stuff's classes. Trained on procedural rooms alone, see
@@ -19,15 +18,13 @@ from jaxtyping import Float, Int
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import ClassMask, RgbdPhoto
-from mmweaver.core.shapes import Array, Rotation
-from mmweaver.geometry.rotations import level_from_camera
+from mmweaver.core.shapes import Array
 from mmweaver.scene.coco_stuff import NAMES
-from mmweaver.scene.depth_grid import DepthGrid, make_grid
-from mmweaver.scene.gravity import find_gravity
+from mmweaver.scene.depth_grid import make_grid
+from mmweaver.scene.segmenter_features import CHANNELS, EVERY, grid_features
 
 WEIGHTS = Path(__file__).parents[1] / "weights" / "segmenter.safetensors"
-CHANNELS = 7
-EVERY = 2  # of the depth grid's rows and columns so many-th is looked at
+WIDTHS = (32, 48, 80, 128)
 # Each group is told by its first class; what is in none of them is "unlabeled".
 GROUPS: tuple[tuple[str, ...], ...] = (
     ("unlabeled",),
@@ -54,17 +51,8 @@ def group_of_classes(names: tuple[str, ...]) -> Int[Array, " name"]:
     return np.array([group.get(name, 0) for name in names])
 
 
-def grid_features(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) -> Float[Array, "7 row column"]:
-    """What the network sees of every second cell each way; 0 where nothing was measured."""
-    height = grid.points_m @ radar_from_camera[2] - floor_z_m
-    slope = np.abs(grid.normals @ radar_from_camera[2])
-    geometry = (height / 2.5, slope, 1 / grid.depth_m, np.isfinite(grid.depth_m).astype(float))
-    stacked = np.concatenate([np.moveaxis(grid.rgb, -1, 0), np.stack(geometry)])
-    return np.nan_to_num(stacked[:, ::EVERY, ::EVERY]).astype(np.float32)
-
-
 def make_network() -> Any:
-    """The network, with random weights; call it with (batch, 7, row, column)."""
+    """The network, with random weights; call it with (batch, 13, row, column)."""
     import torch
     from torch import nn
 
@@ -77,10 +65,11 @@ def make_network() -> Any:
     class Network(nn.Module):
         def __init__(self) -> None:
             super().__init__()
-            self.stem = block(CHANNELS, 24)
-            self.down = nn.ModuleList([block(24, 32, 2), block(32, 64, 2), block(64, 96, 2)])
-            self.up = nn.ModuleList([block(96 + 64, 64), block(64 + 32, 32), block(32 + 24, 24)])
-            self.head = nn.Conv2d(24, len(GROUPS), 1)
+            a, b, c, d = WIDTHS
+            self.stem = block(CHANNELS, a)
+            self.down = nn.ModuleList([block(a, b, 2), block(b, c, 2), block(c, d, 2)])
+            self.up = nn.ModuleList([block(d + c, c), block(c + b, b), block(b + a, a)])
+            self.head = nn.Conv2d(a, len(GROUPS), 1)
 
         def forward(self, cells: torch.Tensor) -> torch.Tensor:
             levels = [self.stem(cells)]
@@ -113,7 +102,7 @@ def load_network(path: Path = WEIGHTS) -> Any:
     return network.eval()
 
 
-def groups_of_cells(features: Float[Array, "7 row column"], network: Any) -> Int[Array, "row column"]:
+def groups_of_cells(features: Float[Array, "13 row column"], network: Any) -> Int[Array, "row column"]:
     """The group of each cell."""
     import torch
 
@@ -124,9 +113,7 @@ def groups_of_cells(features: Float[Array, "7 row column"], network: Any) -> Int
 def segment_builtin(photo: RgbdPhoto) -> ClassMask:
     """The classes of a photo by the network that comes with the project."""
     grid = make_grid(photo)
-    gravity = find_gravity(grid)
-    features = grid_features(grid, level_from_camera(gravity.up_camera), gravity.floor_z_m)
-    groups = groups_of_cells(features, load_network())
+    groups = groups_of_cells(grid_features(grid), load_network())
     size = EVERY * (photo.intrinsics.width // grid.intrinsics.width)
     numbers = np.array([NAMES.index(name) for name in GROUP_NAMES], np.uint8)
     cells = np.repeat(np.repeat(numbers[groups], size, axis=0), size, axis=1)

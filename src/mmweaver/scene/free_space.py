@@ -5,9 +5,11 @@ import numpy as np
 from mmweaver.core.records import FreeSpace
 from mmweaver.core.shapes import GridMask
 from mmweaver.scene.height_map import CELL_M, HeightMap
+from mmweaver.scene.patches import places
 
 _EDGE_ON_M, _DEPTH_M = 0.13, 0.85
 _TABLE_M = (0.3, 1.1)
+_HOLLOW_M, _LONG_M = 0.4, 0.6  # below a table's rim, and how long it is at least: chairs are not as wide
 _NEAREST_M = 0.5  # a body closer to the radar than this is not expected
 
 
@@ -15,7 +17,8 @@ def find_free_space(height_map: HeightMap, camera_height_m: float) -> FreeSpace:
     """Free is floor that is seen, or that must go on where nothing stands: seen through, or under the picture's edge.
 
     Nothing behind a wall is free, nor beside the picture, nor within half a metre of the radar, nor behind the edge of
-    a thing as high as the camera: a table seen edge-on hides its own top, and the floor is seen below it.
+    a thing as high as the camera or, where it is long and hollow below, higher: a table seen edge-on or from below
+    hides its own top, and the floor is seen below it.
     """
     distance_m = np.hypot(height_map.x_m[None, :], height_map.y_m[:, None])
     is_open = height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
@@ -29,9 +32,10 @@ def find_free_space(height_map: HeightMap, camera_height_m: float) -> FreeSpace:
 
 
 def behind_edges(height_map: HeightMap, camera_height_m: float) -> GridMask:
-    """Squares up to a table's depth behind things that end at the camera's own height."""
-    level = np.abs(np.nan_to_num(height_map.top_m, nan=-9.0) - camera_height_m) < _EDGE_ON_M
-    level &= (height_map.top_m > _TABLE_M[0]) & (height_map.top_m < _TABLE_M[1])
+    """Squares up to a table's depth behind rims at the camera's own height, and behind tables' rims above it."""
+    over_m = np.nan_to_num(height_map.top_m, nan=-9.0) - camera_height_m
+    is_table = (height_map.top_m > _TABLE_M[0]) & (height_map.top_m < _TABLE_M[1])
+    level = is_table & ((np.abs(over_m) < _EDGE_ON_M) | _is_rim(height_map, is_table & (over_m > 0)))
     row, column = np.nonzero(level)
     x, y = height_map.x_m[column], height_map.y_m[row]
     length = np.maximum(np.hypot(x, y), 1e-6)
@@ -43,3 +47,16 @@ def behind_edges(height_map: HeightMap, camera_height_m: float) -> GridMask:
         inside = (a >= 0) & (a < columns) & (b >= 0) & (b < rows)
         hidden[b[inside], a[inside]] = True
     return hidden
+
+
+def _is_rim(height_map: HeightMap, squares: GridMask) -> GridMask:
+    """Of the squares those of patches that are hollow below and long."""
+    from scipy import ndimage
+
+    hollow = squares & (height_map.bottom_m > _HOLLOW_M)
+    labels, _ = ndimage.label(hollow, structure=np.ones((3, 3)))  # pyright: ignore[reportGeneralTypeIssues]
+    long = np.zeros_like(hollow)
+    for number, place in enumerate(places(labels), start=1):
+        if max(part.stop - part.start for part in place) * CELL_M >= _LONG_M:
+            long[place] |= labels[place] == number
+    return long

@@ -33,6 +33,7 @@ class HeightMap:
     x_m: Float[Array, " x"]  # centres
     y_m: Float[Array, " y"]
     top_m: GridMetres  # of what stands there, up to head height; nan where nothing does
+    bottom_m: GridMetres  # the lowest that is seen of it; inf where nothing stands
     is_blocked: GridMask  # something stands there, or it is enclosed by what does
     is_floor_seen: GridMask
     is_seen_through: GridMask  # lines of sight pass over it to something farther
@@ -63,6 +64,7 @@ def make_height_map(photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: fl
         x_m=x_m,
         y_m=y_m,
         top_m=without_gaps(_third_highest(square[kept], height[kept], shape), seen_through),
+        bottom_m=-np.nan_to_num(_third_highest(square[kept], -height[kept], shape), nan=-np.inf),
         is_blocked=_without_pockets(count >= _MIN_POINTS),
         is_floor_seen=floor_count >= 2,
         is_seen_through=seen_through,

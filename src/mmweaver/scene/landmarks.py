@@ -1,11 +1,13 @@
 """Things that a sentence may name as a place to go to: tables, counters, beds, doors and windows."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from mmweaver.core.records import FreeSpace, Landmark, Plane, RgbdPhoto, Seat
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import FreeSpace, Landmark, Plane, RgbdPhoto, Scene, Seat
 from mmweaver.core.shapes import Array, Rotation
 from mmweaver.scene.class_evidence import named_points
 from mmweaver.scene.height_map import CELL_M, HeightMap
@@ -18,6 +20,8 @@ _MIN_TOP_M2, _MIN_BED_M2, _MIN_COUNTER_M2 = 0.16, 0.8, 0.25
 _LEVEL_M, _LOW_M, _HALF_DEPTH_M = 0.03, 0.6, 0.29
 _BODY_M, _FARTHEST_M = 0.27, 1.1  # a body's half width, and how far from a thing one still stands at it
 _APART_M = 0.5
+KINDS = ("door", "window", "table", "counter", "bed")
+_FARTHEST_TOLD_M = 10.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +55,31 @@ def find_landmarks(
             things.append(Things(kind=opening.kind, position_m=opening.position_m, squares=opening.foot_m))
     made = [_landmark(thing, free_space) for thing in things]
     return tuple(sorted(made, key=lambda mark: (mark.kind, float(np.hypot(*mark.position_m[:2])))))
+
+
+def with_told(scene: Scene, told: Sequence[tuple[str, tuple[float, float]]]) -> Scene:
+    """The scene with landmarks at places (x, y) that a person told; those of these kinds that were found are dropped.
+
+    Raises InputError for a kind that no sentence knows, and for a place behind or far from the radar.
+    """
+    made = []
+    for kind, (x, y) in told:
+        if kind not in KINDS:
+            raise InputError(f"a {kind!r} is nothing that a sentence goes to; known: {', '.join(KINDS)}")
+        if not (abs(x) <= _FARTHEST_TOLD_M and 0 < y <= _FARTHEST_TOLD_M):
+            raise InputError(
+                f"the {kind} at {x:g},{y:g} is not before the radar; write metres right of and ahead of it, for example"
+                f" {kind}=0.5,3"
+            )
+        thing = Things(kind=kind, position_m=np.array([x, y, scene.floor_z_m + 1.0]), squares=np.array([[x, y]]))
+        made.append(_landmark(thing, scene.free_space))
+    kinds = {kind for kind, _ in told}
+    notes = tuple(f"The {kind} at x {x:g} m, y {y:g} m was told, not found." for kind, (x, y) in told)
+    return replace(
+        scene,
+        landmarks=(*(mark for mark in scene.landmarks if mark.kind not in kinds), *made),
+        assumptions=(*scene.assumptions, *notes),
+    )
 
 
 def _tops(

@@ -13,6 +13,11 @@ from mmweaver.scene.depth_grid import depth_tolerance_m
 CELL_M = 0.05
 _DOOR_WIDTH_M, _WINDOW_WIDTH_M = (0.65, 1.30), (0.7, 2.4)
 _DOOR_BAND_M, _WINDOW_BAND_M, _SILL_BAND_M = (0.15, 1.85), (1.05, 1.95), (0.25, 0.70)
+# A door is the whole wall's other colour from the floor to over head height, and the wall goes on above: windows over
+# something, boards and cupboards differ only in parts.
+_DOOR_FOOT_M, _LINTEL_M = (0.0, 0.15), (2.15, 2.4)
+_WHOLE, _WHOLE_FOOT, _FEW_ABOVE = 0.95, 0.8, 0.4
+_FOOT_KNOWN, _ALL_KNOWN = 0.4, 0.85
 _FARTHEST_M = 5.0
 _MIN_KNOWN, _MIN_SHARE = 0.45, 0.72
 _LEAF_M = 0.09  # how far a leaf or a frame may stand before its wall
@@ -43,7 +48,10 @@ class _WallPicture:
 def find_openings(
     photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: float, planes: tuple[Plane, ...]
 ) -> list[Opening]:
-    """Runs of columns, as wide as a door or a window, that differ from the wall at its heights and not beside it."""
+    """Runs of columns, as wide as a door or a window, that differ from the wall at its heights and not beside it.
+
+    Doors are told only where next to nothing speaks against them: few are found, and those are doors.
+    """
     found: list[Opening] = []
     for wall in planes:
         if wall.kind != "wall" or np.linalg.norm(wall.centre_m) > 2 * _FARTHEST_M:
@@ -51,7 +59,7 @@ def find_openings(
         picture = _picture(photo, radar_from_camera, floor_z_m, wall)
         if picture is None:
             continue
-        doors = _runs(picture, _DOOR_BAND_M, _DOOR_WIDTH_M)
+        doors = [run for run in _runs(picture, _DOOR_BAND_M, _DOOR_WIDTH_M) if _is_door(picture, run)]
         windows = [
             run for run in _runs(picture, _WINDOW_BAND_M, _WINDOW_WIDTH_M)
             if _share(picture, run, _SILL_BAND_M) < 0.35 and not any(run[0] < b and a < run[1] for a, b in doors)
@@ -110,6 +118,20 @@ def _runs(picture: _WallPicture, band_m: tuple[float, float], width_m: tuple[flo
     edges = np.flatnonzero(np.diff(np.concatenate([[0], differs.astype(int), [0]])))
     runs = [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
     return [run for run in runs if width_m[0] <= (run[1] - run[0]) * CELL_M <= width_m[1]]
+
+
+def _is_door(picture: _WallPicture, run: tuple[int, int]) -> bool:
+    """Differs all over and down to the floor, where that is seen, and ends under the wall above it."""
+    if _share(picture, run, _DOOR_BAND_M) < _WHOLE or _share(picture, run, _LINTEL_M) > _FEW_ABOVE:
+        return False
+    if _known(picture, run, _DOOR_FOOT_M) >= _FOOT_KNOWN:
+        return _share(picture, run, _DOOR_FOOT_M) >= _WHOLE_FOOT
+    return _known(picture, run, _DOOR_BAND_M) >= _ALL_KNOWN
+
+
+def _known(picture: _WallPicture, run: tuple[int, int], band_m: tuple[float, float]) -> float:
+    rows = (picture.height_m > band_m[0]) & (picture.height_m < band_m[1])
+    return float(picture.known[rows][:, slice(*run)].mean())
 
 
 def _share(picture: _WallPicture, run: tuple[int, int], band_m: tuple[float, float]) -> float:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.hub_log import hub_log_off
 
 
 def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any]) -> tuple[Any, Any, Any]:
@@ -48,7 +49,8 @@ def quiet(transformers: Any) -> Iterator[None]:
     logging.set_verbosity_error()
     logging.disable_progress_bar()
     try:
-        yield
+        with hub_log_off():
+            yield
     finally:
         logging.set_verbosity(level)
         logging.enable_progress_bar()

@@ -1,17 +1,19 @@
 """Photo -> Scene. Read `reconstruct` first: it names the steps in order."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
-from mmweaver.geometry.rotations import level_from_camera
 from mmweaver.scene.class_evidence import sittable_squares
-from mmweaver.scene.depth_grid import DepthGrid, GridBool, GridVectors, make_grid
+from mmweaver.scene.closed_room import close_room, wall_faces
+from mmweaver.scene.depth_grid import GridBool, GridVectors, make_grid
 from mmweaver.scene.free_space import find_free_space
-from mmweaver.scene.gravity import corrected_by_walls, find_gravity
 from mmweaver.scene.height_map import make_height_map
 from mmweaver.scene.landmarks import find_landmarks
+from mmweaver.scene.levelling import level_room
 from mmweaver.scene.materials import (
     ASSUMPTION,
     ASSUMPTION_OF_CLASSES,
@@ -22,7 +24,7 @@ from mmweaver.scene.materials import (
 )
 from mmweaver.scene.mesh import floor_faces, make_mesh
 from mmweaver.scene.seats import find_seats
-from mmweaver.scene.surfaces import LevelGrid, find_surfaces, floor_cells
+from mmweaver.scene.surfaces import LevelGrid, floor_cells
 
 _FLOOR_MARGIN_M = 0.3
 _MIN_FLOOR_M = 3.0  # length and half width that the floor is given at least
@@ -38,14 +40,8 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     Raises InputError where the depth shows no surfaces.
     """
     grid = make_grid(photo)
-    gravity = find_gravity(grid)
-    radar_from_camera = level_from_camera(gravity.up_camera)
-    level = _levelled(grid, radar_from_camera, gravity.floor_z_m)
-    walls = [surface.cells for surface in find_surfaces(level) if surface.plane.kind == "wall"]
-    gravity = corrected_by_walls(gravity, grid, floor_cells(level), walls)
-    radar_from_camera = level_from_camera(gravity.up_camera)
-    level = _levelled(grid, radar_from_camera, gravity.floor_z_m)
-    surfaces = find_surfaces(level)
+    room = level_room(grid)
+    gravity, radar_from_camera, level, surfaces = room.gravity, room.radar_from_camera, room.grid, room.surfaces
     is_floor = floor_cells(level) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
 
     height_map = make_height_map(photo, radar_from_camera, gravity.floor_z_m)
@@ -61,15 +57,16 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     planes = [with_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True)]
     rays = _rays(grid.intrinsics, radar_from_camera)
     vertices_m, faces, face_material = make_mesh(level, rays, surfaces, is_floor, material)
-    corners_m, two_faces = floor_faces(floor)
+    closed = close_room(level, planes)
+    corners_m, large_faces, large_material = _rectangles(floor, closed.added)
     return Scene(
         photo=photo,
         radar_from_camera=radar_from_camera,
         vertices_m=np.concatenate([vertices_m, corners_m]),
-        faces=np.concatenate([faces, two_faces + len(vertices_m)]),
-        face_material=np.append(face_material, [MATERIAL_NAMES.index(floor.material)] * 2),
+        faces=np.concatenate([faces, large_faces + len(vertices_m)]),
+        face_material=np.concatenate([face_material, large_material]),
         material_names=MATERIAL_NAMES,
-        planes=(floor, *planes),
+        planes=(floor, *closed.planes),
         floor_z_m=gravity.floor_z_m,
         free_space=free_space,
         seats=seats,
@@ -79,18 +76,21 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
         assumptions=(
             *assumptions,
             *gravity.assumptions,
+            *closed.assumptions,
             *_own_assumptions(floor, has_classes=photo.classes is not None),
         ),
     )
 
 
-def _levelled(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) -> LevelGrid:
-    return LevelGrid(
-        points_m=grid.points_m @ radar_from_camera.T,
-        normals=grid.normals @ radar_from_camera.T,
-        depth_m=grid.depth_m,
-        floor_z_m=floor_z_m,
-        focal_cells=grid.intrinsics.fx,
+def _rectangles(floor: Plane, walls: Sequence[Plane]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The whole floor and the walls that close the room, two triangles each."""
+    corners_m, triangles = floor_faces(floor)
+    wall_corners_m, wall_triangles = wall_faces(walls)
+    names = [plane.material for plane in (floor, *walls) for _ in range(2)]
+    return (
+        np.concatenate([corners_m, wall_corners_m]),
+        np.concatenate([triangles, wall_triangles + len(corners_m)]),
+        np.array([MATERIAL_NAMES.index(name) for name in names]),
     )
 
 

@@ -116,6 +116,12 @@ class Body:
         return np.array([(c.start_radius_m, c.end_radius_m) for c in CAPSULES]) * self.scale
 
     @cached_property
+    def _taper(self) -> np.ndarray:
+        """How fast each capsule's radius grows along it."""
+        grows = [(c.end_radius_m - c.start_radius_m) / _length_m(c) if c.start != c.end else 0.0 for c in CAPSULES]
+        return np.array(grows)
+
+    @cached_property
     def _widths(self) -> np.ndarray:
         return np.array([TORSO_WIDTH_FRONT if c.start in TORSO else 1.0 for c in CAPSULES])
 
@@ -160,6 +166,7 @@ class Body:
         offset[:, 0] *= width
         normal = local.copy()
         normal[:, 0] /= width
+        normal[:, 2] -= self._taper[part] * (self.cap_sine == 0)
         normal /= np.linalg.norm(normal, axis=1, keepdims=True)
         turn = rotations[:, part]
         place = starts[:, part] + axes[:, part] * along[None, :, None] + np.einsum("tpij,pj->tpi", turn, offset)

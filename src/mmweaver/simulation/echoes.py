@@ -8,8 +8,9 @@ from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.simulation.antenna import pattern, scatterer_gain
 from mmweaver.simulation.body import Body
 from mmweaver.simulation.mirrors import Mirror, fresnel_radius_m
-from mmweaver.simulation.room import Room, StaticEchoes
+from mmweaver.simulation.room import RestingRoom, Room, StaticEchoes
 from mmweaver.simulation.synthesis import EchoRows
+from mmweaver.simulation.visibility import Visibility
 
 GHOST_POINTS = 200
 SKIN_MARGIN_M = 0.03  # a point on the skin is not hidden by its own capsule's hull
@@ -34,7 +35,7 @@ class BodyAtFrames:
     ) -> "BodyAtFrames":
         """Joints (frame, node, 22, 3), chest (frame, node); the middle node counts as the frame's middle.
 
-        `hulls` stand for this body and all others that may hide it; the body's own if not given.
+        `hulls` stand for this body and all others that may hide it; the body's own if None, and no rays if empty.
         """
         frames, nodes = joints_m.shape[:2]
         skin = body.skin(joints_m.reshape(-1, 22, 3), None if chest_m is None else chest_m.ravel())
@@ -44,7 +45,7 @@ class BodyAtFrames:
             nodes_m=places,
             place_m=places[:, nodes // 2],
             normal=normals[:, nodes // 2],
-            hulls=hulls or hulls_of([body], [joints_m]),
+            hulls=hulls_of([body], [joints_m]) if hulls is None else hulls,
         )
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float, wanted: np.ndarray) -> np.ndarray:
@@ -66,24 +67,28 @@ def hulls_of(bodies: list[Body], joints_m: list[np.ndarray]) -> list[RayCaster]:
     return [RayCaster(frame, faces) for frame in vertices]
 
 
-def shadow_of(hull: RayCaster, echoes: StaticEchoes, near: np.ndarray) -> StaticEchoes:
-    """Those of the room's echoes (rows `near` are asked) whose way out or back a body blocks."""
+def hidden_by(hull: RayCaster, echoes: StaticEchoes, near: np.ndarray) -> np.ndarray:
+    """Rows of the room's echoes (`near` are asked) whose way out or back a body blocks."""
     first, last = echoes.first_m[near], echoes.last_m[near]
     blocked = ~hull.is_clear(np.zeros_like(first), first, 0.02)
     other = np.flatnonzero(np.any(first != last, axis=1))
     blocked[other] |= ~hull.is_clear(last[other], np.zeros_like(last[other]), 0.02)
-    return echoes.part(near[blocked])
+    return near[blocked]
 
 
 class BodyEchoes:
-    """Echo rows of one person in one room, frame by frame."""
+    """Echo rows of one person in one room, frame by frame.
+
+    With `known`, what rays once found out, nothing is asked of them, and the room needs no ray caster.
+    """
 
     def __init__(
-        self, room: Room, body: Body, joints_m: np.ndarray, chest_m: np.ndarray | None = None,
-        hulls: list[RayCaster] | None = None,
+        self, room: RestingRoom, body: Body, joints_m: np.ndarray, chest_m: np.ndarray | None = None,
+        hulls: list[RayCaster] | None = None, known: Visibility | None = None,
     ):  # fmt: skip
-        self.room, self.body, self.config = room, body, room.config
-        self.posed = BodyAtFrames.of(body, joints_m, chest_m, hulls)
+        self.room, self.body, self.config, self.known = room, body, room.config, known
+        self.posed = BodyAtFrames.of(body, joints_m, chest_m, hulls if known is None else [])
+        self.over_faces: list[np.ndarray | None] = [None] * len(room.mirrors)
         self.num_frames = len(joints_m)
         self.distance_m = np.linalg.norm(self.posed.place_m, axis=-1)
         self.towards = -self.posed.place_m / np.maximum(self.distance_m, 1e-6)[..., None]
@@ -92,8 +97,8 @@ class BodyEchoes:
         self.gain = scatterer_gain(self.config)
         self.parts = [self._direct()]
         direct = self.parts[0].power()
-        for mirror in room.mirrors:
-            self.parts += self._ghosts(mirror, direct)
+        for index in range(len(room.mirrors)):
+            self.parts += self._ghosts(index, direct)
 
     def rows(self, frame: int) -> EchoRows:
         """Everything of the person that arrives in one frame."""
@@ -101,8 +106,26 @@ class BodyEchoes:
 
     def shadowed(self, frame: int) -> StaticEchoes:
         """The room's echoes that the person hides in one frame."""
+        return self.room.echoes.part(self.hidden(frame))
+
+    def hidden(self, frame: int) -> np.ndarray:
+        """Rows of the room's echoes that the person hides in one frame."""
         echoes = self.room.echoes
-        return shadow_of(self.posed.hulls[frame], echoes, self.near_body(echoes, frame))
+        if self.known is not None:
+            return np.flatnonzero(self.known.hidden[frame])
+        return hidden_by(self.posed.hulls[frame], echoes, self.near_body(echoes, frame))
+
+    def visibility(self) -> Visibility:
+        """What the rays found out, to be kept."""
+        hidden = np.zeros((self.num_frames, len(self.room.echoes)), bool)
+        for frame, row in enumerate(hidden):
+            row[self.hidden(frame)] = True
+        nothing = np.zeros((self.num_frames, len(ghost_points(self.body))), bool)
+        over_faces = [nothing if clear is None else clear for clear in self.over_faces]
+        return Visibility(
+            skin=self.visible, over_faces=np.stack(over_faces, 1) if over_faces else nothing[:, None][:, :0],
+            hidden=hidden,
+        )  # fmt: skip
 
     def near_body(self, echoes: StaticEchoes, frame: int) -> np.ndarray:
         """Rows within the cone that the body fills, seen from the radar."""
@@ -116,9 +139,16 @@ class BodyEchoes:
         return np.flatnonzero((unit[0] @ axis > opening) | (unit[1] @ axis > opening))
 
     def _visible(self) -> np.ndarray:
+        if self.known is not None:
+            return self.known.skin
         facing = self.cos > self.body.echo.least_cos
-        facing &= self.room.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
+        facing &= self._traced.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
+
+    @property
+    def _traced(self) -> Room:
+        assert isinstance(self.room, Room), "a room without rays needs a known visibility"
+        return self.room
 
     def _direct(self) -> "Rows":
         cross_section = self.body.echo.back(self.cos) * self.body.area_m2 * self.body.brightness
@@ -127,10 +157,9 @@ class BodyEchoes:
             None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible, False
         )
 
-    def _ghosts(self, mirror: Mirror, direct_power: np.ndarray) -> list["Rows"]:
-        """Out directly and back over the face (and the reverse), and over the face both ways."""
-        count = len(self.body.micro_phase)
-        chosen = np.unique(np.linspace(0, count - 1, min(GHOST_POINTS, count)).astype(int))
+    def _ghosts(self, index: int, direct_power: np.ndarray) -> list["Rows"]:
+        """Out directly and back over a face (and the reverse), and over the face both ways."""
+        mirror, count, chosen = self.room.mirrors[index], len(self.body.micro_phase), ghost_points(self.body)
         place, normal = self.posed.place_m[:, chosen], self.posed.normal[:, chosen]
         area_m2 = self.body.area_m2 * self.body.brightness[chosen] * count / len(chosen)
         image = mirror.image(place)
@@ -160,7 +189,9 @@ class BodyEchoes:
         ghosts = [ghost for ghost in (ghost.strongest(direct_power) for ghost in ghosts) if ghost.present.any()]
         if not ghosts:
             return []
-        clear = self._clear_legs(corner, place, np.any([ghost.present for ghost in ghosts], axis=0))
+        asked = np.any([ghost.present for ghost in ghosts], axis=0)
+        clear = self._clear_legs(corner, place, asked) if self.known is None else self.known.over_faces[:, index]
+        self.over_faces[index] = clear
         return [replace(ghost, present=ghost.present & clear) for ghost in ghosts]
 
     def _clear_legs(self, corner: np.ndarray, place: np.ndarray, ask: np.ndarray) -> np.ndarray:
@@ -168,12 +199,18 @@ class BodyEchoes:
         which = np.nonzero(ask)
         clear = ask.copy()
         for start, end in ((np.zeros_like(corner), corner), (corner, place)):
-            clear[which] &= self.room.is_clear(start[which], end[which], WALL_MARGIN_M)
+            clear[which] &= self._traced.is_clear(start[which], end[which], WALL_MARGIN_M)
         clear = self.posed.is_clear(np.zeros(3), corner, SKIN_MARGIN_M, clear)
         return self.posed.is_clear(corner, place, SKIN_MARGIN_M, clear)
 
     def _pattern(self, direction: np.ndarray) -> np.ndarray:
         return pattern(direction.reshape(-1, 3), self.config).reshape(direction.shape[:-1])
+
+
+def ghost_points(body: Body) -> np.ndarray:
+    """Those of a body's points that stand for it in mirrors."""
+    count = len(body.micro_phase)
+    return np.unique(np.linspace(0, count - 1, min(GHOST_POINTS, count)).astype(int))
 
 
 @dataclass(frozen=True)

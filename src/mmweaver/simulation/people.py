@@ -6,7 +6,7 @@ What goes from one person to another and then to the radar is not modelled; see 
 import numpy as np
 
 from mmweaver.simulation.body import Body
-from mmweaver.simulation.echoes import BodyEchoes, hulls_of, shadow_of
+from mmweaver.simulation.echoes import BodyEchoes, hidden_by, hulls_of
 from mmweaver.simulation.room import Room, StaticEchoes
 from mmweaver.simulation.synthesis import EchoRows
 
@@ -46,4 +46,4 @@ class PeopleEchoes:
             return []
         echoes = self.room.echoes
         near = np.unique(np.concatenate([one.near_body(echoes, frame) for one in self.each]))
-        return [shadow_of(self.hulls[frame], echoes, near)]
+        return [echoes.part(hidden_by(self.hulls[frame], echoes, near))]

@@ -42,41 +42,46 @@ class Receiver:
     def __init__(self, config: RadarConfig, impairments: Impairments, seed: int):
         self.config, self.impairments, self.seed = config, impairments, seed
         self.channels = channel_errors(config, impairments)
+        # rms of either part of a sample's noise, and of a sample's shift in time by phase noise
+        self.noise_sqrt_mw = float(np.sqrt(config.noise_power_mw / 2)) if impairments.thermal_noise else 0.0
+        self.phase_noise_s = 0.0
+        if impairments.phase_noise_dbc_per_hz is not None:
+            # S_f = f^2 S_phi = (1 MHz)^2 . 2 L, white up to half the sample rate
+            density = 2e12 * 10 ** (impairments.phase_noise_dbc_per_hz / 10)
+            deviation_hz = np.sqrt(density * config.sample_rate_hz / 2)
+            self.phase_noise_s = float(deviation_hz / config.chirp_slope_hz_per_s)
 
     def receive(self, person: np.ndarray, room: np.ndarray, room_rate: np.ndarray, frame: int) -> np.ndarray:
         """Person (loop, tx, rx, sample) + room (tx, rx, sample) and its time derivative -> samples, complex64."""
         samples = person + room
-        samples += self._shift(frame)[:, :, None, :] * room_rate
+        samples += self.shift(frame)[:, :, None, :] * room_rate
         if self.impairments.channel_gain_db or self.impairments.channel_phase_rad:
             samples *= self.channels[:, :, None]
         if self.impairments.thermal_noise:
-            samples += self._noise(samples.shape, frame)
+            samples += self.noise(samples.shape, frame)
         if not self.config.complex_samples:
             samples = np.real(samples).astype(np.complex64)
         if self.impairments.quantise:
             samples = quantised(samples, self.config.adc_count_sqrt_mw)
         return samples
 
-    def _noise(self, shape: tuple[int, ...], frame: int) -> np.ndarray:
+    def noise(self, shape: tuple[int, ...], frame: int) -> np.ndarray:
+        """Thermal noise of one frame's samples, complex64."""
         rng = stream(self.seed, "thermal noise", frame)
         noise = rng.standard_normal((*shape, 2), dtype=np.float32).view(np.complex64)[..., 0]
-        noise *= np.float32(np.sqrt(self.config.noise_power_mw / 2))
+        noise *= np.float32(self.noise_sqrt_mw)
         return noise
 
-    def _shift(self, frame: int) -> np.ndarray:
-        """delta (loop, tx, sample) in seconds."""
-        config, impairments = self.config, self.impairments
+    def shift(self, frame: int) -> np.ndarray:
+        """How late each sample of one frame is, delta (loop, tx, sample) in seconds."""
+        config, jitter_s = self.config, self.impairments.chirp_jitter_s
         rng = stream(self.seed, "clock", frame)
         shift = np.zeros((config.num_loops, config.num_tx, config.num_samples), np.float32)
-        if impairments.chirp_jitter_s:
+        if jitter_s:
             late = rng.random((config.num_loops, config.num_tx, 1)) < 0.5
-            shift += (late - 0.5).astype(np.float32) * np.float32(impairments.chirp_jitter_s)
-        if impairments.phase_noise_dbc_per_hz is not None:
-            # S_f = f^2 S_phi = (1 MHz)^2 . 2 L, white up to half the sample rate
-            density = 2e12 * 10 ** (impairments.phase_noise_dbc_per_hz / 10)
-            deviation_hz = np.sqrt(density * config.sample_rate_hz / 2)
-            white = rng.standard_normal(shift.shape, dtype=np.float32)
-            shift += white * np.float32(deviation_hz / config.chirp_slope_hz_per_s)
+            shift += (late - 0.5).astype(np.float32) * np.float32(jitter_s)
+        if self.phase_noise_s:
+            shift += rng.standard_normal(shift.shape, dtype=np.float32) * np.float32(self.phase_noise_s)
         return shift
 
 

@@ -1,6 +1,7 @@
 """The room without the person: diffuse surfaces, mirrors and edges, as echoes that stay."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.simulation.antenna import mirror_gain, pattern, scatterer_gain
 from mmweaver.simulation.edges import find_edges
 from mmweaver.simulation.materials import MATERIALS, reflection
-from mmweaver.simulation.mirrors import mirrors_of, specular_paths
+from mmweaver.simulation.mirrors import Mirror, mirrors_of, specular_paths
 from mmweaver.simulation.synthesis import fast_time, phasor
 
 AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
@@ -20,6 +21,7 @@ AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
 EDGE_RADIUS_M = 0.008  # of table rims and legs: how round an edge counts
 EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its glint is gone
 NEAREST_M = 0.15
+KINDS = ("diffuse", "specular", "edges")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +42,29 @@ class StaticEchoes:
         )
 
 
-class Room:
+class RestingRoom:
+    """What of a room needs no more rays: its mirrors and its static echoes, for one radar.
+
+    `counts` says how many of the echoes, in this order, are of which of KINDS. `prepared` keeps such rooms as arrays.
+    """
+
+    def __init__(self, config: RadarConfig, mirrors: list[Mirror], echoes: StaticEchoes, counts: dict[str, int]):
+        self.config, self.mirrors, self.echoes, self.counts = config, mirrors, echoes, counts
+
+    @cached_property
+    def adc(self) -> np.ndarray:
+        """Samples of all echoes, (tx, rx, sample)."""
+        return static_adc(self.echoes, self.config)
+
+    @cached_property
+    def adc_rate(self) -> np.ndarray:
+        """Their rate over time, for jitter, (tx, rx, sample)."""
+        delay_s = self.echoes.way_m.mean(axis=(1, 2)) / SPEED_OF_LIGHT_MPS
+        rate = 2j * np.pi * self.config.chirp_slope_hz_per_s * delay_s
+        return static_adc(self.echoes, self.config, self.echoes.amplitude * rate)
+
+
+class Room(RestingRoom):
     """A scene made ready for one radar: its ray caster, its mirrors and its static echoes.
 
     `micro_seed` draws the phases of its surfaces: another one is the same room seen with other micro-phases.
@@ -51,17 +75,13 @@ class Room:
         self.caster = RayCaster(scene.vertices_m, scene.faces)
         self.mirrors = mirrors_of(scene.planes)
         parts = [self._diffuse(scene), self._specular(), self._edges(scene)]
-        self.echoes = StaticEchoes(
+        echoes = StaticEchoes(
             way_m=np.concatenate([part.way_m for part in parts]),
             amplitude=np.concatenate([part.amplitude for part in parts]),
             first_m=np.concatenate([part.first_m for part in parts]),
             last_m=np.concatenate([part.last_m for part in parts]),
         )
-        self.counts = dict(zip(("diffuse", "specular", "edges"), map(len, parts), strict=True))
-        self.adc = static_adc(self.echoes, config)
-        delay_s = self.echoes.way_m.mean(axis=(1, 2)) / SPEED_OF_LIGHT_MPS
-        rate = 2j * np.pi * config.chirp_slope_hz_per_s * delay_s
-        self.adc_rate = static_adc(self.echoes, config, self.echoes.amplitude * rate)  # d/dt, for jitter
+        super().__init__(config, self.mirrors, echoes, dict(zip(KINDS, map(len, parts), strict=True)))
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
         """True where nothing of the room lies between; shapes (..., 3)."""
@@ -145,18 +165,23 @@ class Room:
         return self._at_points(edges.place_m[keep], cross_section[keep], turns[keep])
 
     def _at_points(self, place_m: np.ndarray, cross_section_m2: np.ndarray, turns: np.ndarray) -> StaticEchoes:
-        tx, rx = np.asarray(self.config.tx_position_m), np.asarray(self.config.rx_position_m)
         distance = np.linalg.norm(place_m, axis=1)
         gain = pattern(place_m / np.maximum(distance, 1e-9)[:, None], self.config) ** 2
         amplitude = scatterer_gain(self.config) * gain * np.sqrt(cross_section_m2) / np.maximum(distance, 1e-3) ** 2
-        out = np.linalg.norm(place_m[:, None] - tx, axis=-1)
-        back = np.linalg.norm(place_m[:, None] - rx, axis=-1)
         return StaticEchoes(
-            way_m=out[:, :, None] + back[:, None, :],
+            way_m=ways_m(place_m, self.config),
             amplitude=amplitude * np.exp(2j * np.pi * turns),
             first_m=place_m,
             last_m=place_m,
         )
+
+
+def ways_m(place_m: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Out from each transmitter to places (row, 3) and back to each receiver, (row, tx, rx)."""
+    tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
+    out = np.linalg.norm(place_m[:, None] - tx, axis=-1)
+    back = np.linalg.norm(place_m[:, None] - rx, axis=-1)
+    return out[:, :, None] + back[:, None, :]
 
 
 def static_adc(echoes: StaticEchoes, config: RadarConfig, amplitude: np.ndarray | None = None) -> np.ndarray:

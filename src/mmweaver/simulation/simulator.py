@@ -10,12 +10,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
 from mmweaver.simulation.body import DEFAULT_NUM_POINTS, Body, body_of
+from mmweaver.simulation.echoes import BodyEchoes
 from mmweaver.simulation.people import PeopleEchoes
 from mmweaver.simulation.receiver import LEAKAGE_WAY_M, Impairments, Receiver, leakage
 from mmweaver.simulation.room import Room, StaticEchoes, static_adc
 from mmweaver.simulation.skin import SkinEcho
 from mmweaver.simulation.small_motions import Restlessness, SmallMotions
 from mmweaver.simulation.synthesis import FrameClock, synthesise
+from mmweaver.simulation.visibility import Visibility
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
 
@@ -53,8 +55,7 @@ class Simulator:
         self.impairments = impairments or Impairments()
         self.clock = FrameClock(config)
         self.room = Room(scene, config, micro_seed)
-        leak = self._leakage()
-        self.room_adc = self.room.adc + leak
+        self.room_adc = self.room.adc + leakage_adc(config, self.impairments)
 
     def run(
         self,
@@ -123,14 +124,24 @@ class Simulator:
         self, poses: tuple[PoseSequence, ...], bodies: list[Body], restless: list[Restlessness], frames: np.ndarray,
         mutual: bool,
     ) -> PeopleEchoes:  # fmt: skip
-        time_s = (frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]).ravel()
         joints_m, chests_m = [], []
         for pose, unrest in zip(poses, restless, strict=True):
-            joints = self._joints_at_nodes(pose, frames)
-            moved = unrest.moved(joints.reshape(-1, *joints.shape[2:]), time_s, pose.height_m)
-            joints_m.append(moved.reshape(joints.shape))
-            chests_m.append(unrest.chest_m(time_s).reshape(joints.shape[:2]))
+            joints, chest = lively(unrest, self._joints_at_nodes(pose, frames), frames, self.clock, pose.height_m)
+            joints_m.append(joints)
+            chests_m.append(chest)
         return PeopleEchoes(self.room, bodies, joints_m, chests_m, mutual=mutual)
+
+    def look(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
+        """What `replay` needs of a motion: joints at the clock's nodes, float32 (frame, node, 22, 3), and visibility.
+
+        Raises InputError as `chunks` does.
+        """
+        self._check(pose, num_frames)
+        frames = np.arange(num_frames)
+        joints_m = self._joints_at_nodes(pose, frames).astype(np.float32)
+        unrest = Restlessness(pose.subject, seed, SmallMotions())
+        moved, chest = lively(unrest, joints_m.astype(float), frames, self.clock, pose.height_m)
+        return joints_m, BodyEchoes(self.room, body_of(pose), moved, chest).visibility()
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
         """(frame, node, 22, 3): slow time is interpolated, never held.
@@ -154,9 +165,19 @@ class Simulator:
         if not np.isfinite(pose.joints_m).all():
             raise InputError("the motion has joints that are not numbers; mend the pose file")
 
-    def _leakage(self) -> np.ndarray:
-        config = self.config
-        way_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_WAY_M)
-        amplitude = np.array([leakage(config, self.impairments)])
-        nowhere = np.zeros((1, 3))
-        return static_adc(StaticEchoes(way_m=way_m, amplitude=amplitude, first_m=nowhere, last_m=nowhere), config)
+
+def lively(
+    unrest: Restlessness, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Joints at the nodes of frames (frame, node, 22, 3) with their small motions, and the chest (frame, node)."""
+    time_s = (frames[:, None] * clock.config.frame_period_s + clock.node_s[None, :]).ravel()
+    moved = unrest.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
+    return moved.reshape(joints_m.shape), unrest.chest_m(time_s).reshape(joints_m.shape[:2])
+
+
+def leakage_adc(config: RadarConfig, impairments: Impairments) -> np.ndarray:
+    """Samples (tx, rx, sample) of the transmitters' direct way into the receivers."""
+    way_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_WAY_M)
+    amplitude = np.array([leakage(config, impairments)])
+    nowhere = np.zeros((1, 3))
+    return static_adc(StaticEchoes(way_m=way_m, amplitude=amplitude, first_m=nowhere, last_m=nowhere), config)

@@ -15,6 +15,8 @@ import numpy as np
 REFLECTIVITY = 0.14
 SLOPE = 0.10  # rms tilt of the surface along one direction, as a tangent: 6 degrees
 ALBEDO = 0.01  # of the diffuse part
+ARMS_DB = 2.0  # bare hands, often bare forearms: skin without cloth returns 4 dB more
+LEGS_DB = -6.0  # read off recordings (decision 42); why legs return so little is not known
 NEVER_SEEN_COS = 0.02  # of skin so nearly edge-on
 
 
@@ -24,14 +26,14 @@ class SkinEcho:
 
     `slope` is the rms slope of its wrinkles along one direction. The lobe returns `reflectivity` of the power over all
     directions, the diffuse part 4 albedo cos(in) cos(out). `arms_db` and `legs_db` make these brighter or fainter than
-    the rest.
+    the rest (thighs, shins, feet).
     """
 
     reflectivity: float = REFLECTIVITY
     slope: float = SLOPE
     albedo: float = ALBEDO
-    arms_db: float = 0.0
-    legs_db: float = 0.0
+    arms_db: float = ARMS_DB
+    legs_db: float = LEGS_DB
 
     @property
     def least_cos(self) -> float:
@@ -56,4 +58,5 @@ class SkinEcho:
         return np.where(lit, lobe + 4 * self.albedo * cos_in * cos_out, 0.0)
 
 
-LAMBERT = SkinEcho(reflectivity=0.0, albedo=0.18)  # what the project took until it met recordings
+# What the project took until it met recordings.
+LAMBERT = SkinEcho(reflectivity=0.0, albedo=0.18, arms_db=0.0, legs_db=0.0)

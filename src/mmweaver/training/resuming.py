@@ -28,26 +28,33 @@ class Stateful(Protocol):
 class Resumable:
     """Counts steps, saves what is named in `parts` every minute, and starts where a saved run stopped.
 
-    Without a file nothing is kept. `history` holds a row of figures every 50 steps.
+    Without a file nothing is kept. `history` holds a row of figures every 50 steps. `every_s` is another time between
+    saves. Of several processes all read, and only the one that `writes` saves.
     """
 
-    def __init__(self, file: Path | None, parts: dict[str, Any]):
-        self.file, self.parts = file, parts
+    def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):
+        self.file, self.parts, self.every_s, self.writes = file, parts, every_s, writes
         self.done, self.cpu_s = 0, 0.0
         self.history: list[dict[str, float]] = []
+        self._is_last = False
         if file is not None and file.is_file():
             self._load(file)
 
     def steps(self, most: int) -> Iterator[int]:
         """The steps that are left."""
+        every_s = SAVE_EVERY_S if self.every_s is None else self.every_s
         saved, cpu = time.monotonic(), time.process_time()
-        while self.done < most:
+        while self.done < most and not self._is_last:
             yield self.done
             self.done += 1
-            if time.monotonic() - saved > SAVE_EVERY_S or self.done == most:
+            if time.monotonic() - saved > every_s or self.done == most or self._is_last:
                 self.cpu_s += time.process_time() - cpu
                 self._save()
                 saved, cpu = time.monotonic(), time.process_time()
+
+    def stop(self) -> None:
+        """The step under way is the last one."""
+        self._is_last = True
 
     def report(self, **figures: float | int) -> None:
         """Keeps figures of a step now and then."""
@@ -55,7 +62,7 @@ class Resumable:
             self.history.append({"step": self.done, **figures})
 
     def _save(self) -> None:
-        if self.file is None:
+        if self.file is None or not self.writes:
             return
         states = {name: part.state_dict() for name, part in self.parts.items()}
         with atomic_file(self.file) as temporary:
@@ -63,7 +70,7 @@ class Resumable:
 
     def _load(self, file: Path) -> None:
         try:
-            kept = torch.load(file, weights_only=True)
+            kept = torch.load(file, weights_only=True, map_location="cpu")
             for name, part in self.parts.items():
                 part.load_state_dict(kept["parts"][name])
         except Exception as error:

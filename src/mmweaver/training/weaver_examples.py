@@ -1,6 +1,6 @@
 """Batches for training the weaver, drawn from a data set; the same step always gives the same batch."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -24,7 +24,10 @@ from mmweaver.dsp.spectra import (
 from mmweaver.models.mean_power import PowerMaps
 from mmweaver.models.room_view import RoomView
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.expected_maps import ExpectedMaps, stacked
+from mmweaver.training.mirroring import mirrored_joints, mirrored_targets, mirrored_view
 from mmweaver.training.weaver_loss import Targets
+from mmweaver.training.workplace import Share
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,11 +51,25 @@ class RoomExamples:
     @cached_property
     def view(self) -> RoomView:
         """What the product would see of the room: its photo, reconstructed."""
-        return RoomView.of(reconstruct(self.room.photo), self.room.config)
+        geometry = self.room.geometry
+        scene = reconstruct(self.room.photo)
+        return RoomView.of(scene, self.room.config, None if geometry is None else geometry.photographed)
+
+    def maps(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps | None]:
+        """Maps (frame, range, other) of frames of a sequence, and of the person alone where geometry is stored.
+
+        Stored signals give those of their one draw, stored geometry the mean of all draws.
+        """
+        if self._expected is not None:
+            return self._expected.frames(index, frames)
+        cube = self.room.cube(index, frames)
+        return power_maps(cube.values, cube.config), None
 
     @cached_property
     def empty(self) -> PowerMaps:
         """Maps (range, other) of the room without a person."""
+        if self._expected is not None:
+            return self._expected.empty
         config = self.room.config
         values = np.zeros((1, len(self.room.empty), config.num_loops, config.num_antennas), np.complex64)
         middle = config.num_loops // 2
@@ -61,38 +78,76 @@ class RoomExamples:
             values[0, :, middle + step] = share * self.room.empty
         return _one(power_maps(values, config))
 
+    @cached_property
+    def _expected(self) -> ExpectedMaps | None:
+        return None if self.room.geometry is None else ExpectedMaps(self.room)
+
 
 def examples(folder: Path, split: str) -> list[RoomExamples]:
     """The rooms of a data set that have sequences of a split. Raises InputError where there are none."""
-    rooms = [RoomExamples(room, split) for room in read_rooms(folder)]
+    device = "cuda" if torch.cuda.is_available() else "cpu"
+    rooms = [RoomExamples(room, split) for room in read_rooms(folder, device=device)]
     rooms = [room for room in rooms if room.indices]
     if not rooms:
         raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
     return rooms
 
 
-def draw_batch(rooms: list[RoomExamples], seed: int, step: int, *, size: int, frames: int) -> Batch:
-    """`size` sequences of as many rooms, and `frames` frames of each to look at."""
+def draw_batch(
+    rooms: list[RoomExamples],
+    seed: int,
+    step: int,
+    *,
+    size: int,
+    frames: int,
+    share: Share = (0, 1),
+    mirror: bool = False,
+) -> Batch:
+    """`size` sequences of as many rooms, and `frames` frames of each to look at; of them the share of one process.
+
+    With `mirror`, every second batch shows its rooms and people with left and right exchanged.
+    """
     rng = stream(seed, "batch", step)
     chosen = rng.choice(len(rooms), size=size, replace=len(rooms) < size)
     views, joints, velocity, picked, maps, empty = [], [], [], [], [], []
-    for which in chosen:
+    alone: list[PowerMaps | None] = []
+    for number, which in enumerate(chosen):
         one = rooms[int(which)]
         index = one.indices[int(rng.integers(len(one.indices)))]
-        cube = one.room.cube(index)
-        some = np.sort(rng.choice(len(cube.values), size=min(frames, len(cube.values)), replace=False))
+        length = len(one.room.joints_m[index])
+        some = np.sort(rng.choice(length, size=min(frames, length), replace=False))
+        if number % share[1] != share[0]:
+            continue
         views.append(one.view)
         joints.append(torch.from_numpy(one.room.joints_m[index]))
         velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
         picked.append(torch.from_numpy(some))
-        maps.append(power_maps(cube.values[some], cube.config))
+        whole, person = one.maps(index, some)
+        maps.append(whole)
+        alone.append(person)
         empty.append(one.empty)
-    return Batch(
+    batch = Batch(
         view=RoomView.stacked(views),
         joints_m=torch.stack(joints),
         velocity_mps=torch.stack(velocity),
         frames=torch.stack(picked),
-        targets=Targets(maps=_stacked(maps), empty=_stacked(empty)),
+        targets=Targets(maps=stacked(maps), empty=stacked(empty), person=_all_or_none(alone)),
+    )
+    return _mirrored(batch) if mirror and rng.random() < 0.5 else batch
+
+
+def _all_or_none(maps: list[PowerMaps | None]) -> PowerMaps | None:
+    known = [one for one in maps if one is not None]
+    return stacked(known) if len(known) == len(maps) else None
+
+
+def _mirrored(batch: Batch) -> Batch:
+    return replace(
+        batch,
+        view=mirrored_view(batch.view),
+        joints_m=mirrored_joints(batch.joints_m),
+        velocity_mps=mirrored_joints(batch.velocity_mps),
+        targets=mirrored_targets(batch.targets),
     )
 
 
@@ -112,14 +167,6 @@ def power_maps(values: np.ndarray, config: RadarConfig) -> PowerMaps:
 
 def _tensor(values: np.ndarray) -> Tensor:
     return torch.from_numpy(values.astype(np.float32))
-
-
-def _stacked(maps: list[PowerMaps]) -> PowerMaps:
-    return PowerMaps(
-        range_doppler=torch.stack([one.range_doppler for one in maps]),
-        range_azimuth=torch.stack([one.range_azimuth for one in maps]),
-        range_elevation=torch.stack([one.range_elevation for one in maps]),
-    )
 
 
 def _one(maps: PowerMaps) -> PowerMaps:

@@ -20,15 +20,19 @@ from mmweaver.models.radar_view import points_of
 STEEPEST = 8.0
 LIKELIHOOD = 0.2  # share of the divergence beside the difference of logarithms
 FLOOR = 1e-5  # of the peak: what a 50 dB picture no longer shows counts for nothing
+FLOOR_OF_PERSON = 1e-4  # the same, of the person's own peak
+# The range-Doppler picture is empty but for a seventh, and two rows of antennas tell elevation poorly.
+WEIGHT = {"range_doppler": 4.0, "range_azimuth": 1.0, "range_elevation": 0.4}
 POOLS = ((1, 1), (4, 2), (8, 8))  # cells of a map taken together: small steps of an echo shall not cost twice
 
 
 @dataclass(frozen=True, kw_only=True)
 class Targets:
-    """Maps of recorded (or simulated) power: of some frames, and of the room without a person."""
+    """Maps of recorded, simulated or expected power: of some frames, and of the room without a person."""
 
     maps: PowerMaps  # (sequence, frame, range, other)
     empty: PowerMaps  # (sequence, range, other)
+    person: PowerMaps | None = None  # as maps, of the person alone, where that is known
 
 
 def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
@@ -61,9 +65,13 @@ def weaver_loss(radar: MeanPower, resting: Echoes, moving: Echoes, targets: Targ
         peak = truth.amax(dim=(1, 2, 3), keepdim=True)
         for rows, columns in POOLS:
             pooled = _pooled(mean, rows, columns), _pooled(truth, rows, columns)
-            terms[f"{name}_{rows}x{columns}"] = difference(*pooled, FLOOR * peak) / len(POOLS)
+            terms[f"{name}_{rows}x{columns}"] = WEIGHT[name] * difference(*pooled, FLOOR * peak) / len(POOLS)
         least = 0.1 * noise + FLOOR * empty.amax(dim=(1, 2), keepdim=True)
-        terms[f"{name}_empty"] = 0.5 * difference(getattr(still, name), empty, least)
+        terms[f"{name}_empty"] = 0.5 * WEIGHT[name] * difference(getattr(still, name), empty, least)
+        if targets.person is not None:
+            alone = getattr(targets.person, name)
+            least = noise + FLOOR_OF_PERSON * alone.amax(dim=(1, 2, 3), keepdim=True)
+            terms[f"{name}_person"] = WEIGHT[name] * difference(getattr(person, name), alone, least)
     return terms
 
 

@@ -1,61 +1,94 @@
-"""Training the weaver: one loop, its recipe, and what it writes."""
+"""Training the weaver: its recipe, its learner, and what it writes."""
 
 import hashlib
-import json
-import math
-import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.seeding import stream
 from mmweaver.core.version import __version__
-from mmweaver.data.store import plan_text
-from mmweaver.models.mean_power import MeanPower
-from mmweaver.models.weaver_network import WeaverNetwork
-from mmweaver.models.weights import WeightsCard, save_weights
-from mmweaver.training.resuming import Resumable
+from mmweaver.data.store import plan_text, read_plan
+from mmweaver.models.echoes import Echoes
+from mmweaver.models.mean_power import MeanPower, PowerMaps
+from mmweaver.models.precision import exactly
+from mmweaver.models.radar_view import points_of
+from mmweaver.models.weaver_network import RoomCode, WeaverNetwork
+from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
+from mmweaver.training.model_card import Figures, model_card
+from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
+from mmweaver.training.validation_sheet import differences_db, draw_sheet
 from mmweaver.training.weaver_examples import Batch, RoomExamples, draw_batch, examples
 from mmweaver.training.weaver_loss import weaver_loss
+from mmweaver.training.workplace import Workplace, moved
 
-BEST_FILE = "best.safetensors"
 VALIDATION_SEED = 10_000  # added to the recipe's
-WORST_SKIPS = 20  # steps in a row whose gradients are no numbers before training gives up
+CARD_FILE = "README.md"
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrainingRecipe:
-    """How the weaver is trained. Batches follow from seed and step, so training can stop and go on anywhere."""
+class TrainingRecipe(LoopRecipe):
+    """How the weaver is trained."""
 
     name: str = "weaver"
-    steps: int = 6000
     batch_size: int = 3  # sequences, each of another room
     frames: int = 8  # looked at in each
-    learning_rate: float = 1e-3
-    warm_up_steps: int = 200
-    weight_decay: float = 1e-4
-    largest_gradient: float = 5.0
-    seed: int = 0
-    validate_every: int = 250
-    validation_batches: int = 8
-    patience: int = 12  # validations without a better one before training stops early
+    mirror: bool = True  # every second batch with left and right exchanged
 
 
-@dataclass(frozen=True, kw_only=True)
-class Progress:
-    """What is told while training goes on."""
+class WeaverLearner(Learner):
+    """The network beside the radar that turns its echoes into maps; `shown` gives the sequences to draw."""
 
-    step: int
-    steps: int
-    loss: float
-    terms: dict[str, float]
-    validation: float | None
-    seconds: float
+    def __init__(self, network: WeaverNetwork, config: RadarConfig, shown: Callable[[], Batch] | None = None):
+        super().__init__()
+        self.network = network
+        self.radar = MeanPower(config)
+        self.shown = shown
+
+    def _apply(self, fn: Any, recurse: bool = True) -> "WeaverLearner":
+        """The radar's tensors go where the network goes."""
+        super()._apply(fn, recurse)
+        self.radar.to(self.device)
+        return self
+
+    @property
+    def device(self) -> torch.device:
+        return next(self.network.parameters()).device
+
+    def terms(self, batch: Batch) -> dict[str, torch.Tensor]:
+        code = self.network.encode_room(batch.view)
+        moving = self.moving(code, batch)
+        with exactly(batch.joints_m):
+            return weaver_loss(self.radar, code.resting, moving, batch.targets)
+
+    def moving(self, code: RoomCode, batch: Batch) -> Echoes:
+        """Echoes of the people of a batch."""
+        return self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
+
+    def predicted(self, batch: Batch) -> PowerMaps:
+        """Mean maps (sequence, frame, range, other) of room, person and noise."""
+        code = self.network.encode_room(batch.view)
+        moving = self.moving(code, batch)
+        with exactly(batch.joints_m):
+            still = self.radar.maps(points_of(code.resting, self.radar.response))
+            person = self.radar.maps(points_of(moving, self.radar.response))
+        names = ("range_doppler", "range_azimuth", "range_elevation")
+        return PowerMaps(
+            **{
+                name: getattr(person, name) + getattr(still, name)[:, None] + noise
+                for name, noise in zip(names, self.radar.noise_maps(), strict=True)
+            }
+        )
+
+    def picture(self) -> np.ndarray | None:
+        if self.shown is None:
+            return None
+        batch = moved(self.shown(), self.device)
+        return draw_sheet(batch.targets.maps, self.predicted(batch), self.radar.config)
 
 
 def train(
@@ -64,169 +97,107 @@ def train(
     recipe: TrainingRecipe,
     *,
     start: dict[str, torch.Tensor] | None = None,
-    listener: Callable[[Progress], object] | None = None,
-) -> "Training":
+    listener: Listener | None = None,
+    workplace: Workplace | None = None,
+    **options: Any,
+) -> Trainer:
     """Trains on split `train` of a data set; what comes back holds the network that was best on `validation`.
 
-    Goes on from `out`/checkpoint.pt where there is one. `start`: weights to fine-tune. Raises InputError for folders
-    that hold no data, and where gradients stay without meaning.
+    Goes on from `out`/checkpoint.pt where there is one. `start`: weights to fine-tune. `options` go to `Trainer`.
+    Raises InputError for folders that hold no data, and where gradients stay without meaning.
     """
+    options = {"is_tuning": start is not None} | options
     rooms, unseen = examples(data, "train"), examples(data, "validation")
-    config = rooms[0].room.config
+    validation = drawing(unseen, recipe, VALIDATION_SEED + recipe.seed)
+    learner = WeaverLearner(begun(recipe, start), rooms[0].room.config, shown=lambda: validation(0, (0, 1)))
+    trainer = Trainer(
+        learner, recipe, out, workplace=workplace, train=drawing(rooms, recipe, recipe.seed, recipe.mirror),
+        validation=validation,
+        **options,
+    )  # fmt: skip
+    trainer.run(listener)
+    return trainer
+
+
+def begun(recipe: LoopRecipe, start: dict[str, torch.Tensor] | None) -> WeaverNetwork:
+    """The network that training begins with."""
     torch.manual_seed(recipe.seed)
     network = WeaverNetwork()
     if start is not None:
         network.load_state_dict(start)
-    training = Training(network, rooms, unseen, config, recipe, out)
-    training.run(listener)
-    return training
+    return network
 
 
-def write_weights(out: Path, data: Path, training: "Training") -> Path:
-    """Writes `out`/weights.safetensors with its card, and gives its path."""
-    card = WeightsCard(
-        recipe=training.recipe.name, licence="MIT", dataset_sha256=hashlib.sha256(plan_text(data).encode()).hexdigest(),
-        radar=training.radar.config.name, steps=training.step, seed=training.recipe.seed,
-        validation_loss=training.best.value, mmweaver_version=__version__,
-    )  # fmt: skip
-    file = out / "weights.safetensors"
-    save_weights(file, training.network, card)
+def drawing(rooms: list[RoomExamples], recipe: TrainingRecipe, seed: int, mirror: bool = False) -> Draw:
+    """Batches of rooms, by step."""
+    size, frames = recipe.batch_size, recipe.frames
+    return lambda step, share: draw_batch(rooms, seed, step, size=size, frames=frames, share=share, mirror=mirror)
+
+
+def write_weights(out: Path, data: Path, trainer: Trainer, *, start: dict[str, torch.Tensor] | None = None) -> Path:
+    """Writes `out`/weights.safetensors and the page that goes with it, README.md; gives the weights' path."""
+    plan = hashlib.sha256(plan_text(data).encode()).hexdigest()
+    file = save_trained(out, trainer, plan)
+    told = f"Made up by `mmweaver dataset` ({_told(read_plan(data))}). Trained on {_counted(examples(data, 'train'))}."
+    judged = f"Mean difference in dB of power maps on {_counted(examples(data, 'validation'))} of kinds not trained on;"
+    card = card_of(trainer, plan)
+    figures = compared(trainer, begun(trainer.recipe, start))
+    page = model_card(card, file, data=told, judged_on=f"{judged} {EXPLAINED}", figures=figures)
+    with atomic_file(out / CARD_FILE) as partial:
+        partial.write_text(page)
     return file
 
 
-class Training:
-    """One run: its network, its recipe, how far it is."""
-
-    def __init__(
-        self,
-        network: WeaverNetwork,
-        rooms: list[RoomExamples],
-        unseen: list[RoomExamples],
-        config: RadarConfig,
-        recipe: TrainingRecipe,
-        out: Path,
-    ):
-        self.network, self.rooms, self.unseen, self.recipe, self.out = network, rooms, unseen, recipe, out
-        self.radar = MeanPower(config)
-        self.optimiser = torch.optim.AdamW(
-            network.parameters(), lr=recipe.learning_rate, weight_decay=recipe.weight_decay
-        )
-        self.best = _Best(asdict(recipe))
-        self.skips = 0
-        out.mkdir(parents=True, exist_ok=True)
-        parts = {"network": network, "optimiser": self.optimiser, "best": self.best}
-        self.resumable = Resumable(out / "checkpoint.pt", parts)
-
-    @property
-    def step(self) -> int:
-        """Steps that are done."""
-        return self.resumable.done
-
-    def run(self, listener: Callable[[Progress], object] | None) -> None:
-        """Goes on from the last checkpoint to the end, and leaves the best network in `network`."""
-        began = time.monotonic()
-        for step in self.resumable.steps(self.recipe.steps):
-            loss, terms = self._one_step(step)
-            last = step + 1 == self.recipe.steps
-            validation = self._validate() if (step + 1) % self.recipe.validate_every == 0 or last else None
-            progress = Progress(
-                step=step + 1, steps=self.recipe.steps, loss=loss, terms=terms, validation=validation,
-                seconds=time.monotonic() - began,
-            )  # fmt: skip
-            self._log(progress)
-            if listener is not None:
-                listener(progress)
-            if self.best.since >= self.recipe.patience:
-                break
-        self._take_best()
-
-    def _one_step(self, step: int) -> tuple[float, dict[str, float]]:
-        recipe = self.recipe
-        rate = recipe.learning_rate * min(1.0, (step + 1) / recipe.warm_up_steps)
-        rate *= 0.5 + 0.5 * math.cos(math.pi * step / recipe.steps)
-        for group in self.optimiser.param_groups:
-            group["lr"] = rate
-        batch = draw_batch(self.rooms, recipe.seed, step, size=recipe.batch_size, frames=recipe.frames)
-        # the encoder drops whole blocks by chance; a step's chance follows from its number, wherever training began
-        torch.manual_seed(int(stream(recipe.seed, "dropout", step).integers(2**31)))
-        self.network.train()
-        terms = self._terms(batch)
-        loss = torch.stack(list(terms.values())).sum()
-        self.optimiser.zero_grad()
-        loss.backward()
-        norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), recipe.largest_gradient)
-        self._take_step(bool(torch.isfinite(norm)), step)
-        return float(loss.detach()), {name: float(term.detach()) for name, term in terms.items()}
-
-    def _take_step(self, is_sound: bool, step: int) -> None:
-        if is_sound:
-            self.optimiser.step()
-            self.skips = 0
-            return
-        self.skips += 1
-        if self.skips > WORST_SKIPS:
-            raise InputError(
-                f"training broke at step {step}: gradients are no numbers; start anew with a lower learning rate"
-            )
-
-    def _terms(self, batch: Batch) -> dict[str, torch.Tensor]:
-        code = self.network.encode_room(batch.view)
-        moving = self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
-        return weaver_loss(self.radar, code.resting, moving, batch.targets)
-
-    def _validate(self) -> float:
-        """Mean loss over fixed batches of unseen kinds of rooms; keeps the weights where it is the best so far."""
-        recipe = self.recipe
-        self.network.eval()
-        total = 0.0
-        with torch.inference_mode():
-            for index in range(recipe.validation_batches):
-                batch = draw_batch(
-                    self.unseen, VALIDATION_SEED + recipe.seed, index, size=recipe.batch_size, frames=recipe.frames
-                )
-                total += float(torch.stack(list(self._terms(batch).values())).sum())
-        value = total / recipe.validation_batches
-        if self.best.improved_by(value):
-            _save_tensors(self.network, self.out / BEST_FILE)
-        return value
-
-    def _log(self, progress: Progress) -> None:
-        if progress.step % 50 == 0 or progress.validation is not None:
-            with (self.out / "log.jsonl").open("a") as log:
-                log.write(json.dumps(asdict(progress)) + "\n")
-
-    def _take_best(self) -> None:
-        from safetensors.torch import load_file
-
-        if (self.out / BEST_FILE).is_file():
-            self.network.load_state_dict(load_file(self.out / BEST_FILE))
-        self.network.eval()
+EXPLAINED = (
+    "0 would be perfect, and what predicts a mean is 4 to 5 dB from any single draw of phases, however right it is."
+)
 
 
-class _Best:
-    """The best validation so far, and the recipe it belongs to; kept in the checkpoint."""
-
-    def __init__(self, recipe: dict[str, Any]):
-        self.recipe, self.value, self.since = recipe, math.inf, 0
-
-    def improved_by(self, value: float) -> bool:
-        """Takes note of a new validation; True where it is the best."""
-        is_better = value < self.value
-        self.value, self.since = (value, 0) if is_better else (self.value, self.since + 1)
-        return is_better
-
-    def state_dict(self) -> dict[str, Any]:
-        return {"recipe": self.recipe, "value": self.value, "since": self.since}
-
-    def load_state_dict(self, state: dict[str, Any]) -> None:
-        if state["recipe"] != self.recipe:
-            raise InputError("it was made with other settings")
-        self.value, self.since = state["value"], state["since"]
+def save_trained(out: Path, trainer: Trainer, dataset_sha256: str, **more: str) -> Path:
+    """Writes `out`/weights.safetensors alone."""
+    learner = trainer.learner
+    assert isinstance(learner, WeaverLearner)
+    file = out / WEIGHTS_FILE
+    save_weights(file, learner.network, card_of(trainer, dataset_sha256, **more))
+    return file
 
 
-def _save_tensors(network: WeaverNetwork, file: Path) -> None:
-    from safetensors.torch import save_file
+def card_of(trainer: Trainer, dataset_sha256: str, **more: str) -> WeightsCard:
+    """What is written into the weights of a run."""
+    learner = trainer.learner
+    assert isinstance(learner, WeaverLearner)
+    return WeightsCard(
+        recipe=trainer.recipe.name, licence=more.get("licence", "MIT"), dataset_sha256=dataset_sha256,
+        radar=learner.radar.config.name, steps=trainer.step, seed=trainer.recipe.seed,
+        validation_loss=trainer.best.value, mmweaver_version=__version__, tuned_from=more.get("tuned_from", ""),
+        settings=asdict(trainer.recipe) | {"precision": trainer.workplace.precision},
+    )  # fmt: skip
 
-    partial = file.with_name("." + file.name)
-    save_file({name: tensor.contiguous() for name, tensor in network.state_dict().items()}, partial)
-    partial.rename(file)
+
+def compared(trainer: Trainer, start: WeaverNetwork) -> Figures:
+    """Differences in dB on the validation batches: of the network, of what it began with, of an empty map."""
+    learner = trainer.learner
+    assert isinstance(learner, WeaverLearner)
+    rows: dict[str, list[dict[str, float]]] = {}
+    trained = learner.network
+    with torch.inference_mode():
+        for batch in trainer.validation_batches():
+            truth, own = batch.targets.maps, learner.predicted(batch)
+            learner.network = start.to(learner.device).eval()
+            before = learner.predicted(batch)
+            learner.network = trained
+            nothing = PowerMaps(**{name: 0 * value for name, value in vars(truth).items()})
+            for who, maps in (("this network", own), ("what it began with", before), ("empty maps", nothing)):
+                rows.setdefault(who, []).append(differences_db(truth, maps))
+    return {who: {name: float(np.mean([row[name] for row in each])) for name in each[0]} for who, each in rows.items()}
+
+
+def _counted(rooms: list[RoomExamples]) -> str:
+    return f"{sum(len(room.indices) for room in rooms):,} sequences of {len(rooms)} rooms"
+
+
+def _told(plan: dict[str, Any]) -> str:
+    return (
+        f"{len(plan['kinds'])} kinds of rooms, {plan['num_layouts']} layouts of each, {plan['sequences_a_room']}"
+        f" sequences of {plan['num_frames']} frames in every room, radar {plan['radar']}, seed {plan['seed']}"
+    )

@@ -1,5 +1,6 @@
 """One motion under every convention of files comes back the same; what is missing is asked for in one line."""
 
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -83,3 +84,10 @@ def test_what_cannot_be_read_is_refused_in_one_line(tmp_path: Path):
         with pytest.raises(InputError, match=message) as caught:
             read_motion(tmp_path / path, **options)
         assert "\n" not in str(caught.value)
+
+
+def test_a_pickle_is_told_as_such_and_no_advice_to_open_it(tmp_path: Path):
+    (tmp_path / "walk.npz").write_bytes(pickle.dumps({"joints": 1}))
+    with pytest.raises(InputError, match="pickled objects") as caught:
+        read_motion(tmp_path / "walk.npz")
+    assert "allow_pickle" not in str(caught.value)

@@ -94,6 +94,8 @@ def test_what_is_no_pose_is_refused():
         read_smpl(poses(numbers=48), HERE)
     with pytest.raises(InputError, match="translation"):
         read_smpl(poses() | {"trans": np.zeros((4, 3))}, HERE)
+    with pytest.raises(InputError, match="no frames"):
+        read_smpl({"poses": np.zeros((0, 72)), "trans": np.zeros((0, 3))}, HERE)
 
 
 def test_rates():

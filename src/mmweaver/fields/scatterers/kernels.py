@@ -36,7 +36,7 @@ class WindowKernel:
         index = step.detach().floor()
         t = step - index
         flat = index.flatten().int()
-        c0, c1, c2, c3 = (piece.index_select(0, flat).view(x.shape) for piece in self._pieces.to(x.dtype))
+        c0, c1, c2, c3 = (piece.index_select(0, flat).view(x.shape) for piece in self._pieces.to(x))
         value = torch.addcmul(c0, t, torch.addcmul(c1, t, torch.addcmul(c2, t, c3)))
         slope = torch.addcmul(c1, t, torch.addcmul(2 * c2, t, c3, value=3)) * STEPS_A_BIN
         return value * even, slope * sign

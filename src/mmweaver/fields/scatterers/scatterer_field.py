@@ -25,6 +25,7 @@ from mmweaver.fields.sampling import Coordinates, antenna_at, coordinates_on
 from mmweaver.fields.scatterers.between import between, between_rows
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers, rendered
+from mmweaver.fields.scatterers.noise import cell_noise
 from mmweaver.fields.scatterers.response import PointResponse, Points
 from mmweaver.fields.scatterers.stretch import Stretch, overlap_hop
 
@@ -127,18 +128,10 @@ class ScattererField(SignalField):
             raise InputError(
                 f"noise is known on the field's own cells, {self.grid.shape}, not on {shape}; render with cube()"
             )
-        rng = stream(seed, "scatterer field noise")
-        step = self.stretch.hop or config.num_loops
-        num_loops = config.num_loops + step * (shape[0] - 1)
-        loops = rng.standard_normal((num_loops, shape[3], config.num_samples, 2), dtype=np.float32)
-        samples = loops.view(np.complex64)[..., 0] * hann(config.num_samples).astype(np.float32)
-        first = config.first_range_bin
-        lines = np.fft.fft(samples, axis=-1)[..., first : first + shape[1]]
-        frames = np.stack([lines[step * at :][: config.num_loops] for at in range(shape[0])])
-        spectrum = np.fft.fft(frames * hann(config.num_loops)[:, None, None], axis=1).transpose(0, 3, 1, 2)
-        power = 2 * np.sum(hann(config.num_samples) ** 2) * np.sum(hann(config.num_loops) ** 2)
-        noise = spectrum * (self.peak * math.sqrt(self._cell_noise() / power))
-        return replace(cube, values=(cube.values + noise).astype(np.complex64))
+        noise = cell_noise(stream(seed, "scatterer field noise"), config, shape[0], self.stretch.hop)
+        noise *= np.float32(self.peak * math.sqrt(self._cell_noise()))
+        noise += cube.values
+        return replace(cube, values=noise)
 
     def for_radar(self, config: RadarConfig, num_frames: int | None = None, *, first_frame_s: float = 0.0) -> RadarCube:
         """What another radar (bandwidth, chirps, array) at the same place would have seen; nothing is fitted again.

@@ -15,6 +15,8 @@ from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
 GRAVITY_MPS2 = 9.81
+ELBOW_LAG = 0.15  # of a step, behind the shoulder
+NOD = 0.4  # share of the pelvis's surge that the neck does not make
 
 
 @dataclass(frozen=True)
@@ -22,22 +24,34 @@ class Style:
     """How one person moves: lengths in metres, angles in radians, times in steps (half a gait cycle)."""
 
     steps_hz: float
-    double_support: float  # share of a step with both feet down; negative: in the air
+    # Share of a step between a foot's strike and the other's lift-off on the clock of steps. The swing begins and ends
+    # slowly: for a tenth of a step more both feet are down, or the fewer are in the air.
+    double_support: float
     half_stance_m: float
     toes_out_rad: float
     ahead_m: float  # how much further back a foot is planted than the middle of its stance would have it
     heel_strike_rad: float
     toe_off_rad: float
+    heel_rises: float  # this share of the stance is over when the heel leaves the floor
+    folded: float  # share of the swing after which the foot points down most
+    swing_ramps: tuple[float, float]  # shares of the swing in which the foot gets, and loses, its speed
+    toe_lift_m: float  # of the ball of the foot, early in the swing, whole steps
     lift_m: float  # of the swinging sole, whole steps
     spot_lift_m: float  # of the sole when the step leads nowhere (jogging on the spot)
     arm_swing_rad: float
+    arm_back_rad: float  # where it swings about
     elbow_rad: float
     elbow_swing_rad: float
     lean_rad: float
     bob_m: float
     sink: float  # stretch of the legs that the pelvis is carried at
     pelvis_yaw_rad: float
+    twist_rad: float  # of the shoulders against the pelvis
     sway_m: float
+    surge_mps: float  # how much faster than its mean the pelvis goes once a step
+    surge_sharp: float  # its second harmonic: short and fast, long and slow
+    fastest: float  # share of a step, from the strike, at which it does
+    highest: float  # and at which the pelvis is highest
     uneven: float = 0.0  # share of a step that the right foot's strike is late (early where negative): a limp
     lopsided: float = 0.0  # how much higher the left foot swings than the right one, as a share
     weave_m: float = 0.0  # how far the whole body sways to the sides of its way
@@ -48,16 +62,18 @@ def walking_style(stage: Stage, speed_mps: float) -> Style:
     rng, height_m = stage.rng, stage.body.height_m
     share = min(speed_mps / 1.3, 1.4)
     steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (1.75 / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
-    vigour = np.exp(rng.normal(0, 0.15))
+    vigour = share**1.5 * np.exp(rng.normal(0, 0.3))
     leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
     drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
     return Style(
-        steps_hz=float(steps_hz), double_support=0.15, half_stance_m=0.034 * height_m,
-        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=0.02 * share,
-        heel_strike_rad=0.28 * share**0.5, toe_off_rad=0.95 * share**0.6, lift_m=0.035, spot_lift_m=0.0,
-        arm_swing_rad=0.28 * share * vigour, elbow_rad=0.32 + rng.normal(0, 0.06), elbow_swing_rad=0.2 * share * vigour,
-        lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.33 * drop_m, sink=0.985, pelvis_yaw_rad=0.09 * share,
-        sway_m=0.018, lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
+        steps_hz=float(steps_hz), double_support=-0.045, half_stance_m=0.034 * height_m,
+        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=-0.005 * share,
+        heel_strike_rad=0.32 * share**0.5, toe_off_rad=0.85 * share**0.6, heel_rises=0.88, folded=0.27,
+        swing_ramps=(0.52, 0.28), toe_lift_m=0.057, lift_m=0.03, spot_lift_m=0.0,
+        arm_swing_rad=0.19 * vigour, arm_back_rad=0.0, elbow_rad=0.42 + rng.normal(0, 0.1),
+        elbow_swing_rad=0.18 * vigour, lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.27 * drop_m, highest=0.51,
+        surge_mps=0.19 * share**0.5, surge_sharp=0.3, fastest=0.04, sink=0.972, pelvis_yaw_rad=0.09 * share,
+        twist_rad=0.16 * share, sway_m=0.018, lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
     )  # fmt: skip
 
 
@@ -68,14 +84,15 @@ def jogging_style(stage: Stage, speed_mps: float) -> Style:
     share = min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
     vigour = np.exp(rng.normal(0, 0.12))
     return Style(
-        steps_hz=steps_hz, double_support=-0.3 - 0.2 * max(share - 0.8, 0.0),
-        half_stance_m=0.036 * height_m, toes_out_rad=0.08,
-        ahead_m=0.05 * share, heel_strike_rad=0.08 * share, toe_off_rad=0.45 + 0.1 * share, lift_m=0.03 + 0.015 * share,
-        spot_lift_m=0.13 * vigour, arm_swing_rad=(0.3 + 0.03 * share) * vigour, elbow_rad=1.45 + rng.normal(0, 0.1),
-        elbow_swing_rad=0.15, lean_rad=0.05 + 0.05 * share,
-        bob_m=(1.1 + 0.3 * min(share, 1.4)) * GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2,
-        sink=0.945, pelvis_yaw_rad=0.08, sway_m=0.01,
-        lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
+        steps_hz=steps_hz, double_support=-0.57 - 0.2 * max(share - 0.8, 0.0),
+        half_stance_m=0.036 * height_m, toes_out_rad=0.08, ahead_m=0.055 * share,
+        heel_strike_rad=0.12 * share, toe_off_rad=0.85 + 0.27 * share, heel_rises=0.49, folded=0.24,
+        swing_ramps=(0.56, 0.34), toe_lift_m=0.08 * share, lift_m=0.03 + 0.03 * share, spot_lift_m=0.13 * vigour,
+        arm_swing_rad=(0.19 + 0.05 * share) * vigour, arm_back_rad=0.3, elbow_rad=1.8 + rng.normal(0, 0.15),
+        elbow_swing_rad=0.1, lean_rad=0.07 + 0.07 * share,
+        bob_m=(1.0 + 0.28 * min(share, 1.4)) * GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2, highest=0.62,
+        surge_mps=0.22 * share, surge_sharp=0.0, fastest=0.47, sink=0.965, pelvis_yaw_rad=0.03, twist_rad=0.3,
+        sway_m=0.005, lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
     )  # fmt: skip
 
 
@@ -202,11 +219,13 @@ def _write_foot(
         long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
         effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
         u = (t - fall.off_s) / (after.strike_s - fall.off_s)
-        across = travel(np.clip(u, 0, 1), *((0.34, 0.38) if jog else (0.4, 0.42)))
+        across = travel(np.clip(u, 0, 1), *style.swing_ramps)
         controls.foot_m[inside, side, :2] = fall.place_m + across[:, None] * gap
         own = 1 + SIDE_SIGN[side] * style.lopsided
         high = own * style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
-        controls.foot_m[inside, side, 2] = high * bump(u)
+        controls.foot_m[inside, side, 2] = high * bump(u) + own * style.toe_lift_m * min(abs(ahead) / 1.2, 1.15) * bump(
+            u / 0.7
+        )
         controls.foot_rad[inside, side, 0] = fall.yaw_rad + rise(u) * (after.yaw_rad - fall.yaw_rad)
         pitch = own * _pitch(t, fall, after, style, came, ahead)
         if jog:
@@ -226,8 +245,9 @@ def _pitch(
     came, goes = np.clip(np.array([came_m, ahead_m]) / 1.2, -0.35, 1.15)
     stance, swing = fall.off_s - fall.strike_s, after.strike_s - fall.off_s
     down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / (0.22 * stance)))
-    up = style.toe_off_rad * abs(goes) * rise((t - fall.strike_s - 0.42 * stance) / (0.58 * stance + 0.08 * swing))
-    back = rise((t - fall.off_s - 0.08 * swing) / (0.92 * swing))
+    rises, folded = fall.strike_s + style.heel_rises * stance, fall.off_s + style.folded * swing
+    up = style.toe_off_rad * abs(goes) * rise((t - rises) / (folded - rises))
+    back = rise((t - folded) / (after.strike_s - folded))
     return down + up * (1 - back) - back * style.heel_strike_rad * max(goes, 0.0)
 
 
@@ -238,14 +258,14 @@ def _write_trunk_and_arms(
     body, heading = stage.body, controls.heading_rad
     left_ahead = np.cos(np.pi * phase) * moving  # the left leg is in front at its strike
     right_stance = -np.sin(np.pi * (phase - 0.1)) * moving  # +1 over the right foot, -1 over the left one
-    top = 0.54 if style.double_support > 0 else 1 + style.double_support / 2  # over the foot; jogging, in the air
-    high = np.cos(2 * np.pi * (phase - top)) * moving
+    high = np.cos(2 * np.pi * (phase - style.highest)) * moving
     stand = body.pelvis_height_m(style.sink) - style.bob_m
     controls.knee_room[:] = moving
     controls.pelvis_m[:, 2] += moving * (stand - controls.pelvis_m[:, 2]) + style.bob_m * high
     sway = -style.sway_m * right_stance
     controls.pelvis_m[:, 0] -= sway * np.sin(heading)
     controls.pelvis_m[:, 1] += sway * np.cos(heading)
+    _surge(controls, stage, style, phase, moving)
     controls.pelvis_rad[:, 0] -= 0.05 * right_stance
     controls.pelvis_rad[:, 1] += 0.4 * style.lean_rad * moving
     controls.pelvis_rad[:, 2] -= style.pelvis_yaw_rad * left_ahead
@@ -253,12 +273,27 @@ def _write_trunk_and_arms(
     controls.spine_rad[:, 0] += 0.05 * right_stance + lame
     controls.pelvis_m[:, 2] -= 0.12 * np.abs(lame)
     controls.spine_rad[:, 1] += 0.6 * style.lean_rad * moving
-    controls.spine_rad[:, 2] += 1.9 * style.pelvis_yaw_rad * left_ahead
-    controls.head_rad[:, 1] -= 0.9 * style.pelvis_yaw_rad * left_ahead
+    controls.spine_rad[:, 2] += style.twist_rad * left_ahead
+    controls.head_rad[:, 1] -= (style.twist_rad - style.pelvis_yaw_rad) * left_ahead
     controls.head_rad[:, 0] -= 0.8 * style.lean_rad * moving
+    lagging = np.cos(np.pi * (phase - ELBOW_LAG)) * moving
     for side in (LEFT, RIGHT):
-        forward = -SIDE_SIGN[side] * left_ahead  # the arm goes with the other leg
-        arm = controls.arm_rad[:, side]
-        arm[:, 0] += style.arm_swing_rad * (forward + 0.12 * moving) - 0.25 * moving * max(style.elbow_rad - 1, 0)
-        arm[:, 3] += moving * (style.elbow_rad - 0.22) + style.elbow_swing_rad * forward
+        arm, sign = controls.arm_rad[:, side], -SIDE_SIGN[side]  # the arm goes with the other leg
+        arm[:, 0] += style.arm_swing_rad * (sign * left_ahead + 0.12 * moving) - style.arm_back_rad * moving
+        arm[:, 3] += moving * (style.elbow_rad - 0.22) + style.elbow_swing_rad * sign * lagging
         arm[:, 2] -= 0.35 * moving * np.clip(style.elbow_rad, 0, 1)
+
+
+def _surge(
+    controls: Controls, stage: Stage, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
+) -> None:
+    """The pelvis is ahead of its even way and behind it once a step; the trunk gives half of that back."""
+    surge_m = style.surge_mps / (2 * np.pi * style.steps_hz)
+    turn = 2 * np.pi * (phase - style.fastest)
+    ahead = surge_m * (np.sin(turn) + 0.5 * style.surge_sharp * np.sin(2 * turn)) * moving
+    way = stage.path.position_m(stage.time_s + 0.01) - stage.path.position_m(stage.time_s - 0.01)
+    gone = np.linalg.norm(way, axis=1)
+    along = way / np.maximum(gone, 1e-6)[:, None] * np.tanh(gone / 0.005)[:, None]
+    controls.pelvis_m[:, :2] += ahead[:, None] * along
+    forward = along[:, 0] * np.cos(controls.heading_rad) + along[:, 1] * np.sin(controls.heading_rad)
+    controls.spine_rad[:, 1] -= NOD * ahead * forward / (0.2 * stage.body.height_m)

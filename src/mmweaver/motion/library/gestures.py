@@ -19,20 +19,21 @@ PerTime = Float[Array, " n"]
 
 
 def waving(stage: Stage, controls: Controls) -> Controls:
-    """Upper arm out, forearm up, the forearm swinging from side to side."""
+    """Upper arm out and ahead, the forearm up and swinging from side to side; the upper arm rolls, so the hand nods."""
     time_s, rng = stage.time_s, stage.rng
-    rate, end = cycles(stage, stage.tempo(0.9, 1.4, 2.0), 0.8, 2.5)
+    rate, end = cycles(stage, stage.tempo(1.0, 1.6, 2.2), 0.8, 2.5)
     swing = float(rng.uniform(0.35, 0.5)) * min(1.0, 1.5 / rate)
     on = rise((end + 0.25 - time_s) / 0.5) if stage.step.count else np.ones_like(time_s)
     begin = stage.start_s
     for side in sides(stage):
         phase = 2 * np.pi * rate * (time_s - begin) + (rng.uniform(0, 0.6) if side else 0.0)
-        abduction, flexion = rng.uniform(0.95, 1.25), rng.uniform(0.1, 0.35)
+        abduction, flexion = rng.uniform(0.95, 1.4), rng.uniform(0.2, 0.8)
+        nod, late = float(rng.uniform(0.06, 0.3)) * min(1.0, 1.5 / rate), rng.uniform(-0.6, 0.6)
         arm = np.stack(
             [
                 flexion + 0.05 * np.sin(phase + 0.5),
                 abduction + 0.08 * np.sin(phase + 0.3),
-                np.full_like(time_s, rng.uniform(1.35, 1.6)),
+                rng.uniform(1.15, 1.5) + nod * np.sin(phase + late),
                 rng.uniform(1.55, 1.75) - swing * np.sin(phase),
             ],
             axis=1,
@@ -52,7 +53,7 @@ def clapping(stage: Stage, controls: Controls) -> Controls:
     open_m = float(rng.uniform(0.08, 0.13)) * min(1.0, 2.0 / rate) * body.height_m
     ahead, up = rng.uniform(0.16, 0.19), rng.uniform(0.02, 0.07)
     target = np.zeros((len(time_s), 3))
-    target[:, 0] = (ahead - 0.015 * apart) * body.height_m
+    target[:, 0] = (ahead - rng.uniform(0.0, 0.04) * apart) * body.height_m
     target[:, 1] = 0.024 * body.height_m + open_m * apart
     target[:, 2] = (up + 0.01 * apart) * body.height_m
     arm = reach(body, target, elbow=(-0.1, 0.8, -1.0))

@@ -8,12 +8,13 @@ from jaxtyping import Float
 from mmweaver.motion.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.library.limbs import shift_pelvis
 from mmweaver.motion.library.standing import STAND_STRETCH, home_feet, upright
-from mmweaver.motion.profiles import plateau, rise, through
+from mmweaver.motion.profiles import plateau, rise, through, travel
 from mmweaver.motion.root_path import RootPath
 from mmweaver.motion.stage import Stage
 
 Array = np.ndarray
 GRAVITY_MPS2 = 9.81
+LAUNCH_S, CATCH_S = 0.26, 0.3
 Knot = tuple[float, float, float, float]
 
 
@@ -137,21 +138,29 @@ def leaping(stage: Stage) -> Controls:
     here = RootPath(start_m=(float(start[0]), float(start[1])), heading_rad=heading)
     controls, hops = _jumps(replace(stage, path=here))
     feet = sum(rise((time_s - hop.off_s) / hop.flight_s) for hop in hops) / len(hops)
-    body = sum(rise((time_s - hop.off_s + 0.16) / (hop.flight_s + 0.34)) for hop in hops) / len(hops)
+    body = sum(_carried(time_s, hop) for hop in hops) / len(hops)
     way = path.position_m(ends)[1] - start
     controls.pelvis_m[:, :2] += np.asarray(body)[:, None] * way
     controls.foot_m[:, :, :2] += np.asarray(feet)[:, None, None] * way
     return controls
 
 
+def _carried(time_s: Float[Array, " n"], hop: Hop) -> Float[Array, " n"]:
+    """Share of the way that the pelvis has gone: speed is gained from the floor, kept in flight, lost on it."""
+    whole_s = LAUNCH_S + hop.flight_s + CATCH_S
+    return travel(np.clip((time_s - hop.off_s + LAUNCH_S) / whole_s, 0, 1), LAUNCH_S / whole_s, CATCH_S / whole_s)
+
+
 def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    height_m = float(rng.uniform(0.18, 0.36)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
+    height_m = float(rng.uniform(0.2, 0.42)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
     count = stage.step.count or max(1, int((stage.duration_s - edge_s - flight_s) / between_s + 1.25))
     spare = max(stage.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
+    slower = min(0.5 * spare, 0.4)  # who has time goes down and comes up without haste
+    crouch_s, recover_s, spare = crouch_s + slower, recover_s + slower, spare - 2 * slower
     period = between_s + (min(spare / (count - 1), 0.35) if count > 1 else 0.0)
     depth = float(rng.uniform(0.19, 0.25))
     first = stage.start_s + crouch_s + push_s
@@ -161,18 +170,18 @@ def _jumps(stage: Stage) -> tuple[Controls, list[Hop]]:
     dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
     dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
     hop_all(controls, stage, hops, dips, ready_m=-0.02 - 0.15 * max(height_m - 0.16, 0.0))
-    trunk = plateau(time_s, stage.start_s, first + 0.12, crouch_s, push_s + 0.12)
-    arms = -0.5 * plateau(time_s, stage.start_s, first + 0.05, crouch_s, push_s + 0.2)
+    pitch_rad, nod = float(rng.uniform(0.4, 0.75)), float(rng.uniform(0.1, 0.45))
+    trunk = plateau(time_s, stage.start_s, first + 0.08, crouch_s, push_s + 0.2)
+    forth = np.zeros_like(time_s)
+    back = plateau(time_s, stage.start_s, first + 0.06, crouch_s, push_s + 0.25)
     for hop in hops:
         gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
         after = recover_s if hop is hops[-1] else gap
-        trunk = trunk + 0.75 * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
-        arms = arms + 1.2 * plateau(
-            time_s, hop.off_s - 0.25, hop.land_s + gap + 0.3, 0.25 + flight_s / 2, flight_s / 2 + gap + 0.2
-        )
-    _bend(controls, trunk, 0.45)
-    controls.arm_rad[:, :, 0] += arms[:, None]
-    controls.arm_rad[:, :, 3] += 0.5 * np.maximum(trunk, 0)[:, None]
+        trunk = trunk + nod * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
+        forth = forth + plateau(time_s, hop.off_s - 0.4, hop.land_s + 0.2, 0.5, flight_s + 0.1)
+    _bend(controls, trunk, pitch_rad)
+    controls.arm_rad[:, :, 0] += (1.0 * forth - 0.5 * back)[:, None]
+    controls.arm_rad[:, :, 3] += (0.75 * forth + 0.15 * back)[:, None]
     return controls, hops
 
 
@@ -180,7 +189,7 @@ def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> N
     """Hips go back and the trunk leans forward over them."""
     heading = controls.heading_rad
     for axis, part in ((0, np.cos(heading)), (1, np.sin(heading))):
-        controls.pelvis_m[:, axis] -= 0.14 * amount * part
+        controls.pelvis_m[:, axis] -= 0.34 * pitch_rad * amount * part
     controls.pelvis_rad[:, 1] += 0.6 * pitch_rad * amount
     controls.spine_rad[:, 1] += 0.5 * pitch_rad * amount
     controls.head_rad[:, 0] -= 0.7 * pitch_rad * amount

@@ -17,7 +17,7 @@ def open_npy(path: Path) -> Array:
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, EOFError, SyntaxError) as error:
-        raise InputError(f"{path} is no .npy array of numbers ({str(error).splitlines()[0]})") from None
+        raise InputError(f"{path} is no .npy array of numbers ({_reason(error)})") from None
     if not isinstance(values, np.ndarray) or not np.issubdtype(values.dtype, np.number):
         raise InputError(f"{path} is no .npy array of numbers; save the joints alone with numpy.save")
     if np.iscomplexobj(values):
@@ -41,5 +41,11 @@ def open_npz(path: Path, only: tuple[str, ...] | None = None) -> dict[str, Array
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, EOFError, zipfile.BadZipFile, SyntaxError) as error:
-        raise InputError(f"{path} is no .npz archive of arrays ({str(error).splitlines()[0]})") from None
+        raise InputError(f"{path} is no .npz archive of arrays ({_reason(error)})") from None
     return found
+
+
+def _reason(error: Exception) -> str:
+    """numpy's own words advise to open pickles."""
+    text = str(error).splitlines()[0]
+    return "it holds pickled objects, which could run code and are not opened" if "pickle" in text else text

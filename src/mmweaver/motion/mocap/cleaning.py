@@ -24,8 +24,11 @@ def without_gaps(
     joints = np.array(joints, float)
     joints[~np.isfinite(joints)] = np.nan
     extent = np.ptp(np.nan_to_num(joints), axis=1).max(axis=-1)
-    if len(joints) < 2 or not np.isfinite(joints).any() or np.nanmax(extent) <= 0:
-        raise InputError(f"{source} has no motion: {_count(len(joints))}, or nothing but zeros; choose another file")
+    if len(joints) < 2:
+        raise InputError(f"{source} has no motion, only {_count(len(joints))}; choose another file")
+    if not np.isfinite(joints).any() or np.nanmax(extent) <= 0:
+        what = "no number (all nan)" if not np.isfinite(joints).any() else "all joints at one point"
+        raise InputError(f"{source} has no motion: {what} in all of {_count(len(joints))}; choose another file")
     joints[extent < 1e-3 * np.nanmedian(extent[extent > 0])] = np.nan  # all joints at one point
     missing = np.asarray(np.isnan(joints).any(axis=-1))
     if not missing.any():

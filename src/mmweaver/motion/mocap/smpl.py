@@ -28,6 +28,7 @@ MEAN_OFFSET_M = np.array([
     (0.2492, 0.0090, -0.0012), (-0.2553, 0.0078, -0.0056),
 ])  # fmt: skip
 TRANSLATIONS = ("trans", "transl", "root_translation")
+_POSES = ("poses", "pose", "root_orient", "pose_body")
 RATES = ("mocap_framerate", "mocap_frame_rate", "fps", "frame_rate", "framerate")
 
 
@@ -80,7 +81,10 @@ def forward(
 
 
 def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"]:
-    if "pose_body" in arrays and "root_orient" in arrays:
+    whole = "pose_body" in arrays and "root_orient" in arrays
+    if any(np.size(arrays[name]) == 0 for name in _POSES if name in arrays):
+        raise InputError(f"{path} has no frames: its poses are empty; choose another file")
+    if whole:
         parts = [
             np.asarray(arrays[name], float).reshape(len(arrays[name]), -1) for name in ("root_orient", "pose_body")
         ]

@@ -4,6 +4,7 @@ Reference: MotionGPT's checkpoint `motiongpt_s3_h3d.tar`: a torch archive whose 
 `lm.language_model.*` (docs/motiongpt.md).
 """
 
+import warnings
 from pathlib import Path
 
 import torch
@@ -25,7 +26,9 @@ def read_checkpoint(path: Path) -> tuple[State, dict[str, str]]:
         return _read_safetensors(path)
     try:
         # The published file was written by torch's own saving; weights_only runs nothing that it might hold.
-        content = torch.load(path, map_location="cpu", weights_only=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # torch tells of odd pickles that are refused anyway
+            content = torch.load(path, map_location="cpu", weights_only=True)
     except Exception as error:
         raise InputError(_why_unread(path, error)) from None
     state = content.get("state_dict", content) if isinstance(content, dict) else content

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.hub_log import hub_log_off
 from mmweaver.motion.motiongpt.language import EXTRA
 
 PUBLISHED = "OpenMotionLab/MotionGPT-base"
@@ -27,7 +28,8 @@ def published_checkpoint(name: str) -> Path:
     except ImportError:
         raise InputError(EXTRA) from None
     try:
-        return Path(hf_hub_download(repo_id=name, filename=CHECKPOINT))
+        with hub_log_off():
+            return Path(hf_hub_download(repo_id=name, filename=CHECKPOINT))
     except Exception as error:
         why = " ".join(str(error).split())[:80]
         raise InputError(

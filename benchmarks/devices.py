@@ -1,0 +1,176 @@
+"""What a sequence costs on the CPU and on a GPU if there is one: made from a prepared room, and by the network.
+
+Rooms, motions and weights are made up here, as large as real ones, so that it runs where nothing but numpy, scipy,
+torch and transformers is installed: no ray caster. Writes results/benchmark/devices_<device>.json and prints the same
+as a table.
+"""
+
+import os
+import sys
+import time
+from collections.abc import Callable
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+import torch
+from measuring import report, results_folder
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.records import Plane
+from mmweaver.core.skeleton import NUM_JOINTS
+from mmweaver.dsp.torch_cube import torch_cube
+from mmweaver.models.room_view import (
+    IMAGE_COLUMNS,
+    IMAGE_ROWS,
+    NUM_PLANES,
+    NUM_POINTS,
+    PLANE_FEATURES,
+    POINT_FEATURES,
+    RoomView,
+)
+from mmweaver.models.weaver_method import FrameMotion, WovenRoom
+from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.simulation.body import DEFAULT_NUM_POINTS
+from mmweaver.simulation.echoes import GHOST_POINTS
+from mmweaver.simulation.mirrors import Mirror
+from mmweaver.simulation.receiver import IDEAL, Receiver
+from mmweaver.simulation.replay import Look, Replay
+from mmweaver.simulation.room import RestingRoom, StaticEchoes, ways_m
+from mmweaver.simulation.synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.simulation.torch_synthesis import TorchSynthesis
+from mmweaver.simulation.visibility import Visibility
+
+NUM_FRAMES, ECHOES, FACES, HIDDEN, ROWS = 20, 8300, 5, 400, 900
+
+
+def made_up_room(rng: np.random.Generator) -> RestingRoom:
+    place = rng.uniform((-2, 0.7, -1), (2, 4.0, 1.2), (ECHOES, 3))
+    amplitude = 1e-3 * (rng.normal(size=ECHOES) + 1j * rng.normal(size=ECHOES))
+    echoes = StaticEchoes(way_m=ways_m(place, AWR1843), amplitude=amplitude, first_m=place, last_m=place)
+    mirrors = []
+    for turn in np.linspace(-1.2, 1.2, FACES):
+        normal = -np.array([np.sin(turn), np.cos(turn), 0.0])
+        along = np.array([-normal[1], normal[0], 0.0])
+        up = np.array([0.0, 0.0, 1.0])
+        plane = Plane(
+            kind="wall", centre_m=-3.5 * normal, normal=normal, axis_u=along, axis_v=up, half_size_m=(2.5, 1.3),
+            material="plasterboard",
+        )  # fmt: skip
+        mirrors.append(Mirror(plane=plane, offset_m=-3.5))
+    return RestingRoom(AWR1843, mirrors, echoes, {"diffuse": ECHOES, "specular": 0, "edges": 0})
+
+
+def made_up_look(rng: np.random.Generator, clock: FrameClock) -> Look:
+    time_s = np.arange(NUM_FRAMES)[:, None] * AWR1843.frame_period_s + clock.node_s
+    joints = rng.normal((0.0, 2.3, -0.2), (0.2, 0.1, 0.4), (NUM_JOINTS, 3))
+    joints_m = joints + np.array([0.1, -0.4, 0.0]) * time_s[..., None, None]
+    hidden = np.zeros((NUM_FRAMES, ECHOES), bool)
+    hidden[:, :HIDDEN] = True
+    visibility = Visibility(
+        skin=rng.random((NUM_FRAMES, DEFAULT_NUM_POINTS)) < 0.4,
+        over_faces=rng.random((NUM_FRAMES, FACES, GHOST_POINTS)) < 0.5,
+        hidden=hidden,
+    )
+    return Look(joints_m=joints_m.astype(np.float32), visibility=visibility, subject=0, height_m=1.75, seed=0)
+
+
+def error(device: str) -> float:
+    """Relative error of the device's samples of moving echoes against the numpy synthesis."""
+    rng, clock = np.random.default_rng(1), FrameClock(AWR1843)
+    start, speed = rng.uniform((-2, 0.7, -1), (2, 3.5, 1), (ROWS, 3)), rng.normal(0, 2, (ROWS, 3))
+    place = start[:, None] + speed[:, None] * clock.node_s[None, :, None]
+    amplitude = rng.normal(size=ROWS) + 1j * rng.normal(size=ROWS)
+    rows = EchoRows(out_m=place, back_m=place, amplitude=amplitude, is_mixed=rng.random(ROWS) < 0.5)
+    wanted = synthesise(rows, clock)
+    got = TorchSynthesis(clock, device).moving([rows])[0].cpu().numpy()
+    return float(np.sqrt((np.abs(got - wanted) ** 2).sum() / (np.abs(wanted) ** 2).sum()))
+
+
+def measured(device: str) -> dict[str, float]:
+    rng = np.random.default_rng(0)
+    replay, other = Replay(made_up_room(rng), device), Replay(made_up_room(rng), device, IDEAL)
+    look, frames = made_up_look(rng, replay.synthesis.clock), np.arange(NUM_FRAMES)
+
+    def cube(of: Replay, twin: int) -> Callable[[], object]:
+        return lambda: torch_cube(of.samples(look, frames, twin=twin), AWR1843).cpu()
+
+    values = {"relative_error_of_moving_echoes": error(device)}
+    for name, function in {
+        "sequence": cube(replay, 1), "sequence_noise_from_streams": cube(replay, 0), "sequence_ideal": cube(other, 0),
+    }.items():  # fmt: skip
+        cpu, wall = [], []
+        for _ in range(12):
+            began = time.process_time(), time.perf_counter()
+            function()
+            cpu.append(time.process_time() - began[0])
+            wall.append(time.perf_counter() - began[1])
+        values |= {f"{name}_cpu_s": min(cpu), f"{name}_wall_s": min(wall)}
+    values["synthesis_of_rows_wall_s"] = rows_seconds(replay, look)
+    values |= network_seconds(device)
+    if device == "cuda":
+        values["peak_device_memory_gb"] = torch.cuda.max_memory_allocated() / 1e9
+    return values
+
+
+def network_seconds(device: str) -> dict[str, float]:
+    """Motion to cube by the network, the room encoded once; its echoes are drawn and rendered on the CPU."""
+    generator = torch.Generator().manual_seed(0)
+    view = RoomView(
+        image=torch.rand(5, IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
+        depth_m=1 + 3 * torch.rand(IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
+        point_m=torch.rand(NUM_POINTS, 3, generator=generator) * 2.5 + torch.tensor([-1.2, 0.8, -1.2]),
+        point_cross_section_m2=1e-3 * torch.rand(NUM_POINTS, generator=generator),
+        point_features=torch.rand(NUM_POINTS, POINT_FEATURES, generator=generator),
+        camera_from_radar=torch.tensor([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
+        camera=torch.tensor([100.0, 100.0, 80.0, 60.0]),
+        plane_centre_m=torch.tensor([[0.0, 2.0, -1.2]]).repeat(NUM_PLANES, 1),
+        plane_axes=torch.eye(3).repeat(NUM_PLANES, 1, 1),
+        plane_half_m=torch.full((NUM_PLANES, 2), 2.0),
+        plane_features=torch.rand(NUM_PLANES, PLANE_FEATURES, generator=generator),
+    )
+    torch.manual_seed(0)
+    room = WovenRoom(WeaverNetwork().eval(), view, AWR1843, device=device)
+    joints = np.random.default_rng(0).normal((0.0, 2.3, -0.2), (0.2, 0.1, 0.4), (NUM_FRAMES, NUM_JOINTS, 3))
+    motion = FrameMotion(
+        joints_m=joints.astype(np.float32), velocity_mps=np.zeros_like(joints, dtype=np.float32), subject=0
+    )
+    cpu, wall = [], []
+    for seed in range(15):
+        began = time.process_time(), time.perf_counter()
+        room.cube([motion], seed=seed)
+        cpu.append(time.process_time() - began[0])
+        wall.append(time.perf_counter() - began[1])
+    return {"network_motion_to_cube_cpu_s": min(cpu), "network_motion_to_cube_wall_s": min(wall)}
+
+
+def rows_seconds(replay: Replay, look: Look) -> float:
+    """Wall seconds of the device's share of 20 frames: synthesis, room, receiver, transforms."""
+    rng, synthesis = np.random.default_rng(2), replay.synthesis
+    nodes = len(synthesis.clock.node_s)
+    place = rng.uniform((-2, 0.7, -1), (2, 3.5, 1), (NUM_FRAMES, ROWS, 1, 3)).repeat(nodes, axis=2)
+    rows = [EchoRows(out_m=p, back_m=p, amplitude=np.ones(ROWS, complex), is_mixed=np.zeros(ROWS, bool)) for p in place]
+    still = torch.zeros(NUM_FRAMES, 3, 4, AWR1843.num_samples, dtype=torch.complex64, device=synthesis.device)
+    receiver, frames = Receiver(AWR1843, replay.impairments, 0), np.arange(NUM_FRAMES)
+    seconds = []
+    for _ in range(8):
+        began = time.perf_counter()
+        samples = synthesis.received(synthesis.moving(rows), still, still[0], receiver, frames, drawn_here=True)
+        torch_cube(samples, AWR1843).cpu()
+        seconds.append(time.perf_counter() - began)
+    return min(seconds)
+
+
+def main() -> int:
+    out = results_folder(__doc__)
+    torch.set_num_threads(1)
+    for device in ("cpu", "cuda") if torch.cuda.is_available() else ("cpu",):
+        dataset = {"name": f"made-up room of {ECHOES} echoes and {FACES} faces, {NUM_FRAMES} frames"}
+        name = torch.cuda.get_device_name() if device == "cuda" else "cpu, one thread"
+        report(out, f"devices_{device}", dataset, measured(device), {"device": name, "threads": 1})
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

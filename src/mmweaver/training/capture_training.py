@@ -1,0 +1,213 @@
+"""Fine-tuning on a user's own few captures.
+
+With joints the whole network is tuned. Without, only what it says of things that rest: the heads that correct the
+strength of each surface; echoes of people stay as they were, to the bit.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.skeleton import NUM_JOINTS
+from mmweaver.models.echoes import Echoes
+from mmweaver.models.mean_power import PowerMaps
+from mmweaver.models.radar_view import points_of
+from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.weights import sha256_of
+from mmweaver.training.captures import SPLIT, Capture, RecordedRoom, rooms_of
+from mmweaver.training.model_card import model_card
+from mmweaver.training.trainer import Draw, Listener, Trainer
+from mmweaver.training.weaver_examples import Batch, RoomExamples, draw_batch
+from mmweaver.training.weaver_training import (
+    CARD_FILE,
+    EXPLAINED,
+    VALIDATION_SEED,
+    TrainingRecipe,
+    WeaverLearner,
+    begun,
+    card_of,
+    compared,
+    save_trained,
+)
+from mmweaver.training.workplace import Workplace
+
+RESTING_HEADS = ("point", "face")
+NOBODY_M = (0.0, 2.5, -0.5)  # where the joints are said to be of people whose echoes then count for nothing
+SHOWN = 1e-4  # of the strongest cell: what the recording's gain is taken from
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaptureRecipe(TrainingRecipe):
+    """How the weaver is tuned: little and carefully, for there is little to learn from."""
+
+    name: str = "weaver, tuned"
+    steps: int = 300
+    batch_size: int = 2
+    learning_rate: float = 2e-4
+    warm_up_steps: int = 20
+    validate_every: int = 25
+    validation_batches: int = 4
+    patience: int = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class RestingRecipe(CaptureRecipe):
+    """The same for two small heads, which bear larger steps."""
+
+    learning_rate: float = 5e-3
+
+
+def recipe_for(captures: Sequence[Capture], **given: Any) -> CaptureRecipe:
+    """The recipe for captures with joints, or for none; `given` replaces its values."""
+    return CaptureRecipe(**given) if any(one.pose is not None for one in captures) else RestingRecipe(**given)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaptureBatch(Batch):
+    """A batch of captures; where a person is not `known` the maps are those of the room at rest."""
+
+    known: Tensor  # (sequence,) 0 or 1
+
+
+class CaptureLearner(WeaverLearner):
+    """Learns from captures; who is not known has no echo. The receiver's noise is the recording's."""
+
+    def __init__(self, network: WeaverNetwork, config: RadarConfig, noise_power: float, *, everything: bool):
+        super().__init__(network, config)
+        self.radar.noise = noise_power
+        for name, parameter in network.named_parameters():
+            parameter.requires_grad_(everything or name.split(".")[0] in RESTING_HEADS)
+
+    def moving(self, code: Any, batch: Batch) -> Echoes:
+        echoes = super().moving(code, batch)
+        if not isinstance(batch, CaptureBatch):
+            return echoes
+        return replace(echoes, cross_section_m2=echoes.cross_section_m2 * batch.known[:, None, None])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tuned:
+    """A run on captures, and how the recordings were taken."""
+
+    trainer: Trainer
+    rooms: list[RecordedRoom]
+    held_out: RecordedRoom | None  # None: too few captures to keep one aside
+    loss_before: float  # of the weights it began with, on the same validation
+    gain: float  # sqrt(mW) of one count, where the recordings were not calibrated
+
+
+def tune(
+    captures: Sequence[Capture],
+    out: Path,
+    recipe: CaptureRecipe,
+    *,
+    start: dict[str, Tensor],
+    listener: Listener | None = None,
+    workplace: Workplace | None = None,
+    **options: Any,
+) -> Tuned:
+    """Fine-tunes weights on captures; the last capture is kept aside for validation, unless it is the only one.
+
+    Recordings whose scale is not known get the one gain at which the weights they begin with agree with them most.
+    Goes on from `out`/checkpoint.pt where there is one. Raises InputError for captures of different radars.
+    """
+    network = begun(recipe, start)
+    rooms = rooms_of(captures)
+    gain = 1.0
+    if not all(room.is_calibrated for room in rooms):
+        gain = gain_of(network, [room for room in rooms if not room.is_calibrated])
+        rooms = [room if room.is_calibrated else room.times(gain) for room in rooms]
+    noise = float(np.median([room.noise_power for room in rooms]))
+    held_out = rooms[-1] if len(rooms) > 1 else None
+    used = rooms[:-1] if held_out is not None else rooms
+    everything = any(room.has_joints for room in used)
+    learner = CaptureLearner(network, rooms[0].config, noise, everything=everything)
+    maps = learner.radar.noise_maps()
+    validation = _drawing([held_out or rooms[0]], recipe, VALIDATION_SEED + recipe.seed, maps)
+    learner.shown = lambda: validation(0, (0, 1))
+    trainer = Trainer(
+        learner, recipe, out, train=_drawing(used, recipe, recipe.seed, maps), validation=validation,
+        workplace=workplace, is_tuning=True, **options,
+    )  # fmt: skip
+    before = _loss_of(trainer, begun(recipe, start))
+    trainer.run(listener)
+    return Tuned(trainer=trainer, rooms=rooms, held_out=held_out, loss_before=before, gain=gain)
+
+
+def write_tuned(out: Path, tuned: Tuned, *, start: dict[str, Tensor], licence_of_start: str = "MIT") -> Path:
+    """Writes `out`/weights.safetensors and its README.md; gives the weights' path."""
+    digest = hashlib.sha256("".join(room.sha256 for room in tuned.rooms).encode()).hexdigest()
+    more = {"tuned_from": sha256_of(start), "licence": licence_of_start}
+    file = save_trained(out, tuned.trainer, digest, **more)
+    used = len(tuned.rooms) - (tuned.held_out is not None)
+    known = sum(room.has_joints for room in tuned.rooms[:used])
+    told = f"{used} captures of the user's own, {known} of them with joints; on top of what the weights came from."
+    judged = "One capture that was kept aside" if tuned.held_out is not None else "The captures themselves (one only)"
+    figures = compared(tuned.trainer, begun(tuned.trainer.recipe, start))
+    card = card_of(tuned.trainer, digest, **more)
+    with atomic_file(out / CARD_FILE) as partial:
+        partial.write_text(model_card(card, file, data=told, judged_on=f"{judged}; {EXPLAINED}", figures=figures))
+    return file
+
+
+def _loss_of(trainer: Trainer, network: WeaverNetwork) -> float:
+    """The validation loss that other weights have."""
+    learner = trainer.learner
+    assert isinstance(learner, WeaverLearner)
+    own, learner.network = learner.network, network.to(learner.device)
+    loss = trainer.validation_loss()
+    learner.network = own
+    return loss
+
+
+def gain_of(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
+    """The factor of amplitude at which recordings and network agree on the resting room, by the median."""
+    learner = WeaverLearner(network, rooms[0].config).eval()
+    ratios = []
+    for room in rooms:
+        one = RoomExamples(room, SPLIT)
+        with torch.inference_mode():
+            view = type(one.view).stacked([one.view])
+            resting = learner.network.encode_room(view).resting
+            expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
+        own = one.empty.range_azimuth
+        shown = (own > SHOWN * own.max()) & (expected > SHOWN * expected.max())
+        ratios.append((expected[shown] / own[shown]).log())
+    return float(torch.cat(ratios).median().div(2).exp())
+
+
+def _drawing(rooms: list[RecordedRoom], recipe: CaptureRecipe, seed: int, noise: tuple[float, float, float]) -> Draw:
+    pool = [RoomExamples(room, SPLIT) for room in rooms]
+
+    def draw(step: int, share: tuple[int, int]) -> CaptureBatch:
+        batch = draw_batch(pool, seed, step, size=recipe.batch_size, frames=recipe.frames, share=share)
+        return _with_nobody(batch, noise)
+
+    return draw
+
+
+def _with_nobody(batch: Batch, noise: tuple[float, float, float]) -> CaptureBatch:
+    """Sequences without joints show the room at rest."""
+    known = torch.isfinite(batch.joints_m).flatten(1).all(dim=1)
+    place = torch.tensor(NOBODY_M).expand(NUM_JOINTS, 3) + 0.1 * torch.eye(NUM_JOINTS, 3)
+    each = known[:, None, None, None]
+    maps: dict[str, Tensor] = {}
+    for own, level in zip(fields(PowerMaps), noise, strict=True):
+        shown, empty = getattr(batch.targets.maps, own.name), getattr(batch.targets.empty, own.name)
+        maps[own.name] = torch.where(each, shown, (empty + level)[:, None].expand_as(shown))
+    return CaptureBatch(
+        view=batch.view,
+        joints_m=torch.where(each, batch.joints_m, place),
+        velocity_mps=torch.where(each, batch.velocity_mps, torch.zeros(())),
+        frames=batch.frames,
+        targets=replace(batch.targets, maps=PowerMaps(**maps)),
+        known=known.float(),
+    )

@@ -1,0 +1,62 @@
+"""What a radar would see on average of a stored geometry: targets without speckle and noise's scatter.
+
+A drawn signal tells a network one throw of the dice in every cell; the simulator's own echoes tell the mean at once.
+Reference: decision 98.
+"""
+
+from dataclasses import fields
+
+import numpy as np
+import torch
+
+from mmweaver.data.store import StoredRoom
+from mmweaver.models.apparent import moving_points, resting_points
+from mmweaver.models.mean_power import MeanPower, PowerMaps
+from mmweaver.simulation.echoes import BodyEchoes
+from mmweaver.simulation.synthesis import FrameClock
+
+
+class ExpectedMaps:
+    """Mean power maps of one room of a data set with geometry."""
+
+    def __init__(self, room: StoredRoom):
+        assert room.geometry is not None, "signals are stored, not geometry"
+        self.room, self.radar = room, _radar(room)
+        self.node_s = FrameClock(room.config).node_s
+        self.resting = room.geometry.room.echoes
+        self.empty = self.radar.maps(resting_points(self.resting, self.radar.response))
+
+    def frames(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps]:
+        """Maps (frame, range, other) of frames of a sequence: of room, person and noise, and of the person alone."""
+        person = self.room.echoes(index, frames)
+        both = [self._frame(person, number) for number in range(len(frames))]
+        return stacked([whole for whole, _ in both]), stacked([alone for _, alone in both])
+
+    def _frame(self, person: BodyEchoes, number: int) -> tuple[PowerMaps, PowerMaps]:
+        response = self.radar.response
+        moving = self.radar.maps(moving_points(person.rows(number), self.node_s, response))
+        hidden = self.radar.maps(resting_points(person.shadowed(number), response))
+        names = [field.name for field in fields(PowerMaps)]
+        maps = {}
+        for name, noise in zip(names, self.radar.noise_maps(), strict=True):
+            empty = getattr(self.empty, name)
+            left = (empty - getattr(hidden, name)).clamp(min=0)
+            maps[name] = left + getattr(moving, name) + noise
+        return PowerMaps(**maps), moving
+
+
+def stacked(maps: list[PowerMaps]) -> PowerMaps:
+    """One leading axis more."""
+    names = [field.name for field in fields(PowerMaps)]
+    return PowerMaps(**{name: torch.stack([getattr(one, name) for one in maps]) for name in names})
+
+
+_RADARS: dict[str, MeanPower] = {}
+
+
+def _radar(room: StoredRoom) -> MeanPower:
+    """One for all rooms of the same radar."""
+    key = room.config.to_json()
+    if key not in _RADARS:
+        _RADARS[key] = MeanPower(room.config)
+    return _RADARS[key]

@@ -1,0 +1,72 @@
+"""What a training looks like: truth beside network, range-Doppler and range-azimuth, and how far they are apart."""
+
+import io
+
+import numpy as np
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.dsp.spectra import azimuth_axis_rad
+from mmweaver.metrics.maps import log_map_difference_db
+from mmweaver.models.mean_power import PowerMaps
+
+SPAN_DB = 50.0
+MOST_ROWS = 3
+COLUMNS = (
+    ("truth", "range_doppler"), ("network, mean", "range_doppler"),
+    ("truth", "range_azimuth"), ("network, mean", "range_azimuth"),
+)  # fmt: skip
+
+
+def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig) -> np.ndarray:
+    """A row for each sequence, its middle frame; (row, column, 3) uint8. Both maps of a pair have the truth's peak."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    count = min(len(truth.range_doppler), MOST_ROWS)
+    figure = Figure(figsize=(10.0, 0.5 + 2.4 * count), layout="constrained")
+    canvas = FigureCanvasAgg(figure)
+    grid = figure.subplots(count, len(COLUMNS), squeeze=False, sharey=True)
+    near, far = config.range_m[0], config.range_m[-1]
+    speeds, angles = config.radial_velocity_mps, np.degrees(azimuth_axis_rad())
+    extents = {"range_doppler": (speeds[0], speeds[-1]), "range_azimuth": (angles[0], angles[-1])}
+    image = None
+    for row in range(count):
+        for column, (title, name) in enumerate(COLUMNS):
+            axes, own = grid[row][column], _middle(getattr(truth, name)[row])
+            shown = own if title == "truth" else _middle(getattr(network, name)[row])
+            image = axes.imshow(
+                10 * np.log10(np.maximum(shown / own.max(), 1e-12)), origin="lower", aspect="auto", cmap="inferno",
+                vmin=-SPAN_DB, vmax=0, extent=(*extents[name], near, far), interpolation="nearest",
+            )  # fmt: skip
+            if row == 0:
+                axes.set_title(f"{title}: {name.replace('_', '-')}", fontsize=9)
+            if row == count - 1:
+                axes.set_xlabel("radial velocity, m/s" if name == "range_doppler" else "azimuth, degrees", fontsize=8)
+            if column == 0:
+                axes.set_ylabel("range, m", fontsize=8)
+            axes.tick_params(labelsize=7)
+    assert image is not None
+    figure.colorbar(image, ax=grid, shrink=0.8).set_label("dB below the truth's peak", fontsize=8)
+    buffer = io.BytesIO()
+    canvas.print_png(buffer)
+    from PIL import Image
+
+    return np.asarray(Image.open(buffer).convert("RGB"))
+
+
+def differences_db(truth: PowerMaps, network: PowerMaps) -> dict[str, float]:
+    """Mean difference in dB over the cells that the truth shows and over the sequences, by map."""
+    found = {}
+    for name in ("range_doppler", "range_azimuth"):
+        pairs = zip(getattr(network, name), getattr(truth, name), strict=True)
+        found[name] = float(np.mean([log_map_difference_db(_numpy(own), _numpy(true)) for own, true in pairs]))
+    return found
+
+
+def _middle(maps: Tensor) -> np.ndarray:
+    return _numpy(maps[len(maps) // 2])
+
+
+def _numpy(values: Tensor) -> np.ndarray:
+    return values.detach().float().cpu().numpy().astype(np.float64)

@@ -1,0 +1,92 @@
+"""Tuning on captures: it learns the room, keeps people as they were where it knows none, finds a recording's gain."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.weights import load_weights, sha256_of
+from mmweaver.training.capture_training import CaptureRecipe, gain_of, tune, write_tuned
+from mmweaver.training.captures import Capture, read_capture, rooms_of
+from mmweaver.weaver import Weaver
+
+pytest.importorskip("transformers")
+RECIPE = CaptureRecipe(steps=6, batch_size=1, frames=2, validate_every=3, validation_batches=1, warm_up_steps=1,
+                       learning_rate=1e-3)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def captures(tmp_path_factory: pytest.TempPathFactory) -> list[Capture]:
+    weaver, found = Weaver(), []
+    room = weaver.sample_room()
+    for seed in (1, 2):
+        out = tmp_path_factory.mktemp("captures") / f"take{seed}"
+        weaver.generate(room, "a person walks towards the radar", frames=6, seed=seed).save(out)
+        found.append(read_capture(out))
+    return found
+
+
+@pytest.fixture(scope="module")
+def start() -> dict[str, torch.Tensor]:
+    """All surfaces of the room 6.5 dB too strong."""
+    torch.manual_seed(3)
+    network = WeaverNetwork()
+    with torch.no_grad():
+        network.get_parameter("point.4.bias").fill_(1.5)
+    return network.state_dict()
+
+
+def test_without_joints_only_what_rests_changes(captures, start, tmp_path: Path):
+    empty = [replace(capture, pose=None) for capture in captures]
+    tuned = tune(empty, tmp_path, replace(RECIPE, steps=12, learning_rate=1e-2), start=start)
+    assert tuned.trainer.best.value < 0.9 * tuned.loss_before
+    assert tuned.held_out is not None
+    file = write_tuned(tmp_path, tuned, start=start)
+    state = tuned.trainer.learner.state_dict()
+    changed = {name.split(".")[1] for name, tensor in state.items()
+               if not torch.equal(tensor, start[name.removeprefix("network.")])}  # fmt: skip
+    assert changed == {"point", "face"}
+    card = load_weights(file)[1]
+    assert card.tuned_from == sha256_of(start)
+    page = (tmp_path / "README.md").read_text()
+    assert "1 captures of the user's own, 0 of them with joints" in page
+    assert card.tuned_from in page
+
+
+def test_what_does_not_help_is_not_kept(captures, start, tmp_path: Path):
+    """Steps far too large: the weights it began with are the best."""
+    tuned = tune(captures, tmp_path, replace(RECIPE, learning_rate=3.0, largest_gradient=1e9), start=start)
+    assert tuned.trainer.best.value == pytest.approx(tuned.loss_before)
+    assert all(torch.equal(tensor, start[name.removeprefix("network.")])
+               for name, tensor in tuned.trainer.learner.state_dict().items())  # fmt: skip
+
+
+def test_with_joints_all_is_tuned(captures, start, tmp_path: Path):
+    tuned = tune(captures, tmp_path, RECIPE, start=start)
+    assert tuned.trainer.best.value < tuned.loss_before
+    state = tuned.trainer.learner.state_dict()
+    assert not torch.equal(state["network.pose.merge.weight"], start["pose.merge.weight"])
+    assert tuned.gain == 1.0
+
+
+def test_the_gain_of_counts_is_found(captures, start):
+    network = WeaverNetwork()
+    network.load_state_dict(start)
+    (room,) = rooms_of(captures[:1])
+    own = gain_of(network, [room])
+    assert own > 0
+    assert gain_of(network, [room.times(1000.0)]) == pytest.approx(own / 1000, rel=1e-3)
+
+
+def test_counts_are_tuned_on_as_milliwatts(captures, start, tmp_path: Path):
+    """One capture only, in counts of a converter."""
+    cube = captures[0].cube
+    values = (cube.values * np.float32(1e4)).astype(np.complex64)
+    counts = replace(captures[0], cube=replace(cube, values=values, scale=float("nan")))
+    tuned = tune([counts], tmp_path, RECIPE, start=start)
+    assert tuned.held_out is None
+    assert tuned.gain < 1e-2
+    assert np.isfinite(tuned.trainer.best.value)

@@ -1,0 +1,75 @@
+"""Expected maps against the mean of many drawn signals of the same geometry."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.data.generate import generate
+from mmweaver.data.plan import DatasetPlan
+from mmweaver.data.store import StoredRoom, read_rooms
+from mmweaver.training.expected_maps import ExpectedMaps
+from mmweaver.training.weaver_examples import examples, power_maps
+
+pytest.importorskip("zarr")
+DRAWS = 16
+FRAMES = np.array([0, 2])
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data")
+    plan = DatasetPlan(
+        kinds=("office", "dining_room"), lightings=("day",), num_layouts=3, sequences_a_room=3, num_frames=4,
+        geometry_only=True,
+    )  # fmt: skip
+    generate(folder, plan, AWR1843)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def room(folder: Path) -> StoredRoom:
+    return read_rooms(folder)[0]
+
+
+def _mean(room: StoredRoom, index: int, name: str) -> torch.Tensor:
+    drawn = [power_maps(room.cube(index, FRAMES, twin=1 + draw).values, room.config) for draw in range(DRAWS)]
+    return torch.stack([getattr(maps, name) for maps in drawn]).mean(dim=0)
+
+
+def test_moving_cells_are_the_mean_of_all_draws(room: StoredRoom):
+    """0.2 to 0.4 dB with 24 draws, which scatter themselves."""
+    expected = ExpectedMaps(room).frames(0, FRAMES)[0].range_doppler
+    drawn = _mean(room, 0, "range_doppler")
+    shown = drawn > drawn.max() * 1e-5
+    middle = shown.shape[-1] // 2
+    shown[..., middle - 1 : middle + 2] = False
+    gap_db = 10 * torch.log10(expected / drawn)[shown]
+    assert shown.sum() > 20
+    assert gap_db.mean().abs() < 0.5
+    assert gap_db.abs().mean() < 1.0
+
+
+def test_the_person_alone_is_what_the_room_does_not_return(room: StoredRoom):
+    whole, alone = ExpectedMaps(room).frames(0, FRAMES)
+    middle = alone.range_doppler.shape[-1] // 2
+    moving = [column for column in range(2 * middle) if abs(column - middle) > 3]
+    noise = ExpectedMaps(room).radar.noise_maps()[0]
+    gap = whole.range_doppler[..., moving] - noise - alone.range_doppler[..., moving]
+    assert gap.abs().max() < 0.02 * alone.range_doppler.max()
+
+
+@pytest.mark.parametrize("name", ["range_doppler", "range_azimuth", "range_elevation"])
+def test_all_power_is_there(room: StoredRoom, name: str):
+    expected, drawn = getattr(ExpectedMaps(room).frames(0, FRAMES)[0], name), _mean(room, 0, name)
+    assert 10 * torch.log10(expected.sum() / drawn.sum()) == pytest.approx(0, abs=1.0)
+
+
+def test_they_are_what_training_gets(folder: Path):
+    one = examples(folder, "train")[0]
+    expected = ExpectedMaps(one.room)
+    assert torch.equal(one.empty.range_azimuth, expected.empty.range_azimuth)
+    index = one.indices[0]
+    assert torch.equal(one.maps(index, FRAMES)[0].range_doppler, expected.frames(index, FRAMES)[0].range_doppler)

@@ -1,0 +1,38 @@
+"""Rooms that the segmenter learns from."""
+
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.seeding import stream
+from mmweaver.scene.segmenter_features import CHANNELS, COLOURS, HEIGHT, MEASURED
+from mmweaver.training.segmenter_data import make_example, make_examples, varied
+
+
+def test_kept_rooms_come_back(tmp_path: Path):
+    first = make_examples(("office",), 1, 1000, tmp_path)
+    (kept,) = tmp_path.iterdir()
+    stamp = kept.stat().st_mtime_ns
+    again = make_examples(("office",), 1, 1000, tmp_path)
+    assert kept.stat().st_mtime_ns == stamp
+    assert np.array_equal(first[0].features, again[0].features)
+    fresh = make_example("office", 1000)
+    assert np.allclose(fresh.features, again[0].features, atol=3e-3)
+    assert np.array_equal(fresh.groups, again[0].groups)
+
+
+def test_variations_keep_the_shapes_and_change_the_colours():
+    example = make_example("office", 1000)
+    changed, holes = [], []
+    for draw in range(12):
+        features, groups = varied(example, stream(draw, "test"))
+        assert features.shape == (CHANNELS, *groups.shape)
+        assert features.dtype == np.float32
+        assert np.isfinite(features).all()
+        changed.append(features[COLOURS].std())
+        holes.append(float((features[MEASURED] == 0).mean()))
+        assert set(np.unique(groups)) <= set(np.unique(example.groups))
+        measured = features[MEASURED] > 0
+        assert np.abs(features[HEIGHT][measured]).max() < 1.5
+    assert np.std(changed) > 0.05
+    assert max(holes) > min(holes) + 0.02

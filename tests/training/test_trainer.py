@@ -1,0 +1,136 @@
+"""The loop: exact after any stop, the same with two processes, sound where gradients are not."""
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+from tests.training.toy_learner import RECIPE, ToyLearner, draw, trainer
+
+from mmweaver.core.errors import InputError
+from mmweaver.training.trainer import Progress
+from mmweaver.training.workplace import Workplace
+
+pytest.importorskip("safetensors")
+
+
+def weights(out: Path) -> dict[str, torch.Tensor]:
+    return torch.load(out / "checkpoint.pt", weights_only=True)["parts"]["network"]
+
+
+def test_it_learns_logs_and_draws(tmp_path: Path):
+    made = trainer(tmp_path, replace(RECIPE, steps=200, validate_every=50))
+    told: list[Progress] = []
+    made.run(told.append)
+    assert made.best.value < 0.2 * told[0].loss
+    rows = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
+    assert [row["step"] for row in rows] == [50, 100, 150, 200]
+    assert rows[0]["learning_rate"] > rows[-1]["learning_rate"] >= 0
+    assert len(list((tmp_path / "pictures").glob("*.png"))) == 4
+    assert made.validation_loss() == pytest.approx(made.best.value)  # the best weights are those left
+
+
+def two_processes(*words: str) -> subprocess.CompletedProcess[str]:
+    script = Path(__file__).with_name("toy_learner.py")
+    roots = [str(Path(__file__).parents[2]), str(Path(__file__).parents[2] / "src")]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(roots), "OMP_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", str(script)]
+    return subprocess.run([*command, *words], env=environment, capture_output=True, text=True, timeout=120)
+
+
+def test_two_processes_are_one_with_the_same_batch_even_after_a_kill(tmp_path: Path):
+    pytest.importorskip("accelerate")
+    killed = two_processes(str(tmp_path / "two"), "5")
+    assert killed.returncode != 0
+    assert torch.load(tmp_path / "two" / "checkpoint.pt", weights_only=True)["done"] == 4
+    done = two_processes(str(tmp_path / "two"))
+    assert done.returncode == 0, done.stderr[-2000:]
+    one = trainer(tmp_path / "one")
+    one.run()
+    both = weights(tmp_path / "two")
+    for name, tensor in weights(tmp_path / "one").items():
+        assert torch.allclose(tensor, both[name], atol=1e-6), name
+    rows = [
+        [json.loads(line) for line in (tmp_path / which / "log.jsonl").read_text().splitlines()]
+        for which in ("one", "two")
+    ]
+    assert [row["step"] for row in rows[1]] == [4, 8]  # one process wrote
+    for first, second in zip(*rows, strict=True):
+        assert first["loss"] == pytest.approx(second["loss"], rel=1e-5)
+        assert first["validation"] == pytest.approx(second["validation"], rel=1e-5)
+
+
+def test_a_batch_that_cannot_be_shared_is_refused(tmp_path: Path):
+    with pytest.raises(InputError, match="multiple"):
+        trainer(tmp_path, workplace=Workplace(share=(0, 3)))
+
+
+def test_steps_without_meaning_are_passed_over_and_many_end_it(tmp_path: Path):
+    def bad(from_step: int, to_step: int):
+        def drawn(step, share):
+            x, y = draw(step, share)
+            return x, y * float("nan") if from_step <= step < to_step else y
+
+        return drawn
+
+    made = trainer(tmp_path / "some", train=bad(2, 4))
+    made.run()
+    assert all(torch.isfinite(tensor).all() for tensor in made.learner.state_dict().values())
+    with pytest.raises(InputError, match="no numbers"):
+        trainer(tmp_path / "all", replace(RECIPE, steps=100), train=bad(2, 100)).run()
+
+
+def test_it_stops_early_and_stays_so(tmp_path: Path):
+    recipe = replace(RECIPE, steps=500, learning_rate=0.0, validate_every=1, patience=3)
+    made = trainer(tmp_path, recipe)
+    made.run()
+    assert made.step == 4  # the first is the best, three are no better
+    again = trainer(tmp_path, recipe)
+    again.run()
+    assert again.step == 4
+
+
+def test_rows_of_steps_that_were_lost_go(tmp_path: Path):
+    recipe = replace(RECIPE, validate_every=1)
+    trainer(tmp_path, recipe).run()
+    lines = (tmp_path / "log.jsonl").read_text().splitlines()
+    state = torch.load(tmp_path / "checkpoint.pt", weights_only=True)
+    torch.save(state | {"done": 5}, tmp_path / "checkpoint.pt")
+    with (tmp_path / "log.jsonl").open("a") as log:
+        log.write('{"step": 9, "los')  # a process was killed here
+    trainer(tmp_path, recipe)
+    assert (tmp_path / "log.jsonl").read_text().splitlines() == lines[:5]
+
+
+def test_bf16_trains_as_well(tmp_path: Path):
+    long = replace(RECIPE, steps=200)
+    plain, mixed = trainer(tmp_path / "a", long), trainer(tmp_path / "b", long, workplace=Workplace(precision="bf16"))
+    plain.run()
+    mixed.run()
+    assert mixed.best.value == pytest.approx(plain.best.value, rel=0.3)
+    assert not torch.equal(plain.learner.state_dict()["offset"], mixed.learner.state_dict()["offset"])
+    with pytest.raises(InputError, match="other settings"):
+        trainer(tmp_path / "b", long)
+
+
+def test_tensorboard_holds_figures_and_pictures(tmp_path: Path):
+    pytest.importorskip("tensorboard")
+    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+    trainer(tmp_path, tensorboard=True).run()
+    events = EventAccumulator(str(tmp_path / "tensorboard"))
+    events.Reload()
+    assert {"loss", "terms/square", "validation", "learning_rate"} <= set(events.Tags()["scalars"])
+    assert [image.step for image in events.Images("validation")] == [4, 8]
+
+
+def test_devices_and_precisions_that_are_not_there_are_refused():
+    for words, told in ((("nonsense", "auto"), "device"), (("cpu", "int4"), "precision")):
+        with pytest.raises(InputError, match=told):
+            Workplace.chosen(*words)
+    assert Workplace.chosen("cpu").precision == "float32"
+    assert isinstance(ToyLearner(), torch.nn.Module)

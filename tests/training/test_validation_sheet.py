@@ -1,0 +1,35 @@
+"""The sheet: truth and network side by side; the same maps look the same."""
+
+import numpy as np
+import pytest
+import torch
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.models.mean_power import PowerMaps
+from mmweaver.training.validation_sheet import differences_db, draw_sheet
+
+
+def maps(sequences: int, seed: int = 0) -> PowerMaps:
+    rng = np.random.default_rng(seed)
+    shapes = {"range_doppler": 32, "range_azimuth": 91, "range_elevation": 61}
+    return PowerMaps(
+        **{n: torch.tensor(rng.exponential(1.0, (sequences, 3, 64, w)), dtype=torch.float32) for n, w in shapes.items()}
+    )
+
+
+def test_a_row_a_sequence_and_at_most_three():
+    heights = [draw_sheet(maps(count), maps(count), AWR1843).shape[0] for count in (1, 3, 5)]
+    assert heights[0] < heights[1] == heights[2]
+
+
+def test_the_same_maps_look_the_same_and_others_do_not():
+    same, other = draw_sheet(maps(1), maps(1), AWR1843), draw_sheet(maps(1), maps(1, seed=1), AWR1843)
+    assert same.dtype == np.uint8
+    assert np.abs(same.astype(int) - other).mean() > 2
+
+
+def test_ten_times_the_power_is_ten_decibels():
+    truth = maps(2)
+    fainter = PowerMaps(**{name: value / 10 for name, value in vars(truth).items()})
+    assert differences_db(truth, truth) == {"range_doppler": 0, "range_azimuth": 0}
+    assert differences_db(truth, fainter)["range_doppler"] == pytest.approx(10, abs=0.2)

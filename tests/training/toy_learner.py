@@ -1,0 +1,59 @@
+"""A learner that takes no time: a small network fits a line. Run by torchrun, it is one of several processes.
+
+toy_learner.py OUT [STEP]     the first process kills itself after STEP
+"""
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from mmweaver.core.seeding import stream
+from mmweaver.training.trainer import Learner, LoopRecipe, Progress, Trainer
+from mmweaver.training.workplace import Share, Workplace
+
+RECIPE = LoopRecipe(
+    name="toy", steps=8, batch_size=4, learning_rate=0.05, warm_up_steps=2, validate_every=4, validation_batches=3
+)
+
+
+class ToyLearner(Learner):
+    def __init__(self) -> None:
+        super().__init__()
+        torch.manual_seed(0)
+        self.layers = nn.Sequential(nn.Linear(3, 16), nn.GELU(), nn.Linear(16, 1))
+        self.offset = nn.Parameter(torch.zeros(()))
+
+    def terms(self, batch: tuple[Tensor, Tensor]) -> dict[str, Tensor]:
+        x, y = batch
+        error = self.layers(x)[:, 0] + self.offset - y
+        return {"square": error.square().mean(), "absolute": error.abs().mean()}
+
+    def picture(self) -> np.ndarray:
+        return np.full((4, 6, 3), 100, np.uint8)
+
+
+def draw(step: int, share: Share) -> tuple[Tensor, Tensor]:
+    x = torch.from_numpy(stream(0, "toy", step).normal(size=(RECIPE.batch_size, 3)).astype(np.float32))
+    x = x[share[0] :: share[1]]
+    return x, x[:, 0] - 2 * x[:, 1]
+
+
+def trainer(out: Path, recipe: LoopRecipe = RECIPE, **options) -> Trainer:
+    options = {"train": draw, "validation": lambda index, share: draw(1000 + index, share)} | options
+    return Trainer(ToyLearner(), recipe, out, **options)
+
+
+if __name__ == "__main__":
+    torch.set_num_threads(1)
+    made = trainer(Path(sys.argv[1]), workplace=Workplace.chosen("cpu"), save_every_s=0.0)
+
+    def killing(progress: Progress) -> None:
+        if made.workplace.is_first and sys.argv[2:] == [str(progress.step)]:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    made.run(killing)
