@@ -26,9 +26,8 @@ from mmweaver.tasks.window_features import STILL_MPS, feature_matrix, window_fea
 from mmweaver.tasks.zero_shot import COPIES, measured
 
 TREES = {
-    "both": ClassifierSettings(),
-    "many leaves": ClassifierSettings(leaf_size=1, leaves=31),
-    "few leaves": ClassifierSettings(leaf_size=10, leaves=7),
+    "many leaves": ClassifierSettings(num_trees=200),
+    "few leaves": ClassifierSettings(num_trees=200, leaf_size=10, leaves=7),
 }
 
 

@@ -7,8 +7,7 @@ from mmweaver.tasks.generation import Recipe
 ACTIVITIES = {
     "boxing": (
         "a person punches", "a person punches quickly", "a person punches with the right hand",
-        "a person punches", "a person walks slowly back and forth while punching",
-        "a person walks back and forth while punching quickly",
+        "a person punches with the left hand",
     ),
     "jack": ("a person does jumping jacks", "a person does jumping jacks quickly", "jumping jacks slowly"),
     "jump": (
