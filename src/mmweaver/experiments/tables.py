@@ -11,6 +11,7 @@ from typing import Any
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.benchmark_tables import dataset_cost_table, weaver_speed_table
+from mmweaver.experiments.capture_tuning_table import capture_tuning_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
@@ -359,6 +360,7 @@ TABLES = {
     "scatterer_tracks": tracks_table,
     "weaver": weaver_table, "weaver_unseen": weaver_unseen_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
+    "capture_tuning": capture_tuning_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip
 
