@@ -1,4 +1,4 @@
-"""The experiment's bookkeeping: which recordings were looked at, and splits of generated windows."""
+"""The experiment's bookkeeping: which half a recording belongs to, and splits of generated windows."""
 
 from dataclasses import replace
 
@@ -7,16 +7,16 @@ import pytest
 
 pytest.importorskip("sklearn")
 
-from mmweaver.experiments.zero_shot import digest, first_draws, validate, was_looked_at
+from mmweaver.experiments.zero_shot import digest, first_draws, in_first_half, validate
 from mmweaver.tasks.radhar import radhar_recipe
 from mmweaver.tasks.zero_shot import TrainingSet
 
 
 def test_the_two_groups_of_recordings():
-    assert was_looked_at("Train_boxing_boxing_20_1")
-    assert was_looked_at("Train_jump____jump_20_14")
-    assert not was_looked_at("Train_boxing_20_boxing_1")
-    assert not was_looked_at("Train_squats___20_squats_2")
+    assert in_first_half("Train_boxing_boxing_20_1")
+    assert in_first_half("Train_jump____jump_20_14")
+    assert not in_first_half("Train_boxing_20_boxing_1")
+    assert not in_first_half("Train_squats___20_squats_2")
 
 
 def test_a_feature_that_tells_the_label_scores_in_every_split():

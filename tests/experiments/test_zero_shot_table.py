@@ -20,9 +20,13 @@ def test_rows_are_recognisers_and_groups(tmp_path):
             for value in values
         ]  # fmt: skip
         (tmp_path / "zero_shot" / f"{method}.json").write_text(json.dumps({"rows": rows}))
+    halves = [{"metrics": {"window": {"value": value, "chosen_on": 0.92}}} for value in (0.87, 0.89)]
+    nested = {"config": {"candidates": 24}, "rows": halves}
+    (tmp_path / "zero_shot" / "nested.json").write_text(json.dumps(nested))
     table = zero_shot_table(tmp_path)
+    assert "out of 24: 0.920 on the first half, which chose; 0.870 on the other" in table
     assert "| blind | 7 | 0.500 (0.400 to 0.600)" in table
-    assert "| *kept aside* | 7 | 0.880" in table
+    assert "| *second half* | 7 | 0.880" in table
     assert "| a | 3 | 1 |" in table
 
 

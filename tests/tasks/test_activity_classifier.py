@@ -1,5 +1,7 @@
 """The recogniser learns what can be learnt, takes gaps, and is the same each time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -48,3 +50,11 @@ def test_columns_without_values_do_no_harm():
     assert np.mean(model.predict(features) == labels) > 0.8
     with pytest.raises(InputError, match="alike"):
         ActivityClassifier(SMALL).fit(features[:, 3:], labels)
+
+
+def test_repetitions_vote_together():
+    features, labels = data(0)
+    unseen, _ = data(1)
+    alone = [ActivityClassifier(replace(SMALL, seed=seed)).fit(features, labels) for seed in (0, 1)]
+    both = ActivityClassifier(replace(SMALL, repetitions=2)).fit(features, labels)
+    assert np.allclose(both.probabilities(unseen), np.mean([one.probabilities(unseen) for one in alone], axis=0))

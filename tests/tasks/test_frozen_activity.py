@@ -7,13 +7,17 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.tasks.frozen_activity import FOLDER, NAMES, load_frozen, save_frozen
+from mmweaver.tasks.zero_shot import COPIES
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_frozen_recogniser_is_complete(name):
     frozen = load_frozen(name)
     held = json.loads((FOLDER / f"{name}.json").read_text())
-    assert len(frozen.made.labels) == sum(source["windows"] for source in held["sources"]) == len(frozen.made.features)
+    windows = sum(source["windows"] for source in held["sources"])
+    assert len(frozen.made.labels) == len(frozen.made.features) == frozen.provenance["with_disturbed_copies"]
+    assert len(frozen.made.labels) == windows * (1 + (COPIES if name == "development" else 0))
+    assert frozen.provenance["generated_windows"] == windows
     assert frozen.made.features.shape[1] == len(frozen.made.names) == len(set(frozen.made.names))
     assert frozen.labels == ("boxing", "jack", "jump", "squats", "walk")
     assert all(source["commit"] and "+" not in source["commit"] for source in held["sources"])

@@ -22,13 +22,14 @@ from mmweaver.experiments.results import commit, write_result
 from mmweaver.tasks.activity_classifier import ClassifierSettings
 from mmweaver.tasks.frozen_activity import FOLDER, load_frozen, save_frozen
 from mmweaver.tasks.generation import Recipe, generate_window, read_window, write_window
+from mmweaver.tasks.point_recording import PointRecording
 from mmweaver.tasks.radhar import radhar_recipe
 from mmweaver.tasks.recording_files import read_recordings
 from mmweaver.tasks.scoring import Judged, balanced_accuracy, judge, report
 from mmweaver.tasks.variation import Draw, draw
-from mmweaver.tasks.window_features import feature_matrix
-from mmweaver.tasks.zero_shot import TrainingSet, own_cache, training_set
+from mmweaver.tasks.zero_shot import TrainingSet, measured, own_cache, training_set
 
+SETTINGS = ClassifierSettings(repetitions=3)  # of what is frozen
 METRICS = {
     "window": "balanced accuracy of windows of 2 s, one after the other",
     "three_windows": "balanced accuracy of the mean vote of three windows (6 s)",
@@ -74,14 +75,18 @@ def first_draws(recipe: Recipe, each: int, seed: int) -> list[Draw]:
 def score(name: str, recordings: Path, out: Path) -> Path:
     """Scores a frozen recogniser on recordings of real people and writes results/zero_shot/NAME.json.
 
-    One row for all recordings, one each for those that were looked at during development and those kept aside.
+    One row for all recordings, one each for the two halves by name.
     """
     began = time.process_time()
     frozen = load_frozen(name)
     judged = judge(frozen.train(), read_recordings(recordings, frozen.labels), frozen.window_s)
     seconds = time.process_time() - began
-    seen = np.array([was_looked_at(one) for one in judged.names])[judged.recording]
-    parts = {"all recordings": np.ones_like(seen), "recordings looked at": seen, "recordings kept aside": ~seen}
+    first = np.array([in_first_half(one) for one in judged.names])[judged.recording]
+    parts = {
+        "all recordings": np.ones_like(first),
+        "first half of the names": first,
+        "second half of the names": ~first,
+    }
     rows = [
         result_row(judged.part(which), recordings, words, seconds=seconds)
         for words, which in parts.items()
@@ -91,10 +96,10 @@ def score(name: str, recordings: Path, out: Path) -> Path:
     return write_result(out, experiment="zero_shot", method=name, config=config, rows=rows)
 
 
-def was_looked_at(name: str) -> bool:
-    """Whether a RadHAR recording was looked at in development: the activity stands before the 20 in its name.
+def in_first_half(name: str) -> bool:
+    """Which of RadHAR's two groups of names: the activity stands before the 20 in the first.
 
-    >>> was_looked_at("Train_walk____walk_20_9"), was_looked_at("Train_walk____20_walk_9")
+    >>> in_first_half("Train_walk____walk_20_9"), in_first_half("Train_walk____20_walk_9")
     (True, False)
     """
     return re.search(r"[a-z]_20_\d+$", name) is not None
@@ -134,29 +139,31 @@ def freeze(name: str, caches: list[Path], out: Path) -> Path:
 
     results/zero_shot/frozen.json says the same, with the digest of the features.
     """
-    made, sources = [], []
-    for cache in caches:
-        recipe = radhar_recipe()
-        files = sorted(cache.glob("*_*_*.npz"))
-        windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
-        features, names = feature_matrix(windows)
-        labels = np.array([window.label for window in windows])
-        made.append(TrainingSet(features=features, labels=labels, names=names))
-        sources.append(
-            {
-                "commit": (cache / "commit.txt").read_text(encoding="utf-8").strip(),
-                "seed": int(files[0].stem.split("_")[1]),
-                "windows": len(files),
-                "recipe": json.loads((cache / "recipe.json").read_text(encoding="utf-8")),
-            }
-        )
+    read = [read_cache(cache) for cache in caches]
+    made = [measured(windows) for windows, _ in read]
+    sources = [source for _, source in read]
     pooled = TrainingSet(
         features=np.concatenate([one.features for one in made]),
         labels=np.concatenate([one.labels for one in made]),
         names=made[0].names,
     )
-    save_frozen(name, pooled, {"classifier": asdict(ClassifierSettings()), "sources": sources})
+    save_frozen(name, pooled, {"classifier": asdict(SETTINGS), "sources": sources})
     return tell_frozen(name, out)
+
+
+def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
+    """The windows of a cache, and where they come from: commit, seed, how many, core seconds, recipe."""
+    recipe = radhar_recipe()
+    files = sorted(cache.glob("*_*_*.npz"))
+    windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
+    source = {
+        "commit": (cache / "commit.txt").read_text(encoding="utf-8").strip(),
+        "seed": int(files[0].stem.split("_")[1]),
+        "windows": len(files),
+        "core_seconds": sum(float(path.read_text(encoding="utf-8")) for path in cache.glob("seconds_*.txt")),
+        "recipe": json.loads((cache / "recipe.json").read_text(encoding="utf-8")),
+    }
+    return windows, source
 
 
 def tell_frozen(name: str, out: Path) -> Path:
@@ -171,11 +178,16 @@ def generate(recipe: Recipe, cache: Path, *, each: int, seed: int, part: int = 0
     """Fills a cache; several processes may share one, each with its part. Says in it what made it."""
     own_cache(cache, recipe)
     (cache / "commit.txt").write_text(f"{commit()}\n", encoding="utf-8")
+    note = cache / f"seconds_{part}.txt"
+    spent_s = float(note.read_text(encoding="utf-8")) if note.exists() else 0.0
     for index in range(part, each, parts):
         for label in recipe.activities:
             path = cache / f"{label}_{seed}_{index}.npz"
             if not path.exists():
+                began = time.process_time()
                 write_window(path, generate_window(recipe, label, index, seed))
+                spent_s += time.process_time() - began
+                note.write_text(f"{spent_s:.1f}\n", encoding="utf-8")
 
 
 def main() -> None:

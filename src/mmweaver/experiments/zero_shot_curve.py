@@ -3,11 +3,12 @@
     python -m mmweaver.experiments.zero_shot_curve --recordings shared/data/pointclouds/radhar --out results
 
 Recordings are drawn anew for each seed; all others are the test. Real windows together weigh as much as generated ones.
+Trees are grown once each, not as often as in what is frozen.
 """
 
 import argparse
 import time
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +44,7 @@ def accuracy(
         made = frozen.made
         rows, names = [*rows, made.features], [*names, made.labels]
         weights = [weights[0] * len(made.labels) / max(int(is_training.sum()), 1), np.ones(len(made.labels))]
-    model = ActivityClassifier(frozen.classifier)
+    model = ActivityClassifier(replace(frozen.classifier, repetitions=1))
     model.fit(np.concatenate(rows), np.concatenate(names), np.concatenate(weights))
     guess = np.argmax(model.probabilities(features[~is_training]), axis=1)
     return balanced_accuracy(np.searchsorted(np.array(model.classes), labels[~is_training]), guess)
@@ -55,7 +56,7 @@ def run(name: str, recordings: Path, out: Path) -> Path:
     people = read_recordings(recordings, frozen.labels)
     windows = [window for one in people for window in one.windows(frozen.window_s)]
     owner = np.repeat(np.arange(len(people)), [len(one.windows(frozen.window_s)) for one in people])
-    features, _ = feature_matrix(windows)
+    features, _ = feature_matrix(windows, frozen.made.names)
     labels = np.array([window.label for window in windows])
     kinds = np.array([one.label for one in people])
     rows: list[dict[str, Any]] = []

@@ -11,7 +11,7 @@ def zero_shot_table(folder: Path) -> str:
     """One row a recogniser and group of recordings, then what the windows were taken for."""
     lines = [_line(*HEADER), _line(*["---"] * len(HEADER))]
     last: dict[str, Any] = {}
-    for method, names in (("blind", ("blind",)), ("development", ("development", "looked at", "kept aside"))):
+    for method, names in (("blind", ("blind",)), ("development", ("development", "first half", "second half"))):
         for name, row in zip(names, _record(folder, method)["rows"], strict=False):
             metrics = row["metrics"]
             scores = [_with_interval(metrics[key]) for key in ("window", "three_windows", "recording")]
@@ -19,11 +19,21 @@ def zero_shot_table(folder: Path) -> str:
             lines.append(_line(title, str(row["dataset"]["recordings"]), *scores, f"{metrics['window']['floor']:.2f}"))
             last = row if name == method else last
     kinds = last["classes"]
+    lines += _nested_lines(_record(folder, "nested"))
     lines += ["", "Windows of 2 s after development, true in rows, recognised in columns:", ""]
     lines += [_line("", *kinds), _line(*["---"] * (1 + len(kinds)))]
     for kind, counts in zip(kinds, last["metrics"]["window"]["confusion"], strict=True):
         lines.append(_line(kind, *map(str, counts)))
     return "\n".join(lines)
+
+
+def _nested_lines(record: dict[str, Any]) -> list[str]:
+    """What is left where one half of the recordings chooses settings and the other is scored."""
+    found = []
+    for half, row in zip(("first", "second"), record["rows"], strict=True):
+        metric = row["metrics"]["window"]
+        found.append(f"{metric['chosen_on']:.3f} on the {half} half, which chose; {metric['value']:.3f} on the other")
+    return ["", f"Features, copies and trees chosen out of {record['config']['candidates']}: {'; '.join(found)}."]
 
 
 def curve_table(folder: Path) -> str:

@@ -22,6 +22,7 @@ class ClassifierSettings:
     boosting_rounds: int = 150
     learning_rate: float = 0.08
     leaves: int = 15
+    repetitions: int = 1  # of both kinds, with seeds of their own: their mean depends less on chance
     seed: int = 0
 
     def as_dict(self) -> dict[str, Any]:
@@ -29,10 +30,14 @@ class ClassifierSettings:
 
 
 class ActivityClassifier:
-    """Extremely randomised trees and gradient boosting. `classes` are the labels in the order of the columns."""
+    """Extremely randomised trees and gradient boosting. `classes` are the labels in the order of the columns.
 
-    def __init__(self, settings: ClassifierSettings | None = None):
+    `names` of its features say what is to be measured of a window; None = all that are measured.
+    """
+
+    def __init__(self, settings: ClassifierSettings | None = None, names: tuple[str, ...] | None = None):
         self.settings = settings or ClassifierSettings()
+        self.names = names
         self.classes: tuple[str, ...] = ()
         self._models: list[Any] = []
         self._used = np.zeros(0, bool)
@@ -47,17 +52,18 @@ class ActivityClassifier:
         except ImportError:
             raise InputError("recognising activities needs scikit-learn; pip install 'mmweaver[evaluate]'") from None
         chosen = self.settings
-        shared: dict[str, Any] = {
-            "max_features": chosen.feature_share, "class_weight": "balanced", "random_state": chosen.seed
-        }  # fmt: skip
+        shared: dict[str, Any] = {"max_features": chosen.feature_share, "class_weight": "balanced"}
         grown: dict[str, Any] = {"min_samples_leaf": chosen.leaf_size, "n_jobs": 1}
         boosted: dict[str, Any] = {"max_leaf_nodes": chosen.leaves, "early_stopping": False}
-        self._models = [
-            ExtraTreesClassifier(chosen.num_trees, **grown, **shared),
-            HistGradientBoostingClassifier(
-                max_iter=chosen.boosting_rounds, learning_rate=chosen.learning_rate, **boosted, **shared
-            ),
-        ]
+        self._models = []
+        for seed in range(chosen.seed, chosen.seed + chosen.repetitions):
+            self._models += [
+                ExtraTreesClassifier(chosen.num_trees, random_state=seed, **grown, **shared),
+                HistGradientBoostingClassifier(
+                    max_iter=chosen.boosting_rounds, learning_rate=chosen.learning_rate, random_state=seed, **boosted,
+                    **shared,
+                ),
+            ]  # fmt: skip
         self._used = _varied(features)
         if not self._used.any():
             raise InputError("the features of all windows are alike; is anything detected at all?")
@@ -67,7 +73,7 @@ class ActivityClassifier:
         return self
 
     def probabilities(self, features: Features) -> Float[np.ndarray, "window activity"]:
-        """Mean vote of both kinds, (window, activity)."""
+        """Mean vote of all trees of both kinds, (window, activity)."""
         return np.mean([model.predict_proba(features[:, self._used]) for model in self._models], axis=0)
 
     def predict(self, features: Features) -> np.ndarray:

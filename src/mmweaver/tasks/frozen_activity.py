@@ -51,7 +51,8 @@ def load_frozen(name: str) -> Frozen:
         provenance={
             "commits": [source["commit"] for source in held["sources"]],
             "seeds": [source["seed"] for source in held["sources"]],
-            "generated_windows": len(made.labels),
+            "generated_windows": sum(source["windows"] for source in held["sources"]),
+            "with_disturbed_copies": len(made.labels),
         },
     )
 

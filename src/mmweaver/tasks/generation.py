@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,12 +20,16 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.sentence import parse
 from mmweaver.simulation.simulator import Simulator
 from mmweaver.simulation.skin import LAMBERT, SkinEcho
+from mmweaver.tasks.diffuse_clutter import diffuse_clutter
 from mmweaver.tasks.open_room import open_room
 from mmweaver.tasks.point_recording import PointRecording
-from mmweaver.tasks.variation import Draw, Variation, draw
+from mmweaver.tasks.variation import Draw, Span, Variation, draw
 
 LEAD_S = 0.75  # of the motion's own time that is left out at the start at least: nobody is recorded from rest
-SLOWEST_MPS = 0.3  # slower, somebody who should go somewhere has arrived
+SLOWEST_MPS = 0.12  # slower, somebody who should go somewhere has arrived
+TRIES, UNSEEN_TRIES = 20, 3
+BODY_REACH_M, SEEN_SHARE = 0.6, 0.5
+ROAM_HZ = (0.1, 0.6)  # of whoever stays in place, but not quite
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,6 +43,7 @@ class Recipe:
     radar: RadarConfig
     firmware: FirmwareSettings
     variation: Variation = Variation()  # noqa: RUF009 (frozen)
+    roaming_mps: Mapping[str, Span] = field(default_factory=dict)  # of activities that roam unlike the others
     window_s: float = 2.0
 
     def __post_init__(self) -> None:
@@ -63,18 +68,25 @@ class Recipe:
 def generate_window(recipe: Recipe, label: str, index: int, seed: int) -> PointRecording:
     """The index-th window of an activity: the same recipe, label, index and seed give the same points."""
     rng = stream(seed, "zero shot", label, index)
-    for attempt in range(20):
-        now = draw(recipe.variation, rng)
+    own = replace(recipe.variation, roam_mps=recipe.roaming_mps.get(label, recipe.variation.roam_mps))
+    unseen: list[PointRecording] = []
+    refused: InputError | None = None
+    for _ in range(TRIES):
+        now = draw(own, rng)
         sentence = str(rng.choice(recipe.activities[label]))
         person = int(rng.integers(2**31))
         try:
             pose = _pose(recipe, now, sentence, person, rng)
-        except InputError:
-            if attempt == 19:
-                raise
+        except InputError as error:
+            refused = error
             continue
-        return _observed(recipe, now, pose, label, f"{label}_{index}", person)
-    raise AssertionError("the last attempt returns or raises")
+        made = _observed(recipe, now, pose, label, f"{label}_{index}", person)
+        if _is_seen(made, pose) or len(unseen) == UNSEEN_TRIES:
+            return made
+        unseen.append(made)
+    if unseen:
+        return unseen[-1]
+    raise refused or InputError(f"no window of {label!r} could be generated")
 
 
 def generate_windows(
@@ -105,6 +117,17 @@ def generate_windows(
     return made
 
 
+def _is_seen(made: PointRecording, pose: PoseSequence) -> bool:
+    """Whether most of the time there is a point at the body: a board that sees nobody would be put elsewhere."""
+    time_s = np.arange(made.num_frames) / made.frame_rate_hz
+    pelvis_m = pose.joints_m[:, joint("pelvis")]
+    cloud = made.cloud
+    body_m = np.interp(time_s, pose.time_s, np.linalg.norm(pelvis_m, axis=1))[cloud.frame]
+    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    there = cloud.frame[np.abs(range_m - body_m) < BODY_REACH_M]
+    return len(np.unique(there)) >= SEEN_SHARE * made.num_frames
+
+
 # the person ---------------------------------------------------------------------------------------------------------
 def _pose(recipe: Recipe, now: Draw, sentence: str, person: int, rng: np.random.Generator) -> PoseSequence:
     """A stretch from the middle of the motion, at the tempo, vigour and heading drawn; time 0 is the first frame."""
@@ -123,7 +146,7 @@ def _pose(recipe: Recipe, now: Draw, sentence: str, person: int, rng: np.random.
     if moves and tempo * _speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
         raise InputError("the way ends before the window does")
     if not moves:
-        joints_m = _turned(joints_m, np.radians(now.turn_deg))
+        joints_m = _turned(joints_m, np.radians(now.turn_deg)) + _roaming(pose.time_s, now.roam_mps, rng)
     return replace(
         pose, time_s=(pose.time_s - lead_s) / tempo, joints_m=joints_m, subject=person % 1000,
     )  # fmt: skip
@@ -143,6 +166,14 @@ def _vigorous(joints_m: np.ndarray, vigour: float) -> np.ndarray:
     local = joints_m - root
     mean = local.mean(axis=0, keepdims=True)
     return root + mean + vigour * (local - mean)
+
+
+def _roaming(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
+    """How far somebody who should stay in place has got, (time, 1, 3): to and fro, slowly, at this rms speed."""
+    frequency_hz, phase = rng.uniform(*ROAM_HZ, (2, 3, 1)), rng.uniform(0, 2 * np.pi, (2, 3, 1))
+    turn = 2 * np.pi * frequency_hz
+    way_m = (np.sin(turn * time_s + phase) / turn).sum(axis=1) * speed_mps * np.sqrt(2 / 3)
+    return np.stack([way_m[0], way_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
 
 
 def _turned(joints_m: np.ndarray, angle_rad: float) -> np.ndarray:
@@ -166,10 +197,12 @@ def _observed(recipe: Recipe, now: Draw, pose: PoseSequence, label: str, name: s
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
     echo = _skin(now)
     points = recipe.variation.skin_points
-    run = Simulator(scene, radar).run(
+    adc = Simulator(scene, radar).run(
         pose, num_frames=recipe.frames, seed=person, num_points=points, echo=echo
-    )  # fmt: skip
-    cloud = firmware_points(run.adc, _less_sensitive(recipe.firmware, now.threshold_db, recipe.radar.num_antennas))
+    ).adc  # fmt: skip
+    clutter = diffuse_clutter(radar, now.clutter_db, stream(person, "diffuse clutter"))
+    adc = replace(adc, samples=adc.samples + clutter)
+    cloud = firmware_points(adc, _less_sensitive(recipe.firmware, now.threshold_db, recipe.radar.num_antennas))
     return PointRecording(
         name=name, cloud=_tilted(cloud, np.radians(now.tilt_deg)), num_frames=recipe.frames,
         frame_rate_hz=1 / recipe.radar.frame_period_s, label=label,

@@ -52,7 +52,7 @@ def judge(model: ActivityClassifier, recordings: list[PointRecording], window_s:
     windows = [window for windows in cut for window in windows]
     if not windows:
         raise InputError(f"no recording lasts {window_s:g} s, which is one window; give longer ones")
-    features, _ = feature_matrix(windows)
+    features, _ = feature_matrix(windows, model.names)
     return Judged(
         classes=model.classes,
         votes=model.probabilities(features),

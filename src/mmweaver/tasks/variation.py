@@ -20,23 +20,25 @@ class Variation:
     and how bright arms and legs are beside the trunk.
     """
 
-    tempo: Span = (0.6, 1.6)
+    tempo: Span = (0.75, 1.6)
     way_tempo: float = 0.85
-    vigour: Span = (0.75, 1.1)
+    vigour: Span = (0.6, 1.15)
     turn_deg: float = 25.0
-    distance_m: Span = (1.2, 2.5)
+    roam_mps: Span = (0.0, 0.06)
+    distance_m: Span = (1.1, 2.6)
     azimuth_deg: Span = (-22.0, 22.0)
     height_m: Span = (1.5, 1.95)
-    radar_height_m: Span = (1.05, 1.5)
-    tilt_deg: Span = (-8.0, 8.0)
-    elevation_beamwidth_deg: Span = (14.0, 28.0)
-    noise_db: Span = (6.0, 22.0)
-    threshold_db: Span = (-4.0, 2.0)
+    radar_height_m: Span = (1.0, 1.5)
+    tilt_deg: Span = (-10.0, 10.0)
+    elevation_beamwidth_deg: Span = (20.0, 40.0)
+    noise_db: Span = (10.0, 22.0)
+    clutter_db: Span = (-15.0, 5.0)
+    threshold_db: Span = (-4.0, 3.0)
     gain_db: Span = (-16.0, 4.0)
     albedo_db: Span = (-6.0, 4.0)
-    skin_exponents: tuple[float, ...] = (60.0, 200.0, 400.0)
-    arms_db: Span = (-2.0, 6.0)
-    legs_db: Span = (-16.0, -2.0)
+    skin_exponents: tuple[float, ...] = (40.0, 100.0, 200.0)
+    arms_db: Span = (-8.0, 6.0)
+    legs_db: Span = (-14.0, 0.0)
     skin_points: int = 4000
     wall_m: Span = (2.9, 5.4)
     wall_share: float = 0.3
@@ -50,6 +52,7 @@ class Draw:
     tempo: float
     vigour: float
     turn_deg: float
+    roam_mps: float
     distance_m: float
     azimuth_deg: float
     height_m: float
@@ -57,6 +60,7 @@ class Draw:
     tilt_deg: float
     elevation_beamwidth_deg: float
     noise_db: float
+    clutter_db: float
     threshold_db: float
     gain_db: float
     albedo_db: float
@@ -83,6 +87,7 @@ def draw(variation: Variation, rng: np.random.Generator) -> Draw:
         tempo=float(np.exp(rng.uniform(*np.log(variation.tempo)))),
         vigour=of(variation.vigour),
         turn_deg=float(rng.normal(0, variation.turn_deg)),
+        roam_mps=of(variation.roam_mps),
         distance_m=of(variation.distance_m),
         azimuth_deg=of(variation.azimuth_deg),
         height_m=of(variation.height_m),
@@ -90,6 +95,7 @@ def draw(variation: Variation, rng: np.random.Generator) -> Draw:
         tilt_deg=of(variation.tilt_deg),
         elevation_beamwidth_deg=of(variation.elevation_beamwidth_deg),
         noise_db=of(variation.noise_db),
+        clutter_db=of(variation.clutter_db),
         threshold_db=of(variation.threshold_db),
         gain_db=of(variation.gain_db),
         albedo_db=of(variation.albedo_db),

@@ -1,7 +1,7 @@
 """Numbers that describe one window of a point-cloud recording: what moves how fast, where, and in what rhythm.
 
-Only points that move count (what stands still is mostly the room), and nothing depends on where the room or the radar
-stands, on left and right, or on how many points a board reports at rest. nan says that too few points are there.
+Here only points that move count; what a body does that hardly moves is in body_features. Nothing depends on where the
+room or the radar stands, or on left and right. nan says that too few points are there.
 """
 
 import itertools
@@ -10,15 +10,14 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import PointCloud
+from mmweaver.tasks.body_features import BANDS_HZ, Row, band_shares, body_features
 from mmweaver.tasks.point_recording import PointRecording
 
 STILL_MPS = 0.1
 SPEED_EDGES_MPS = (0.1, 0.9, 1.5, 2.2, 3.2, 99.0)  # of one, two, three, four and five, and more bins of 0.615 m/s
 SEGMENTS = 4
 FEWEST = 3  # points for a spread
-BANDS_HZ = ((0.3, 0.8), (0.8, 1.3), (1.3, 1.8), (1.8, 2.3), (2.3, 3.3), (3.3, 5.3), (5.3, 10.0))
-
-Row = dict[str, float]
+UNFORETOLD = {"up", "uneven"}  # words in names of features that are left out by default
 
 
 def window_features(window: PointRecording) -> Row:
@@ -36,11 +35,17 @@ def window_features(window: PointRecording) -> Row:
     return row
 
 
-def feature_matrix(windows: list[PointRecording]) -> tuple[Float[np.ndarray, "window feature"], tuple[str, ...]]:
-    """Features of many windows, float32, and their names."""
-    rows = [window_features(window) for window in windows]
-    names = tuple(rows[0])
-    return np.array([[row[name] for name in names] for row in rows], np.float32), names
+def feature_matrix(
+    windows: list[PointRecording], names: tuple[str, ...] | None = None
+) -> tuple[Float[np.ndarray, "window feature"], tuple[str, ...]]:
+    """Features of many windows, float32, and their names; by default all but what no simulation can foretell.
+
+    That are heights (the phase between two rows of antennas: a tilted radar or an uncalibrated board shifts them), and
+    how unevenly points are spread over time, which is the vertical beam's doing.
+    """
+    rows = [{**window_features(window), **body_features(window, STILL_MPS)} for window in windows]
+    chosen = names or tuple(name for name in rows[0] if not UNFORETOLD & set(name.split("_")))
+    return np.array([[row[name] for name in chosen] for row in rows], np.float32), chosen
 
 
 class _Moving:
@@ -206,12 +211,10 @@ def _rhythm(points: _Moving) -> Row:
         centred = signal - signal.mean()
         power = np.abs(np.fft.rfft(centred * np.hanning(len(signal)), 4 * len(signal))) ** 2
         frequency = np.fft.rfftfreq(4 * len(signal), 1 / points.rate_hz)
+        row.update(band_shares(power, frequency, word))
         inside = (frequency >= BANDS_HZ[0][0]) & (frequency < BANDS_HZ[-1][1])
-        total = power[inside].sum()
-        for low, high in BANDS_HZ:
-            band = (frequency >= low) & (frequency < high)
-            row[f"{word}_{low:g}_hz"] = float(power[band].sum() / total) if total > 0 else np.nan
-        row[f"{word}_top_hz"] = float(frequency[inside][np.argmax(power[inside])]) if total > 0 else np.nan
+        known = power[inside].sum() > 0
+        row[f"{word}_top_hz"] = float(frequency[inside][np.argmax(power[inside])]) if known else np.nan
         row[f"{word}_regular"] = _regularity(centred, points.rate_hz)
     return row
 
