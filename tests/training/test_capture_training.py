@@ -77,7 +77,7 @@ def test_the_gain_of_counts_is_found(captures, start):
     network.load_state_dict(start)
     (room,) = rooms_of(captures[:1])
     own = gain_of(network, [room])
-    assert own > 0
+    assert 0.05 < own < 20
     assert gain_of(network, [room.times(1000.0)]) == pytest.approx(own / 1000, rel=1e-3)
 
 
