@@ -19,7 +19,8 @@ def zero_shot_table(folder: Path) -> str:
             lines.append(_line(title, str(row["dataset"]["recordings"]), *scores, f"{metrics['window']['floor']:.2f}"))
             last = row if name == method else last
     kinds = last["classes"]
-    lines += _nested_lines(_record(folder, "nested"))
+    if (folder / "zero_shot" / "nested.json").exists():
+        lines += _nested_lines(_record(folder, "nested"))
     lines += ["", "Windows of 2 s after development, true in rows, recognised in columns:", ""]
     lines += [_line("", *kinds), _line(*["---"] * (1 + len(kinds)))]
     for kind, counts in zip(kinds, last["metrics"]["window"]["confusion"], strict=True):
