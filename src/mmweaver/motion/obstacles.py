@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.hidden_parts import feet_of, legs_of
+from mmweaver.motion.hidden_parts import feet_of, legs_of, tops_of
 
 Array = np.ndarray
 # Radii of a person of 1.75 m about the bones, and what may be pressed by them.
@@ -56,8 +56,8 @@ class Obstacles:
         return _latest[0]
 
     @cached_property
-    def _solid_m(self) -> Float[Array, "point 3"]:
-        """What was measured above the floor, and what must be just behind and under it."""
+    def _measured_m(self) -> Float[Array, "point 3"]:
+        """What was measured above the floor."""
         photo = self.scene.photo
         step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
         # Every row, for a bed seen at a flat angle has few.
@@ -65,12 +65,22 @@ class Obstacles:
         depth, lens = photo.depth_m[rows, columns], photo.intrinsics
         camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
         points = camera[np.isfinite(depth) & (depth > 0.3)] @ self.scene.radar_from_camera.T
-        points = points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+        return points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+
+    @cached_property
+    def _tops_m(self) -> Float[Array, "point 3"]:
+        """Of tables, also where a top hides itself: nobody's trunk leans into them as into the back of a seat."""
+        return tops_of(self.scene, self._measured_m)
+
+    @cached_property
+    def _solid_m(self) -> Float[Array, "point 3"]:
+        """What was measured above the floor, and what must be just behind and under it."""
+        points = self._measured_m
         behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
         low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
         below = [points - np.array([0.0, 0.0, _THICK_M])]
         below += [low - np.array([0.0, 0.0, down]) for down in _LOW_DOWN_M]
-        solid = np.concatenate([points, behind, *below])
+        solid = np.concatenate([points, behind, self._tops_m, *below])
         solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
         solid = np.concatenate(
             [solid, feet_of(np.concatenate([points, behind]), self.scene.floor_z_m), legs_of(self.scene)]
@@ -97,7 +107,9 @@ class Obstacles:
         near, height = np.hypot(*away.T) < _SEAT_REACH_M + 0.3, self._solid_m[:, 2] - lowest[joint("pelvis"), 2]
         before = (away @ ahead > _SEAT_AHEAD_M) & (height > -_SEAT_UNDER_M)
         beside = (away @ ahead > 0.0) & (height > _OVER_ARMRESTS_M)
-        return KDTree(self._solid_m[near & (before | beside)])
+        tops = self._tops_m[np.hypot(*(self._tops_m[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + 0.3]
+        tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
+        return KDTree(np.concatenate([self._solid_m[near & (before | beside)], tops]))
 
     def deepest_m(
         self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
