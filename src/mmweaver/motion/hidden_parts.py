@@ -15,6 +15,7 @@ _RIM_M, _SLICE_M, _THIN_M, _LONG_M = (0.58, 1.05), 0.03, 0.12, 0.55  # of a tabl
 _SQUARE_M, _REACH_M = 0.05, 5.0
 _UNSEEN_M, _TOP_DEPTH_M, _ALONG_M = 0.1, 0.8, 0.03  # a top so little below the camera is seen by its rim alone
 _BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # so far behind it, a measurement passed it by
+_BEFORE_M = 0.15  # the body itself is as thick
 
 
 def feet_of(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
@@ -45,7 +46,7 @@ def _leg(scene: Scene, plane: Plane, u: int, v: int) -> Points:
     return np.concatenate([np.column_stack([np.tile(side[:2], (len(height), 1)), height]) for side in sides])
 
 
-def tops_of(scene: Scene, points: Points) -> Points:
+def tops_of(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
     """Of the points those on tops and rims of tables, thin and long; and the tops behind rims that hide their own."""
     height = points[:, 2] - scene.floor_z_m
     column, row = np.floor((points[:, :2].T + _REACH_M) / _SQUARE_M).astype(int)
@@ -77,7 +78,7 @@ def _long_patches(squares: np.ndarray) -> np.ndarray:
     return np.isin(labels, long[1:])
 
 
-def _behind_rims(scene: Scene, tops: Points) -> Points:
+def _behind_rims(scene: Scene, tops: Points) -> Float[np.ndarray, "behind 3"]:
     """A table's depth behind what is seen of it at the camera's height or above, where nothing farther is seen."""
     unseen = tops[tops[:, 2] > -_UNSEEN_M]
     _, one_each = np.unique(np.rint(unseen / _ALONG_M).astype(int), axis=0, return_index=True)
@@ -94,12 +95,24 @@ def _may_be(scene: Scene, leg: Points) -> bool:
     return bool((~_seen_through(scene, leg)).mean() >= _LEAST_UNSEEN)
 
 
-def _seen_through(scene: Scene, leg: Points) -> np.ndarray:
+def _seen_through(scene: Scene, points: Points) -> np.ndarray:
     """Which points something was measured behind."""
+    behind = _behind_m(scene, points)
+    depth = (points @ scene.radar_from_camera)[:, 2]
+    return behind > _BEHIND_M + _BEHIND_PER_M2 * np.square(depth)
+
+
+def hidden_share(scene: Scene, points: Points) -> float:
+    """Of places, the share at which the camera saw something well before them: what stands there is not known."""
+    return float((_behind_m(scene, points) < -_BEFORE_M).mean())
+
+
+def _behind_m(scene: Scene, points: Points) -> Float[np.ndarray, " point"]:
+    """How far behind each point something was measured, negative before it; nan where nothing was."""
     photo = scene.photo
-    pixels, depth = project(leg @ scene.radar_from_camera, photo.intrinsics)
+    pixels, depth = project(points @ scene.radar_from_camera, photo.intrinsics)
     rows, columns = photo.depth_m.shape
     column, row = np.nan_to_num(np.round(pixels), nan=-1.0).clip(-1, 1e6).astype(int).T
     inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows) & (depth > 0)
     measured = photo.depth_m[np.where(inside, row, 0), np.where(inside, column, 0)]
-    return inside & (measured > depth + _BEHIND_M + _BEHIND_PER_M2 * np.square(depth))
+    return np.where(inside, measured - depth, np.nan)

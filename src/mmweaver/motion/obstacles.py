@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.hidden_parts import feet_of, legs_of, tops_of
+from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of
 
 Array = np.ndarray
 # Radii of a person of 1.75 m about the bones, and what may be pressed by them.
@@ -110,6 +110,13 @@ class Obstacles:
         tops = self._tops_m[np.hypot(*(self._tops_m[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + 0.3]
         tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
         return KDTree(np.concatenate([self._solid_m[near & (before | beside)], tops]))
+
+    def trunk_hidden(self, pose: PoseSequence) -> float:
+        """Share of the trunk, where it is lowest, that is behind what the photo shows."""
+        lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
+        ends = np.stack([lowest[joint(name)] for name in ("pelvis", "spine3", "neck")])
+        trunk = np.concatenate([ends[:2] + share * (ends[1:] - ends[:2]) for share in _SHARES])
+        return hidden_share(self.scene, trunk)
 
     def deepest_m(
         self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
