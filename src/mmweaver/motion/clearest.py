@@ -11,8 +11,7 @@ from mmweaver.motion.placement import Placement
 
 MOST_MOVED, WORTH_A_NOTE_M = 40, 0.03
 MARGIN_M = 0.03  # depth is noisy, and what stands there is seen from one side
-_ELSEWHERE_M = 0.02  # a foot is no thicker: nothing gets in deeper than a limb is thick
-_HIDDEN_M = 0.07  # sitting with the trunk hidden counts as getting in so far: nobody knows into what
+_HIDDEN_M = 0.075  # sitting with the trunk hidden counts as getting in so far: nobody knows into what
 _AGAIN_M = 0.0  # whoever gets in is placed once more, with other ways and ways to sit
 
 
@@ -45,10 +44,10 @@ def clearest(
     """The first placement whose motion keeps a margin to everything, hands and all; else the one that comes nearest.
 
     `draw(0)` gives placements, the best first; where none of them keeps clear, `draw(1)` gives others, and where those
-    get in by half a foot's thickness, `draw(2)` such that leave the room's seats.
+    get in so far that it must be said, `draw(2)` such that leave the room's seats.
     """
     best = _best(draw(0), moved, obstacles)
-    for again, enough_m in ((1, _AGAIN_M), (2, _ELSEWHERE_M)):
+    for again, enough_m in ((1, _AGAIN_M), (2, WORTH_A_NOTE_M)):
         if best.bad_m <= enough_m:
             break
         try:

@@ -30,8 +30,10 @@ _SHARES = np.array([0.0, 0.33, 0.67, 1.0])
 _STEP_S = 0.1
 _ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
 _SEAT_AHEAD_M, _SEAT_UNDER_M = 0.12, 0.05  # before the pelvis, and no lower below it: not the seat itself
+_BEHIND_M = 0.03  # who sits with a table behind may have taken its edge for a back
 _OVER_ARMRESTS_M = 0.2  # over the pelvis: what is beside the trunk there is not the seat's either
 _FARTHEST_M = 0.3
+_FOOT_M, _WITHIN_M = 0.24, 0.01
 _LOWEST_M = 0.09  # above the floor: soles meet the floor
 _MOST_POINTS = 34_000
 _GRAIN_M, _GRAINS = 0.015, np.array([1, 10_000, 100_000_000])  # one point in each
@@ -95,8 +97,10 @@ class Obstacles:
 
         return KDTree(self._solid_m)
 
-    def _before_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> Any:
-        """For the nearest point about a seat that is not the seat's own: a table before it, above its surface."""
+    def _not_of_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> tuple[tuple[Any, float], ...]:
+        """For the nearest point about a seat that is not the seat's own: what is before it, above its surface, and
+        tables behind it. With each how far the body must keep from it besides.
+        """
         from scipy.spatial import KDTree
 
         lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
@@ -109,7 +113,9 @@ class Obstacles:
         beside = (away @ ahead > 0.0) & (height > _OVER_ARMRESTS_M)
         tops = self._tops_m[np.hypot(*(self._tops_m[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + 0.3]
         tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
-        return KDTree(np.concatenate([self._solid_m[near & (before | beside)], tops]))
+        behind = (tops[:, :2] - np.array(seat)) @ ahead <= _SEAT_AHEAD_M
+        hard = np.concatenate([self._solid_m[near & (before | beside)], tops[~behind]])
+        return (KDTree(hard), 0.0), (KDTree(tops[behind]), _BEHIND_M)
 
     def trunk_hidden(self, pose: PoseSequence) -> float:
         """Share of the trunk, where it is lowest, that is behind what the photo shows."""
@@ -139,7 +145,7 @@ class Obstacles:
             radius.append(np.full(limb.shape[0] * limb.shape[1], thick * scale))
             soft.append(np.full(limb.shape[0] * limb.shape[1], start in _SEATED))
         limbs = np.concatenate(points), np.concatenate(radius), np.concatenate(soft)
-        tables = [(seat, self._before_seat(pose, seat)) for seat in dict.fromkeys(seats_m)]
+        tables = [(seat, *near) for seat in dict.fromkeys(seats_m) for near in self._not_of_seat(pose, seat)]
         return self._worst(*limbs, tables, margin_m)
 
     def _worst(
@@ -147,19 +153,22 @@ class Obstacles:
         points: Float[Array, "point 3"],
         radius: Float[Array, " point"],
         soft: np.ndarray,
-        tables: Sequence[tuple[tuple[float, float], Any]],
+        tables: Sequence[tuple[tuple[float, float], Any, float]],
         margin_m: float,
     ) -> float:
         allowed, worst = np.full(len(points), _ALLOWED_M - margin_m), 0.0
-        for seat, tree in tables:
+        for seat, tree, besides_m in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
             before, _ = tree.query(points, distance_upper_bound=_FARTHEST_M)
-            worst = max(worst, float((radius - before - allowed)[at_seat].max(initial=0.0)))
-        for seat, _ in tables:
+            worst = max(worst, float((radius + besides_m - before - allowed)[at_seat].max(initial=0.0)))
+        for seat, *_ in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
             allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M - margin_m)
         distance, _ = self._tree.query(points, distance_upper_bound=_FARTHEST_M)
         worst = max(worst, float((radius - distance - allowed).max()))
+        # Points lie in low things as thickly as on them: a foot within one would be no deeper in than it is thick.
+        within = (points[:, 2] < self.scene.floor_z_m + _FOOT_M) & (distance < _WITHIN_M)
+        worst = max(worst, float((radius - allowed)[within].max(initial=0.0)) + _WITHIN_M if within.any() else 0.0)
         for plane in self.scene.planes:
             if plane.kind == "wall":
                 away = points - plane.centre_m

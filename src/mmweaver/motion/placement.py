@@ -64,8 +64,8 @@ def place(
     """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
     `start_m` fixes where the person starts. `again` draws others, with more ways to sit: 1 leaves out some seats, 2
-    perhaps all where the room has none that the sentence names. Raises InputError where the start is not free or out of view, where
-    there is no room, or where the room lacks what a step goes to, saying what there is.
+    perhaps all where the room has none that the sentence names. Raises InputError where the start is not free or out
+    of view, where there is no room, or where the room lacks what a step goes to, saying what there is.
     """
     check_targets(plan, floor.scene)
     if not floor.walkable.any() and not (seats_of(floor, body) and _starts_seated(plan)):
