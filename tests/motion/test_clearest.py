@@ -1,5 +1,6 @@
 """The way that keeps clear."""
 
+import dataclasses
 from collections.abc import Sequence
 
 import numpy as np
@@ -65,6 +66,21 @@ def test_seats_are_left_only_where_one_gets_in_so_far_that_it_is_said():
     assert (best.placement.path.heading_rad, drawn) == (0.015, [0, 1])
     best, drawn = _chosen([0.05], [0.04], [-0.2])
     assert (best.placement.path.heading_rad, drawn) == (-0.2, [0, 1, 2])
+
+
+def test_of_two_seats_the_one_where_the_trunk_is_seen_is_taken():
+    """The camera sees something 3 m away: the first seat is behind it."""
+    seats = [dataclasses.replace(_placement(-0.2), seats_m=((0.0, y),)) for y in (3.8, 2.0)]
+    poses = {seat: standing_person((0.0, seat.seats_m[0][1], -1.1), seconds=0.2) for seat in seats}
+
+    def moved(placement: Placement) -> PoseSequence:
+        return dataclasses.replace(poses[placement], height_m=0.8)
+
+    best = clearest(lambda _again: seats, moved, _Known(room()))
+    assert best.placement.seats_m == ((0.0, 2.0),)
+    hidden = clearest(lambda _again: seats[:1], moved, _Known(room()))
+    assert hidden.hidden_m > 0.03
+    assert hidden.notes == ()  # nothing is known to be there
 
 
 @pytest.mark.parametrize("others", [[], [[0.08]]])

@@ -6,7 +6,7 @@ import numpy as np
 from tests.motion.rooms import FLOOR_Z_M, room
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
-from mmweaver.motion.hidden_parts import feet_of, legs_of
+from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of
 
 
 def test_low_points_reach_the_floor_and_high_ones_do_not():
@@ -40,3 +40,50 @@ def test_legs_stand_under_hidden_corners():
 def test_no_legs_where_the_camera_looks_through_or_nothing_is_a_table():
     assert len(legs_of(_with_table(4.5))) == 0
     assert legs_of(room()).shape == (0, 3)
+
+
+def _before_a_rim(width_m: float, thick_m: float = 0.04, *, above_m: float = 0.02) -> Scene:
+    """The photo shows the front edge of a board alone, 2 m away, so high above the camera."""
+    lens = CameraIntrinsics(fx=200.0, fy=200.0, cx=159.5, cy=119.5, width=320, height=240)
+    depth = np.full((240, 320), np.nan)
+    half = round(width_m / 2 / 2.0 * lens.fx)
+    low, high = (round(119.5 - z / 2.0 * lens.fy) for z in (above_m, above_m + thick_m))
+    depth[high:low, 160 - half : 160 + half] = 2.0
+    photo = RgbdPhoto(rgb=np.zeros((240, 320, 3), np.uint8), depth_m=depth, intrinsics=lens)
+    return dataclasses.replace(room(floor_z_m=-0.7), photo=photo)
+
+
+def _tops(scene: Scene) -> np.ndarray:
+    rows, columns = np.nonzero(np.isfinite(scene.photo.depth_m))
+    lens = scene.photo.intrinsics
+    away = scene.photo.depth_m[rows, columns]
+    points = np.column_stack([(columns - lens.cx) / lens.fx * away, away, -(rows - lens.cy) / lens.fy * away])
+    return tops_of(scene, points)
+
+
+def test_a_top_goes_on_behind_the_rim_that_hides_it():
+    tops = _tops(_before_a_rim(1.0))
+    assert tops[:, 1].min() < 2.05
+    assert 2.5 < tops[:, 1].max() < 2.9
+    assert np.abs(tops[:, 0]).max() < 0.8
+
+
+def test_backs_of_chairs_and_of_sofas_are_no_tops():
+    assert len(_tops(_before_a_rim(0.4))) == 0  # narrow
+    assert len(_tops(_before_a_rim(1.0, 0.3))) == 0  # thick
+
+
+def test_nothing_goes_on_where_the_camera_sees_farther():
+    scene = _before_a_rim(1.0, 0.02, above_m=0.1)  # seen from below
+    farther = np.where(np.isnan(scene.photo.depth_m), 5.0, scene.photo.depth_m)
+    open_behind = dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=farther))
+    rim = _tops(scene)
+    rim = rim[rim[:, 1] < 2.01]
+    assert tops_of(scene, rim)[:, 1].max() > 2.5
+    assert tops_of(open_behind, rim)[:, 1].max() < 2.5
+
+
+def test_what_is_behind_a_thing_is_hidden():
+    scene = _with_table(2.0)
+    assert hidden_share(scene, np.array([[0.0, 2.5, 0.0], [0.0, 1.5, 0.0]])) == 0.5
+    assert hidden_share(scene, np.array([[9.0, 2.5, 0.0]])) == 0.0  # beside the picture

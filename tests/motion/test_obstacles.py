@@ -59,3 +59,17 @@ def test_thighs_may_sink_into_the_seat_but_not_into_the_table_before_it():
     for height, touches in ((0.45, False), (0.62, True)):
         obstacles = Obstacles(_before_a_board(height, 1.75))
         assert (obstacles.deepest_m(sits.pose, (place,)) > 0.0) == touches
+
+
+def test_a_table_behind_a_seat_is_no_back_of_it():
+    """A board close behind the sitter: as wide as a table one must not lean into it, as narrow as a chair one may."""
+    chair = seat(y_m=2.0)
+    sits = compose("a person sits", bare_room(seats=(chair,)), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
+    place = (float(chair.position_m[0]), float(chair.position_m[1]))
+    for width, touches in ((0.36, False), (1.4, True)):
+        scene = _before_a_board(0.72, 2.08)
+        depth = scene.photo.depth_m.copy()
+        half = round(width / 2 / 2.08 * 300.0)
+        depth[:, : 160 - half] = depth[:, 160 + half :] = np.nan
+        obstacles = Obstacles(dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=depth)))
+        assert (obstacles.deepest_m(sits.pose, (place,)) > 0.0) == touches

@@ -11,6 +11,7 @@ from mmweaver.motion.placement import Placement
 
 MOST_MOVED, WORTH_A_NOTE_M = 40, 0.03
 MARGIN_M = 0.03  # depth is noisy, and what stands there is seen from one side
+_HIDDEN_M = 0.075  # sitting with the trunk hidden counts as getting in so far: nobody knows into what
 _AGAIN_M = 0.0  # whoever gets in is placed once more, with other ways and ways to sit
 
 
@@ -21,6 +22,12 @@ class Moved:
     placement: Placement
     pose: PoseSequence
     deep_m: float
+    hidden_m: float = 0.0  # added for what is hidden
+
+    @property
+    def bad_m(self) -> float:
+        """By what placements are compared."""
+        return self.deep_m + self.hidden_m
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -41,13 +48,13 @@ def clearest(
     """
     best = _best(draw(0), moved, obstacles)
     for again, enough_m in ((1, _AGAIN_M), (2, WORTH_A_NOTE_M)):
-        if best.deep_m <= enough_m:
+        if best.bad_m <= enough_m:
             break
         try:
             other = _best(draw(again), moved, obstacles)
         except InputError:  # there is no other way
             continue
-        best = other if other.deep_m < best.deep_m else best
+        best = other if other.bad_m < best.bad_m else best
     return best
 
 
@@ -57,9 +64,11 @@ def _best(placements: Sequence[Placement], moved: Callable[[Placement], PoseSequ
         pose = moved(placement)
         # From the margin on all are alike.
         deep_m = obstacles.deepest_m(pose, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
-        if best is None or deep_m < best.deep_m:
-            best = Moved(placement=placement, pose=pose, deep_m=deep_m)
-        if deep_m <= -MARGIN_M:
+        hidden_m = _HIDDEN_M * obstacles.trunk_hidden(pose) if placement.seats_m else 0.0
+        one = Moved(placement=placement, pose=pose, deep_m=deep_m, hidden_m=hidden_m)
+        if best is None or one.bad_m < best.bad_m:
+            best = one
+        if one.bad_m <= -MARGIN_M:
             break
     assert best is not None
     return best

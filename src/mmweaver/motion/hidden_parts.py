@@ -1,4 +1,4 @@
-"""What must stand where the camera saw only a part of a thing: the rest of legs, and legs under tops."""
+"""What must stand where the camera saw only a part of a thing: the rest of legs, legs under tops, tops behind rims."""
 
 import numpy as np
 from jaxtyping import Float
@@ -11,7 +11,11 @@ _FOOT_M, _FEET_DOWN_M, _SOLE_M = 0.24, (0.04, 0.08, 0.12, 0.16), 0.035
 _TABLE_M, _INSET_M = (0.35, 1.1), 0.05
 _LEG_STEP_M, _TOP_M, _LEG_HALF_M = 0.05, 0.04, 0.025
 _LEAST_UNSEEN = 0.6
+_RIM_M, _SLICE_M, _THIN_M, _LONG_M = (0.58, 1.05), 0.03, 0.12, 0.55  # of a table's top: how high, thick and long
+_SQUARE_M, _REACH_M = 0.05, 5.0
+_UNSEEN_M, _TOP_DEPTH_M, _ALONG_M = 0.1, 0.8, 0.03  # a top so little below the camera is seen by its rim alone
 _BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # so far behind it, a measurement passed it by
+_BEFORE_M = 0.15  # the body itself is as thick
 
 
 def feet_of(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
@@ -42,13 +46,73 @@ def _leg(scene: Scene, plane: Plane, u: int, v: int) -> Points:
     return np.concatenate([np.column_stack([np.tile(side[:2], (len(height), 1)), height]) for side in sides])
 
 
+def tops_of(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
+    """Of the points those on tops and rims of tables, thin and long; and the tops behind rims that hide their own."""
+    height = points[:, 2] - scene.floor_z_m
+    column, row = np.floor((points[:, :2].T + _REACH_M) / _SQUARE_M).astype(int)
+    side = int(2 * _REACH_M / _SQUARE_M)
+    inside = (column >= 0) & (column < side) & (row >= 0) & (row < side)
+    square = np.where(inside, row * side + column, -1)
+    in_band = inside & (height > _RIM_M[0]) & (height < _RIM_M[1])
+    highest, lowest = np.full(side**2, -np.inf), np.full(side**2, np.inf)
+    np.maximum.at(highest, square[in_band], height[in_band])
+    # Chairs below a top are none of its own.
+    near_top = in_band & (height > highest[square] - 2 * _THIN_M)
+    np.minimum.at(lowest, square[near_top], height[near_top])
+    thin = highest - lowest < _THIN_M
+    is_top = np.zeros(side**2, bool)
+    for level in np.arange(*_RIM_M, _SLICE_M):
+        is_top |= _long_patches((thin & (np.abs(highest - level) <= _SLICE_M)).reshape(side, side)).ravel()
+    tops = points[near_top & is_top[square]]
+    return np.concatenate([tops, _behind_rims(scene, tops)])
+
+
+def _long_patches(squares: np.ndarray) -> np.ndarray:
+    from scipy import ndimage
+
+    labels, _ = ndimage.label(squares, structure=np.ones((3, 3)))  # pyright: ignore[reportGeneralTypeIssues]
+    long = [0]
+    for number, place in enumerate(ndimage.find_objects(labels), start=1):
+        if place is not None and np.hypot(*(part.stop - part.start for part in place)) * _SQUARE_M >= _LONG_M:
+            long.append(number)
+    return np.isin(labels, long[1:])
+
+
+def _behind_rims(scene: Scene, tops: Points) -> Float[np.ndarray, "behind 3"]:
+    """A table's depth behind what is seen of it at the camera's height or above, where nothing farther is seen."""
+    unseen = tops[tops[:, 2] > -_UNSEEN_M]
+    _, one_each = np.unique(np.rint(unseen / _ALONG_M).astype(int), axis=0, return_index=True)
+    unseen = unseen[one_each]
+    length = np.maximum(np.hypot(unseen[:, 0], unseen[:, 1]), 1e-6)
+    steps = np.arange(_ALONG_M, _TOP_DEPTH_M, _ALONG_M)
+    away = unseen[None] * np.array([1.0, 1.0, 0.0]) * (steps[:, None] / length[None])[..., None]
+    behind = (unseen[None] + away).reshape(-1, 3)
+    return behind[~_seen_through(scene, behind)]
+
+
 def _may_be(scene: Scene, leg: Points) -> bool:
     """Whether most of it is hidden by something nearer, or lies outside the picture."""
+    return bool((~_seen_through(scene, leg)).mean() >= _LEAST_UNSEEN)
+
+
+def _seen_through(scene: Scene, points: Points) -> np.ndarray:
+    """Which points something was measured behind."""
+    behind = _behind_m(scene, points)
+    depth = (points @ scene.radar_from_camera)[:, 2]
+    return behind > _BEHIND_M + _BEHIND_PER_M2 * np.square(depth)
+
+
+def hidden_share(scene: Scene, points: Points) -> float:
+    """Of places, the share at which the camera saw something well before them: what stands there is not known."""
+    return float((_behind_m(scene, points) < -_BEFORE_M).mean())
+
+
+def _behind_m(scene: Scene, points: Points) -> Float[np.ndarray, " point"]:
+    """How far behind each point something was measured, negative before it; nan where nothing was."""
     photo = scene.photo
-    pixels, depth = project(leg @ scene.radar_from_camera, photo.intrinsics)
+    pixels, depth = project(points @ scene.radar_from_camera, photo.intrinsics)
     rows, columns = photo.depth_m.shape
     column, row = np.nan_to_num(np.round(pixels), nan=-1.0).clip(-1, 1e6).astype(int).T
     inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows) & (depth > 0)
     measured = photo.depth_m[np.where(inside, row, 0), np.where(inside, column, 0)]
-    seen_through = inside & (measured > depth + _BEHIND_M + _BEHIND_PER_M2 * np.square(depth))
-    return bool((~seen_through).mean() >= _LEAST_UNSEEN)
+    return np.where(inside, measured - depth, np.nan)

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.hidden_parts import feet_of, legs_of
+from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of
 
 Array = np.ndarray
 # Radii of a person of 1.75 m about the bones, and what may be pressed by them.
@@ -30,8 +30,10 @@ _SHARES = np.array([0.0, 0.33, 0.67, 1.0])
 _STEP_S = 0.1
 _ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
 _SEAT_AHEAD_M, _SEAT_UNDER_M = 0.12, 0.05  # before the pelvis, and no lower below it: not the seat itself
+_BEHIND_M = 0.03  # who sits with a table behind may have taken its edge for a back
 _OVER_ARMRESTS_M = 0.2  # over the pelvis: what is beside the trunk there is not the seat's either
 _FARTHEST_M = 0.3
+_FOOT_M, _WITHIN_M = 0.24, 0.01
 _LOWEST_M = 0.09  # above the floor: soles meet the floor
 _MOST_POINTS = 34_000
 _GRAIN_M, _GRAINS = 0.015, np.array([1, 10_000, 100_000_000])  # one point in each
@@ -56,8 +58,8 @@ class Obstacles:
         return _latest[0]
 
     @cached_property
-    def _solid_m(self) -> Float[Array, "point 3"]:
-        """What was measured above the floor, and what must be just behind and under it."""
+    def _measured_m(self) -> Float[Array, "point 3"]:
+        """What was measured above the floor."""
         photo = self.scene.photo
         step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
         # Every row, for a bed seen at a flat angle has few.
@@ -65,12 +67,22 @@ class Obstacles:
         depth, lens = photo.depth_m[rows, columns], photo.intrinsics
         camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
         points = camera[np.isfinite(depth) & (depth > 0.3)] @ self.scene.radar_from_camera.T
-        points = points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+        return points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+
+    @cached_property
+    def _tops_m(self) -> Float[Array, "point 3"]:
+        """Of tables, also where a top hides itself: nobody's trunk leans into them as into the back of a seat."""
+        return tops_of(self.scene, self._measured_m)
+
+    @cached_property
+    def _solid_m(self) -> Float[Array, "point 3"]:
+        """What was measured above the floor, and what must be just behind and under it."""
+        points = self._measured_m
         behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
         low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
         below = [points - np.array([0.0, 0.0, _THICK_M])]
         below += [low - np.array([0.0, 0.0, down]) for down in _LOW_DOWN_M]
-        solid = np.concatenate([points, behind, *below])
+        solid = np.concatenate([points, behind, self._tops_m, *below])
         solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
         solid = np.concatenate(
             [solid, feet_of(np.concatenate([points, behind]), self.scene.floor_z_m), legs_of(self.scene)]
@@ -85,8 +97,10 @@ class Obstacles:
 
         return KDTree(self._solid_m)
 
-    def _before_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> Any:
-        """For the nearest point about a seat that is not the seat's own: a table before it, above its surface."""
+    def _not_of_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> tuple[tuple[Any, float], ...]:
+        """For the nearest point about a seat that is not the seat's own: what is before it, above its surface, and
+        tables behind it. With each how far the body must keep from it besides.
+        """
         from scipy.spatial import KDTree
 
         lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
@@ -97,7 +111,18 @@ class Obstacles:
         near, height = np.hypot(*away.T) < _SEAT_REACH_M + 0.3, self._solid_m[:, 2] - lowest[joint("pelvis"), 2]
         before = (away @ ahead > _SEAT_AHEAD_M) & (height > -_SEAT_UNDER_M)
         beside = (away @ ahead > 0.0) & (height > _OVER_ARMRESTS_M)
-        return KDTree(self._solid_m[near & (before | beside)])
+        tops = self._tops_m[np.hypot(*(self._tops_m[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + 0.3]
+        tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
+        behind = (tops[:, :2] - np.array(seat)) @ ahead <= _SEAT_AHEAD_M
+        hard = np.concatenate([self._solid_m[near & (before | beside)], tops[~behind]])
+        return (KDTree(hard), 0.0), (KDTree(tops[behind]), _BEHIND_M)
+
+    def trunk_hidden(self, pose: PoseSequence) -> float:
+        """Share of the trunk, where it is lowest, that is behind what the photo shows."""
+        lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
+        ends = np.stack([lowest[joint(name)] for name in ("pelvis", "spine3", "neck")])
+        trunk = np.concatenate([ends[:2] + share * (ends[1:] - ends[:2]) for share in _SHARES])
+        return hidden_share(self.scene, trunk)
 
     def deepest_m(
         self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
@@ -120,7 +145,7 @@ class Obstacles:
             radius.append(np.full(limb.shape[0] * limb.shape[1], thick * scale))
             soft.append(np.full(limb.shape[0] * limb.shape[1], start in _SEATED))
         limbs = np.concatenate(points), np.concatenate(radius), np.concatenate(soft)
-        tables = [(seat, self._before_seat(pose, seat)) for seat in dict.fromkeys(seats_m)]
+        tables = [(seat, *near) for seat in dict.fromkeys(seats_m) for near in self._not_of_seat(pose, seat)]
         return self._worst(*limbs, tables, margin_m)
 
     def _worst(
@@ -128,19 +153,22 @@ class Obstacles:
         points: Float[Array, "point 3"],
         radius: Float[Array, " point"],
         soft: np.ndarray,
-        tables: Sequence[tuple[tuple[float, float], Any]],
+        tables: Sequence[tuple[tuple[float, float], Any, float]],
         margin_m: float,
     ) -> float:
         allowed, worst = np.full(len(points), _ALLOWED_M - margin_m), 0.0
-        for seat, tree in tables:
+        for seat, tree, besides_m in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
             before, _ = tree.query(points, distance_upper_bound=_FARTHEST_M)
-            worst = max(worst, float((radius - before - allowed)[at_seat].max(initial=0.0)))
-        for seat, _ in tables:
+            worst = max(worst, float((radius + besides_m - before - allowed)[at_seat].max(initial=0.0)))
+        for seat, *_ in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
             allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M - margin_m)
         distance, _ = self._tree.query(points, distance_upper_bound=_FARTHEST_M)
         worst = max(worst, float((radius - distance - allowed).max()))
+        # Points lie in low things as thickly as on them: a foot within one would be no deeper in than it is thick.
+        within = (points[:, 2] < self.scene.floor_z_m + _FOOT_M) & (distance < _WITHIN_M)
+        worst = max(worst, float((radius - allowed)[within].max(initial=0.0)) + _WITHIN_M if within.any() else 0.0)
         for plane in self.scene.planes:
             if plane.kind == "wall":
                 away = points - plane.centre_m

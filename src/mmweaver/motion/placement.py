@@ -20,6 +20,7 @@ from mmweaver.motion.seating import (
     Sitting,
     as_it_can_be,
     as_it_may_be,
+    fitting,
     preferred,
     reachable,
     seats_of,
@@ -63,8 +64,8 @@ def place(
     """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
     `start_m` fixes where the person starts. `again` draws others, with more ways to sit: 1 leaves out some seats, 2
-    perhaps all where the sentence names none. Raises InputError where the start is not free or out of view, where
-    there is no room, or where the room lacks what a step goes to, saying what there is.
+    perhaps all where the room has none that the sentence names. Raises InputError where the start is not free or out
+    of view, where there is no room, or where the room lacks what a step goes to, saying what there is.
     """
     check_targets(plan, floor.scene)
     if not floor.walkable.any() and not (seats_of(floor, body) and _starts_seated(plan)):
@@ -116,9 +117,10 @@ def _try(
     seats = seats_of(floor, body)
     if again:
         named = next((step.seat for step in plan.steps if step.seat), "")
+        is_there = named and bool(fitting(seats, named, floor.scene))
         seats = [
             as_it_can_be(seat, rng)
-            for seat in some_of(preferred(seats, named, floor.scene), rng, all_may_go=again > 1 and not named)
+            for seat in some_of(preferred(seats, named, floor.scene), rng, all_may_go=again > 1 and not is_there)
         ]
     else:
         seats = [as_it_may_be(seat, rng) for seat in seats]

@@ -34,16 +34,19 @@ class Sitting:
 
 
 def preferred(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
-    """Those that fit the word for them: couches are wide, chairs are not, beds are beds; all where none does."""
+    """Those that fit the word for them, all where none does."""
+    return fitting(seats, word, scene) or seats
+
+
+def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
+    """Those that fit the word for them: couches are wide, chairs are not, beds are beds."""
     if word in _COUCHES:
-        fitting = [seat for seat in seats if seat.width_m >= _COUCH_M and not _on_bed(seat, scene)]
-    elif word == "bed":
-        fitting = [seat for seat in seats if _on_bed(seat, scene)]
-    elif word in _CHAIRS:
-        fitting = [seat for seat in seats if seat.width_m < _COUCH_M and not _on_bed(seat, scene)]
-    else:
-        fitting = [seat for seat in seats if not _on_bed(seat, scene)]
-    return fitting or seats
+        return [seat for seat in seats if seat.width_m >= _COUCH_M and not _on_bed(seat, scene)]
+    if word == "bed":
+        return [seat for seat in seats if _on_bed(seat, scene)]
+    if word in _CHAIRS:
+        return [seat for seat in seats if seat.width_m < _COUCH_M and not _on_bed(seat, scene)]
+    return [seat for seat in seats if not _on_bed(seat, scene)]
 
 
 def _on_bed(seat: Sitting, scene: Scene) -> bool:
