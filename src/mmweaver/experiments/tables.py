@@ -338,6 +338,16 @@ def weaver_unseen_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def weaver_few_shot_table(folder: Path) -> str:
+    """Jumps after tuning on a few of them."""
+    (record,) = _records(folder / "weaver_few_shot")
+    lines = [_line("tuned on", "RA SSIM", "RD SSIM", "RA difference, dB", "RD difference, dB"), _line(*["---"] * 5)]
+    for row in record["rows"]:
+        names = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db")
+        lines.append(_line(row["method"], *(_bounded(row["metrics"][name], name.endswith("ssim")) for name in names)))
+    return "\n".join(lines)
+
+
 def _split(folder: Path, split: str) -> dict[str, Any]:
     return next(record for record in _records(folder / "weaver") if record["method"] == split)
 
@@ -360,6 +370,7 @@ TABLES = {
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
     "weaver": weaver_table, "weaver_unseen": weaver_unseen_table,
+    "weaver_few_shot": weaver_few_shot_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "capture_tuning": capture_tuning_table,
     "weaver_paper": paper_table,
