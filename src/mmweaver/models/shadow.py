@@ -12,17 +12,18 @@ from mmweaver.models.echoes import Echoes
 
 TRUNK_M, LIMB_M, HEAD_M = 0.13, 0.055, 0.1
 _TRUNK = ("pelvis", "spine", "neck", "collar", "shoulder", "hip")
+NUM_BALLS = 30  # the joints and the middles of thighs, shins and arms; those of the trunk lie between joints' balls
 BEHIND_M = 0.1  # farther than the body at least
 
 
 def hidden(resting: Echoes, joints_m: Tensor) -> Tensor:
     """Which resting echoes (echo,) the body of joints (frame, 22, 3) hides: (frame, echo) bool.
 
-    The body is a ball about each anchor; a ray that passes through one does not come back.
+    The body is a ball about each of its first anchors; a ray that passes through one does not come back.
     """
     ahead = (1 - resting.direction.square().sum(-1)).clamp(min=0).sqrt()
     way = torch.stack([resting.direction[:, 0], ahead, resting.direction[:, 1]], dim=-1)
-    place = anchor_places(joints_m)
+    place = anchor_places(joints_m)[:, :NUM_BALLS]
     distance = place.norm(dim=-1)
     radius = _radii().to(place)
     out = torch.zeros(len(joints_m), len(way), dtype=torch.bool, device=place.device)
@@ -38,7 +39,7 @@ def hidden(resting: Echoes, joints_m: Tensor) -> Tensor:
 
 
 def _radii() -> Tensor:
-    names = [JOINT_NAMES[second] for _, second, _ in ANCHORS]
+    names = [JOINT_NAMES[second] for _, second, _ in ANCHORS[:NUM_BALLS]]
     return torch.tensor([_radius(name) for name in names])
 
 
