@@ -82,18 +82,20 @@ class WovenRoom:
         field = self.field(motions)
         with torch.inference_mode(), one_thread():
             values = field.native()
-            values -= self._shadows(motions)
+            self._take_shadows_off(values, motions)
             cube = RadarCube(values=values, grid=field.grid, config=self.config, scale=1.0)
         return replace(field.with_noise(cube, seed), scale=1.0)
 
-    def _shadows(self, motions: Sequence[FrameMotion]) -> np.ndarray:
-        """What the room does not return because somebody stands before it, (frame, range, doppler, antenna)."""
+    def _take_shadows_off(self, values: np.ndarray, motions: Sequence[FrameMotion]) -> None:
+        """Takes off what the room does not return because somebody stands before it."""
         is_hidden = [hidden(self._strong, torch.from_numpy(motion.joints_m).float()) for motion in motions]
         lost = self._drawn.hidden(torch.stack(is_hidden).any(dim=0))
         response = self.radar.response
         axes = response.axes()
         at_rest = response.doppler_kernel(axes.doppler_bin)[0]
-        return (lost[:, :, None] * at_rest[:, None] * response.turn(axes)).numpy()
+        bins = torch.nonzero(at_rest.abs() > 1e-6)[:, 0]  # a resting echo has three
+        turn = response.turn(axes)[:, bins]
+        values[:, :, bins.numpy()] -= (lost[:, :, None] * (at_rest[bins][:, None] * turn)).numpy()
 
     def _points(self, motion: FrameMotion) -> Points:
         joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
