@@ -28,6 +28,9 @@ class BodyPrior:
 
 def body_prior(joints_m: Tensor) -> BodyPrior:
     """The prior of motions, joints (sequence, frame, 22, 3) in the radar's frame."""
+    if joints_m.is_meta:  # shapes alone, no numbers
+        nothing = joints_m.new_zeros((*joints_m.shape[:2], NUM_ANCHORS))
+        return BodyPrior(cross_section_m2=nothing, offset_m=nothing)
     with torch.no_grad():
         anchors = anchor_places(joints_m.detach().cpu()).double().numpy()
         parts = [_one(joints, place) for joints, place in zip(joints_m.detach().cpu().numpy(), anchors, strict=True)]
