@@ -24,7 +24,7 @@ from mmweaver.models.radar_view import carrier, points_of
 
 SPOTS = 6  # of skin, for each echo
 SPOT_SPREAD_M = 0.04
-HEARD, MISSED = 1e-4, 2e-3  # of the strongest resting echo's amplitude: in the layer; in a shadow
+HEARD, MISSED = 1e-4, 4e-3  # of the strongest resting echo's amplitude: in the layer; in a shadow
 
 
 @dataclass(frozen=True, kw_only=True)
