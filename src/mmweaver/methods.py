@@ -92,8 +92,8 @@ class Physics:
 WOVEN_ASSUMPTIONS = (
     "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn",
     "ADC samples are those of least energy that give the network's cube",
-    "several people are superimposed: they do not hide each other",
 )
+SUPERIMPOSED = "several people are superimposed: they do not hide each other"
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
@@ -130,7 +130,8 @@ class Woven:
             motions = [FrameMotion.of(pose, config, num_frames) for pose in poses]
             cube = room.cube(motions, seed=seed)
             adc = adc_from_cube(cube) if keep_adc else None
-        return Signal(cube=cube, adc=adc, assumptions=WOVEN_ASSUMPTIONS)
+        told = WOVEN_ASSUMPTIONS if len(poses) < 2 else (*WOVEN_ASSUMPTIONS, SUPERIMPOSED)
+        return Signal(cube=cube, adc=adc, assumptions=told)
 
     def _room(self, scene: Scene, config: RadarConfig) -> "WovenRoom":
         from mmweaver.models.weaver_method import WovenRoom
