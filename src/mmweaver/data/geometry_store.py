@@ -95,15 +95,11 @@ class StoredGeometry:
         """As its photo shows it: what the network is told."""
         return self._read("photographed")
 
-    def cube_values(
-        self, index: int, frames: np.ndarray, *, person: int, height_m: float, seed: int, twin: int, device: str
-    ) -> np.ndarray:
-        """Frames of a sequence's cube in sqrt(mW), complex64 (frame, range, doppler, antenna); see `Replay`."""
+    def cube_values(self, look: Any, frames: np.ndarray, *, twin: int, device: str) -> np.ndarray:
+        """Frames of a looked-at cube in sqrt(mW), complex64 (frame, range, doppler, antenna); see `Replay`."""
         from mmweaver.dsp.torch_cube import torch_cube
 
-        look = self.look(index, person=person, height_m=height_m, seed=seed)
-        samples = self.replay(device).samples(look, frames, twin=twin)
-        return torch_cube(samples, self.config).cpu().numpy()
+        return torch_cube(self.replay(device).samples(look, frames, twin=twin), self.config).cpu().numpy()
 
     def replay(self, device: str) -> Any:
         """The room's `Replay` on a device, made once."""

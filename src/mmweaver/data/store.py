@@ -174,11 +174,7 @@ class StoredRoom:
         """
         if self.geometry is not None:
             wanted = np.arange(len(self.joints_m[index])) if frames is None else frames
-            person = int(self.person[index])
-            values = self.geometry.cube_values(
-                index, wanted, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]), twin=twin,
-                device=self.device,
-            )  # fmt: skip
+            values = self.geometry.cube_values(self._look(index), wanted, twin=twin, device=self.device)
         else:
             values = self._stored(index)
             values = values if frames is None else values[frames]
@@ -187,9 +183,12 @@ class StoredRoom:
     def echoes(self, index: int, frames: np.ndarray) -> Any:
         """The person's echoes (`simulation.echoes.BodyEchoes`) in frames of one sequence, of a set with geometry."""
         assert self.geometry is not None, "signals are stored, not geometry"
-        subject = int(self.person[index])
-        look = self.geometry.look(index, person=subject, height_m=PEOPLE_HEIGHT_M[subject], seed=int(self.seed[index]))
-        return self.geometry.replay("cpu").person(look, frames)
+        return self.geometry.replay("cpu").person(self._look(index), frames)
+
+    def _look(self, index: int) -> Any:
+        assert self.geometry is not None
+        person = int(self.person[index])
+        return self.geometry.look(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
 
     def _stored(self, index: int) -> np.ndarray:
         zarr = _zarr()

@@ -23,8 +23,9 @@ from mmweaver.core.version import __version__
 from mmweaver.data.store import plan_text, read_radar
 from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.training.resuming import Resumable
+from mmweaver.training.trainer import BEST_FILE, WORST_SKIPS, save_tensors
 
-BEST_FILE, LOG_EVERY, WORST_SKIPS = "best.safetensors", 20, 20
+LOG_EVERY = 20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,7 +137,7 @@ class RecipeLoop:
         with torch.no_grad():
             figures = self.validate()
         if self.best.improved_by(figures):
-            save_tensors(self.network, self.out / BEST_FILE)
+            save_tensors(self.network.state_dict(), self.out / BEST_FILE)
         return figures
 
     def _log(self, report: StepReport) -> None:
@@ -177,15 +178,6 @@ class _Best:
         if before != now:
             raise InputError("it was made with other settings")
         self.figures, self.since = state["figures"], state["since"]
-
-
-def save_tensors(network: nn.Module, file: Path) -> None:
-    """A network's tensors as they are, whole or not at all."""
-    from safetensors.torch import save_file
-
-    partial = file.with_name("." + file.name)
-    save_file({name: tensor.contiguous() for name, tensor in network.state_dict().items()}, partial)
-    partial.rename(file)
 
 
 def write_recipe_weights(out: Path, data: Path, loop: RecipeLoop) -> Path:
