@@ -1,11 +1,13 @@
 """Walls continued beyond the picture, in rooms whose geometry is known."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from mmweaver.core.records import Plane, Scene
+from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.geometry.pinhole import unproject
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.closed_room import BEHIND_M
 from mmweaver.scene.reconstruction import reconstruct
@@ -63,3 +65,22 @@ def test_a_side_that_is_not_seen_is_not_made_up(box_room: Callable):
 def test_it_is_said(box_room: Callable):
     scene = reconstruct(box_room(pitch_deg=10.0).photo())
     assert any("continued" in line for line in scene.assumptions)
+
+
+def test_a_mask_says_what_is_wall(box_room: Callable):
+    """A tall cupboard hides all of the right wall but a strip that is too narrow to fit a face to."""
+    tall = ((1.9, 2.2), (1.0, 3.2), (0.0, 2.4))
+    room = box_room(pitch_deg=5.0, boxes=[tall])
+    photo = room.photo(noise=0.002)
+    points = reconstruct(photo).radar_from_camera
+    rays = unproject(photo.depth_m, photo.intrinsics) @ points.T
+    is_wall = (rays[..., 0] > 2.14) | (rays[..., 0] < -1.94) | (rays[..., 1] > 3.74)
+    names = ("unlabeled", "wall-other")
+    told = replace(photo, classes=ClassMask(index=is_wall.astype(np.uint8), names=names))
+    assert "right" not in _walls(reconstruct(photo)) or _distance(reconstruct(photo), "right") < 2.0
+    assert _distance(reconstruct(told), "right") == pytest.approx(2.2, abs=0.05)
+
+
+def _distance(scene: Scene, name: str) -> float:
+    wall = _walls(scene)[name]
+    return float(-wall.centre_m @ wall.normal)
