@@ -19,6 +19,7 @@ USUAL_MATERIAL = "plasterboard"
 USUAL_HEIGHT_M = 2.5  # of a room whose ceiling is not seen
 _BIN_M = 0.04
 _SAME_FACING = np.cos(np.deg2rad(20))
+_LEVEL = np.cos(np.deg2rad(45))
 _SAME_PLANE_M = 0.12
 _MIN_SUPPORT_M2 = 0.15  # seen of a wall; less may be a thing
 _MIN_KNOWN_M2 = 0.05  # the same, where a mask says what is wall
@@ -109,7 +110,7 @@ def _found_sides(grid: LevelGrid, front: Vec3, is_wall: GridBool | None) -> dict
     if is_wall is not None and found["front"] is not None:
         # What is wall and stands before the front wall is of a side, even where too little is seen to fit a face.
         before = found["front"].distance_m + grid.points_m @ front > grid.tolerance_m + _BEFORE_FRONT_M
-        known = is_wall & before
+        known = is_wall & before & ~(np.abs(grid.normals[..., 2]) > _LEVEL)
     for name, normal in (("left", right), ("right", -right)):
         found[name] = _side(grid, normal, known, needs_faces=known is is_wall)
     return {name: side for name, side in found.items() if side is not None}
