@@ -125,7 +125,7 @@ class Obstacles:
         return (KDTree(hard), 0.0), (KDTree(tops[behind]), _BEHIND_M)
 
     def hidden(self, pose: PoseSequence) -> tuple[float, float]:
-        """Where the pelvis is lowest: the trunk's share behind what the photo shows, and the legs' there or outside it."""
+        """Where the pelvis is lowest: how much of the trunk is hidden, and of the legs hidden or outside the photo."""
         lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
         trunk = _along(lowest, "pelvis", "spine3", "neck")
         legs = [_along(lowest, f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("left", "right")]
