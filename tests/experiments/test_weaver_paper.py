@@ -35,6 +35,6 @@ def test_a_method_that_writes_zeros_scores_as_zeros_do():
 
 def test_a_learning_curve_is_the_validations_of_the_log(tmp_path: Path):
     assert learning_curve(tmp_path) == []
-    lines = [{"step": 20, "validation": None}, {"step": 40, "validation": {"loss": 0.5}}]
+    lines = [{"step": 20, "validation": None}, {"step": 40, "validation": 0.5, "figures": {"nmse": 1.0}}]
     (tmp_path / "log.jsonl").write_text("\n".join(json.dumps(line) for line in lines))
-    assert learning_curve(tmp_path) == [{"step": 40, "loss": 0.5}]
+    assert learning_curve(tmp_path) == [{"step": 40, "loss": 0.5, "nmse": 1.0}]

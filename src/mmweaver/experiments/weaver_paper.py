@@ -67,7 +67,8 @@ def learning_curve(folder: Path) -> list[dict[str, Any]]:
     if not file.is_file():
         return []
     lines = (json.loads(line) for line in file.read_text(encoding="utf-8").splitlines())
-    return [{"step": line["step"], **line["validation"]} for line in lines if line["validation"] is not None]
+    told = (line for line in lines if line["validation"] is not None)
+    return [{"step": line["step"], "loss": line["validation"], **line["figures"]} for line in told]
 
 
 def main() -> None:
