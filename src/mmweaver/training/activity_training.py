@@ -18,6 +18,7 @@ from mmweaver.training.workplace import Share, Workplace
 
 # The two activities that are withheld from the weaver are no test here, and the network shall know all twelve.
 TRAIN_SPLITS = ("train", "test_activity")
+TRAIN_MAPS, UNSEEN_MAPS = "train_maps.safetensors", "validation_maps.safetensors"
 SMOOTHING = 0.1
 AT_ONCE = 32
 
@@ -85,8 +86,8 @@ def train_activity(
     """
     place = workplace or Workplace()
     kept = {"keep": place.is_first, "device": str(place.device)}
-    unseen = activity_examples(data, ("validation",), out / "validation_maps.safetensors", **kept)
-    examples = activity_examples(data, TRAIN_SPLITS, out / "train_maps.safetensors", **kept)
+    unseen = activity_examples(data, ("validation",), out / UNSEEN_MAPS, **kept)
+    examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **kept)
     torch.manual_seed(recipe.seed)
     network = ActivityNetwork(examples.config)
     if start is not None:
