@@ -318,8 +318,19 @@ def weaver_table(folder: Path) -> str:
     lines = [_line("method", *(text for _, text in WEAVER)), _line(*["---"] * (1 + len(WEAVER)))]
     for row in record["rows"]:
         cells = [_bounded(row["metrics"][name], name in ("ra_ssim", "rd_ssim")) for name, _ in WEAVER]
-        lines.append(_line(row["method"], *cells))
+        lines.append(_line(_loudness(row), *cells))
     return "\n".join(lines)
+
+
+COLLAPSED_DB = -10.0  # energy over the truth's
+
+
+def _loudness(row: dict[str, Any]) -> str:
+    """The method's name, and that it has collapsed where it has."""
+    energy_db: float | None = row["metrics"].get("energy_db", {}).get("value")
+    if energy_db is None or energy_db > COLLAPSED_DB:
+        return row["method"]
+    return f"{row['method']}, collapsed: {-energy_db:.0f} dB too little energy"
 
 
 UNSEEN = {
