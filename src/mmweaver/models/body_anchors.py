@@ -28,11 +28,12 @@ ANCHORS: tuple[tuple[int, int, float], ...] = (
     *((joint(a), joint(b), part) for a, b, part in _TORSO),
 )
 NUM_ANCHORS = len(ANCHORS)
-# the few anchors that stand for the body in mirrors
+# the few anchors that stand for the body in mirrors, each for the anchors nearest to it
 MIRRORED = tuple(joint(name) for name in ("pelvis", "spine3", "head", "left_knee", "right_knee"))
 NUM_MIRRORS = 5  # the floor and the next largest faces
 NUM_GHOSTS = len(MIRRORED) * NUM_MIRRORS
-BODY_FEATURES, GHOST_FEATURES = 21, 15
+BODY_FEATURES, GHOST_FEATURES = 21, 16
+_EDGE_M = 0.1  # about a Fresnel zone: how softly a face ends
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +44,7 @@ class Anchors:
     velocity_mps: Tensor
     direction: Tensor  # (..., echo, 2) x and z
     features: Tensor  # (..., echo, feature)
-    is_there: Tensor  # (..., echo) 0 or 1
+    share: Tensor  # (..., echo) of the power that gets there and back: 1 for the body, what a face leaves for ghosts
 
 
 def anchor_places(joints: Tensor) -> Tensor:
@@ -79,7 +80,7 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anch
     )  # fmt: skip
     return Anchors(
         range_m=distance, velocity_mps=radial, direction=-towards[..., [0, 2]], features=features,
-        is_there=torch.ones_like(distance),
+        share=torch.ones_like(distance),
     )  # fmt: skip
 
 
@@ -99,16 +100,22 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anc
     to_image, to_place = image / far[..., None], place / near[..., None]
     # where the mirrored ray meets the face
     share = own_height / (own_height + height).clamp(min=1e-3)
-    corner = share[..., None] * image - centre
+    bounce = share[..., None] * image
+    turn = -(torch.nn.functional.normalize(bounce - place, dim=-1) * to_place).sum(-1)
+    corner = bounce - centre
     half = room.plane_half_m[:, None, :NUM_MIRRORS, None]
     margin = torch.stack([half[..., i] - (corner * axes[..., i, :]).sum(-1).abs() for i in (0, 1)], dim=-1)
     valid = (height > 0.02) & (own_height > 0.02) & (half[..., 0] > 0)
     radial = 0.5 * ((moving * to_image).sum(-1) + (speed * to_place).sum(-1))
     cos = (to_image * normal).sum(-1).abs()
+    inside = (0.5 * (1 + torch.erf(margin / _EDGE_M))).prod(dim=-1)
+    # what faces both the radar and the face is the less, the more the wave is turned
+    both = (0.5 * (1 + turn)).clamp(0, 1).square()
+    left = valid * both * inside.square() * _reflected(room.plane_reflection[:, None, :NUM_MIRRORS, None], cos)
     material = room.plane_features[:, None, :NUM_MIRRORS, None, :5].expand(*cos.shape, 5)
     features = torch.stack(
         [near.expand_as(far) / 3, far / 3, radial / 2, cos, *torch.tanh(3 * margin).unbind(-1), height / 2,
-         own_height.expand_as(far) / 2,
+         own_height.expand_as(far) / 2, torch.log10(left + 1e-4) / 2,
          *to_image.unbind(-1)[::2]],
         dim=-1,
     )  # fmt: skip
@@ -117,8 +124,17 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anc
         velocity_mps=radial.flatten(-2),
         direction=((to_image + to_place) / 2)[..., [0, 2]].flatten(-3, -2),
         features=torch.cat([features, material], dim=-1).flatten(-3, -2),
-        is_there=valid.to(far.dtype).flatten(-2),
+        share=left.flatten(-2),
     )
+
+
+def _reflected(table: Tensor, cos: Tensor) -> Tensor:
+    """What of the power a face throws back at cosines (...), of its table (..., angle)."""
+    place = cos.clamp(0, 1) * (table.shape[-1] - 1)
+    low = place.floor().clamp(max=table.shape[-1] - 2)
+    wide = table.expand(*cos.shape, table.shape[-1])
+    ends = [wide.gather(-1, (low + step).long()[..., None])[..., 0] for step in (0, 1)]
+    return ends[0] + (place - low) * (ends[1] - ends[0])
 
 
 def _bones(joints_m: Tensor) -> Tensor:

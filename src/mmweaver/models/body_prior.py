@@ -11,7 +11,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.models.body_anchors import NUM_ANCHORS, anchor_places
+from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_MIRRORS, anchor_places
 from mmweaver.simulation.body import REFERENCE_HEIGHT_M, Body
 
 NUM_POINTS = 600
@@ -37,6 +37,21 @@ def body_prior(joints_m: Tensor) -> BodyPrior:
     stacked = [np.stack(each).astype(np.float32) for each in zip(*parts, strict=True)]
     section, offset = (torch.from_numpy(each).to(joints_m) for each in stacked)
     return BodyPrior(cross_section_m2=section, offset_m=offset)
+
+
+BOTH_WAYS = 1.0  # out directly and back over the face and the reverse, of which half is blocked by what stands about
+
+
+def ghost_section(joints_m: Tensor, prior: BodyPrior) -> Tensor:
+    """Cross section (..., frame, ghost) of the body's images before a face takes its share, in square metres.
+
+    Each of the few anchors that stand for the body in mirrors has that of all anchors nearest to it.
+    """
+    places = anchor_places(joints_m)
+    nearest = torch.cdist(places, places[..., MIRRORED, :]).argmin(dim=-1)
+    of = torch.nn.functional.one_hot(nearest, len(MIRRORED)).to(prior.cross_section_m2)
+    section = BOTH_WAYS * (prior.cross_section_m2[..., None, :] @ of)[..., 0, :]
+    return section.repeat(*[1] * (section.dim() - 1), NUM_MIRRORS)
 
 
 def _one(joints_m: np.ndarray, anchors_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

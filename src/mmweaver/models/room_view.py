@@ -13,6 +13,7 @@ from mmweaver.models.apparent import between
 from mmweaver.models.radar_view import pattern_db
 from mmweaver.scene.depth_grid import DepthGrid, make_grid
 from mmweaver.simulation.antenna import scatterer_gain
+from mmweaver.simulation.mirrors import Mirror
 from mmweaver.simulation.room import RestingRoom, Room
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
@@ -21,6 +22,7 @@ NUM_POINTS, POINT_FEATURES = 5000, 11
 NUM_PLANES, PLANE_FEATURES = 8, 13
 FARTHEST_M = 8.0
 NUM_CLASSES = 182.0  # of COCO-Stuff
+REFLECTION_COS = np.linspace(0.0, 1.0, 17)  # cosines of the angle of incidence
 PLANE_KINDS = ("floor", "ceiling", "wall", "top", "panel")
 
 
@@ -39,6 +41,7 @@ class RoomView:
     plane_axes: Tensor  # (plane, 3, 3): u, v, normal
     plane_half_m: Tensor  # (plane, 2); 0 = no plane
     plane_features: Tensor  # (plane, PLANE_FEATURES)
+    plane_reflection: Tensor  # (plane, angle) share of a wave's power that a face throws back, at REFLECTION_COS
 
     @classmethod
     def of(cls, scene: Scene, config: RadarConfig, room: RestingRoom | None = None) -> "RoomView":
@@ -53,7 +56,7 @@ class RoomView:
         scale_x, scale_y = IMAGE_COLUMNS / camera.width, IMAGE_ROWS / camera.height
         view = np.ix_(rows, columns)
         points = _points(room or Room(scene, config), scene)
-        planes = _planes(scene)
+        planes = _planes(scene, config)
         return cls(
             image=_tensor(_image(grid, scene, view)),
             depth_m=_tensor(np.nan_to_num(grid.depth_m[view])),
@@ -129,20 +132,24 @@ def _padded(values: np.ndarray, count: int) -> np.ndarray:
     return np.concatenate([values, np.zeros((NUM_POINTS - count, *values.shape[1:]))])
 
 
-def _planes(scene: Scene) -> dict[str, Tensor]:
+def _planes(scene: Scene, config: RadarConfig) -> dict[str, Tensor]:
     """The floor and the largest faces, the largest first; rows of zeros where there are fewer."""
     faces = sorted(scene.planes, key=lambda plane: (plane.kind != "floor", -math.prod(plane.half_size_m)))[:NUM_PLANES]
     centre, axes = np.zeros((NUM_PLANES, 3)), np.tile(np.eye(3), (NUM_PLANES, 1, 1))
     half, features = np.zeros((NUM_PLANES, 2)), np.zeros((NUM_PLANES, PLANE_FEATURES))
+    reflection = np.zeros((NUM_PLANES, len(REFLECTION_COS)))
     for index, plane in enumerate(faces):
         centre[index], half[index] = plane.centre_m, plane.half_size_m
         axes[index] = np.stack([plane.axis_u, plane.axis_v, plane.normal])
         features[index] = _plane_features(plane)
+        mirror = Mirror(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
+        reflection[index] = np.abs(mirror.coefficient(REFLECTION_COS, config.centre_frequency_hz)) ** 2
     return {
         "plane_centre_m": _tensor(centre),
         "plane_axes": _tensor(axes),
         "plane_half_m": _tensor(half),
         "plane_features": _tensor(features),
+        "plane_reflection": _tensor(reflection),
     }
 
 

@@ -10,7 +10,6 @@ nobody can know them. Geometry (where a joint is, how the radar equation falls w
 Reference: paper, section "Generalization via Hypernetworks"; decisions 90 and 91.
 """
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -29,7 +28,7 @@ from mmweaver.models.body_anchors import (
     body_anchors,
     ghost_anchors,
 )
-from mmweaver.models.body_prior import BodyPrior, body_prior
+from mmweaver.models.body_prior import BodyPrior, body_prior, ghost_section
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
@@ -111,8 +110,8 @@ class WeaverNetwork(nn.Module):
         token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
         if "ghosts" in self.without:
-            ghosts = replace(ghosts, is_there=0 * ghosts.is_there)
-        return _placed(self.out(mixed), body, ghosts, prior)
+            ghosts = replace(ghosts, share=0 * ghosts.share)
+        return _placed(self.out(mixed), body, ghosts, prior, ghost_section(joints_m, prior))
 
     def _shown(self, image: Tensor) -> Tensor:
         kept = torch.ones(image.shape[1], device=image.device)
@@ -164,19 +163,18 @@ def _resting(distance: Tensor, direction: Tensor, cross_section: Tensor) -> Echo
     )
 
 
-def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior) -> Echoes:
+def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior, in_mirrors_m2: Tensor) -> Echoes:
     """Network's words: level, and small steps in range, velocity and direction."""
     level, step_r, step_v, step_x, step_z = out.unbind(-1)
-    there = torch.cat([body.is_there, ghosts.is_there], -1)
-    known = (prior.cross_section_m2 + FAINTEST_M2).log()
-    start = torch.cat([known, torch.full_like(ghosts.range_m, math.log(2e-4))], -1)
+    share = torch.cat([body.share, ghosts.share], -1)
+    known = torch.cat([prior.cross_section_m2, in_mirrors_m2], -1) + FAINTEST_M2
     range_m = torch.cat([body.range_m + prior.offset_m, ghosts.range_m - 0.06], -1)
     return Echoes(
         range_m=range_m + 0.2 * torch.tanh(step_r),
         velocity_mps=torch.cat([body.velocity_mps, ghosts.velocity_mps], -1) + 0.5 * torch.tanh(step_v),
         direction=torch.cat([body.direction, ghosts.direction], -2)
         + 0.1 * torch.tanh(torch.stack([step_x, step_z], -1)) / range_m[..., None],
-        cross_section_m2=there * torch.exp(start + _bounded(level)),
+        cross_section_m2=share * known * torch.exp(_bounded(level)),
     )
 
 
