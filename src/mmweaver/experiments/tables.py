@@ -15,7 +15,13 @@ from mmweaver.experiments.capture_tuning_table import capture_tuning_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
-from mmweaver.experiments.weaver_use_tables import activity_table, gain_table, paper_table, told_apart_table
+from mmweaver.experiments.weaver_use_tables import (
+    activity_table,
+    gain_table,
+    paper_table,
+    photographed_table,
+    told_apart_table,
+)
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
@@ -380,6 +386,7 @@ TABLES = {
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
+    "photographed_room": photographed_table,
     "weaver": weaver_table, "weaver_unseen": weaver_unseen_table,
     "weaver_few_shot": weaver_few_shot_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
