@@ -166,13 +166,14 @@ def _noisy(maps: PowerMaps, learner: WeaverLearner) -> PowerMaps:
 
 
 def row_of(name: str, each: list[dict[str, float]], rooms: list[str]) -> dict[str, Any]:
-    """One variant's row: means and intervals over rooms."""
+    """One variant's row: means and intervals over rooms, and each case, to be compared pair by pair."""
     metrics = {}
     for column in each[0]:
         mean, low, high = interval(np.array([one[column] for one in each]), rooms)
         unit = METRICS[column].unit if column in METRICS else "dB"
-        metrics[column] = {"value": mean, "low": low, "high": high, "unit": unit}
-    return {"method": name, "split": "validation", "n": len(each), "metrics": metrics}
+        own = [round(one[column], 4) for one in each]
+        metrics[column] = {"value": mean, "low": low, "high": high, "unit": unit, "each": own}
+    return {"method": name, "split": "validation", "n": len(each), "rooms": rooms, "metrics": metrics}
 
 
 def slug(name: str) -> str:
