@@ -169,7 +169,18 @@ def main() -> int:
         dataset = {"name": f"made-up room of {ECHOES} echoes and {FACES} faces, {NUM_FRAMES} frames"}
         name = torch.cuda.get_device_name() if device == "cuda" else "cpu, one thread"
         report(out, f"devices_{device}", dataset, measured(device), {"device": name, "threads": 1})
+    if not torch.cuda.is_available():
+        print(without_gpu())
     return 0
+
+
+def without_gpu() -> str:
+    """What to do for the GPU's figures, in one line."""
+    built = "this PyTorch is built for the CPU alone" if torch.version.cuda is None else "PyTorch finds none here"
+    return (
+        f"no GPU figures: {built}; with a GPU and its PyTorch run again: python benchmarks/devices.py"
+        " (writes results/benchmark/devices_cuda.json)"
+    )
 
 
 if __name__ == "__main__":

@@ -1,13 +1,20 @@
 """mmweaver dataset on the command line."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
+from tests.data.test_generate import contents
 
 from mmweaver.cli.main import main
 
 pytest.importorskip("zarr")
+REFERENCE = "office,living_room,lab,kitchen,library,bedroom,dining_room,meeting_room,classroom,workshop"
 
 
 def test_a_small_set_and_going_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
@@ -27,3 +34,48 @@ def test_bad_wishes_make_nothing(words: list[str], told: str, tmp_path: Path, ca
     assert main(["dataset", str(tmp_path / "d"), *words]) == 2
     assert told in capsys.readouterr().err
     assert not (tmp_path / "d").exists()
+
+
+def test_it_tells_beforehand_what_it_costs(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    words = [
+        "dataset",
+        str(tmp_path / "d"),
+        "--layouts",
+        "10",
+        "--sequences",
+        "120",
+        "--workers",
+        "4",
+        "--rooms",
+        REFERENCE,
+    ]
+    assert main([*words, "--dry-run"]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("12,000 sequences in 100 rooms to make (train ")
+    assert "22.0 GB" in told
+    assert main([*words, "--dry-run", "--json", "--geometry-only"]) == 0
+    cost = json.loads(capsys.readouterr().out)
+    assert cost["sequences"] == sum(cost["splits"].values()) == 12_000
+    assert set(cost["splits"]) == {"train", "validation", "test_room", "test_layout", "test_person", "test_activity"}
+    assert cost["disk_bytes"] < 1e9
+    assert not (tmp_path / "d").exists()
+
+
+def test_killed_with_two_workers_nothing_is_lost_or_doubled(tmp_path: Path):
+    """A kill of all processes while two rooms are under way; then the same command again."""
+    words = ["dataset", "--rooms", "office,gym", "--layouts", "2", "--sequences", "2", "--frames", "4", "--quiet"]
+    killed, whole = tmp_path / "killed", tmp_path / "whole"
+    command = [sys.executable, "-m", "mmweaver", *words, "--workers", "2", str(killed)]
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2] / "src"), "OMP_NUM_THREADS": "1"}
+    process = subprocess.Popen(command, env=environment, start_new_session=True)
+    deadline = time.monotonic() + 240
+    while process.poll() is None and not list(killed.glob("*_00?")) and time.monotonic() < deadline:
+        time.sleep(0.005)
+    os.killpg(process.pid, signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL
+    there = {room.name: room.stat().st_mtime_ns for room in killed.glob("*_00?")}
+    assert 1 <= len(there) < 4
+    assert main([*words, "--workers", "2", str(killed)]) == 0
+    assert main([*words, str(whole)]) == 0
+    assert {name: (killed / name).stat().st_mtime_ns for name in there} == there  # nothing is made twice
+    assert contents(killed) == contents(whole)

@@ -1,6 +1,9 @@
 """A small data set: whole, the same again, and safe from a kill."""
 
+import hashlib
 import json
+import os
+import platform
 import shutil
 from pathlib import Path
 
@@ -9,7 +12,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
-from mmweaver.data.generate import generate
+from mmweaver.data.generate import generate, make_one
 from mmweaver.data.plan import DatasetPlan
 from mmweaver.data.store import PLAN_FILE, read_rooms
 
@@ -47,10 +50,15 @@ def test_after_a_kill_the_rest_is_made_and_is_the_same_to_the_bit(folder: Path, 
     again = tmp_path / "again"
     shutil.copytree(folder, again)
     shutil.rmtree(again / "office_001")
-    (again / ".office_001.4711").mkdir()  # what a killed process leaves
+    host = platform.node().replace(".", "-")
+    dead, living = (again / f".office_001.{host}.{process}" for process in (4_000_000, os.getppid()))
+    for partial in (dead, living):  # what a killed process leaves, and what a worker that outlives it still writes
+        partial.mkdir()
     reports = generate(again, PLAN, AWR1843)
     assert [report.name for report in reports] == ["office_001"]
-    assert not (again / ".office_001.4711").exists()
+    assert not dead.exists()
+    assert living.exists()
+    shutil.rmtree(living)
     for first, second in zip(read_rooms(folder), read_rooms(again), strict=True):
         assert np.array_equal(first.cube(1).values, second.cube(1).values)
         assert np.array_equal(first.joints_m, second.joints_m)
@@ -68,3 +76,25 @@ def test_another_plan_and_a_full_folder_are_refused(folder: Path, tmp_path: Path
     assert (tmp_path / "mine.txt").read_text() == "keep me"
     with pytest.raises(InputError, match="no data set"):
         read_rooms(tmp_path)
+
+
+def test_a_room_that_was_made_meanwhile_is_kept(folder: Path, tmp_path: Path):
+    again = tmp_path / "again"
+    shutil.copytree(folder, again)
+    before = (again / "office_000" / "zarr.json").stat().st_mtime_ns
+    make_one((again, PLAN.rooms()[0], AWR1843, PLAN.num_frames, False))
+    assert (again / "office_000" / "zarr.json").stat().st_mtime_ns == before
+    assert not list(again.glob(".office*"))
+
+
+def test_on_ray_it_is_the_same_to_the_bit(folder: Path, tmp_path: Path):
+    pytest.importorskip("ray")
+    reports = generate(tmp_path / "set", PLAN, AWR1843, workers=2, ray_address="local")
+    assert sorted(report.name for report in reports) == ["office_000", "office_001"]
+    assert contents(tmp_path / "set") == contents(folder)
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """{file: its sha256}."""
+    files = (file for file in sorted(folder.rglob("*")) if file.is_file())
+    return {str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}

@@ -7,6 +7,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.weaver_use_tables import (
+    ablation_table,
     activity_table,
     gain_table,
     paper_table,
@@ -50,3 +51,17 @@ def test_they_show_values_with_intervals(tmp_path: Path):
 def test_without_results_they_say_so(tmp_path: Path):
     with pytest.raises(InputError, match="run the experiment"):
         gain_table(tmp_path)
+
+
+def test_an_ablation_shows_differences_of_pairs(tmp_path: Path):
+    easy_and_hard = [0.2, 0.8]
+    for name, each in (("whole", easy_and_hard), ("no_ghosts", [0.1, 0.7]), ("twin", [0.9, 0.9])):
+        metrics = {"ra_ssim": {"value": sum(each) / 2, "each": each}}
+        row = {"method": name.replace("_", " "), "metrics": metrics}
+        file = tmp_path / "weaver_ablation" / f"{name}.json"
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(json.dumps({"rows": [row]}))
+    lines = ablation_table(tmp_path).splitlines()
+    assert [line.split("|")[1].strip() for line in lines[2:]] == ["whole", "no ghosts", "twin"]
+    assert lines[2].startswith("| whole | 0.50 |")
+    assert "0.40 (-0.100; -0.100 to -0.100)" in lines[3]  # rooms differ, their differences do not

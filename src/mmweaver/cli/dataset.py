@@ -12,6 +12,8 @@ EXAMPLES = """examples:
   mmweaver dataset small/ --rooms "living_room,office" --layouts 2 --sequences 12
   mmweaver dataset light/ --geometry-only       # signals are made while training
   mmweaver dataset data/ --workers 4            # after a kill: goes on where it stopped
+  mmweaver dataset data/ --dry-run              # what it would hold and cost
+  mmweaver dataset shared/data/ --ray-address auto --workers 64     # on a Ray cluster that sees the folder
 """
 
 
@@ -39,6 +41,7 @@ def add_verb(verbs: Any) -> None:
     )  # fmt: skip
     parser.add_argument("--workers", type=whole, default=1, help="processes at once (default 1)")
     parser.add_argument("--ray-address", metavar="ADDRESS", help="run on this Ray cluster; 'local' embeds one")
+    parser.add_argument("--dry-run", action="store_true", help="tell what is to be made and what it costs, and stop")
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
@@ -47,11 +50,14 @@ def add_verb(verbs: Any) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Makes what is missing. Raises InputError."""
     import json
+    import sys
+    from dataclasses import asdict
 
     from tqdm import tqdm
 
+    from mmweaver.data.cost import check_for_space, cost_of
     from mmweaver.data.generate import generate
-    from mmweaver.data.plan import DatasetPlan
+    from mmweaver.data.plan import DatasetPlan, check_for_leaks
     from mmweaver.formats.radar_file import load_radar
 
     config = load_radar(arguments.radar)
@@ -60,10 +66,19 @@ def run(arguments: argparse.Namespace) -> int:
         sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
         geometry_only=arguments.geometry_only,
     )  # fmt: skip
+    workers = max(1, arguments.workers)
+    check_for_leaks(plan.rooms())
+    cost = cost_of(plan, config, arguments.out)
+    if arguments.dry_run:
+        print(json.dumps(asdict(cost)) if arguments.json else cost.told(workers))
+        return 0
+    if not (arguments.quiet or arguments.json):
+        print(cost.told(workers), file=sys.stderr)
+    check_for_space(cost, arguments.out)
     total = len(plan.kinds) * plan.num_layouts
     with tqdm(total=total, unit="room", disable=arguments.quiet or None) as bar:
         reports = generate(
-            arguments.out, plan, config, workers=max(1, arguments.workers), ray_address=arguments.ray_address,
+            arguments.out, plan, config, workers=workers, ray_address=arguments.ray_address,
             listener=lambda report: bar.update(),
         )  # fmt: skip
     summary = {

@@ -9,7 +9,7 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.data.plan import DatasetPlan, RoomSpec, check_for_leaks
-from mmweaver.data.store import is_done, start, write_room
+from mmweaver.data.store import is_being_written, is_done, start, write_room
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ def generate(
     check_for_leaks(rooms)
     start(folder, plan, config)
     for leftover in folder.glob(".*.*"):
-        if leftover.is_dir():
+        if leftover.is_dir() and not is_being_written(leftover):
             shutil.rmtree(leftover, ignore_errors=True)
     missing = [room for room in rooms if not is_done(folder, room.name)]
     tasks = ((folder, room, config, plan.num_frames, plan.geometry_only) for room in missing)

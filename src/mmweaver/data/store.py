@@ -16,7 +16,9 @@ that were being made. Reference: Zarr v3, xarray's `_ARRAY_DIMENSIONS`; decision
 
 import json
 import os
+import platform
 import shutil
+import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -33,6 +35,7 @@ from mmweaver.data.plan import PEOPLE_HEIGHT_M, DatasetPlan
 
 PLAN_FILE = "plan.json"
 SEQUENCES_A_SHARD = 8
+FORGOTTEN_S = 3600.0  # after which an unfinished room of another machine is taken for given up
 UNITS = {
     "iq": "1 (times iq_scale: sqrt(mW))", "iq_scale": "sqrt(mW)", "joints_m": "m", "joint_velocity_mps": "m/s",
     "photo_depth_m": "m", "range_m": "m", "radial_velocity_mps": "m/s", "frame_time_s": "s",
@@ -80,10 +83,31 @@ def is_done(folder: Path, name: str) -> bool:
     return (folder / name / "zarr.json").is_file()
 
 
+def is_being_written(partial: Path) -> bool:
+    """Whether a room's unfinished folder belongs to a process that still runs here, or may run elsewhere.
+
+    Workers outlive a parent that was killed by a room or two; what they write must not be taken from under them.
+    """
+    *_, host, process = partial.name.rsplit(".", 2)
+    if host != _host():
+        return time.time() - partial.stat().st_mtime < FORGOTTEN_S
+    try:
+        os.kill(int(process), 0)
+    except (ProcessLookupError, ValueError):
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
+def _host() -> str:
+    return platform.node().replace(".", "-") or "here"
+
+
 def write_room(folder: Path, made: MadeRoom) -> None:
     """Writes one room, whole or not at all."""
     zarr = _zarr()
-    partial = folder / f".{made.spec.name}.{os.getpid()}"
+    partial = folder / f".{made.spec.name}.{_host()}.{os.getpid()}"
     shutil.rmtree(partial, ignore_errors=True)
     group = zarr.open_group(partial, mode="w")
     sequences = made.sequences
@@ -117,8 +141,14 @@ def write_room(folder: Path, made: MadeRoom) -> None:
             "class_names": list(photo.classes.names) if photo.classes else [],
         }
     )  # fmt: skip
-    shutil.rmtree(folder / made.spec.name, ignore_errors=True)
-    partial.rename(folder / made.spec.name)
+    if not is_done(folder, made.spec.name):
+        shutil.rmtree(folder / made.spec.name, ignore_errors=True)
+    try:
+        partial.rename(folder / made.spec.name)
+    except OSError:  # another process made it meanwhile, the same to the bit
+        if not is_done(folder, made.spec.name):
+            raise
+        shutil.rmtree(partial, ignore_errors=True)
 
 
 def _packed(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

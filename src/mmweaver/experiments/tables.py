@@ -16,6 +16,7 @@ from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
 from mmweaver.experiments.weaver_use_tables import (
+    ablation_table,
     activity_table,
     gain_table,
     paper_table,
@@ -391,7 +392,7 @@ TABLES = {
     "weaver_few_shot": weaver_few_shot_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "capture_tuning": capture_tuning_table,
-    "weaver_paper": paper_table,
+    "weaver_paper": paper_table, "weaver_ablation": ablation_table,
     "activity_accuracy": activity_table, "activity_gain": gain_table, "real_or_generated": told_apart_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
 }  # fmt: skip

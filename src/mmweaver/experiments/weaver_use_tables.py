@@ -4,7 +4,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+from mmweaver.experiments.ablation_variants import VARIANTS, WHOLE
 
 SPLITS = {
     "test_room": "kinds of rooms", "test_layout": "layouts of known kinds", "test_person": "a person",
@@ -65,6 +69,46 @@ def photographed_table(folder: Path) -> str:
             f"| {row['method']} | {ssim['value']:.2f} ({ssim['low']:.2f} to {ssim['high']:.2f}) | {gap['value']:.2f} |"
         )
     return "\n".join(lines)
+
+
+ABLATION = (
+    ("ra_ssim", "RA SSIM", 2), ("rd_ssim", "RD SSIM", 2), ("mean_ra_db", "mean map RA, dB", 1),
+    ("mean_rd_db", "mean map RD, dB", 1), ("person_ra_db", "person alone RA, dB", 1),
+    ("person_rd_db", "person alone RD, dB", 1),
+)  # fmt: skip
+
+
+def ablation_table(folder: Path) -> str:
+    """A row a variant, in brackets by how much it differs from the whole network in the same rooms, with the interval
+    of that difference."""
+    rows = {row["method"]: row for file in (folder / "weaver_ablation").glob("*.json") for row in _rows(file)}
+    if WHOLE not in rows:
+        raise InputError(f"{folder / 'weaver_ablation'} lacks the whole network; run the experiment first")
+    lines = [f"| variant | {' | '.join(text for _, text, _ in ABLATION)} |", "|" + " --- |" * (1 + len(ABLATION))]
+    order = [*VARIANTS, *sorted(set(rows) - set(VARIANTS))]
+    for name in (name for name in order if name in rows):
+        cells = (
+            _beside(rows[name]["metrics"], rows[WHOLE]["metrics"], column, digits) for column, _, digits in ABLATION
+        )
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def _beside(own: dict[str, Any], whole: dict[str, Any], column: str, digits: int) -> str:
+    """A value and its difference from the whole network's, over rooms drawn again and again."""
+    if column not in own:
+        return ""
+    value = f"{own[column]['value']:.{digits}f}"
+    differences = np.array(own[column]["each"]) - np.array(whole[column]["each"])
+    if not differences.any():
+        return value
+    low, high = np.percentile(_means(differences), (2.5, 97.5))
+    more = digits + 1
+    return f"{value} ({differences.mean():+.{more}f}; {low:+.{more}f} to {high:+.{more}f})"
+
+
+def _means(values: np.ndarray) -> np.ndarray:
+    return values[stream(0, "bootstrap").integers(len(values), size=(2000, len(values)))].mean(axis=1)
 
 
 def _percent(metric: dict[str, Any]) -> str:

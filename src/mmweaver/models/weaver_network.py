@@ -31,12 +31,15 @@ from mmweaver.models.body_anchors import (
 from mmweaver.models.body_prior import BodyPrior, body_prior, ghost_section
 from mmweaver.models.echoes import Echoes
 from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
+from mmweaver.models.left_out import alike_surfaces, flat_body, joints_alone, level_alone
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.room_view import PLANE_FEATURES, POINT_FEATURES, RoomView
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
-PARTS = ("faces", "ghosts", "correction", "colour", "depth", "mask")  # that can be left out
+PARTS = (
+    "faces", "ghosts", "correction", "colour", "depth", "mask", "room prior", "body prior", "between joints", "steps",
+)  # fmt: skip # that can be left out
 LARGEST_STEP = 12.0  # of a logarithm of power
 FAINTEST_M2 = 1e-4  # of a part of the body, before the network says otherwise
 LARGEST_CORRECTION = 2.0  # the same, for what physics says of the photographed room
@@ -84,6 +87,7 @@ class WeaverNetwork(nn.Module):
     def encode_room(self, view: RoomView) -> RoomCode:
         """Rooms (room, ...) -> their code; resting echoes (room, echo)."""
         z_env, places = self.environment(self._shown(view.image))
+        view = alike_surfaces(view) if "room prior" in self.without else view
         parts = [self._points(view, places), self._faces(view)]
         resting = Echoes(
             range_m=torch.cat([part.range_m for part in parts], -1),
@@ -103,6 +107,9 @@ class WeaverNetwork(nn.Module):
             z_pose, joints_m, velocity_mps = (_picked(part, frames) for part in (z_pose, joints_m, velocity_mps))
         body = body_anchors(joints_m, velocity_mps, code.view)
         prior = body_prior(joints_m)
+        prior = flat_body(prior) if "body prior" in self.without else prior
+        if "between joints" in self.without:
+            body, prior = joints_alone(body, prior)
         ghosts = ghost_anchors(joints_m, velocity_mps, code.view)
         told = torch.stack([torch.log10(prior.cross_section_m2 + FAINTEST_M2) / 2, 5 * prior.offset_m], dim=-1)
         of_body = self.body_in(torch.cat([body.features, told], dim=-1))
@@ -111,7 +118,8 @@ class WeaverNetwork(nn.Module):
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
         if "ghosts" in self.without:
             ghosts = replace(ghosts, share=0 * ghosts.share)
-        return _placed(self.out(mixed), body, ghosts, prior, ghost_section(joints_m, prior))
+        said = level_alone(self.out(mixed)) if "steps" in self.without else self.out(mixed)
+        return _placed(said, body, ghosts, prior, ghost_section(joints_m, prior))
 
     def _shown(self, image: Tensor) -> Tensor:
         kept = torch.ones(image.shape[1], device=image.device)
@@ -126,8 +134,12 @@ class WeaverNetwork(nn.Module):
         distance = view.point_m.norm(dim=-1).clamp(min=0.1)
         if "correction" in self.without:
             level = 0 * level
-        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, LARGEST_CORRECTION))
+        cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, self._largest_correction))
         return _resting(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
+
+    @property
+    def _largest_correction(self) -> float:
+        return LARGEST_STEP if "room prior" in self.without else LARGEST_CORRECTION
 
     def _faces(self, view: RoomView) -> Echoes:
         """The mirror image of the radar in each face: an echo from the foot of the perpendicular."""
