@@ -1,11 +1,13 @@
 """The prior of a body's parts against the simulator's own skin."""
 
 import numpy as np
+import pytest
 import torch
 from tests.rooms import STANDING_M
 
 from mmweaver.core.skeleton import JOINT_NAMES, joint
-from mmweaver.models.body_prior import body_prior
+from mmweaver.models.body_anchors import NUM_GHOSTS, NUM_MIRRORS
+from mmweaver.models.body_prior import BOTH_WAYS, body_prior, ghost_section
 from mmweaver.simulation.body import Body
 
 
@@ -50,3 +52,13 @@ def test_an_arm_square_to_the_line_of_sight_returns_more_than_one_that_points_at
     assert float(_prior(down).cross_section_m2[0, 0, arm].sum()) > float(
         _prior(ahead).cross_section_m2[0, 0, arm].sum()
     )
+
+
+def test_ghosts_share_out_what_the_body_returns():
+    joints = torch.from_numpy(_standing(2.0)).float()[None, None]
+    prior = body_prior(joints)
+    ghosts = ghost_section(joints, prior)
+    assert ghosts.shape == (1, 1, NUM_GHOSTS)
+    of_each_face = ghosts.unflatten(-1, (NUM_MIRRORS, -1)).sum(-1)
+    whole = float(BOTH_WAYS * prior.cross_section_m2.sum())
+    assert of_each_face.flatten().tolist() == pytest.approx([whole] * NUM_MIRRORS, rel=1e-4)
