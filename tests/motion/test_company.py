@@ -34,7 +34,7 @@ def test_the_radars_own_bodies_do_not_touch_either(seed: int):
         one, two = people[mover].pose, people[other].pose
         corners, _ = body_of(one).hull(one.joints_m[::12])
         starts, axes, _ = body_of(two).frames(two.joints_m[::12])
-        radii = body_of(two)._radii.max(axis=1) * 1.25
+        radii = body_of(two).radii_m.max(axis=1) * 1.25
         for at in range(len(corners)):
             gap = corners[at][:, None] - starts[at][None]
             share = np.clip((gap * axes[at]).sum(-1) / np.maximum((axes[at] ** 2).sum(-1), 1e-9), 0, 1)

@@ -55,7 +55,7 @@ def ghost_section(joints_m: Tensor, prior: BodyPrior) -> Tensor:
 
 
 def _one(joints_m: np.ndarray, anchors_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    body = _body()
+    body = middling_body()
     skin = body.skin(joints_m.astype(float))
     distance = np.linalg.norm(skin.place_m, axis=-1)
     cos = -(skin.normal * skin.place_m).sum(-1) / np.maximum(distance, 1e-6)
@@ -69,5 +69,6 @@ def _one(joints_m: np.ndarray, anchors_m: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 @lru_cache(maxsize=1)
-def _body() -> Body:
+def middling_body() -> Body:
+    """A person of middle height; nobody's skin."""
     return Body(SUBJECT, REFERENCE_HEIGHT_M, NUM_POINTS)

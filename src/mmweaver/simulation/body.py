@@ -111,7 +111,7 @@ class Body:
         return 2 * np.pi * radius * _length_m(capsule) * (1 + sum(_cap_shares(capsule)))
 
     @cached_property
-    def _radii(self) -> np.ndarray:
+    def radii_m(self) -> np.ndarray:
         """(capsule, 2)."""
         return np.array([(c.start_radius_m, c.end_radius_m) for c in CAPSULES]) * self.scale
 
@@ -122,7 +122,8 @@ class Body:
         return np.array(grows)
 
     @cached_property
-    def _widths(self) -> np.ndarray:
+    def widths(self) -> np.ndarray:
+        """(capsule,) how much wider than deep each is."""
         return np.array([TORSO_WIDTH_FRONT if c.start in TORSO else 1.0 for c in CAPSULES])
 
     def frames(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -156,12 +157,12 @@ class Body:
     def skin(self, joints_m: np.ndarray, chest_m: np.ndarray | None = None) -> Skin:
         """Skin points for joints (time, 22, 3); `chest_m` (time,) is how far the chest's front stands out."""
         starts, axes, rotations = self.frames(joints_m)
-        part, radii = self.part, self._radii
+        part, radii = self.part, self.radii_m
         along = np.clip(self.along, 0.0, 1.0)
         radius = radii[part, 0] + (radii[part, 1] - radii[part, 0]) * along
         ring = np.sqrt(1 - self.cap_sine**2)
         local = np.stack([np.cos(self.angle_rad) * ring, np.sin(self.angle_rad) * ring, self.cap_sine], -1)
-        width = self._widths[part]
+        width = self.widths[part]
         offset = local * radius[:, None]
         offset[:, 0] *= width
         normal = local.copy()
@@ -183,11 +184,11 @@ class Body:
         circle = np.stack([np.cos(turns), np.sin(turns), np.zeros(RING)], -1)
         rings = []
         for end in (0, 1):
-            offset = circle[None] * self._radii[:, end, None, None]
-            offset[..., 0] *= self._widths[:, None]
+            offset = circle[None] * self.radii_m[:, end, None, None]
+            offset[..., 0] *= self.widths[:, None]
             centre = starts + axes * end
             rings.append(centre[:, :, None] + np.einsum("tcij,crj->tcri", rotations, offset))
-        reach = self._radii * np.array([-1.0, 1.0])
+        reach = self.radii_m * np.array([-1.0, 1.0])
         tips = [
             starts + axes * end + rotations[..., 2] * reach[None, :, end, None] for end in (0, 1)
         ]  # fmt: skip
