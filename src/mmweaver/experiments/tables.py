@@ -204,15 +204,26 @@ def people_table(folder: Path) -> str:
 
 
 def statistics_table(folder: Path) -> str:
-    """Recorded beside simulated: one row a number, the simulated ones with their range over seeds."""
+    """Recorded beside simulated, one row a number, each with the range over its quarters; bold where those part."""
     (record,) = _records(folder / "signal_statistics")
     rows = record["rows"]
     lines = [_line("number", *(f"{row['dataset']['name']}, {row['dataset']['origin']}" for row in rows))]
     lines.append(_line(*["---"] * (1 + len(rows))))
     for name, metric in rows[0]["metrics"].items():
-        cells = [_with_interval(row["metrics"][name]) for row in rows]
+        cells = []
+        for real, made in zip(rows[::2], rows[1::2], strict=True):
+            both = [row["metrics"].get(name) for row in (real, made)]
+            cells += ["", ""] if both[0] is None else _beside(*both)
         lines.append(_line(f"{metric['definition']} ({metric['unit']})", *cells))
     return "\n".join(lines)
+
+
+def _beside(real: dict[str, Any], made: dict[str, Any]) -> list[str]:
+    (low, high), (least, most) = real["quarters"], made["quarters"]
+    part = high < least or most < low
+    texts = [f"{_number(one['value'])}; {_number(a)} to {_number(b)}" for one, a, b in (
+        (real, low, high), (made, least, most))]  # fmt: skip
+    return [f"**{text}**" for text in texts] if part else texts
 
 
 AFFORDANCES = (
