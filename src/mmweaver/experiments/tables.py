@@ -12,6 +12,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.benchmark_tables import dataset_cost_table, weaver_speed_table
 from mmweaver.experiments.capture_tuning_table import capture_tuning_table
+from mmweaver.experiments.mars_table import mars_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
@@ -372,7 +373,7 @@ def _bounded(metric: dict[str, Any], with_edges: bool) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
-    "several_people": people_table, "micro_doppler": micro_doppler_table,
+    "mars": mars_table, "several_people": people_table, "micro_doppler": micro_doppler_table,
     "affordances": affordances_table,
     "segmenter": segmenter_table, "segmenter_affordances": segmenter_affordances_table,
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
