@@ -17,7 +17,7 @@ from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
 from mmweaver.experiments.weaver_use_tables import activity_table, gain_table, paper_table, told_apart_table
-from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
+from mmweaver.experiments.zero_shot_table import curve_table, limbs_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FINER, RADII = (1.5, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
@@ -387,7 +387,7 @@ TABLES = {
     "capture_tuning": capture_tuning_table,
     "weaver_paper": paper_table,
     "activity_accuracy": activity_table, "activity_gain": gain_table, "real_or_generated": told_apart_table,
-    "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
+    "zero_shot": zero_shot_table, "zero_shot_curve": curve_table, "zero_shot_limbs": limbs_table,
 }  # fmt: skip
 
 
