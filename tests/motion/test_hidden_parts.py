@@ -3,10 +3,11 @@
 import dataclasses
 
 import numpy as np
+import pytest
 from tests.motion.rooms import FLOOR_Z_M, room
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
-from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of
+from mmweaver.motion.hidden_parts import feet_of, hidden_along, hidden_share, legs_of, tops_of, under, unseen_share
 
 
 def test_low_points_reach_the_floor_and_high_ones_do_not():
@@ -87,3 +88,34 @@ def test_what_is_behind_a_thing_is_hidden():
     scene = _with_table(2.0)
     assert hidden_share(scene, np.array([[0.0, 2.5, 0.0], [0.0, 1.5, 0.0]])) == 0.5
     assert hidden_share(scene, np.array([[9.0, 2.5, 0.0]])) == 0.0  # beside the picture
+    assert unseen_share(scene, np.array([[9.0, 2.5, 0.0], [0.0, 2.5, 0.0], [0.0, 1.5, 0.0]])) == pytest.approx(2 / 3)
+
+
+def test_a_way_behind_a_thing_is_one_that_the_camera_does_not_see():
+    scene = _with_table(2.0)
+    tracks = np.array([[[0.0, 1.5], [0.0, 1.6]], [[0.0, 1.5], [0.0, 2.8]], [[np.nan, np.nan], [0.0, 1.5]]])
+    hidden = hidden_along(scene, tracks)
+    assert hidden[0].tolist() == [0.0, 0.0]
+    assert hidden[1, 1] > 0.9
+    assert hidden[2, 0] == 0.0
+
+
+def test_under_a_top_may_be_anything_that_is_not_seen_through():
+    top = np.array([[0.0, 2.5, FLOOR_Z_M + 0.7]])
+    below = under(_with_table(2.0), top)
+    assert np.ptp(below[:, 2]) > 0.5
+    assert below[:, 2].max() < FLOOR_Z_M + 0.7
+    assert len(under(_with_table(4.5), top)) == 0
+
+
+def test_a_top_goes_on_behind_the_chairs_that_hide_a_part_of_it():
+    """Two parts of a level top 2 m away and below the camera; between them something stands 1.2 m away, or nothing."""
+    lens = CameraIntrinsics(fx=200.0, fy=200.0, cx=159.5, cy=119.5, width=320, height=240)
+    x, y = np.meshgrid(np.arange(-0.8, 0.8, 0.02), np.arange(2.0, 2.5, 0.02))
+    seen = np.abs(x) > 0.2
+    points = np.column_stack([x[seen], y[seen], np.full(int(seen.sum()), -0.4)])
+    for before_m, hidden in ((1.2, True), (4.0, False)):
+        photo = RgbdPhoto(rgb=np.zeros((240, 320, 3), np.uint8), depth_m=np.full((240, 320), before_m), intrinsics=lens)
+        tops = tops_of(dataclasses.replace(room(), photo=photo), points)
+        between = (np.abs(tops[:, 0]) < 0.1) & (np.abs(tops[:, 1] - 2.25) < 0.1)
+        assert between.any() == hidden

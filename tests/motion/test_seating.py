@@ -6,7 +6,7 @@ from tests.motion.rooms import WINDOW_M, room, seat
 
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import FloorMap
-from mmweaver.motion.seating import Sitting, as_it_may_be, seats_of
+from mmweaver.motion.seating import Sitting, as_it_may_be, seats_of, some_of
 
 
 def _ways_of_sitting(sitting: Sitting) -> list[Sitting]:
@@ -35,3 +35,9 @@ def test_turned_or_further_back_the_feet_stay_before_the_seat():
 def test_nobody_sits_back_on_a_shallow_seat():
     shallow = Sitting(feet_m=np.array([0.0, 2.0]), facing_rad=-1.57, height_m=0.45, seat_m=np.zeros(2), depth_m=0.3)
     assert all((way.seat_m == shallow.seat_m).all() for way in _ways_of_sitting(shallow))
+
+
+def test_some_seats_are_left_out_but_never_all():
+    seats = seats_of(FloorMap(room(seats=(seat(-0.6), seat(0.6))), WINDOW_M, 1.75), Body(1.75))
+    kept = [some_of(seats, np.random.default_rng(k)) for k in range(50)]
+    assert {len(some) for some in kept} == {1, 2}

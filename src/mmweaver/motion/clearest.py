@@ -11,7 +11,8 @@ from mmweaver.motion.placement import Placement
 
 MOST_MOVED, WORTH_A_NOTE_M = 40, 0.03
 MARGIN_M = 0.03  # depth is noisy, and what stands there is seen from one side
-_HIDDEN_M = 0.075  # sitting with the trunk hidden counts as getting in so far: nobody knows into what
+_HIDDEN_M, _LEGS_HIDDEN_M = 0.075, 0.04  # a sitter's hidden trunk and legs count as this far in: none knows into what
+_LITTLE_M = 0.01  # of it is no reason to look for another place
 _AGAIN_M = 0.0  # whoever gets in is placed once more, with other ways and ways to sit
 
 
@@ -22,12 +23,13 @@ class Moved:
     placement: Placement
     pose: PoseSequence
     deep_m: float
-    hidden_m: float = 0.0  # added for what is hidden
+    hidden_m: float = 0.0  # added for a hidden trunk
+    legs_hidden_m: float = 0.0  # added for hidden legs: under a table's top they often are
 
     @property
     def bad_m(self) -> float:
         """By what placements are compared."""
-        return self.deep_m + self.hidden_m
+        return self.deep_m + self.hidden_m + self.legs_hidden_m
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -47,8 +49,10 @@ def clearest(
     get in so far that it must be said, `draw(2)` such that leave the room's seats.
     """
     best = _best(draw(0), moved, obstacles)
-    for again, enough_m in ((1, _AGAIN_M), (2, WORTH_A_NOTE_M)):
-        if best.bad_m <= enough_m:
+    for again in (1, 2):
+        # For hidden legs alone nobody leaves the room's seats.
+        bad_m, enough_m = (best.bad_m, _AGAIN_M) if again == 1 else (best.deep_m + best.hidden_m, WORTH_A_NOTE_M)
+        if bad_m <= enough_m:
             break
         try:
             other = _best(draw(again), moved, obstacles)
@@ -64,11 +68,14 @@ def _best(placements: Sequence[Placement], moved: Callable[[Placement], PoseSequ
         pose = moved(placement)
         # From the margin on all are alike.
         deep_m = obstacles.deepest_m(pose, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
-        hidden_m = _HIDDEN_M * obstacles.trunk_hidden(pose) if placement.seats_m else 0.0
-        one = Moved(placement=placement, pose=pose, deep_m=deep_m, hidden_m=hidden_m)
+        trunk, legs = obstacles.hidden(pose) if placement.seats_m else (0.0, 0.0)
+        one = Moved(
+            placement=placement, pose=pose, deep_m=deep_m, hidden_m=_HIDDEN_M * trunk,
+            legs_hidden_m=_LEGS_HIDDEN_M * legs,
+        )  # fmt: skip
         if best is None or one.bad_m < best.bad_m:
             best = one
-        if one.bad_m <= -MARGIN_M:
+        if one.deep_m <= -MARGIN_M and one.hidden_m + one.legs_hidden_m <= _LITTLE_M:
             break
     assert best is not None
     return best

@@ -13,9 +13,12 @@ _LEG_STEP_M, _TOP_M, _LEG_HALF_M = 0.05, 0.04, 0.025
 _LEAST_UNSEEN = 0.6
 _RIM_M, _SLICE_M, _THIN_M, _LONG_M = (0.58, 1.05), 0.03, 0.12, 0.55  # of a table's top: how high, thick and long
 _SQUARE_M, _REACH_M = 0.05, 5.0
+_GAP = 13  # squares: so wide do chairs before a table hide its top
 _UNSEEN_M, _TOP_DEPTH_M, _ALONG_M = 0.1, 0.8, 0.03  # a top so little below the camera is seen by its rim alone
 _BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # so far behind it, a measurement passed it by
 _BEFORE_M = 0.15  # the body itself is as thick
+_LEGS_M, _ASIDE_M = (0.15, 0.35, 0.55, 0.75), 0.2  # where legs are as somebody goes about
+_UNDER_STEP_M, _UNDER_GRAIN_M = 0.05, 0.05
 
 
 def feet_of(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
@@ -60,11 +63,27 @@ def tops_of(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
     near_top = in_band & (height > highest[square] - 2 * _THIN_M)
     np.minimum.at(lowest, square[near_top], height[near_top])
     thin = highest - lowest < _THIN_M
-    is_top = np.zeros(side**2, bool)
+    is_top, between = np.zeros(side**2, bool), []
     for level in np.arange(*_RIM_M, _SLICE_M):
-        is_top |= _long_patches((thin & (np.abs(highest - level) <= _SLICE_M)).reshape(side, side)).ravel()
+        at_level = _long_patches((thin & (np.abs(highest - level) <= _SLICE_M)).reshape(side, side))
+        is_top |= at_level.ravel()
+        row, column = np.nonzero(_between(at_level))
+        middle = np.stack([column, row], axis=-1) * _SQUARE_M + 0.5 * _SQUARE_M - _REACH_M
+        between.append(np.column_stack([middle, np.full(len(middle), level + scene.floor_z_m)]))
     tops = points[near_top & is_top[square]]
-    return np.concatenate([tops, _behind_rims(scene, tops)])
+    unseen = np.concatenate(between)
+    unseen = unseen[_behind_m(scene, unseen) < -_BEFORE_M]
+    return np.concatenate([tops, unseen, _behind_rims(scene, tops)])
+
+
+def _between(squares: np.ndarray) -> np.ndarray:
+    """What lies among squares, at most `_GAP` apart, and is none of them."""
+    from scipy import ndimage
+
+    if not squares.any():
+        return squares
+    wide = ndimage.maximum_filter(squares, _GAP, mode="constant")
+    return ndimage.minimum_filter(wide, _GAP, mode="constant", cval=1) & ~squares
 
 
 def _long_patches(squares: np.ndarray) -> np.ndarray:
@@ -107,12 +126,42 @@ def hidden_share(scene: Scene, points: Points) -> float:
     return float((_behind_m(scene, points) < -_BEFORE_M).mean())
 
 
+def unseen_share(scene: Scene, points: Points) -> float:
+    """Of places, the share that is hidden or outside the picture."""
+    return float(((_behind_m(scene, points) < -_BEFORE_M) | ~_in_picture(scene, points)[0]).mean())
+
+
+def hidden_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> Float[np.ndarray, "way place"]:
+    """The share of legs and feet that the camera would not see at each place of each way."""
+    aside = _ASIDE_M * np.array([(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)])
+    places = (tracks_m[:, :, None] + aside)[:, :, :, None]
+    height = scene.floor_z_m + np.array(_LEGS_M)
+    shape = (*places.shape[:3], len(height))
+    points = np.concatenate([np.broadcast_to(places, (*shape, 2)), np.broadcast_to(height, shape)[..., None]], axis=-1)
+    hidden = _behind_m(scene, points.reshape(-1, 3)) < -_BEFORE_M
+    return hidden.reshape(*tracks_m.shape[:2], -1).mean(axis=-1)
+
+
+def under(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
+    """What may be under tables' tops: everything but where something farther was seen below them."""
+    _, one_each = np.unique(np.rint(tops[:, :2] / _UNDER_GRAIN_M).astype(int), axis=0, return_index=True)
+    tops = tops[one_each]
+    steps = np.arange(_UNDER_STEP_M, _RIM_M[1], _UNDER_STEP_M)
+    below = (tops[None] - steps[:, None, None] * np.array([0.0, 0.0, 1.0])).reshape(-1, 3)
+    below = below[below[:, 2] > scene.floor_z_m + _SOLE_M]
+    return below[~_seen_through(scene, below)]
+
+
 def _behind_m(scene: Scene, points: Points) -> Float[np.ndarray, " point"]:
     """How far behind each point something was measured, negative before it; nan where nothing was."""
-    photo = scene.photo
-    pixels, depth = project(points @ scene.radar_from_camera, photo.intrinsics)
-    rows, columns = photo.depth_m.shape
+    inside, row, column, depth = _in_picture(scene, points)
+    return np.where(inside, scene.photo.depth_m[row, column] - depth, np.nan)
+
+
+def _in_picture(scene: Scene, points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Which points are in the picture; their rows and columns there (0 where not), and their depths."""
+    pixels, depth = project(points @ scene.radar_from_camera, scene.photo.intrinsics)
+    rows, columns = scene.photo.depth_m.shape
     column, row = np.nan_to_num(np.round(pixels), nan=-1.0).clip(-1, 1e6).astype(int).T
     inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows) & (depth > 0)
-    measured = photo.depth_m[np.where(inside, row, 0), np.where(inside, column, 0)]
-    return np.where(inside, measured - depth, np.nan)
+    return inside, np.where(inside, row, 0), np.where(inside, column, 0), depth

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of
+from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of, under, unseen_share
 
 Array = np.ndarray
 # Radii of a person of 1.75 m about the bones, and what may be pressed by them.
@@ -97,6 +97,13 @@ class Obstacles:
 
         return KDTree(self._solid_m)
 
+    @cached_property
+    def _under(self) -> Any:
+        """For the nearest point that may be something under a table's top, for whoever does not sit there."""
+        from scipy.spatial import KDTree
+
+        return KDTree(under(self.scene, self._tops_m))
+
     def _not_of_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> tuple[tuple[Any, float], ...]:
         """For the nearest point about a seat that is not the seat's own: what is before it, above its surface, and
         tables behind it. With each how far the body must keep from it besides.
@@ -117,12 +124,12 @@ class Obstacles:
         hard = np.concatenate([self._solid_m[near & (before | beside)], tops[~behind]])
         return (KDTree(hard), 0.0), (KDTree(tops[behind]), _BEHIND_M)
 
-    def trunk_hidden(self, pose: PoseSequence) -> float:
-        """Share of the trunk, where it is lowest, that is behind what the photo shows."""
+    def hidden(self, pose: PoseSequence) -> tuple[float, float]:
+        """Where the pelvis is lowest: how much of the trunk is hidden, and of the legs hidden or outside the photo."""
         lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
-        ends = np.stack([lowest[joint(name)] for name in ("pelvis", "spine3", "neck")])
-        trunk = np.concatenate([ends[:2] + share * (ends[1:] - ends[:2]) for share in _SHARES])
-        return hidden_share(self.scene, trunk)
+        trunk = _along(lowest, "pelvis", "spine3", "neck")
+        legs = [_along(lowest, f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("left", "right")]
+        return hidden_share(self.scene, trunk), unseen_share(self.scene, np.concatenate(legs))
 
     def deepest_m(
         self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
@@ -157,10 +164,14 @@ class Obstacles:
         margin_m: float,
     ) -> float:
         allowed, worst = np.full(len(points), _ALLOWED_M - margin_m), 0.0
+        sits = np.zeros(len(points), bool)
         for seat, tree, besides_m in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
             before, _ = tree.query(points, distance_upper_bound=_FARTHEST_M)
             worst = max(worst, float((radius + besides_m - before - allowed)[at_seat].max(initial=0.0)))
+            sits |= at_seat
+        unknown, _ = self._under.query(points[~sits], distance_upper_bound=_FARTHEST_M)
+        worst = max(worst, float((radius[~sits] - unknown - allowed[~sits]).max(initial=0.0)))
         for seat, *_ in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
             allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M - margin_m)
@@ -177,3 +188,9 @@ class Obstacles:
                 # Far behind a wall is another room seen through a door.
                 worst = max(worst, float(into[into < 0.6].max(initial=0.0)))
         return worst
+
+
+def _along(joints: Float[Array, "joint 3"], *names: str) -> Float[Array, "place 3"]:
+    """Places along the bones from joint to joint."""
+    ends = np.stack([joints[joint(name)] for name in names])
+    return np.concatenate([ends[:-1] + share * (ends[1:] - ends[:-1]) for share in _SHARES])

@@ -12,6 +12,7 @@ from mmweaver.motion.activities import CLEARANCE_M
 from mmweaver.motion.apart import keeps_clear
 from mmweaver.motion.body import Body
 from mmweaver.motion.floor_map import BODY_RADIUS_M, FloorMap
+from mmweaver.motion.hidden_parts import hidden_along
 from mmweaver.motion.other_ways import check_floor, is_other, lay_other, turn_by
 from mmweaver.motion.plan import MotionPlan, Step
 from mmweaver.motion.root_path import Move, RootPath
@@ -44,6 +45,7 @@ from mmweaver.motion.way import (
 Array = np.ndarray
 TRIES, ENOUGH = 500, 60
 CLOSEST_FEET_M = 0.05
+_HIDDEN_COST, _HIDDEN_SITTING_COST, _LOOKS, _SEAT_M = 4.0, 1.5, 12, 0.65
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +66,7 @@ def place(
     """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
     `start_m` fixes where the person starts. `again` draws others, with more ways to sit: 1 leaves out some seats, 2
-    perhaps all where the room has none that the sentence names. Raises InputError where the start is not free or out
+    all where the room has none that the sentence names. Raises InputError where the start is not free or out
     of view, where there is no room, or where the room lacks what a step goes to, saying what there is.
     """
     check_targets(plan, floor.scene)
@@ -86,7 +88,18 @@ def place(
             break
     if not ways:
         raise InputError(_no_room(plan, floor, start_m))
-    return [_placement(way) for way in sorted(ways, key=lambda way: way.cost)]
+    order = np.argsort([way.cost for way in ways] + _hidden_costs(ways, plan, floor), kind="stable")
+    return [_placement(ways[k]) for k in order]
+
+
+def _hidden_costs(ways: list[Way], plan: MotionPlan, floor: FloorMap) -> Float[Array, " way"]:
+    """Against ways, and feet before seats, behind things: the camera does not see what stands there."""
+    tracks_m = np.array([way.path().position_m(np.linspace(0.0, plan.steps[-1].end_s, _LOOKS)) for way in ways])
+    cost = np.full(tracks_m.shape[:2], _HIDDEN_COST)
+    for way, costs, track_m in zip(ways, cost, tracks_m, strict=True):
+        for seat in way.seats_m:
+            costs[np.hypot(*(track_m - np.array(seat)).T) < _SEAT_M] = _HIDDEN_SITTING_COST
+    return (cost * hidden_along(floor.scene, tracks_m)).max(axis=1)
 
 
 def _placement(way: Way) -> Placement:
@@ -118,10 +131,8 @@ def _try(
     if again:
         named = next((step.seat for step in plan.steps if step.seat), "")
         is_there = named and bool(fitting(seats, named, floor.scene))
-        seats = [
-            as_it_can_be(seat, rng)
-            for seat in some_of(preferred(seats, named, floor.scene), rng, all_may_go=again > 1 and not is_there)
-        ]
+        left = [] if again > 1 and not is_there else some_of(preferred(seats, named, floor.scene), rng)
+        seats = [as_it_can_be(seat, rng) for seat in left]
     else:
         seats = [as_it_may_be(seat, rng) for seat in seats]
     way, sitting = _start(plan, floor, body, rng, start_m, seats)
@@ -140,7 +151,9 @@ def _try(
         check_floor(way, step, body)
         way.from_seat = way.from_seat or step.lower == "stand_up"
         if step.lower == "sit_down" and k:
-            sitting = sitting or _stool_here(way, body, rng, previous=plan.steps[k - 1], none_at_all=not seats)
+            sitting = sitting or _stool_here(
+                way, body, rng, previous=plan.steps[k - 1], none_at_all=not floor.scene.seats
+            )
             way.turn_to(sitting.facing_rad, step.start_s - 0.3)
         way.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
         if sitting is not None:

@@ -102,10 +102,10 @@ def as_it_can_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     return _turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
 
 
-def some_of(seats: list[Sitting], rng: np.random.Generator, *, all_may_go: bool) -> list[Sitting]:
-    """The seats without some, at random."""
+def some_of(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
+    """The seats without some, at random; at least one stays."""
     kept = [seat for seat in seats if rng.random() > _LEFT_OUT]
-    return kept if kept or all_may_go else seats
+    return kept or seats
 
 
 def _turned(sitting: Sitting, turn: float) -> Sitting:
