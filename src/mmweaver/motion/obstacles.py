@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of, under, unseen_share
+from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, pillars_of, tops_of, under, unseen_share
 
 Array = np.ndarray
 # Radii of a person of 1.75 m about the bones, and what may be pressed by them.
@@ -75,6 +75,11 @@ class Obstacles:
         return tops_of(self.scene, self._measured_m)
 
     @cached_property
+    def _legs_m(self) -> Float[Array, "point 3"]:
+        """Of tables: no thigh sinks into them as into a seat."""
+        return np.concatenate([pillars_of(self.scene, self._measured_m, self._tops_m), legs_of(self.scene)])
+
+    @cached_property
     def _solid_m(self) -> Float[Array, "point 3"]:
         """What was measured above the floor, and what must be just behind and under it."""
         points = self._measured_m
@@ -121,7 +126,8 @@ class Obstacles:
         tops = self._tops_m[np.hypot(*(self._tops_m[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + 0.3]
         tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
         behind = (tops[:, :2] - np.array(seat)) @ ahead <= _SEAT_AHEAD_M
-        hard = np.concatenate([self._solid_m[near & (before | beside)], tops[~behind]])
+        legs = self._legs_m[(self._legs_m[:, :2] - np.array(seat)) @ ahead > 0.0]
+        hard = np.concatenate([self._solid_m[near & (before | beside)], tops[~behind], legs])
         return (KDTree(hard), 0.0), (KDTree(tops[behind]), _BEHIND_M)
 
     def hidden(self, pose: PoseSequence) -> tuple[float, float]:
