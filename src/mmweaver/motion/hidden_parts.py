@@ -143,7 +143,7 @@ def hidden_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> Fl
     return hidden.reshape(*tracks_m.shape[:2], -1).mean(axis=-1)
 
 
-def pillars_of(scene: Scene, points: Points, tops: Points) -> Float[np.ndarray, "leg 3"]:
+def pillars_of(scene: Scene, points: Points, tops: Float[np.ndarray, "top 3"]) -> Float[np.ndarray, "leg 3"]:
     """Of points those of upright things under or beside tables' tops, legs mostly, and what is just behind them."""
     if not len(tops):
         return np.zeros((0, 3))
@@ -156,7 +156,7 @@ def pillars_of(scene: Scene, points: Points, tops: Points) -> Float[np.ndarray, 
     is_top[tuple(_squares(tops, side)[0].T)] = True
     low[tuple(square[inside & (height < _LEG_M[0])].T)] = True
     high[tuple(square[inside & (height > _LEG_M[1]) & (height < _RIM_M[1])].T)] = True
-    is_leg = low & high & ndimage.binary_dilation(is_top, iterations=2)
+    is_leg = low & high & np.asarray(ndimage.binary_dilation(is_top, iterations=2), bool)
     legs = points[inside & is_leg[tuple(square.T)] & (height < _RIM_M[1])]
     away = legs * _LEG_THICK_M / np.maximum(np.linalg.norm(legs, axis=1, keepdims=True), 1e-6)
     return np.concatenate([legs, legs + away])
@@ -165,7 +165,7 @@ def pillars_of(scene: Scene, points: Points, tops: Points) -> Float[np.ndarray, 
 def _squares(points: Points, side: int) -> tuple[np.ndarray, np.ndarray]:
     """Row and column of the square of each point (0 where none is), and whether there is one."""
     square = np.floor((points[:, 1::-1] + _REACH_M) / _SQUARE_M).astype(int)
-    inside = ((square >= 0) & (square < side)).all(axis=1)
+    inside = (square.min(axis=1) >= 0) & (square.max(axis=1) < side)
     return np.where(inside[:, None], square, 0), inside
 
 
