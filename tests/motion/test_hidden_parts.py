@@ -138,7 +138,7 @@ def test_a_table_s_legs_are_pillars_and_a_seat_under_it_is_none():
     leg = np.column_stack([np.full(len(height), 0.5), np.full(len(height), 2.05), FLOOR_Z_M + height])
     seat = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, FLOOR_Z_M + 0.45)])
     seat = seat[np.abs(seat[:, 0]) < 0.2]
-    legs = pillars_of(scene, np.concatenate([top, leg, seat]), top)
+    legs = pillars_of(scene, np.concatenate([top, leg, seat]))
     assert len(legs) > 0
     assert np.abs(legs[:, 0] - 0.5).max() < 0.06
-    assert len(pillars_of(scene, leg, np.zeros((0, 3)))) == 0
+    assert len(pillars_of(scene, np.concatenate([top, seat]))) == 0

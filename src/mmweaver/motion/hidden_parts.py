@@ -13,7 +13,7 @@ _LEG_STEP_M, _TOP_M, _LEG_HALF_M = 0.05, 0.04, 0.025
 _LEAST_UNSEEN = 0.6
 _RIM_M, _SLICE_M, _THIN_M, _LONG_M = (0.58, 1.05), 0.03, 0.12, 0.55  # of a table's top: how high, thick and long
 _SQUARE_M, _REACH_M = 0.05, 5.0
-_LEG_M, _LEG_THICK_M = (0.3, 0.5), 0.04  # a leg is seen below and above: below a seat and above it
+_LEG_M, _LEG_THICK_M = (0.3, 0.55), 0.04  # a leg is seen below a seat and above it
 _GAP = 13  # squares: so wide do chairs before a table hide its top
 _UNSEEN_M, _TOP_DEPTH_M, _ALONG_M = 0.1, 0.8, 0.03  # a top so little below the camera is seen by its rim alone
 _BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # so far behind it, a measurement passed it by
@@ -143,21 +143,15 @@ def hidden_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> Fl
     return hidden.reshape(*tracks_m.shape[:2], -1).mean(axis=-1)
 
 
-def pillars_of(scene: Scene, points: Points, tops: Float[np.ndarray, "top 3"]) -> Float[np.ndarray, "leg 3"]:
-    """Of points those of upright things under or beside tables' tops, legs mostly, and what is just behind them."""
-    if not len(tops):
-        return np.zeros((0, 3))
-    from scipy import ndimage
-
+def pillars_of(scene: Scene, points: Points) -> Float[np.ndarray, "leg 3"]:
+    """Of points those of upright things, tables' legs mostly, and what is just behind them: no cushion of a seat."""
     side = int(2 * _REACH_M / _SQUARE_M)
-    is_top, low, high = (np.zeros((side, side), bool) for _ in range(3))
+    low, high = np.zeros((side, side), bool), np.zeros((side, side), bool)
     height = points[:, 2] - scene.floor_z_m
     square, inside = _squares(points, side)
-    is_top[tuple(_squares(tops, side)[0].T)] = True
     low[tuple(square[inside & (height < _LEG_M[0])].T)] = True
     high[tuple(square[inside & (height > _LEG_M[1]) & (height < _RIM_M[1])].T)] = True
-    is_leg = low & high & np.asarray(ndimage.binary_dilation(is_top, iterations=2), bool)
-    legs = points[inside & is_leg[tuple(square.T)] & (height < _RIM_M[1])]
+    legs = points[inside & (low & high)[tuple(square.T)] & (height < _RIM_M[1])]
     away = legs * _LEG_THICK_M / np.maximum(np.linalg.norm(legs, axis=1, keepdims=True), 1e-6)
     return np.concatenate([legs, legs + away])
 

@@ -76,8 +76,8 @@ class Obstacles:
 
     @cached_property
     def _legs_m(self) -> Float[Array, "point 3"]:
-        """Of tables: no thigh sinks into them as into a seat."""
-        return np.concatenate([pillars_of(self.scene, self._measured_m, self._tops_m), legs_of(self.scene)])
+        """Upright things, tables' legs among them: no thigh sinks into those as into a seat."""
+        return np.concatenate([pillars_of(self.scene, self._measured_m), legs_of(self.scene)])
 
     @cached_property
     def _solid_m(self) -> Float[Array, "point 3"]:
@@ -126,7 +126,7 @@ class Obstacles:
         tops = self._tops_m[np.hypot(*(self._tops_m[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + 0.3]
         tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
         behind = (tops[:, :2] - np.array(seat)) @ ahead <= _SEAT_AHEAD_M
-        legs = self._legs_m[(self._legs_m[:, :2] - np.array(seat)) @ ahead > 0.0]
+        legs = self._legs_m[(self._legs_m[:, :2] - np.array(seat)) @ ahead > _SEAT_AHEAD_M]
         hard = np.concatenate([self._solid_m[near & (before | beside)], tops[~behind], legs])
         return (KDTree(hard), 0.0), (KDTree(tops[behind]), _BEHIND_M)
 
