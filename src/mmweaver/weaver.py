@@ -39,7 +39,6 @@ from mmweaver.pictures.view import View
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.capture_photo import read_capture_photo
 from mmweaver.scene.landmarks import with_told
-from mmweaver.scene.panes import with_panes
 from mmweaver.scene.photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
@@ -197,8 +196,8 @@ class Weaver:
             given = {"depth": found.folder / "depth.zst", "rgb": rgb or found.folder / "color.avi"}
             inputs = {"photo": photo, **{name: file_digest(path) for name, path in given.items()}}
             inputs |= {name: str(source) for name, source in seen.items() if source is not None}
-            whole, closed = with_panes(replace(found.photo, classes=classes_of(found.photo, **seen)))
-        return self._reconstruct(whole, (*found.assumptions, *closed), inputs, stages)
+            whole = replace(found.photo, classes=classes_of(found.photo, **seen))
+        return self._reconstruct(whole, found.assumptions, inputs, stages)
 
     def sample_room(self) -> Room:
         """The room that comes with the project."""

@@ -1,9 +1,17 @@
 """mmweaver train activity, then paper with its features."""
 
 import json
+import os
+import socket
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
+import torch
+from safetensors.torch import load_file
+from tests.training.tiny_data import tiny_data
 
 from mmweaver.cli.main import main
 from mmweaver.models.weights import load_into
@@ -22,7 +30,9 @@ def test_activity_then_paper(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert main(["train", "paper", "--out", str(tmp_path / "p"), "--features", weights, *few]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["steps"] == 2
-    assert {"loss", "nmse_db", "energy_db"} <= set(summary["validation"])
+    assert {"zeros_loss", "nmse", "energy"} <= set(summary["validation"])
+    assert (tmp_path / "p" / "README.md").is_file()
+    assert list((tmp_path / "p" / "pictures").glob("*.png"))
     from mmweaver.models.paper_network import PaperNetwork
 
     assert load_into(PaperNetwork(), Path(summary["weights"]), recipe="paper").steps == 2
@@ -33,10 +43,83 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     for words, told in (
         (["train", "activity", *data], "no data set"),
         (["train", "paper", *data], "--features"),
-        (["train", "activity", *data, "--start", "w"], "recipe weaver"),
+        (["train", "activity", *data, "--from", "w", "--captures", "c"], "recipe weaver"),
+        (["train", "weaver", *data, "--features", "w"], "recipe paper"),
     ):
         assert main(words) == 2
         error = capsys.readouterr().err.strip()
         assert told in error
         assert error.count("\n") == 0
     assert not (tmp_path / "o").exists()
+
+
+def test_it_goes_on_from_weights_of_its_own_recipe_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    data = str(tiny_data(tmp_path / "data"))
+    few = ["--data", data, "--steps", "1", "--batch", "1", "--json"]
+    assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
+    weights = json.loads(capsys.readouterr().out)["weights"]
+    assert main(["train", "activity", "--out", str(tmp_path / "b"), "--from", str(tmp_path / "a"), *few]) == 0
+    capsys.readouterr()
+    words = ["train", "paper", "--out", str(tmp_path / "c"), "--features", weights, "--from", str(tmp_path / "a"), *few]
+    assert main(words) == 2
+    assert "mmweaver train paper" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def light(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return str(tiny_data(tmp_path_factory.mktemp("light") / "data", geometry_only=True))
+
+
+def test_two_processes_that_were_killed_end_as_two_that_were_not(light: str, tmp_path: Path):
+    pytest.importorskip("accelerate")
+    words = ["train", "activity", "--data", light, "--steps", "16", "--batch", "2", "--save-every", "0", "--out"]
+    out = tmp_path / "killed"
+    kill_when(out / "checkpoint.pt", two_processes([*words, str(out)]))
+    assert 1 <= torch.load(out / "checkpoint.pt", weights_only=True)["done"] < 16
+    for run in (out, tmp_path / "whole"):
+        assert finished([*words, str(run), "--json"])["steps"] == 16
+    one, other = load_file(out / "weights.safetensors"), load_file(tmp_path / "whole" / "weights.safetensors")
+    assert all(torch.equal(tensor, other[name]) for name, tensor in one.items())
+
+
+def test_two_processes_train_the_papers_network(light: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    pytest.importorskip("accelerate")
+    words = ["--data", light, "--steps", "2", "--batch", "2"]
+    assert main(["train", "activity", "--out", str(tmp_path / "a"), *words, "--quiet"]) == 0
+    judge = str(tmp_path / "a" / "weights.safetensors")
+    capsys.readouterr()
+    summary = finished(["train", "paper", "--out", str(tmp_path / "p"), "--features", judge, *words, "--json"])
+    rows = [json.loads(line) for line in (tmp_path / "p" / "log.jsonl").read_text().splitlines()]
+    assert [row["step"] for row in rows] == [2]  # one process wrote
+    assert rows[0]["validation"] == summary["validation_loss"]
+
+
+def two_processes(words: list[str]) -> list[subprocess.Popen[str]]:
+    """What torchrun starts; each can be killed by itself."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = str(free.getsockname()[1])
+    shared = {"WORLD_SIZE": "2", "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port, "OMP_NUM_THREADS": "1"}
+    shared["PYTHONPATH"] = str(Path(__file__).parents[2] / "src")
+    command = [sys.executable, "-m", "mmweaver", *words]
+    environments = (os.environ | shared | {"RANK": rank, "LOCAL_RANK": rank} for rank in "01")
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    return [subprocess.Popen(command, env=environment, **pipes) for environment in environments]
+
+
+def finished(words: list[str]) -> dict:
+    """What the one process that speaks told."""
+    ends = [process.communicate(timeout=300) for process in two_processes(words)]
+    assert ends[1][0] == "", ends[1]
+    assert ends[0][0], ends[0][1][-2000:]
+    return json.loads(ends[0][0])
+
+
+def kill_when(file: Path, processes: list[subprocess.Popen[str]]) -> None:
+    """Both are killed as soon as a file is there."""
+    deadline = time.monotonic() + 240
+    while processes[0].poll() is None and not file.is_file() and time.monotonic() < deadline:
+        time.sleep(0.02)
+    for process in processes:
+        process.kill()
+        process.communicate(timeout=60)

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 
@@ -12,6 +13,8 @@ from mmweaver.data.store import read_plan, read_rooms
 from mmweaver.experiments.activity_gain import (
     ALONE,
     Labelled,
+    Study,
+    few_of,
     gains,
     judged,
     motions_in,
@@ -19,6 +22,7 @@ from mmweaver.experiments.activity_gain import (
     simulated_in,
     unseen_rooms,
 )
+from mmweaver.experiments.kept_rooms import KeptRooms
 from mmweaver.models.activity_network import ActivityNetwork
 
 pytest.importorskip("zarr")
@@ -39,7 +43,7 @@ def _base(per_class: int, width: int) -> Labelled:
     return Labelled(frames=torch.randn(len(label), 4, width), label=label)
 
 
-def test_rows_of_a_room(data: Path):
+def test_rows_of_a_room(data: Path, tmp_path: Path):
     (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
     assert room.name == "living_room_0"
     assert room.generic.kind == "office"
@@ -50,9 +54,12 @@ def test_rows_of_a_room(data: Path):
     network = ActivityNetwork(AWR1843).eval()
     methods = {"true_room": simulated_in(lambda one: one.true_scene(one.room), micro_seed=0)}
     told: list[int] = []
-    base = _base(2, network.head.first.in_features)
-    found = gains(network, base, [room], methods, each=1, after=lambda one: told.append(len(one[ALONE])))
+    study = Study(network, _base(2, network.head.first.in_features))
+    kept = KeptRooms(tmp_path, {})
+    found = gains(study, [room], methods, each=1, kept=kept, after=lambda one: told.append(len(one[ALONE])))
     assert told == [1]
+    again = gains(study, [room], {}, each=1, kept=kept)  # of what was kept
+    assert np.array_equal(again["true_room"], found["true_room"])
     rows = rows_of(found, [room])
     assert [row["method"] for row in rows] == [ALONE, "true_room"]
     assert rows[0]["metrics"]["gain"]["value"] == 0
@@ -73,9 +80,23 @@ def test_data_of_the_room_helps_where_the_room_differs():
 
     elsewhere, here = centres, 3 * torch.randn(12, width)
     base, test = drawn(elsewhere, 4), drawn(here, 2)
-    alone, loss = judged(network, base, None, test, 0)
-    helped, lower = judged(network, base, drawn(here, 4), test, 0)
+    study = Study(network, base)
+    alone, loss = judged(study, None, test, 0)
+    helped, lower = judged(study, drawn(here, 4), test, 0)
     assert alone < 0.5
     assert helped > alone + 0.2
     assert lower < loss
-    assert judged(network, base, None, test, 0) == (alone, loss)
+    assert judged(study, None, test, 0) == (alone, loss)
+
+
+def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_knows_nothing():
+    label = np.repeat(np.arange(12), 10)
+    chosen = few_of(label, 24).numpy()
+    assert len(set(chosen)) == 24
+    assert np.array_equal(np.bincount(label[chosen]), np.full(12, 2))
+    torch.manual_seed(0)
+    network = ActivityNetwork(AWR1843)
+    base = _base(1, network.head.first.in_features)
+    old, new = (Study(network, base, begins_anew=anew).head().state_dict() for anew in (False, True))
+    assert torch.equal(old["first.weight"], network.head.first.weight)
+    assert not torch.equal(new["first.weight"], old["first.weight"])

@@ -6,7 +6,13 @@ from pathlib import Path
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.experiments.weaver_use_tables import activity_table, gain_table, paper_table, told_apart_table
+from mmweaver.experiments.weaver_use_tables import (
+    activity_table,
+    gain_table,
+    paper_table,
+    photographed_table,
+    told_apart_table,
+)
 
 
 def _metric(value: float) -> dict:
@@ -35,6 +41,9 @@ def test_they_show_values_with_intervals(tmp_path: Path):
     assert shown[2] == "| other_rooms | 50.0 % (40.0 to 60.0) |  |  |"
     assert shown[3].endswith("| +5.0 (-5.0 to +15.0) | +0.200 (+0.100 to +0.300) |")
     assert "| twin | 50.0 % (40.0 to 60.0) | 50 % |" in told_apart_table(tmp_path)
+    both = {"ra_ssim": _metric(0.5), "ra_difference_db": _metric(6.0)}
+    _put(tmp_path, "photographed_room/echoes.json", [{"method": "twin", "metrics": both}])
+    assert photographed_table(tmp_path).endswith("| twin | 0.50 (0.40 to 0.60) | 6.00 |")
     assert "| zeros | 0.250 | 0.2 |" in paper_table(tmp_path)
 
 

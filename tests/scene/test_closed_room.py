@@ -1,13 +1,16 @@
 """Walls continued beyond the picture, in rooms whose geometry is known."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from mmweaver.core.records import Plane, Scene
+from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.geometry.pinhole import unproject
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.closed_room import BEHIND_M
+from mmweaver.scene.coco_stuff import NAMES
 from mmweaver.scene.reconstruction import reconstruct
 
 
@@ -63,3 +66,20 @@ def test_a_side_that_is_not_seen_is_not_made_up(box_room: Callable):
 def test_it_is_said(box_room: Callable):
     scene = reconstruct(box_room(pitch_deg=10.0).photo())
     assert any("continued" in line for line in scene.assumptions)
+
+
+def test_a_mask_says_what_is_wall(box_room: Callable):
+    """Bookcases along all of the right wall: to the depth alone their fronts are the wall."""
+    photo = box_room(pitch_deg=5.0, boxes=[((1.8, 2.2), (0.6, 3.8), (0.0, 2.5))]).photo(noise=0.002)
+    seen = reconstruct(photo)
+    assert _distance(seen, "right") == pytest.approx(1.8, abs=0.05)
+    x = (unproject(photo.depth_m, photo.intrinsics) @ seen.radar_from_camera.T)[..., 0]
+    index = np.where(x > 1.74, NAMES.index("shelf"), NAMES.index("wall-other")).astype(np.uint8)
+    told = reconstruct(replace(photo, classes=ClassMask(index=index, names=NAMES)))
+    assert "right" not in _walls(told)
+    assert {"front", "left"} <= set(_walls(told))
+
+
+def _distance(scene: Scene, name: str) -> float:
+    wall = _walls(scene)[name]
+    return float(-wall.centre_m @ wall.normal)

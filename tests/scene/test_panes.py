@@ -54,3 +54,24 @@ def test_what_is_no_pane_or_has_no_plane_about_it_is_left():
     assert with_panes(lost)[1] == ()
     empty = replace(ragged, depth_m=np.where(pane, 9.0, np.nan))
     assert with_panes(empty)[1] == ()
+
+
+def test_a_curtain_at_its_side_does_not_pull_the_pane_forward():
+    photo, wall_m, pane = wall_with_pane(9.0)
+    assert photo.classes is not None
+    index, depth = np.full(SHAPE, NAMES.index("wall-other"), np.uint8), photo.depth_m.copy()
+    index[pane] = NAMES.index("window-other")
+    curtain = np.zeros(SHAPE, bool)
+    curtain[20:90, 50:60] = curtain[20:90, 110:120] = True
+    index[curtain], depth[curtain] = NAMES.index("curtain"), wall_m[curtain] - 0.15
+    closed, _ = with_panes(replace(photo, depth_m=depth, classes=ClassMask(index=index, names=NAMES)))
+    assert closed.depth_m[pane] == pytest.approx(wall_m[pane], rel=0.01)
+
+
+def test_a_screen_gets_its_own_plane_and_not_the_walls():
+    photo, _, screen = wall_with_pane(float("nan"), "tv")
+    depth = photo.depth_m.copy()
+    depth[30:80:4, 60:110:3] = 2.2
+    closed, sentences = with_panes(replace(photo, depth_m=depth))
+    assert closed.depth_m[screen] == pytest.approx(np.full(screen.sum(), 2.2), rel=0.01)
+    assert sentences == ("1 screens without depth were put on the plane of what was measured of them.",)

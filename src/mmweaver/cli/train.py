@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.cli import train_recipes
 from mmweaver.cli.arguments import number, whole
 from mmweaver.core.errors import InputError
 
@@ -41,7 +42,11 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--data", type=Path, metavar="DIR", help="a data set of mmweaver dataset")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for checkpoint, log and weights")
     parser.add_argument(
-        "--from", "--start", dest="start", metavar="FILE|DIR|HUB", help="weights to fine-tune (default: from nothing)"
+        "--from",
+        "--start",
+        dest="start",
+        metavar="FILE|DIR|HUB",
+        help="weights of the same recipe to go on from (default: from nothing)",
     )
     parser.add_argument("--features", type=Path, metavar="FILE", help="weights of recipe activity, for recipe paper")
     own = parser.add_argument_group("your own recordings instead of --data (needs --from)")
@@ -54,15 +59,21 @@ def add_verb(verbs: Any) -> None:
     own.add_argument("--depth", type=Path, metavar="FILE", help="its depth")
     own.add_argument("--camera", type=Path, metavar="JSON", help="its fx, fy, cx, cy")
     loop = parser.add_argument_group("the loop")
-    loop.add_argument("--steps", type=whole, help="steps in all (default 6000; captures 300)")
-    loop.add_argument("--batch", type=whole, help="sequences a step, of all processes together (default 3; captures 2)")
+    loop.add_argument("--steps", type=whole, help="steps in all (default 6000; activity 800, captures 300)")
+    loop.add_argument(
+        "--batch",
+        type=whole,
+        help="sequences a step, of all processes together (default 3; activity 16, paper 4, captures 2)",
+    )
     loop.add_argument(
         "--learning-rate",
         type=number,
-        help="of Adam, at its highest (default 1e-3; captures 2e-4, without joints 5e-3)",
+        help="of Adam, at its highest (default 1e-3; activity 2e-3, paper 1e-4, captures 2e-4, without joints 5e-3)",
     )
     loop.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
-    loop.add_argument("--validate-every", type=whole, metavar="STEPS", help="(default 250; captures 25)")
+    loop.add_argument(
+        "--validate-every", type=whole, metavar="STEPS", help="(default 250; activity 100, paper 200, captures 25)"
+    )
     loop.add_argument("--save-every", type=number, default=60.0, metavar="S", help="seconds between checkpoints (60)")
     place = parser.add_argument_group("where")
     place.add_argument("--device", default="auto", help="cpu, cuda, cuda:1 ... (default auto: a GPU if there is one)")
@@ -78,10 +89,6 @@ def add_verb(verbs: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Trains and writes the weights. Raises InputError."""
-    if arguments.recipe != "weaver":
-        from mmweaver.cli import train_recipes
-
-        return train_recipes.run(arguments)
     import json
 
     _check(arguments)
@@ -101,6 +108,10 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _check(arguments: argparse.Namespace) -> None:
+    if arguments.recipe != "weaver":
+        train_recipes.check(arguments)
+    elif arguments.features is not None:
+        raise InputError("--features is for recipe paper")
     if (arguments.data is None) == (arguments.captures is None):
         raise InputError(
             "what to train on? give --data, a data set of mmweaver dataset, or --captures, your recordings"
@@ -117,6 +128,8 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _on_data(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
+    if arguments.recipe != "weaver":
+        return _on_data_otherwise(arguments, place, is_quiet)
     from mmweaver.training.weaver_training import TrainingRecipe, train, write_weights
 
     recipe = TrainingRecipe(**_given(arguments))
@@ -127,6 +140,19 @@ def _on_data(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) 
         )
     file = write_weights(arguments.out, arguments.data, trainer, start=start) if place.is_first else None
     return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
+
+
+def _on_data_otherwise(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
+    from mmweaver.training.recipe_weights import write_recipe_weights
+
+    recipe = train_recipes.recipe_of(arguments.recipe, _given(arguments))
+    with _bar(recipe.steps, is_quiet) as told:
+        trainer = train_recipes.on_data(arguments, recipe, told, place, _options(arguments))
+    file = write_recipe_weights(arguments.out, arguments.data, trainer) if place.is_first else None
+    return {
+        "weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value,
+        "validation": trainer.best.figures,
+    }  # fmt: skip
 
 
 def _on_captures(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:

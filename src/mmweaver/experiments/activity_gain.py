@@ -1,25 +1,31 @@
 """What generated data is worth: a recogniser of activities in a room that nobody has recorded.
 
-    python -m mmweaver.experiments.activity_gain --data DATASET --weights WEAVER --judge ACTIVITY --out results
+    python -m mmweaver.experiments.activity_gain --data DATASET --weights WEAVER --judge JUDGE/weights.safetensors \\
+        --rooms 40 --runs RUNS --out results
 
 The recogniser (`mmweaver train activity`) has seen other rooms. For each room of an unseen kind its head is trained on,
 once with the other rooms' recordings alone and once with generated ones of this room beside them, and judged on the
 room's true (simulated) signals. All methods generate the same motions, placed in the room as its photo shows it; they
 differ in what surrounds the radar. `true_room` is the simulator in the true room: the ceiling. Convolutions stay as
-they are, and every head is trained on for the same number of steps.
+they are, and every head is trained on for the same number of steps, from the same seed in a room and another in the
+next.
+
+With `--recordings N` the head begins anew and has N recordings of other rooms, as somebody has who recorded a few.
+Every room that is done is kept in `--runs`, and the same command goes on. Maps of the other rooms are taken from the
+judge's folder, where training left them.
 """
 
 import argparse
 import copy
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, Scene
@@ -28,21 +34,23 @@ from mmweaver.data.make import pose_of
 from mmweaver.data.plan import ACTIVITIES, PEOPLE_HEIGHT_M, SequenceSpec
 from mmweaver.data.store import StoredRoom, read_plan, read_rooms
 from mmweaver.dsp.cube import radar_cube
+from mmweaver.experiments.kept_rooms import KeptRooms, digest
 from mmweaver.experiments.results import write_result
 from mmweaver.experiments.weaver_table import TWIN, interval
-from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, load_activity
+from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.paper_method import load_paper, paper_field
 from mmweaver.models.weaver_method import FrameMotion, WovenRoom
 from mmweaver.models.weaver_network import WeaverNetwork
-from mmweaver.models.weights import load_weights
+from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.procedural.room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.simulation.simulator import Simulator
 from mmweaver.training.activity_examples import activity_examples, maps_of
-from mmweaver.training.activity_training import TRAIN_SPLITS
+from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS
 
 # chosen on rooms of the validation kind
-STEPS, OTHERS, OWN, LEARNING_RATE, REPEATS = 200, 24, 8, 3e-4, 2
+STEPS, OTHERS, OWN, LEARNING_RATE = 200, 24, 8, 3e-4
+ANEW_RATE = 2e-3  # of a head that begins anew
 ALONE = "other_rooms"  # the head trained on without anything generated
 
 
@@ -172,16 +180,33 @@ def seen(network: ActivityNetwork, doppler: Tensor, angle: Tensor) -> Tensor:
         return torch.cat([network.frames(one.float(), other.float()) for one, other in parts])
 
 
-def judged(
-    network: ActivityNetwork, base: Labelled, own: Labelled | None, test: Labelled, seed: int
-) -> tuple[float, float]:
+@dataclass(frozen=True)
+class Study:
+    """A recogniser, recordings of other rooms as it sees them, and whether its head begins anew."""
+
+    network: ActivityNetwork
+    base: Labelled
+    begins_anew: bool = False
+
+    def head(self) -> TimeHead:
+        """The head that is trained on."""
+        head = copy.deepcopy(self.network.head)
+        if self.begins_anew:
+            for part in head.modules():
+                if isinstance(part, nn.Linear | nn.Conv1d):
+                    part.reset_parameters()
+        return head
+
+
+def judged(study: Study, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
     """Accuracy and log loss on test sequences once the head has been trained on; a quarter of a batch is the room's."""
     torch.manual_seed(seed)
-    head, rng = copy.deepcopy(network.head), stream(seed, "activity gain head")
-    adam = torch.optim.AdamW(head.parameters(), lr=LEARNING_RATE, weight_decay=1e-2)
+    head, rng = study.head(), stream(seed, "activity gain head")
+    rate = ANEW_RATE if study.begins_anew else LEARNING_RATE
+    adam = torch.optim.AdamW(head.parameters(), lr=rate, weight_decay=1e-2)
     head.train()
     for _ in range(STEPS):
-        parts = [_drawn(base, OTHERS, rng), _drawn(base if own is None else own, OWN, rng)]
+        parts = [_drawn(study.base, OTHERS, rng), _drawn(study.base if own is None else own, OWN, rng)]
         frames, label = (torch.cat(each) for each in zip(*parts, strict=True))
         loss = torch.nn.functional.cross_entropy(head(frames), label, label_smoothing=0.1)
         adam.zero_grad()
@@ -199,36 +224,45 @@ def _drawn(examples: Labelled, count: int, rng: np.random.Generator) -> tuple[Te
     return examples.frames[chosen], examples.label[chosen]
 
 
+Found = dict[str, list[float]]  # {method: accuracy, log loss} in one room
+
+
+def gained(
+    study: Study, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
+) -> Found:
+    """What each method's data are worth in one room; besides, the head trained on with nothing generated."""
+    network = study.network
+    indices = [index for index, name in enumerate(room.room.split) if name == split]
+    names = [room.room.activity[index] for index in indices]
+    test = labelled(network, (room.room.cube(index) for index in indices), names)
+    motions = motions_in(room, each, seed=0)
+    found = {ALONE: list(judged(study, None, test, seed))}
+    for name, method in methods.items():
+        make = method(room)
+        cubes = (make(pose, number) for number, (_, pose) in enumerate(motions))
+        own = labelled(network, cubes, [activity for activity, _ in motions])
+        found[name] = list(judged(study, own, test, seed))
+    return found
+
+
 def gains(
-    network: ActivityNetwork,
-    base: Labelled,
+    study: Study,
     rooms: list[UnseenRoom],
     methods: dict[str, Method],
     *,
     each: int,
+    kept: KeptRooms,
     split: str = "test_room",
     after: Callable[[dict[str, np.ndarray]], object] = lambda found: None,
 ) -> dict[str, np.ndarray]:
-    """{method: accuracy and log loss in each room, (room, 2)}; besides, the head trained on with nothing generated.
-
-    `after` is given what is there after each room, so that a long run that is stopped has told something.
-    """
-    found: dict[str, list[np.ndarray]] = {name: [] for name in (ALONE, *methods)}
-    for room in rooms:
-        indices = [index for index, name in enumerate(room.room.split) if name == split]
-        cubes = (room.room.cube(index) for index in indices)
-        test = labelled(network, cubes, [room.room.activity[index] for index in indices])
-        motions = motions_in(room, each, seed=0)
-        made: dict[str, Labelled | None] = {ALONE: None}
-        for name, method in methods.items():
-            make = method(room)
-            cubes = [make(pose, number) for number, (_, pose) in enumerate(motions)]
-            made[name] = labelled(network, cubes, [activity for activity, _ in motions])
-        for name, own in made.items():
-            each_seed = [judged(network, base, own, test, seed) for seed in range(REPEATS)]
-            found[name].append(np.mean(each_seed, axis=0))
-        after({name: np.stack(values) for name, values in found.items()})
-    return {name: np.stack(values) for name, values in found.items()}
+    """{method: accuracy and log loss in each room, (room, 2)}; `after` is given what is there after each room."""
+    found: dict[str, list[list[float]]] = {}
+    for seed, room in enumerate(rooms):
+        one: Found = kept.figures(room.name, partial(gained, study, room, methods, each=each, seed=seed, split=split))
+        for name, values in one.items():
+            found.setdefault(name, []).append(values)
+        after({name: np.array(values) for name, values in found.items()})
+    return {name: np.array(values) for name, values in found.items()}
 
 
 def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[str, Any]]:
@@ -249,23 +283,30 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[
     return rows
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, required=True, help="of recipe weaver")
-    parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
-    parser.add_argument("--paper", type=Path, help="of recipe paper")
-    parser.add_argument("--rooms", type=int, default=15)
-    parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    torch.set_num_threads(1)
-    stored, plan = read_rooms(arguments.data), read_plan(arguments.data)
-    rooms = unseen_rooms(stored, plan, arguments.rooms)
-    weaver, card = load_weights(arguments.weights)
-    judge = load_activity(arguments.judge, stored[0].config)
-    examples = activity_examples(arguments.data, TRAIN_SPLITS)
-    base = Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label)
+def studied(judge_file: Path, data: Path, recordings: int | None) -> Study:
+    """The recogniser and what it has seen elsewhere: all that it was trained on, or so many recordings of it."""
+    examples = activity_examples(data, TRAIN_SPLITS, judge_file.parent / TRAIN_MAPS, keep=False)
+    judge = load_activity(judge_file, examples.config)
+    if recordings is None:
+        return Study(judge, Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label))
+    chosen = few_of(examples.label.numpy(), recordings)
+    frames = seen(judge, examples.doppler[chosen], examples.angle[chosen])
+    return Study(judge, Labelled(frames=frames, label=examples.label[chosen]), begins_anew=True)
+
+
+def few_of(label: np.ndarray, count: int) -> Tensor:
+    """Indices of `count` sequences, all activities in turn."""
+    rng = stream(0, "activity gain recordings")
+    order = rng.permutation(len(label))
+    place = np.zeros(len(label), int)  # how many of its activity come before
+    for name in np.unique(label):
+        own = order[label[order] == name]
+        place[own] = np.arange(len(own))
+    return torch.from_numpy(order[np.argsort(place[order], kind="stable")][:count])
+
+
+def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
+    """Whose data is tried."""
     methods: dict[str, Method] = {
         "weaver": woven_in(weaver, lambda room: room.photographed),
         "wrong_photo": woven_in(weaver, lambda room: reconstruct(room.other.photo)),
@@ -273,17 +314,45 @@ def main() -> None:
         "physics_in_photographed_room": simulated_in(lambda room: room.photographed, micro_seed=1),
         "true_room": simulated_in(lambda room: room.true_scene(room.room), micro_seed=0),
     }
-    if arguments.paper is not None:
-        methods["paper"] = paper_in(arguments.paper)
-    about = {"weights": card.__dict__, "data_plan": plan, "each": arguments.each, "steps": STEPS}
+    return methods if paper is None else {**methods, "paper": paper_in(paper)}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
+    parser.add_argument("--paper", type=Path, help="of recipe paper")
+    parser.add_argument("--rooms", type=int, default=40)
+    parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
+    parser.add_argument("--recordings", type=int, help="of other rooms, for a head that begins anew")
+    parser.add_argument("--only", nargs="*", help="methods (default: all)")
+    parser.add_argument("--runs", type=Path, help="folder for rooms that are done")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    torch.set_num_threads(1)
+    plan, weights = read_plan(arguments.data), arguments.weights or shipped_weights()
+    rooms = unseen_rooms(read_rooms(arguments.data), plan, arguments.rooms)
+    weaver, card = load_weights(weights)
+    study = studied(arguments.judge, arguments.data, arguments.recordings)
+    methods = methods_of(weaver, arguments.paper)
+    methods = {name: methods[name] for name in arguments.only or methods}
+    about = {
+        "weights": asdict(card), "data_plan": plan, "each": arguments.each, "steps": STEPS,
+        "recordings": arguments.recordings,
+    }  # fmt: skip
+    files = [digest(file) for file in (weights, arguments.judge, arguments.paper) if file is not None]
+    kept = KeptRooms(arguments.runs, {**about, "files": files, "methods": list(methods)})
+    name = "test_room" if arguments.recordings is None else f"recordings_{arguments.recordings}"
 
     def write(found: dict[str, np.ndarray]) -> None:
-        rows = rows_of(found, rooms)
-        write_result(arguments.out, experiment="activity_gain", method="test_room", config=about, rows=rows)
+        write_result(
+            arguments.out, experiment="activity_gain", method=name, config=about, rows=rows_of(found, rooms)
+        )  # fmt: skip
         room = rooms[len(found[ALONE]) - 1].name
         print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)  # noqa: T201
 
-    for row in rows_of(gains(judge, base, rooms, methods, each=arguments.each, after=write), rooms):
+    for row in rows_of(gains(study, rooms, methods, each=arguments.each, kept=kept, after=write), rooms):
         values = (f"{name} {m['value']:.3f} ({m['low']:.3f} to {m['high']:.3f})" for name, m in row["metrics"].items())
         print(f"{row['method']:30}", *values)  # noqa: T201
 

@@ -10,6 +10,7 @@ floor.
 
 import argparse
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +20,12 @@ import torch
 from mmweaver.core.seeding import stream
 from mmweaver.data.store import StoredRoom, read_plan, read_rooms
 from mmweaver.experiments.cube_statistics import cube_statistics
+from mmweaver.experiments.kept_rooms import KeptRooms, digest
 from mmweaver.experiments.results import write_result
 from mmweaver.experiments.weaver_table import TWIN, Case, Method, cases_of, interval, simulated, woven
 from mmweaver.models.activity_network import load_activity
 from mmweaver.models.paper_method import paper_method
-from mmweaver.models.weights import load_weights
+from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.scene.procedural.room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.tasks.activity_classifier import ActivityClassifier, ClassifierSettings
@@ -60,14 +62,20 @@ def rows_of(
     cases: list[Case],
     methods: dict[str, Method],
     statistics: Callable[..., np.ndarray],
+    kept: KeptRooms,
     tell: Callable[[str], object] = lambda line: None,
 ) -> list[dict[str, Any]]:
     """One row a method: accuracy over rooms with its interval."""
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in cases]
-    true = np.stack([statistics(case.room.cube(case.index)) for case in cases])
-    rows = []
-    for name, method in methods.items():
-        made = np.stack([statistics(method(case)) for case in cases])
+
+    def measured(case: Case) -> dict[str, list[float]]:
+        made = {name: statistics(method(case)).tolist() for name, method in methods.items()}
+        return {TRUE: statistics(case.room.cube(case.index)).tolist(), **made}
+
+    each = [kept.figures(f"{case.room.folder.name}_{case.index}", partial(measured, case)) for case in cases]
+    true, rows = np.array([one[TRUE] for one in each]), []
+    for name in methods:
+        made = np.array([one[name] for one in each])
         mean, low, high = interval(told_apart(true, made, rooms), rooms)
         metric = {"value": mean, "low": low, "high": high, "unit": "1", "perfect": 0.5}
         rows.append({"method": name, "n": len(cases), "num_rooms": len(set(rooms)), "metrics": {"accuracy": metric}})
@@ -78,18 +86,21 @@ def rows_of(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, required=True, help="of recipe weaver")
+    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
     parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
     parser.add_argument("--paper", type=Path, help="of recipe paper")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=4, help="sequences of each room")
+    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
     parser.add_argument("--out", type=Path, default=Path("results"))
     arguments = parser.parse_args()
     torch.set_num_threads(1)
     rooms, plan = read_rooms(arguments.data), read_plan(arguments.data)
-    network, card = load_weights(arguments.weights)
+    weights = arguments.weights or shipped_weights()
+    network, card = load_weights(weights)
     judge = load_activity(arguments.judge, rooms[0].config)
-    cases = cases_of(rooms, arguments.split, arguments.each, plan, 0)
+    cases = cases_of(rooms, arguments.split, arguments.each, plan, 0, arguments.most)
     generic = next(room for room in rooms if "train" in room.split)
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods: dict[str, Method] = {
@@ -100,11 +111,17 @@ def main() -> None:
     }
     if arguments.paper is not None:
         methods["paper"] = paper_method(arguments.paper)
-    rows = rows_of(cases, methods, lambda cube: cube_statistics(cube, judge), lambda line: print(line, flush=True))  # noqa: T201
+    files = [digest(file) for file in (weights, arguments.judge, arguments.paper) if file is not None]
+    kept = KeptRooms(arguments.runs, {"data_plan": plan, "files": files, "methods": list(methods)})
+    rows = rows_of(cases, methods, lambda cube: cube_statistics(cube, judge), kept, _tell)
     write_result(
         arguments.out, experiment="real_or_generated", method=arguments.split,
         config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each}, rows=rows,
     )  # fmt: skip
+
+
+def _tell(line: str) -> None:
+    print(line, flush=True)  # noqa: T201
 
 
 def _own_room(case: Case) -> StoredRoom:

@@ -15,7 +15,13 @@ from mmweaver.experiments.capture_tuning_table import capture_tuning_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
-from mmweaver.experiments.weaver_use_tables import activity_table, gain_table, paper_table, told_apart_table
+from mmweaver.experiments.weaver_use_tables import (
+    activity_table,
+    gain_table,
+    paper_table,
+    photographed_table,
+    told_apart_table,
+)
 from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
@@ -326,8 +332,19 @@ def weaver_table(folder: Path) -> str:
     lines = [_line("method", *(text for _, text in WEAVER)), _line(*["---"] * (1 + len(WEAVER)))]
     for row in record["rows"]:
         cells = [_bounded(row["metrics"][name], name in ("ra_ssim", "rd_ssim")) for name, _ in WEAVER]
-        lines.append(_line(row["method"], *cells))
+        lines.append(_line(_loudness(row), *cells))
     return "\n".join(lines)
+
+
+COLLAPSED_DB = -10.0  # energy over the truth's
+
+
+def _loudness(row: dict[str, Any]) -> str:
+    """The method's name, and that it has collapsed where it has."""
+    energy_db: float | None = row["metrics"].get("energy_db", {}).get("value")
+    if energy_db is None or energy_db > COLLAPSED_DB:
+        return row["method"]
+    return f"{row['method']}, collapsed: {-energy_db:.0f} dB too little energy"
 
 
 UNSEEN = {
@@ -383,6 +400,7 @@ TABLES = {
     "codec_margins": codec_margins_table, "codec_seconds": codec_seconds_table,
     "rendered_noise": noise_table,
     "scatterer_tracks": tracks_table,
+    "photographed_room": photographed_table,
     "weaver": weaver_table, "weaver_unseen": weaver_unseen_table,
     "weaver_few_shot": weaver_few_shot_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,

@@ -9,6 +9,7 @@ curve that stands beside the weights (`log.jsonl`) is kept with the result.
 import argparse
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,9 @@ import torch
 
 from mmweaver.core.records import RadarCube
 from mmweaver.data.store import read_plan, read_rooms
+from mmweaver.experiments.kept_rooms import KeptRooms, digest
 from mmweaver.experiments.results import write_result
-from mmweaver.experiments.weaver_table import Case, cases_of, interval
+from mmweaver.experiments.weaver_table import Case, cases_of, energy_db, interval
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.paper_method import RECIPE, paper_method
 from mmweaver.models.weights import load_into
@@ -27,24 +29,29 @@ COLUMNS = ("cssim", "psnr_db", "nmse_db", "nmse_active_db", "nmse_moving_db", "r
 PAPER, LOG = "paper", "log.jsonl"
 
 
-def scores_of(cases: list[Case], method: Callable[[Case], RadarCube]) -> dict[str, dict[str, np.ndarray]]:
+Scores = dict[str, dict[str, float]]  # {row: {column: value}} of one case
+
+
+def scores_of(
+    cases: list[Case], method: Callable[[Case], RadarCube], kept: KeptRooms
+) -> dict[str, dict[str, np.ndarray]]:
     """{row: {column: value of each case}}: zeros, static_mean and the method; `energy_db` is the cube's over the
     truth's, which tells a collapse."""
-    rows: dict[str, dict[str, list[float]]] = {}
-    for case in cases:
-        truth = case.room.cube(case.index)
-        cube = method(case)
-        card = scorecard(cube, truth)
-        for name, values in (*card.floors.items(), (PAPER, card.prediction)):
-            for column in COLUMNS:
-                rows.setdefault(name, {}).setdefault(column, []).append(values[column])
-        rows[PAPER].setdefault("energy_db", []).append(_energy_db(cube, truth))
-    return {name: {column: np.array(values) for column, values in row.items()} for name, row in rows.items()}
+    each: list[Scores] = [kept.figures(_name(case), partial(_scores, case, method)) for case in cases]
+    return {row: {name: np.array([one[row][name] for one in each]) for name in each[0][row]} for row in each[0]}
 
 
-def _energy_db(cube: RadarCube, truth: RadarCube) -> float:
-    energy = [float((np.abs(each.values).astype(np.float64) ** 2).sum()) for each in (cube, truth)]
-    return float(10 * np.log10(max(energy[0], 1e-30) / energy[1]))
+def _name(case: Case) -> str:
+    return f"{case.room.folder.name}_{case.index}"
+
+
+def _scores(case: Case, method: Callable[[Case], RadarCube]) -> Scores:
+    truth, cube = case.room.cube(case.index), method(case)
+    card = scorecard(cube, truth)
+    rows = {**card.floors, PAPER: card.prediction}
+    scores = {name: {column: values[column] for column in COLUMNS} for name, values in rows.items()}
+    scores[PAPER]["energy_db"] = energy_db(cube, truth)
+    return scores
 
 
 def rows_of(scores: dict[str, dict[str, np.ndarray]], cases: list[Case]) -> list[dict[str, Any]]:
@@ -67,7 +74,8 @@ def learning_curve(folder: Path) -> list[dict[str, Any]]:
     if not file.is_file():
         return []
     lines = (json.loads(line) for line in file.read_text(encoding="utf-8").splitlines())
-    return [{"step": line["step"], **line["validation"]} for line in lines if line["validation"] is not None]
+    told = (line for line in lines if line["validation"] is not None)
+    return [{"step": line["step"], "loss": line["validation"], **line["figures"]} for line in told]
 
 
 def main() -> None:
@@ -78,12 +86,15 @@ def main() -> None:
     parser.add_argument("--weights", type=Path, required=True, help="of recipe paper")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=3, help="sequences of each room")
+    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
     parser.add_argument("--out", type=Path, default=Path("results"))
     arguments = parser.parse_args()
     torch.set_num_threads(1)
     plan = read_plan(arguments.data)
-    cases = cases_of(read_rooms(arguments.data), arguments.split, arguments.each, plan, 0)
-    rows = rows_of(scores_of(cases, paper_method(arguments.weights)), cases)
+    cases = cases_of(read_rooms(arguments.data), arguments.split, arguments.each, plan, 0, arguments.most)
+    kept = KeptRooms(arguments.runs, {"data_plan": plan, "weights": digest(arguments.weights)})
+    rows = rows_of(scores_of(cases, paper_method(arguments.weights), kept), cases)
     card = load_into(PaperNetwork(), arguments.weights, recipe=RECIPE)
     write_result(
         arguments.out, experiment="weaver_paper", method=arguments.split,

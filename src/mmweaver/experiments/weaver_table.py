@@ -2,10 +2,12 @@
 
     python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --out results
     python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --split test_person --most 40
+    python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --paper PAPER/weights.safetensors
 
 Truth is the simulator in the true room. Everybody is given the exact joints. `twin` is the same simulator with other
 surface micro-phases of room and person: the best that anyone can do who does not know them. `twin_skin` knows the
-room's. Intervals: bootstrap over rooms.
+room's. `paper` is the paper's own network (`mmweaver train paper`); `energy_db`, a cube's energy over the truth's,
+tells whether it has collapsed. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -26,9 +28,10 @@ from mmweaver.data.plan import SequenceSpec
 from mmweaver.data.store import StoredRoom, read_plan, read_rooms
 from mmweaver.experiments.results import write_result
 from mmweaver.metrics.scorecard import METRICS, scorecard
+from mmweaver.models.paper_method import paper_method
 from mmweaver.models.weaver_method import FrameMotion, WovenRoom
 from mmweaver.models.weaver_network import WeaverNetwork
-from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.models.weights import load_weights, read_card, shipped_weights
 from mmweaver.scene.procedural.room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.simulation.simulator import Simulator
@@ -130,7 +133,10 @@ def scored(cases: list[Case], methods: dict[str, Method]) -> dict[str, dict[str,
                 for floor, values in card.floors.items():
                     empty = _magnitude_nmse_db(_floor_cube(floor, truth), truth)
                     add(floor, {**_columns(values), "magnitude_nmse_db": empty, "cpu_s": 0.0})
-            own = {"magnitude_nmse_db": _magnitude_nmse_db(cube, truth), "cpu_s": seconds}
+            own = {
+                "magnitude_nmse_db": _magnitude_nmse_db(cube, truth), "energy_db": energy_db(cube, truth),
+                "cpu_s": seconds,
+            }  # fmt: skip
             add(name, {**_columns(card.prediction), **own})
     return {name: {column: np.array(values) for column, values in row.items()} for name, row in rows.items()}
 
@@ -149,6 +155,12 @@ def _magnitude_nmse_db(cube: RadarCube, truth: RadarCube) -> float:
     """Error of |cube| over the energy of the truth: what is left when phases count for nothing."""
     error = np.abs(cube.values) - np.abs(truth.values)
     return float(10 * np.log10((error**2).sum() / (np.abs(truth.values) ** 2).sum()))
+
+
+def energy_db(cube: RadarCube, truth: RadarCube) -> float:
+    """A cube's energy over the truth's: what has collapsed to zeros has little."""
+    energy = [float((np.abs(each.values).astype(np.float64) ** 2).sum()) for each in (cube, truth)]
+    return float(10 * np.log10(max(energy[0], 1e-30) / energy[1]))
 
 
 def interval(values: np.ndarray, rooms: list[str], seed: int = 0) -> tuple[float, float, float]:
@@ -183,7 +195,8 @@ def cases_of(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path)
+    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--paper", type=Path, help="of recipe paper, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
@@ -205,6 +218,10 @@ def main() -> None:
         "twin_skin": simulated(lambda case: case.true_scene, skin=TWIN),
         "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),
     }
+    about = {"weights": card.__dict__, "data_plan": plan, "each": arguments.each}
+    if arguments.paper is not None:
+        methods["paper"] = paper_method(arguments.paper)
+        about["paper"] = read_card(arguments.paper).__dict__
     if arguments.only:
         methods = {name: methods[name] for name in arguments.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
@@ -212,7 +229,7 @@ def main() -> None:
     rows = [_row(name, values, names, arguments.split) for name, values in table.items()]
     write_result(
         arguments.out, experiment="weaver", method=arguments.split,
-        config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each}, rows=rows,
+        config=about, rows=rows,
     )  # fmt: skip
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
@@ -226,7 +243,7 @@ def _row(name: str, values: dict[str, np.ndarray], rooms: list[str], split: str)
         known = METRICS.get(column)
         metrics[column] = {
             "value": _number(mean), "low": _number(low), "high": _number(high),
-            "unit": known.unit if known else {"cpu_s": "s", "magnitude_nmse_db": "dB"}[column],
+            "unit": known.unit if known else {"cpu_s": "s"}.get(column, "dB"),
         }  # fmt: skip
     return {"method": name, "split": split, "n": len(rooms), "num_rooms": len(set(rooms)), "metrics": metrics}
 

@@ -1,4 +1,4 @@
-"""Tables of docs/weaver.md: the activity network, the recipe `paper`, what generated data is worth, real or not."""
+"""Tables of docs/weaver.md: photographed rooms, the activity network, recipe `paper`, the worth of generated data."""
 
 import json
 from pathlib import Path
@@ -53,6 +53,17 @@ def told_apart_table(folder: Path) -> str:
     lines = ["| method | told apart | perfect |", "|" + " --- |" * 3]
     for row in _rows(folder / "real_or_generated" / "test_room.json"):
         lines.append(f"| {row['method']} | {_percent(row['metrics']['accuracy'])} | 50 % |")
+    return "\n".join(lines)
+
+
+def photographed_table(folder: Path) -> str:
+    """Empty rooms as their photos show them."""
+    lines = ["| the room's echoes | RA SSIM | RA difference, dB |", "|" + " --- |" * 3]
+    for row in _rows(folder / "photographed_room" / "echoes.json"):
+        ssim, gap = (row["metrics"][name] for name in ("ra_ssim", "ra_difference_db"))
+        lines.append(
+            f"| {row['method']} | {ssim['value']:.2f} ({ssim['low']:.2f} to {ssim['high']:.2f}) | {gap['value']:.2f} |"
+        )
     return "\n".join(lines)
 
 

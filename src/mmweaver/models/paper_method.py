@@ -46,14 +46,25 @@ def paper_field(
     """The INR that the network writes of a room's photo and one motion. Raises InputError for other joints."""
     if joints_m.shape != velocity_mps.shape or joints_m.shape[1:] != (22, 3):
         raise InputError(f"the network needs joints and velocities (frame, 22, 3), not {joints_m.shape}")
-    image = RoomView.of(scene, config).image
+    return field_of_image(network, RoomView.of(scene, config).image, config, joints_m, velocity_mps)
+
+
+def field_of_image(
+    network: PaperNetwork, image: Tensor, config: RadarConfig, joints_m: np.ndarray, velocity_mps: np.ndarray
+) -> InrField:
+    """The same of a room's picture (5, row, column); the field lies on the CPU wherever the network does."""
+    device = next(network.parameters()).device
     motion = motion_of(torch.from_numpy(joints_m).float(), torch.from_numpy(velocity_mps).float())
     with torch.inference_mode():
-        theta, gamma, beta = (part[0].clone() for part in network(image[None], motion[None]))
+        theta, gamma, beta = (part[0].float().cpu().clone() for part in network(*_on(device, image, motion)))
     return InrField(
         config=config, grid=CubeGrid.of(config, len(joints_m)), scale=1.0, shape=InrShape(), theta=theta, gamma=gamma,
         beta=beta, amplitude=unit_sqrt_mw(config), is_centred=False,
     )  # fmt: skip
+
+
+def _on(device: torch.device, *tensors: Tensor) -> list[Tensor]:
+    return [tensor[None].to(device) for tensor in tensors]
 
 
 def motion_of(joints_m: Tensor, velocity_mps: Tensor) -> Tensor:

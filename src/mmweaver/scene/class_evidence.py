@@ -8,6 +8,7 @@ from jaxtyping import Int
 from mmweaver.core.records import Plane, RgbdPhoto
 from mmweaver.core.shapes import Array, Points, Rotation
 from mmweaver.geometry.pinhole import unproject
+from mmweaver.scene.depth_grid import DepthGrid, GridBool
 from mmweaver.scene.height_map import CELL_M, HALF_WIDTH_M, LENGTH_M
 from mmweaver.scene.patches import labelled, places
 
@@ -22,6 +23,15 @@ _NO_EVIDENCE = ("unlabeled", "furniture-other", "pillow", "blanket", "cloth", "t
 _LOWEST_M, _HIGHEST_M = 0.25, 0.65  # above the floor: where seats are
 
 GridClass = Int[Array, "y x"]
+
+
+def cells_of(grid: DepthGrid, photo: RgbdPhoto, names: frozenset[str]) -> GridBool | None:
+    """The cells of a photo's grid that show one of these classes; None without a mask, or where it shows none."""
+    if photo.classes is None or grid.class_index is None:
+        return None
+    wanted = [number for number, name in enumerate(photo.classes.names) if name in names]
+    found = np.isin(grid.class_index, wanted)
+    return found if found.any() else None
 
 
 def sittable_squares(photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: float) -> GridClass | None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Vec3
+from mmweaver.scene.depth_grid import GridBool
 from mmweaver.scene.surfaces import UP, LevelGrid
 
 BEHIND_M = 0.5  # walls are taken to go on so far behind the radar
@@ -18,8 +19,11 @@ USUAL_MATERIAL = "plasterboard"
 USUAL_HEIGHT_M = 2.5  # of a room whose ceiling is not seen
 _BIN_M = 0.04
 _SAME_FACING = np.cos(np.deg2rad(20))
+_LEVEL = np.cos(np.deg2rad(45))
 _SAME_PLANE_M = 0.12
 _MIN_SUPPORT_M2 = 0.15  # seen of a wall; less may be a thing
+_MIN_KNOWN_M2 = 0.05  # the same, where a mask says what is wall
+_BEFORE_FRONT_M = 0.08
 _MIN_TALL_M = 1.2  # above the floor reaches what is seen of a wall
 _MAX_BEYOND = 0.04  # share of what is seen that may lie behind a wall (a window, a doorway)
 _NEAREST_M = 0.3
@@ -45,19 +49,18 @@ class _Side:
     distance_m: float
 
 
-def close_room(grid: LevelGrid, planes: Sequence[Plane]) -> ClosedRoom:
+def close_room(grid: LevelGrid, planes: Sequence[Plane], is_wall: GridBool | None = None) -> ClosedRoom:
     """Continues the walls that are seen until they meet, reach the ceiling, and pass the radar.
 
-    `planes` are the room's faces without its floor. Rooms that are not right-angled, and sides of which too little is
-    seen, stay as they are.
+    `planes` are the room's faces without its floor; `is_wall` says which cells are known to show walls. Rooms that
+    are not right-angled, and sides of which too little is seen, stay as they are.
     """
     front = _front(planes)
     unchanged = ClosedRoom(planes=tuple(planes), added=(), assumptions=())
     if front is None:
         return unchanged
     right = np.cross(UP, front)  # of the room, seen from the radar
-    normals = {"front": front, "left": right, "right": -right}
-    sides = {name: side for name, normal in normals.items() if (side := _side(grid, normal)) is not None}
+    sides = _found_sides(grid, front, is_wall)
     if not sides:
         return unchanged
     walls = _walls(sides, grid, -front, right, _ceiling_m(grid, planes), _wall_material(planes))
@@ -99,36 +102,61 @@ def _front(planes: Sequence[Plane]) -> Vec3 | None:
     return np.array([np.cos(facing), np.sin(facing), 0.0])
 
 
-def _side(grid: LevelGrid, normal: Vec3) -> _Side | None:
+def _found_sides(grid: LevelGrid, front: Vec3, is_wall: GridBool | None) -> dict[str, _Side]:
+    """The walls that are seen, by where they stand."""
+    right = np.cross(UP, front)  # of the room, seen from the radar
+    found = {"front": _side(grid, front, is_wall)}
+    known = is_wall
+    if is_wall is not None and found["front"] is not None:
+        # What is wall and stands before the front wall is of a side, even where too little is seen to fit a face.
+        before = found["front"].distance_m + grid.points_m @ front > grid.tolerance_m + _BEFORE_FRONT_M
+        known = is_wall & before & ~(np.abs(grid.normals[..., 2]) > _LEVEL)
+    for name, normal in (("left", right), ("right", -right)):
+        found[name] = _side(grid, normal, known, needs_faces=known is is_wall)
+    return {name: side for name, side in found.items() if side is not None}
+
+
+def _side(grid: LevelGrid, normal: Vec3, is_wall: GridBool | None, *, needs_faces: bool = True) -> _Side | None:
     """The outermost plane of that normal on which enough is seen, and behind which hardly anything is."""
     is_cell = np.isfinite(grid.depth_m)
-    away = -(grid.points_m[is_cell] @ normal)
-    faces = grid.normals[is_cell] @ normal > _SAME_FACING
-    height = grid.points_m[is_cell][:, 2] - grid.floor_z_m
-    area = _cell_area_m2(grid)[is_cell]
-    usable = faces & np.isfinite(area) & (away > _NEAREST_M)
+    points = grid.points_m[is_cell]
+    away = -(points @ normal)
+    usable = away > _NEAREST_M
+    if needs_faces:
+        usable &= grid.normals[is_cell] @ normal > _SAME_FACING
+    if is_wall is not None:
+        usable &= is_wall[is_cell]
     if not usable.any():
         return None
+    height = points[:, 2] - grid.floor_z_m
+    area = _area_m2(points, normal, grid.focal_cells)
     bins = np.floor(away / _BIN_M).astype(int)
     wide = int(bins[usable].max()) + 2
     support = np.bincount(bins[usable], area[usable], minlength=wide)
     support = np.convolve(support, np.ones(3), mode="same")
     beyond = np.array([(away > (b + 3) * _BIN_M).mean() for b in range(wide)])
-    for b in np.flatnonzero((support >= _MIN_SUPPORT_M2) & (beyond <= _MAX_BEYOND))[::-1]:
+    least_m2 = _MIN_SUPPORT_M2 if is_wall is None else _MIN_KNOWN_M2
+    for b in np.flatnonzero((support >= least_m2) & (beyond <= _MAX_BEYOND))[::-1]:
         while b > 0 and support[b - 1] > support[b]:
             b -= 1
         chosen = usable & (np.abs(bins - b) <= 1)
-        if np.percentile(height[chosen], 98) < _MIN_TALL_M or np.ptp(np.percentile(height[chosen], [2, 98])) < 0.4:
+        if is_wall is None and not _is_tall(height[chosen]):
             continue
         distance = float(np.average(away[chosen], weights=1 / np.square(grid.tolerance_m[is_cell][chosen])))
         return _Side(normal, distance)
     return None
 
 
-def _cell_area_m2(grid: LevelGrid) -> np.ndarray:
-    distance = np.linalg.norm(grid.points_m, axis=-1)
-    across = np.maximum(np.abs((grid.points_m * grid.normals).sum(axis=-1)), 0.05 * distance)
-    return distance**3 / (across * grid.focal_cells**2)
+def _is_tall(height_m: np.ndarray) -> bool:
+    low, high = np.percentile(height_m, [2, 98])
+    return bool(high >= _MIN_TALL_M and high - low >= 0.4)
+
+
+def _area_m2(points_m: np.ndarray, normal: Vec3, focal_cells: float) -> np.ndarray:
+    """Of a face of that normal, what each cell shows."""
+    distance = np.linalg.norm(points_m, axis=-1)
+    across = np.maximum(np.abs(points_m @ normal), 0.05 * distance)
+    return distance**3 / (across * focal_cells**2)
 
 
 def _wall_material(planes: Sequence[Plane]) -> str:

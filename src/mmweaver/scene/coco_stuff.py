@@ -28,6 +28,28 @@ NAMES: tuple[str, ...] = (
 UNLABELED = NAMES[0]
 GLASS = frozenset({"window", "window-other"})  # what a depth camera looks through,
 MIRRORS = frozenset({"mirror", "mirror-stuff"})  # and what it sees another room in
+SCREENS = frozenset({"tv", "laptop", "oven", "microwave"})  # dark panes that give no depth
+DOORS = frozenset({"door", "door-stuff"})
+WALLS = frozenset(name for name in NAMES if name.startswith("wall-"))
+ROUGH = frozenset(
+    {
+        "book",
+        "shelf",
+        "curtain",
+        "cloth",
+        "clothes",
+        "towel",
+        "blanket",
+        "pillow",
+        "potted plant",
+        "plant-other",
+        "flower",
+        "leaves",
+        "teddy bear",
+        "backpack",
+        "textile-other",
+    }
+)  # no mirror for waves of 4 mm, however flat its front
 
 # What each class is made of; a class that is not here says nothing, geometry and colour decide.
 MATERIAL: dict[str, str] = {

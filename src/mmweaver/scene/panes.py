@@ -1,14 +1,14 @@
-"""Windows and mirrors: a depth camera looks through the one and into the other; a radar meets both where they hang."""
+"""Windows, mirrors, screens: a depth camera looks through, into or past them; a radar meets them where they hang."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from mmweaver.core.records import RgbdPhoto
+from mmweaver.core.records import ClassMask, RgbdPhoto
 from mmweaver.core.shapes import Array, DepthPixels
-from mmweaver.scene.coco_stuff import GLASS, MIRRORS
+from mmweaver.scene.coco_stuff import GLASS, MIRRORS, SCREENS, WALLS
+from mmweaver.scene.patches import grown, labelled
 
 SMALLEST = 0.002  # of the picture
 RIM = 0.02  # width of the rim around a pane that tells its plane, in picture widths
@@ -19,44 +19,59 @@ FITS = 5
 
 
 def with_panes(photo: RgbdPhoto) -> tuple[RgbdPhoto, tuple[str, ...]]:
-    """The photo with the depth of each known window and mirror put where its rim says the pane is.
+    """The photo with the depth of each known window and mirror put where its rim says the pane is, and the holes of
+    screens on the plane of what was measured of them.
 
     Only pixels without depth or with depth behind the pane change; a pane whose rim is no plane is left as it is.
     """
     if photo.classes is None:
         return photo, ()
-    from scipy.ndimage import label
-
-    wanted = [index for index, name in enumerate(photo.classes.names) if name in GLASS | MIRRORS]
-    found: Any = label(np.isin(photo.classes.index, wanted))
-    regions, count = found
     depth_m, filled = photo.depth_m.copy(), 0
-    for region in range(1, count + 1):
-        pane = regions == region
-        if pane.mean() < SMALLEST:
-            continue
-        plane_m = _plane_depth(pane, photo.depth_m)
+    for pane in _regions(photo.classes, GLASS | MIRRORS):
+        plane_m = _plane_depth(_rim(pane, photo), photo.depth_m)
         if plane_m is None:
             continue
         with np.errstate(invalid="ignore"):
             behind = pane & (plane_m > 0) & ~(photo.depth_m < plane_m + BEHIND_M)
         depth_m[behind] = plane_m[behind]
         filled += bool(behind.any())
-    if not filled:
+    screens = 0
+    for screen in _regions(photo.classes, SCREENS):
+        lost = screen & ~np.isfinite(depth_m)
+        plane_m = _plane_depth(screen & ~lost, photo.depth_m) if lost.any() else None
+        if plane_m is not None:
+            depth_m[lost] = plane_m[lost]
+            screens += 1
+    if not filled + screens:
         return photo, ()
-    sentence = (
-        f"{filled} windows or mirrors were closed: what the depth picture showed behind them was put on their plane."
+    said = (
+        (filled, "windows or mirrors were closed: what the depth picture showed behind them was put on their plane."),
+        (screens, "screens without depth were put on the plane of what was measured of them."),
     )
-    return replace(photo, depth_m=depth_m), (sentence,)
+    return replace(photo, depth_m=depth_m), tuple(f"{count} {what}" for count, what in said if count)
 
 
-def _plane_depth(pane: Bool[Array, "height width"], depth_m: DepthPixels) -> Float[Array, "height width"] | None:
-    """The depth that the plane through a pane's rim has at every pixel: 1/z is linear in the picture."""
-    from scipy.ndimage import binary_dilation
+def _regions(classes: ClassMask, names: frozenset[str]) -> list[Bool[Array, "height width"]]:
+    """The connected regions of pixels of these classes that are large enough to matter."""
+    wanted = [index for index, name in enumerate(classes.names) if name in names]
+    regions, count = labelled(np.isin(classes.index, wanted))
+    each = [regions == region for region in range(1, count + 1)]
+    return [region for region in each if region.mean() >= SMALLEST]
 
+
+def _rim(pane: Bool[Array, "height width"], photo: RgbdPhoto) -> Bool[Array, "height width"]:
+    """What was measured just around a pane: of the wall if that is seen, for curtains hang before it."""
+    reach = max(2, round(RIM * pane.shape[1]))
+    rim = grown(pane, reach) & ~pane & np.isfinite(photo.depth_m)
+    assert photo.classes is not None
+    walls = [index for index, name in enumerate(photo.classes.names) if name in WALLS]
+    of_wall = rim & np.isin(photo.classes.index, walls)
+    return of_wall if of_wall.sum() >= FEWEST_RIM_PIXELS else rim
+
+
+def _plane_depth(rim: Bool[Array, "height width"], depth_m: DepthPixels) -> Float[Array, "height width"] | None:
+    """The depth that the plane through some pixels has at every pixel: 1/z is linear in the picture."""
     height, width = depth_m.shape
-    reach = max(2, round(RIM * width))
-    rim = binary_dilation(pane, iterations=reach) & ~pane & np.isfinite(depth_m)
     rows, columns = np.nonzero(rim)
     if len(rows) < FEWEST_RIM_PIXELS:
         return None

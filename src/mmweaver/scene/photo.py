@@ -12,7 +12,6 @@ from mmweaver.scene.builtin_segmenter import segment_builtin
 from mmweaver.scene.camera_file import d455_intrinsics, intrinsics_for, read_camera_file
 from mmweaver.scene.class_file import read_class_file
 from mmweaver.scene.estimated_depth import EXAMPLE, estimate_depth
-from mmweaver.scene.panes import with_panes
 from mmweaver.scene.picture_files import read_depth, read_rgb
 from mmweaver.scene.segmentation import segment, sharpened
 from mmweaver.scene.sparse_depth import fill_scattered_holes
@@ -73,9 +72,9 @@ def read_photo(
     intrinsics = d455_intrinsics(width, height) if camera is None else intrinsics_for(camera, own, width, height)
     photo = RgbdPhoto(rgb=pixels, depth_m=depth_m, intrinsics=intrinsics)
     mask = classes_of(photo, classes=classes, segmenter=segmenter, sam=sam)
-    photo, closed = with_panes(replace(photo, classes=mask))
+    photo = replace(photo, classes=mask)
     stated = _assumptions(photo, has_camera=camera is not None, turned=turned and depth is not None)
-    return photo, (*stated, *patched, *resized, *sentences, *closed)
+    return photo, (*stated, *patched, *resized, *sentences)
 
 
 def classes_of(

@@ -7,11 +7,13 @@ import numpy as np
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
-from mmweaver.scene.class_evidence import sittable_squares
+from mmweaver.scene.class_evidence import cells_of, sittable_squares
 from mmweaver.scene.closed_room import close_room, wall_faces
+from mmweaver.scene.coco_stuff import ROUGH, WALLS
 from mmweaver.scene.depth_grid import GridBool, GridVectors, make_grid
 from mmweaver.scene.free_space import find_free_space
 from mmweaver.scene.height_map import make_height_map
+from mmweaver.scene.hung import hung_panels, with_hung
 from mmweaver.scene.landmarks import find_landmarks
 from mmweaver.scene.levelling import level_room
 from mmweaver.scene.materials import (
@@ -23,8 +25,9 @@ from mmweaver.scene.materials import (
     with_material,
 )
 from mmweaver.scene.mesh import floor_faces, make_mesh
+from mmweaver.scene.panes import with_panes
 from mmweaver.scene.seats import find_seats
-from mmweaver.scene.surfaces import LevelGrid, floor_cells
+from mmweaver.scene.surfaces import LevelGrid, Surface, floor_cells
 
 _FLOOR_MARGIN_M = 0.3
 _MIN_FLOOR_M = 3.0  # length and half width that the floor is given at least
@@ -39,6 +42,7 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
 
     Raises InputError where the depth shows no surfaces.
     """
+    photo, closed_panes = with_panes(photo)
     grid = make_grid(photo)
     room = level_room(grid)
     gravity, radar_from_camera, level, surfaces = room.gravity, room.radar_from_camera, room.grid, room.surfaces
@@ -57,7 +61,10 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     planes = [with_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True)]
     rays = _rays(grid.intrinsics, radar_from_camera)
     vertices_m, faces, face_material = make_mesh(level, rays, surfaces, is_floor, material)
-    closed = close_room(level, planes)
+    rough = cells_of(grid, photo, ROUGH)
+    smooth = [plane for plane, surface in zip(planes, surfaces, strict=True) if not _is_mostly(surface, rough)]
+    closed = close_room(level, smooth, cells_of(grid, photo, WALLS))
+    hung = hung_panels(photo, radar_from_camera, [plane for plane in closed.planes if plane.kind == "wall"])
     corners_m, large_faces, large_material = _rectangles(floor, closed.added)
     return Scene(
         photo=photo,
@@ -66,7 +73,7 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
         faces=np.concatenate([faces, large_faces + len(vertices_m)]),
         face_material=np.concatenate([face_material, large_material]),
         material_names=MATERIAL_NAMES,
-        planes=(floor, *closed.planes),
+        planes=(floor, *with_hung(closed.planes, hung, closed.added)),
         floor_z_m=gravity.floor_z_m,
         free_space=free_space,
         seats=seats,
@@ -75,6 +82,7 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
         ),
         assumptions=(
             *assumptions,
+            *closed_panes,
             *gravity.assumptions,
             *closed.assumptions,
             *_own_assumptions(floor, has_classes=photo.classes is not None),
@@ -92,6 +100,10 @@ def _rectangles(floor: Plane, walls: Sequence[Plane]) -> tuple[np.ndarray, np.nd
         np.concatenate([triangles, wall_triangles + len(corners_m)]),
         np.array([MATERIAL_NAMES.index(name) for name in names]),
     )
+
+
+def _is_mostly(surface: Surface, cells: GridBool | None) -> bool:
+    return cells is not None and bool((surface.cells & cells).sum() > 0.5 * surface.cells.sum())
 
 
 def _rays(intrinsics: CameraIntrinsics, radar_from_camera: Rotation) -> GridVectors:

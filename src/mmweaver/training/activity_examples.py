@@ -1,5 +1,6 @@
 """Labelled log maps of a data set, for training and judging the activity network."""
 
+import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,10 +9,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
-from mmweaver.data.store import read_rooms
+from mmweaver.data.store import StoredRoom, plan_text, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.log_maps import LogMaps
 
@@ -44,9 +46,15 @@ def maps_of(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[Tensor, Te
     return torch.stack(doppler), torch.stack(angle)
 
 
-def activity_examples(folder: Path, splits: tuple[str, ...]) -> ActivityExamples:
-    """The sequences of a data set that belong to some splits. Raises InputError where there are none."""
-    rooms = read_rooms(folder)
+def activity_examples(
+    folder: Path, splits: tuple[str, ...], kept: Path | None = None, *, keep: bool = True, device: str = "cpu"
+) -> ActivityExamples:
+    """The sequences of a data set that belong to some splits.
+
+    Their maps are read from the file `kept`, if it is of the same data set, else made and, with `keep`, left there;
+    signals that are not stored are made on `device`. Raises InputError where there are no sequences.
+    """
+    rooms = read_rooms(folder, device=device)
     chosen = [(room, index) for room in rooms for index, split in enumerate(room.split) if split in splits]
     if not chosen:
         raise InputError(f"{folder} has no sequences of {' or '.join(splits)}; make more with: mmweaver dataset")
@@ -54,7 +62,13 @@ def activity_examples(folder: Path, splits: tuple[str, ...]) -> ActivityExamples
     if unknown:
         raise InputError(f"{folder} shows activities that this version does not know: {', '.join(sorted(unknown))}")
     config = rooms[0].config
-    doppler, angle = maps_of((room.cube(index) for room, index in chosen), config)
+    mark = _mark(folder, chosen)
+    maps = None if kept is None else _read(kept, mark)
+    if maps is None:
+        maps = maps_of((room.cube(index) for room, index in chosen), config)
+        if kept is not None and keep:
+            _write(kept, maps, mark)
+    doppler, angle = maps
     return ActivityExamples(
         doppler=doppler,
         angle=angle,
@@ -63,6 +77,33 @@ def activity_examples(folder: Path, splits: tuple[str, ...]) -> ActivityExamples
         person=tuple(int(room.person[index]) for room, index in chosen),
         config=config,
     )
+
+
+def _mark(folder: Path, chosen: list[tuple[StoredRoom, int]]) -> str:
+    """Names a data set and some of its sequences."""
+    words = [plan_text(folder), *(f"{room.folder.name} {index} {int(room.seed[index])}" for room, index in chosen)]
+    return hashlib.sha256("\n".join(words).encode()).hexdigest()
+
+
+def _read(file: Path, mark: str) -> tuple[Tensor, Tensor] | None:
+    from safetensors import SafetensorError, safe_open
+
+    if not file.is_file():
+        return None
+    try:
+        with safe_open(file, framework="pt") as opened:
+            if (opened.metadata() or {}).get("mark") != mark:
+                return None
+            return opened.get_tensor("doppler"), opened.get_tensor("angle")
+    except (SafetensorError, OSError):
+        return None
+
+
+def _write(file: Path, maps: tuple[Tensor, Tensor], mark: str) -> None:
+    from safetensors.torch import save_file
+
+    with atomic_file(file) as temporary:
+        save_file({"doppler": maps[0], "angle": maps[1]}, temporary, metadata={"mark": mark})
 
 
 def varied(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:

@@ -3,64 +3,134 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import torch
+from torch import Tensor
 
 from mmweaver.core.seeding import stream
-from mmweaver.models.activity_network import ActivityNetwork
+from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
 from mmweaver.training.activity_examples import ActivityExamples, activity_examples, varied
-from mmweaver.training.recipe_loop import LoopSettings, RecipeLoop, StepReport
+from mmweaver.training.confusion_sheet import draw_confusion
+from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
+from mmweaver.training.workplace import Share, Workplace
 
 # The two activities that are withheld from the weaver are no test here, and the network shall know all twelve.
 TRAIN_SPLITS = ("train", "test_activity")
+TRAIN_MAPS, UNSEEN_MAPS = "train_maps.safetensors", "validation_maps.safetensors"
 SMOOTHING = 0.1
 AT_ONCE = 32
 
 
 @dataclass(frozen=True, kw_only=True)
-class ActivityRecipe(LoopSettings):
-    """Sixteen times through 743 sequences; chosen by what kinds of rooms of split `validation` show."""
+class ActivityRecipe(LoopRecipe):
+    """Chosen by what kinds of rooms of split `validation` show."""
 
     name: str = "activity"
     steps: int = 800
     batch_size: int = 16
     learning_rate: float = 2e-3
     warm_up_steps: int = 50
-    is_cosine: bool = True
     weight_decay: float = 1e-2
-    largest_gradient: float = 5.0
     validate_every: int = 100
+    validation_batches: int = 8  # all sequences of the split, dealt out
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActivityBatch:
+    """Log maps of sequences, and what they show."""
+
+    doppler: Tensor  # (sequence, frame, 1, range, doppler)
+    angle: Tensor  # (sequence, frame, 2, range, azimuth)
+    label: Tensor  # (sequence,) index into ACTIVITY_NAMES
+
+
+class ActivityLearner(Learner):
+    """The network with its loss; `unseen` is what its picture shows."""
+
+    def __init__(self, network: ActivityNetwork, unseen: ActivityExamples | None = None):
+        super().__init__()
+        self.network, self.unseen = network, unseen
+
+    def terms(self, batch: ActivityBatch) -> dict[str, Tensor]:
+        scores = self.network(batch.doppler, batch.angle)
+        smoothing = SMOOTHING if self.training else 0.0
+        return {"cross_entropy": torch.nn.functional.cross_entropy(scores, batch.label, label_smoothing=smoothing)}
+
+    def figures(self, batch: ActivityBatch) -> dict[str, Tensor]:
+        answers = self.network(batch.doppler, batch.angle).argmax(dim=1)
+        return {"wrong": (answers != batch.label).float().mean()}
+
+    def picture(self) -> np.ndarray | None:
+        if self.unseen is None:
+            return None
+        answers = scores_of(self.network, self.unseen).argmax(dim=1).numpy()
+        return draw_confusion(self.unseen.label.numpy(), answers, ACTIVITY_NAMES)
 
 
 def train_activity(
-    data: Path, out: Path, recipe: ActivityRecipe, listener: Callable[[StepReport], object] | None = None
-) -> RecipeLoop:
-    """Trains on a data set, or goes on from `out`/checkpoint.pt. Raises InputError for a folder without data."""
-    examples, unseen = activity_examples(data, TRAIN_SPLITS), activity_examples(data, ("validation",))
+    data: Path,
+    out: Path,
+    recipe: ActivityRecipe,
+    *,
+    start: dict[str, Tensor] | None = None,
+    listener: Listener | None = None,
+    workplace: Workplace | None = None,
+    **options: Any,
+) -> Trainer:
+    """Trains on a data set, or goes on from `out`/checkpoint.pt; what comes back holds the best network.
+
+    `start`: weights to fine-tune. `options` go to `Trainer`. The log maps of all sequences are kept in `out`, for
+    where signals are not stored they cost more than the training. Raises InputError for a folder without data.
+    """
+    place = workplace or Workplace()
+    kept = {"keep": place.is_first, "device": str(place.device)}
+    unseen = activity_examples(data, ("validation",), out / UNSEEN_MAPS, **kept)
+    examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **kept)
     torch.manual_seed(recipe.seed)
     network = ActivityNetwork(examples.config)
+    if start is not None:
+        network.load_state_dict(start)
+    trainer = Trainer(
+        ActivityLearner(network, unseen), recipe, out, workplace=workplace, is_tuning=start is not None,
+        train=_drawing(examples, recipe), validation=_dealt(unseen, recipe.validation_batches), **options,
+    )  # fmt: skip
+    trainer.run(listener)
+    return trainer
 
-    def terms(step: int) -> dict[str, torch.Tensor]:
+
+def _drawing(examples: ActivityExamples, recipe: ActivityRecipe) -> Draw:
+    """Varied sequences, by step."""
+
+    def draw(step: int, share: Share) -> ActivityBatch:
         rng = stream(recipe.seed, "activity batch", step)
-        size = min(recipe.batch_size, len(examples))
-        chosen = torch.from_numpy(rng.choice(len(examples), size=size, replace=False))
-        scores = network(*varied(examples.doppler[chosen], examples.angle[chosen], rng))
-        loss = torch.nn.functional.cross_entropy(scores, examples.label[chosen], label_smoothing=SMOOTHING)
-        return {"cross_entropy": loss}
+        chosen = rng.choice(len(examples), size=recipe.batch_size, replace=len(examples) < recipe.batch_size)
+        which = torch.from_numpy(chosen)
+        doppler, angle = varied(examples.doppler[which], examples.angle[which], rng)
+        own = slice(share[0], None, share[1])
+        return ActivityBatch(doppler=doppler[own], angle=angle[own], label=examples.label[which][own])
 
-    def validate() -> dict[str, float]:
-        scores = scores_of(network, unseen)
-        wrong = float((scores.argmax(dim=1) != unseen.label).float().mean())
-        return {"cross_entropy": float(torch.nn.functional.cross_entropy(scores, unseen.label)), "wrong": wrong}
-
-    loop = RecipeLoop(network, recipe, out, terms=terms, validate=validate)
-    loop.run(listener)
-    return loop
+    return draw
 
 
-def scores_of(network: ActivityNetwork, examples: ActivityExamples) -> torch.Tensor:
-    """Scores (sequence, 12) before the softmax."""
+def _dealt(examples: ActivityExamples, count: int) -> Callable[[int, Share], ActivityBatch]:
+    """All sequences dealt out to so many batches, as they are."""
+
+    def draw(index: int, share: Share) -> ActivityBatch:
+        own = slice(index % len(examples), None, count)
+        return ActivityBatch(
+            doppler=examples.doppler[own].float(), angle=examples.angle[own].float(), label=examples.label[own]
+        )
+
+    return draw
+
+
+def scores_of(network: ActivityNetwork, examples: ActivityExamples) -> Tensor:
+    """Scores (sequence, 12) before the softmax, on the CPU."""
     network.eval()
+    device = next(network.parameters()).device
     with torch.no_grad():
         parts = zip(examples.doppler.split(AT_ONCE), examples.angle.split(AT_ONCE), strict=True)
-        return torch.cat([network(one.float(), other.float()) for one, other in parts])
+        scores = [network(one.float().to(device), other.float().to(device)) for one, other in parts]
+        return torch.cat(scores).cpu()

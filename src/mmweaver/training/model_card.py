@@ -2,9 +2,10 @@
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard
+from mmweaver.models.weights import WeightsCard
 
 Figures = Mapping[str, Mapping[str, float]]  # {whose: {column: value}}
 
@@ -21,36 +22,74 @@ tags:
 
 # {title}
 
-A network of mmWeaver: a photo of a room with depth and a person's joints in, the echoes that an FMCW MIMO radar at the
-camera would see out. Phases are drawn, the signal follows from the radar's own response.
-
-    mmweaver generate --rgb rgb.png --depth depth.png --text "a person walks" --method weaver --weights . --out walk/
-
-```python
-from mmweaver import Weaver
-
-weaver = Weaver.from_pretrained(".")  # this folder, its {file}, or its name on the Hub
-```
+{about}
 """
 LIMITS = """
 ## What it is not for
 
 - It has seen rooms, people and radar signals made up by mmWeaver's simulator{and_captures}; nothing here says how near
   it comes to a recording of another room. Amplitudes are uncalibrated.
-- What the photo does not show is not there. Phases of surfaces and skin are drawn, not known.
-- One radar ({radar}); others are rendered from the same echoes and have not been judged.
+{limits}
 - Not for decisions about people's safety or health.
 """
 
 
+@dataclass(frozen=True, kw_only=True)
+class Page:
+    """What the pages of one recipe have in common."""
+
+    about: str
+    limits: str
+    unit: str  # of the figures
+
+
+WEAVER = Page(
+    unit="dB",
+    about="""A network of mmWeaver: a photo of a room with depth and a person's joints in, the echoes that an FMCW MIMO
+radar at the camera would see out. Phases are drawn, the signal follows from the radar's own response.
+
+    mmweaver generate --rgb rgb.png --depth depth.png --text "a person walks" --method weaver --weights . --out walk/
+
+```python
+from mmweaver import Weaver
+
+weaver = Weaver.from_pretrained(".")  # this folder, its weights.safetensors, or its name on the Hub
+```""",
+    limits="""- What the photo does not show is not there. Phases of surfaces and skin are drawn, not known.
+- One radar ({radar}); others are rendered from the same echoes and have not been judged.""",
+)
+PAGES = {
+    "activity": Page(
+        unit="",
+        about="""A recogniser of mmWeaver: which of twelve activities 20 frames of a radar show, from range-Doppler and
+range-azimuth pictures in decibels above the receiver's noise. Judge of generated data, and features of the paper's
+perceptual loss.
+
+    mmweaver train paper --data data/ --out paper/ --features weights.safetensors""",
+        limits="- One radar ({radar}); its pictures are scaled by that radar's constants, and no other's weights fit.",
+    ),
+    "paper": Page(
+        unit="",
+        about="""The paper's own network as the paper trains it, kept for comparison: a photo of a room with depth and a
+person's joints in, the weights of an implicit representation of the complex signal out. For use take recipe weaver.
+
+    python -m mmweaver.experiments.weaver_paper --data data/ --weights weights.safetensors""",
+        limits="- Where its loss is that of all zeros it has collapsed: its signals hold hardly any energy.\n"
+        "- One radar ({radar}).",
+    ),
+}
+
+
 def model_card(card: WeightsCard, file: Path, *, data: str, judged_on: str, figures: Figures) -> str:
-    """The page as Markdown with a front matter. `data`, `judged_on`: sentences; `figures`: rows of scores in dB."""
+    """The page as Markdown with a front matter. `data`, `judged_on`: sentences; `figures`: rows of scores, in dB those
+    of the weaver."""
+    page = PAGES.get(card.recipe, WEAVER)
     lines = [
         FRONT.format(
-            licence=card.licence.lower(), title=f"mmweaver {card.recipe}", file=WEIGHTS_FILE
+            licence=card.licence.lower(), title=f"mmweaver {card.recipe}", about=page.about
         ),
         "## Data", "", data, "", "## How good", "", judged_on, "",
-        *_table(figures), "",
+        *_table(figures, page.unit), "",
         f"The loss there is {card.validation_loss:.3f}, the least of the run.", "", "## Facts", "",
         "| | |", "| --- | --- |",
         f"| file | `{file.name}`, {file.stat().st_size:,} bytes, sha256 `{_sha256(file)}` |",
@@ -64,14 +103,18 @@ def model_card(card: WeightsCard, file: Path, *, data: str, judged_on: str, figu
         *(f"| {name} | {value} |" for name, value in card.settings.items() if name not in ("name", "steps", "seed")),
     ]  # fmt: skip
     told = " and the captures it was tuned on" if card.tuned_from else ""
-    return "\n".join(lines) + "\n" + LIMITS.format(and_captures=told, radar=card.radar)
+    limits = page.limits.format(radar=card.radar)
+    return "\n".join(lines) + "\n" + LIMITS.format(and_captures=told, limits=limits)
 
 
-def _table(figures: Figures) -> list[str]:
+def _table(figures: Figures, unit: str) -> list[str]:
     columns = list(dict.fromkeys(column for row in figures.values() for column in row))
-    head = ["| | " + " | ".join(f"{column.replace('_', '-')}, dB" for column in columns) + " |"]
+    ending = f", {unit}" if unit else ""
+    head = ["| | " + " | ".join(column.replace("_", "-") + ending for column in columns) + " |"]
     head.append("| --- |" + " --- |" * len(columns))
-    return head + [f"| {who} | " + " | ".join(f"{row[c]:.2f}" for c in columns) + " |" for who, row in figures.items()]
+    digits = 2 if unit == "dB" else 4
+    rows = {who: " | ".join(f"{row[column]:.{digits}f}" for column in columns) for who, row in figures.items()}
+    return head + [f"| {who} | {cells} |" for who, cells in rows.items()]
 
 
 def _sha256(file: Path) -> str:

@@ -6,6 +6,7 @@ sequence. Half of them lie around a range in which something moves, half anywher
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from mmweaver.metrics.signal import span_of
 from mmweaver.models.paper_method import motion_of, unit_sqrt_mw
 from mmweaver.models.room_view import RoomView
 from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.workplace import Share
 
 POINTS, FRAMES = 16_384, 2
 
@@ -36,7 +38,7 @@ class PaperBatch:
     frames: Tensor  # (sequence, 2) those of the patch
     encoded: Tensor  # (sequence, range doppler antenna, 51), coordinates of the patch
     truth: Tensor  # (sequence, 2, range, doppler, antenna) complex, in the network's unit
-    span: Tensor  # (sequence,) data range of the whole sequence
+    span: Tensor  # (sequence,) data range of these two frames, in the network's unit
 
 
 class PaperRoom:
@@ -45,32 +47,44 @@ class PaperRoom:
     def __init__(self, room: StoredRoom, split: str):
         self.room = room
         self.indices = [index for index, name in enumerate(room.split) if name == split]
-        self.image = RoomView.of(reconstruct(room.photo), room.config).image
+
+    @cached_property
+    def image(self) -> Tensor:
+        """(5, row, column): colour, depth and classes of the reconstructed room."""
+        geometry = self.room.geometry
+        photographed = None if geometry is None else geometry.photographed
+        return RoomView.of(reconstruct(self.room.photo), self.room.config, photographed).image
 
 
-def paper_rooms(folder: Path, split: str) -> list[PaperRoom]:
-    """The rooms that have sequences of a split. Raises InputError where there are none."""
-    rooms = [PaperRoom(room, split) for room in read_rooms(folder) if split in room.split]
+def paper_rooms(folder: Path, split: str, device: str = "cpu") -> list[PaperRoom]:
+    """The rooms that have sequences of a split; signals that are not stored are made on `device` when a batch wants
+    them. Raises InputError where there are none."""
+    rooms = [PaperRoom(room, split) for room in read_rooms(folder, device=device) if split in room.split]
     if not rooms:
         raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
     return rooms
 
 
-def draw_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: int) -> PaperBatch:
-    """`size` sequences of as many rooms; the same seed and step give the same batch."""
+def draw_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: int, share: Share = (0, 1)) -> PaperBatch:
+    """`size` sequences of as many rooms, of them the share of one process; the same seed and step give the same."""
     rng = stream(seed, "paper batch", step)
     images, motions, frames, encoded, truth, span = [], [], [], [], [], []
-    for which in rng.choice(len(rooms), size=size, replace=len(rooms) < size):
+    for number, which in enumerate(rng.choice(len(rooms), size=size, replace=len(rooms) < size)):
+        own = stream(seed, "paper patch", step, number)
+        if number % share[1] != share[0]:
+            continue
         one = rooms[int(which)]
-        index = one.indices[int(rng.integers(len(one.indices)))]
-        cube, unit = one.room.cube(index), unit_sqrt_mw(one.room.config)
-        chosen, first, length = _patch(cube, rng)
+        index = one.indices[int(own.integers(len(one.indices)))]
+        num_frames = len(one.room.joints_m[index])
+        chosen = np.sort(own.choice(num_frames, size=FRAMES, replace=num_frames < FRAMES))
+        cube, unit = one.room.cube(index, chosen), unit_sqrt_mw(one.room.config)
+        first, length = _patch(cube, own)
         joints, velocity = (part[index] for part in (one.room.joints_m, one.room.joint_velocity_mps))
         images.append(one.image)
         motions.append(motion_of(torch.from_numpy(joints), torch.from_numpy(velocity)))
         frames.append(torch.from_numpy(chosen))
         encoded.append(_encoded(one.room.config, first, length))
-        truth.append(torch.from_numpy(cube.values[chosen, first : first + length] / np.float32(unit)))
+        truth.append(torch.from_numpy(cube.values[:, first : first + length] / np.float32(unit)))
         span.append(span_of(cube.values) / unit)
     return PaperBatch(
         image=torch.stack(images), motion=torch.stack(motions), frames=torch.stack(frames),
@@ -78,16 +92,15 @@ def draw_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: int)
     )  # fmt: skip
 
 
-def _patch(cube: RadarCube, rng: np.random.Generator) -> tuple[np.ndarray, int, int]:
-    """Two frames, the first range of the patch and how many; half of the patches where the first frame moves."""
-    num_frames, num_ranges, num_loops, num_antennas = cube.values.shape
+def _patch(cube: RadarCube, rng: np.random.Generator) -> tuple[int, int]:
+    """The first range of the patch and how many; half of the patches where the first frame moves."""
+    _, num_ranges, num_loops, num_antennas = cube.values.shape
     length = min(num_ranges, max(1, POINTS // (FRAMES * num_loops * num_antennas)))
-    frames = np.sort(rng.choice(num_frames, size=FRAMES, replace=num_frames < FRAMES))
     middle = int(rng.integers(num_ranges))
-    moving = np.flatnonzero(cells_of(cube).is_moving[frames[0]].any(axis=-1))
+    moving = np.flatnonzero(cells_of(cube).is_moving[0].any(axis=-1))
     if rng.random() < 0.5 and len(moving):
         middle = int(moving[rng.integers(len(moving))])
-    return frames, int(np.clip(middle - length // 2, 0, num_ranges - length)), length
+    return int(np.clip(middle - length // 2, 0, num_ranges - length)), length
 
 
 def _encoded(config: RadarConfig, first: int, length: int) -> Tensor:

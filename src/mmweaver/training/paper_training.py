@@ -1,33 +1,95 @@
 """Training the paper's network as the paper says: recipe `paper`."""
 
-import math
-from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.models.activity_network import load_activity
-from mmweaver.models.paper_method import unit_sqrt_mw
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.models.activity_network import ActivityNetwork, load_activity
+from mmweaver.models.paper_method import field_of_image, unit_sqrt_mw
 from mmweaver.models.paper_network import PaperNetwork, evaluate_each
-from mmweaver.training.paper_examples import PaperBatch, draw_paper_batch, paper_rooms
+from mmweaver.models.precision import exactly
+from mmweaver.training.expected_maps import stacked
+from mmweaver.training.paper_examples import PaperBatch, PaperRoom, draw_paper_batch, paper_rooms
 from mmweaver.training.paper_loss import paper_loss
-from mmweaver.training.recipe_loop import LoopSettings, RecipeLoop, StepReport
+from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
+from mmweaver.training.validation_sheet import MOST_ROWS, draw_sheet
+from mmweaver.training.weaver_examples import power_maps
+from mmweaver.training.workplace import Workplace
 
-VALIDATION_SEED, VALIDATION_BATCHES = 10_000, 8
+VALIDATION_SEED = 10_000  # added to the recipe's
 
 
 @dataclass(frozen=True, kw_only=True)
-class PaperRecipe(LoopSettings):
+class PaperRecipe(LoopRecipe):
     """Adam, 1e-4, no schedule. The paper's 1,000 epochs of 12,000 sequences are 3 million steps of four."""
 
     name: str = "paper"
     steps: int = 6000
     batch_size: int = 4
     learning_rate: float = 1e-4
+    warm_up_steps: int = 0
+    is_cosine: bool = False
+    weight_decay: float = 0.0
+    largest_gradient: float | None = None
     validate_every: int = 200
+    patience: int = 1_000_000  # the paper does not stop early
+
+
+class PaperLearner(Learner):
+    """The network with the paper's loss; `shown` gives the rooms whose first sequences its picture shows."""
+
+    def __init__(
+        self,
+        network: PaperNetwork,
+        perceiver: ActivityNetwork,
+        config: RadarConfig,
+        shown: Callable[[], list[PaperRoom]] = list,
+    ):
+        super().__init__()
+        self.network, self.config, self.shown = network, config, shown
+        self._perceiver = (perceiver.requires_grad_(False),)  # no module of this one: its weights are not trained
+
+    def _apply(self, fn: Any, recurse: bool = True) -> "PaperLearner":
+        """The perceiver goes where the network goes."""
+        super()._apply(fn, recurse)
+        self._perceiver[0].to(next(self.network.parameters()).device)
+        return self
+
+    def terms(self, batch: PaperBatch) -> dict[str, Tensor]:
+        return self._cost(patches(self.network, batch), batch)
+
+    def figures(self, batch: PaperBatch) -> dict[str, Tensor]:
+        """The loss of all zeros, and error and energy over the truth's energy: they tell a collapse."""
+        made, energy = patches(self.network, batch), batch.truth.abs().square().sum()
+        nothing = torch.stack(list(self._cost(torch.zeros_like(made), batch).values())).sum()
+        return {
+            **{f"own_{name}": term for name, term in self._cost(made, batch).items()}, "zeros_loss": nothing,
+            "nmse": (made - batch.truth).abs().square().sum() / energy, "energy": made.abs().square().sum() / energy,
+        }  # fmt: skip
+
+    def picture(self) -> np.ndarray | None:
+        rooms = self.shown()
+        if not rooms:
+            return None
+        true, made = [], []
+        for one in rooms:
+            index = one.indices[0]
+            joints, velocity = one.room.joints_m[index], one.room.joint_velocity_mps[index]
+            middle = np.array([len(joints) // 2])
+            cube = field_of_image(self.network, one.image, self.config, joints, velocity).cube()
+            true.append(power_maps(one.room.cube(index, middle).values, self.config))
+            made.append(power_maps(cube.values[middle], self.config))
+        return draw_sheet(stacked(true), stacked(made), self.config, made="network")
+
+    def _cost(self, made: Tensor, batch: PaperBatch) -> dict[str, Tensor]:
+        with exactly(made):
+            return paper_loss(made, batch.truth, batch.span, self._perceiver[0], unit_sqrt_mw(self.config))
 
 
 def train_paper(
@@ -36,62 +98,46 @@ def train_paper(
     recipe: PaperRecipe,
     *,
     features: Path,
-    listener: Callable[[StepReport], object] | None = None,
-) -> RecipeLoop:
+    start: dict[str, Tensor] | None = None,
+    listener: Listener | None = None,
+    workplace: Workplace | None = None,
+    **options: Any,
+) -> Trainer:
     """Trains on split `train`, or goes on from `out`/checkpoint.pt; `features`: weights of recipe `activity`.
 
-    Keeps what is best on split `validation`. Raises InputError for folders without data and foreign weights.
+    Keeps what is best on split `validation`. `start`: weights to fine-tune. `options` go to `Trainer`. Raises
+    InputError for folders without data and foreign weights.
     """
-    rooms, unseen = paper_rooms(data, "train"), paper_rooms(data, "validation")
+    device = str((workplace or Workplace()).device)
+    rooms, unseen = paper_rooms(data, "train", device), paper_rooms(data, "validation", device)
     config = rooms[0].room.config
-    perceiver = load_activity(features, config).requires_grad_(False)
+    perceiver = load_activity(features, config)
     torch.manual_seed(recipe.seed)
     network = PaperNetwork()
+    if start is not None:
+        network.load_state_dict(start)
+    trainer = Trainer(
+        PaperLearner(network, perceiver, config, shown=lambda: unseen[:MOST_ROWS]), recipe, out, workplace=workplace,
+        train=_drawing(rooms, recipe, recipe.seed), validation=_drawing(unseen, recipe, VALIDATION_SEED + recipe.seed),
+        is_tuning=start is not None, **options,
+    )  # fmt: skip
+    trainer.run(listener)
+    return trainer
 
-    def cost(made: Tensor, batch: PaperBatch) -> dict[str, Tensor]:
-        return paper_loss(made, batch.truth, batch.span, perceiver, unit_sqrt_mw(config))
 
-    def terms(step: int) -> dict[str, Tensor]:
-        batch = draw_paper_batch(rooms, recipe.seed, step, size=recipe.batch_size)
-        return cost(patches(network, batch), batch)
-
-    def validate() -> dict[str, float]:
-        seed, size = VALIDATION_SEED + recipe.seed, recipe.batch_size
-        batches = (draw_paper_batch(unseen, seed, index, size=size) for index in range(VALIDATION_BATCHES))
-        return _validation(network, cost, batches)
-
-    loop = RecipeLoop(network, recipe, out, terms=terms, validate=validate)
-    loop.run(listener)
-    return loop
+def _drawing(rooms: list[PaperRoom], recipe: PaperRecipe, seed: int) -> Draw:
+    """Batches of rooms, by step."""
+    return lambda step, share: draw_paper_batch(rooms, seed, step, size=recipe.batch_size, share=share)
 
 
 def patches(network: PaperNetwork, batch: PaperBatch) -> Tensor:
-    """What the network writes at a batch's coordinates, shaped as its truth."""
+    """What the network writes at a batch's coordinates, shaped as its truth; its weights in mixed precision, the
+    field's values in float32."""
     theta, gamma, beta = network(batch.image, batch.motion)
-    which = torch.arange(len(theta))[:, None]
-    encoded = batch.encoded[:, None].expand(-1, batch.frames.shape[1], -1, -1)
-    shape = network.hypernetwork.shape
-    pairs = evaluate_each(theta, gamma[which, batch.frames], beta[which, batch.frames], encoded, shape)
-    return torch.view_as_complex(pairs.contiguous()).view(batch.truth.shape)
-
-
-def _validation(
-    network: PaperNetwork, cost: Callable[[Tensor, PaperBatch], dict[str, Tensor]], batches: Iterable[PaperBatch]
-) -> dict[str, float]:
-    """Mean loss and its terms, beside the loss of all zeros and how much of the truth's energy there is: both tell a
-    collapse."""
-    sums: dict[str, float] = defaultdict(float)
-    energy: dict[str, float] = defaultdict(float)
-    for batch in batches:
-        made = patches(network, batch)
-        terms = {name: float(term) for name, term in cost(made, batch).items()}
-        nothing = sum(float(term) for term in cost(torch.zeros_like(made), batch).values())
-        for name, value in (("loss", sum(terms.values())), ("zeros_loss", nothing), *terms.items()):
-            sums[name] += value / VALIDATION_BATCHES
-        for name, value in (("made", made), ("truth", batch.truth), ("error", made - batch.truth)):
-            energy[name] += float(value.abs().square().sum())
-    return {
-        **sums,
-        "nmse_db": 10 * math.log10(energy["error"] / energy["truth"]),
-        "energy_db": 10 * math.log10(max(energy["made"], 1e-30) / energy["truth"]),
-    }
+    with exactly(theta):
+        theta, gamma, beta = theta.float(), gamma.float(), beta.float()
+        which = torch.arange(len(theta), device=theta.device)[:, None]
+        encoded = batch.encoded[:, None].expand(-1, batch.frames.shape[1], -1, -1)
+        shape = network.hypernetwork.shape
+        pairs = evaluate_each(theta, gamma[which, batch.frames], beta[which, batch.frames], encoded, shape)
+        return torch.view_as_complex(pairs.contiguous()).view(batch.truth.shape)

@@ -41,12 +41,18 @@ class LoopRecipe:
     batch_size: int = 3  # of all processes together
     learning_rate: float = 1e-3
     warm_up_steps: int = 200
+    is_cosine: bool = True  # else the rate stays, and a run may go on for more steps than were first asked for
     weight_decay: float = 1e-4
-    largest_gradient: float = 5.0
+    largest_gradient: float | None = 5.0  # None: gradients are not bounded
     seed: int = 0
     validate_every: int = 250
     validation_batches: int = 8
     patience: int = 12  # validations without a better one before training stops early
+
+    def rate(self, step: int) -> float:
+        """Learning rate of a step."""
+        rate = self.learning_rate * min(1.0, (step + 1) / max(self.warm_up_steps, 1))
+        return rate * (0.5 + 0.5 * math.cos(math.pi * step / self.steps)) if self.is_cosine else rate
 
 
 class Learner(nn.Module):
@@ -58,6 +64,10 @@ class Learner(nn.Module):
     def terms(self, batch: Any) -> dict[str, Tensor]:
         """Terms of the loss by name, means over the batch; their sum is what is minimised."""
         raise NotImplementedError
+
+    def figures(self, batch: Any) -> dict[str, Tensor]:
+        """What else is told of a validation batch; means over it."""
+        return {}
 
     def picture(self) -> np.ndarray | None:
         """What it has learned of fixed validation examples, (row, column, 3) uint8; None for nothing to look at."""
@@ -76,6 +86,7 @@ class Progress:
     loss: float
     terms: dict[str, float]
     validation: float | None
+    figures: dict[str, float]  # what else the learner tells of the validation batches
     seconds: float
     learning_rate: float
     gradient_norm: float
@@ -140,9 +151,9 @@ class Trainer:
         for step in self.resumable.steps(recipe.steps):
             rate, loss, terms, norm = self._one_step(step)
             is_due = (step + 1) % recipe.validate_every == 0 or step + 1 == recipe.steps
-            validation = self._validated(step + 1) if is_due else None
+            validation, figures = self._validated(step + 1) if is_due else (None, {})
             progress = Progress(
-                step=step + 1, steps=recipe.steps, loss=loss, terms=terms, validation=validation,
+                step=step + 1, steps=recipe.steps, loss=loss, terms=terms, validation=validation, figures=figures,
                 seconds=time.monotonic() - began, learning_rate=rate, gradient_norm=norm,
             )  # fmt: skip
             if self.log is not None:
@@ -158,8 +169,7 @@ class Trainer:
 
     def _one_step(self, step: int) -> tuple[float, float, dict[str, float], float]:
         recipe, place = self.recipe, self.workplace
-        rate = recipe.learning_rate * min(1.0, (step + 1) / recipe.warm_up_steps)
-        rate *= 0.5 + 0.5 * math.cos(math.pi * step / recipe.steps)
+        rate = recipe.rate(step)
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         batch = place.moved(self._train(step, place.share))
@@ -172,7 +182,8 @@ class Trainer:
         loss = torch.stack(list(terms.values())).sum()
         self.optimiser.zero_grad()
         loss.backward()
-        norm = float(torch.nn.utils.clip_grad_norm_(self.learner.parameters(), recipe.largest_gradient))
+        largest = math.inf if recipe.largest_gradient is None else recipe.largest_gradient
+        norm = float(torch.nn.utils.clip_grad_norm_(self.learner.parameters(), largest))
         self._take_step(math.isfinite(norm), step)
         means = place.mean(torch.stack([term.detach().float() for term in terms.values()])).tolist()
         return rate, sum(means), dict(zip(terms, means, strict=True)), norm
@@ -188,10 +199,11 @@ class Trainer:
                 f"training broke at step {step}: gradients are no numbers; start anew with a lower learning rate"
             )
 
-    def _validated(self, step: int) -> float:
-        """Mean loss over the fixed batches; keeps the weights where it is the best so far, and draws the picture."""
-        value = self.validation_loss()
-        is_better = self.best.improved_by(value)
+    def _validated(self, step: int) -> tuple[float, dict[str, float]]:
+        """Mean loss over the fixed batches, and what else is told of them; keeps the weights where it is the best so
+        far, and draws the picture."""
+        value, figures = self._judged()
+        is_better = self.best.improved_by(value, figures)
         if self.log is not None:
             if is_better:
                 save_tensors(self.learner.state_dict(), self.out / BEST_FILE)
@@ -199,7 +211,7 @@ class Trainer:
                 picture = self.learner.picture()
             if picture is not None:
                 self.log.picture(step, picture)
-        return value
+        return value, figures
 
     def validation_batches(self) -> Iterator[Any]:
         """The fixed batches, one after the other, on this process's device."""
@@ -208,15 +220,26 @@ class Trainer:
 
     def validation_loss(self) -> float:
         """Mean loss over the fixed batches, shared among the processes."""
+        return self._judged()[0]
+
+    def _judged(self) -> tuple[float, dict[str, float]]:
+        """Means over the fixed batches, each judged by one of the processes."""
         place, count = self.workplace, self.recipe.validation_batches
         self.learner.eval()
-        total = torch.zeros(1, dtype=torch.float64)
+        rows: list[dict[str, float]] = []
         with torch.inference_mode(), place.arithmetic():
-            for index in range(place.share[0], count, place.share[1]):
+            # a process without a batch of its own looks at the first, which then counts for nothing
+            for index in range(place.share[0], count, place.share[1]) or (0,):
                 batch = place.moved(self._validation(index, (0, 1)))
-                total += torch.stack(list(self.learner.terms(batch).values())).sum().double().cpu()
+                loss = torch.stack(list(self.learner.terms(batch).values())).sum()
+                figures = {"": loss, **self.learner.figures(batch)}
+                rows.append({name: float(value) for name, value in figures.items()})
+        counts = place.share[0] < count
+        sums = torch.tensor([counts * sum(row[name] for row in rows) for name in rows[0]], dtype=torch.float64)
         # accelerate averages; on the device, for NCCL knows no others
-        return float(place.mean(total.to(place.device))) * place.share[1] / count
+        means = place.mean(sums.to(place.device)) * place.share[1] / count
+        loss, *others = means.tolist()
+        return loss, dict(zip(list(rows[0])[1:], others, strict=True))
 
     def _take_best(self) -> None:
         from safetensors.torch import load_file
@@ -232,20 +255,27 @@ class Best:
     def __init__(self, recipe: dict[str, Any]):
         # as a checkpoint gives it back
         self.recipe, self.value, self.since = json.loads(json.dumps(recipe)), math.inf, 0
+        self.figures: dict[str, float] = {}
 
-    def improved_by(self, value: float) -> bool:
+    def improved_by(self, value: float, figures: dict[str, float] | None = None) -> bool:
         """Takes note of a new validation; True where it is the best."""
         is_better = value < self.value
-        self.value, self.since = (value, 0) if is_better else (self.value, self.since + 1)
+        self.since = 0 if is_better else self.since + 1
+        if is_better:
+            self.value, self.figures = value, figures or {}
         return is_better
 
     def state_dict(self) -> dict[str, Any]:
-        return {"recipe": self.recipe, "value": self.value, "since": self.since}
+        return {"recipe": self.recipe, "value": self.value, "since": self.since, "figures": self.figures}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        if state["recipe"] != self.recipe:
+        # what an earlier version did not name was as it is here; a constant rate may go on for longer
+        before = {**self.recipe, **state["recipe"]}
+        if not self.recipe.get("is_cosine", True):
+            before["steps"] = self.recipe["steps"]
+        if before != self.recipe:
             raise InputError("it was made with other settings")
-        self.value, self.since = state["value"], state["since"]
+        self.value, self.since, self.figures = state["value"], state["since"], state.get("figures", {})
 
 
 def save_tensors(tensors: dict[str, Tensor], file: Path) -> None:

@@ -1,6 +1,7 @@
 """What a training looks like: truth beside network, range-Doppler and range-azimuth, and how far they are apart."""
 
 import io
+from typing import Any
 
 import numpy as np
 from torch import Tensor
@@ -12,13 +13,10 @@ from mmweaver.models.mean_power import PowerMaps
 
 SPAN_DB = 50.0
 MOST_ROWS = 3
-COLUMNS = (
-    ("truth", "range_doppler"), ("network, mean", "range_doppler"),
-    ("truth", "range_azimuth"), ("network, mean", "range_azimuth"),
-)  # fmt: skip
+MAPS = ("range_doppler", "range_doppler", "range_azimuth", "range_azimuth")  # each beside the truth's
 
 
-def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig) -> np.ndarray:
+def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: str = "network, mean") -> np.ndarray:
     """A row for each sequence, its middle frame; (row, column, 3) uint8. Both maps of a pair have the truth's peak."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -26,15 +24,15 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig) -> np.
     count = min(len(truth.range_doppler), MOST_ROWS)
     figure = Figure(figsize=(10.0, 0.5 + 2.4 * count), layout="constrained")
     canvas = FigureCanvasAgg(figure)
-    grid = figure.subplots(count, len(COLUMNS), squeeze=False, sharey=True)
+    grid = figure.subplots(count, len(MAPS), squeeze=False, sharey=True)
     near, far = config.range_m[0], config.range_m[-1]
     speeds, angles = config.radial_velocity_mps, np.degrees(azimuth_axis_rad())
     extents = {"range_doppler": (speeds[0], speeds[-1]), "range_azimuth": (angles[0], angles[-1])}
     image = None
     for row in range(count):
-        for column, (title, name) in enumerate(COLUMNS):
+        for column, name in enumerate(MAPS):
             axes, own = grid[row][column], _middle(getattr(truth, name)[row])
-            shown = own if title == "truth" else _middle(getattr(network, name)[row])
+            title, shown = ("truth", own) if column % 2 == 0 else (made, _middle(getattr(network, name)[row]))
             image = axes.imshow(
                 10 * np.log10(np.maximum(shown / own.max(), 1e-12)), origin="lower", aspect="auto", cmap="inferno",
                 vmin=-SPAN_DB, vmax=0, extent=(*extents[name], near, far), interpolation="nearest",
@@ -48,10 +46,15 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig) -> np.
             axes.tick_params(labelsize=7)
     assert image is not None
     figure.colorbar(image, ax=grid, shrink=0.8).set_label("dB below the truth's peak", fontsize=8)
-    buffer = io.BytesIO()
-    canvas.print_png(buffer)
+    return drawn(canvas)
+
+
+def drawn(canvas: Any) -> np.ndarray:
+    """A canvas of matplotlib as (row, column, 3) uint8."""
     from PIL import Image
 
+    buffer = io.BytesIO()
+    canvas.print_png(buffer)
     return np.asarray(Image.open(buffer).convert("RGB"))
 
 

@@ -43,7 +43,7 @@ _WALLS: dict[str, tuple[str, str, str]] = {
     "concrete": ("concrete", "wall-concrete", "concrete"),
     "brick": ("brick", "wall-brick", "brick"),
     "panels": ("wood", "wall-wood", "panels"),
-    "tiles": ("concrete", "wall-tile", "tiles"),
+    "tiles": ("marble", "wall-tile", "tiles"),
 }
 
 

@@ -259,7 +259,7 @@ def mirror(palette: Palette, rng: np.random.Generator) -> Piece:
             (-0.48, 0.48),
             (-0.024, -0.02),
             (0.42, 1.98),
-            Look((0.55, 0.58, 0.60), "glass", "mirror-stuff", "sky", is_glass=True),
+            Look((0.55, 0.58, 0.60), "metal", "mirror-stuff", "sky", is_glass=True),
         ),
     )
     return Piece(name="mirror", parts=parts, on_wall=True)

@@ -1,0 +1,21 @@
+"""A data set of two rooms for tests of training."""
+
+from pathlib import Path
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.data.generate import generate
+from mmweaver.data.plan import DatasetPlan
+
+
+def tiny_data(folder: Path, *, geometry_only: bool = False) -> Path:
+    """An office to train on and a dining room to validate on, three sequences of four frames each."""
+    plan = DatasetPlan(
+        kinds=("office", "dining_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4,
+        geometry_only=geometry_only,
+    )  # fmt: skip
+    generate(folder, plan, AWR1843)
+    return folder
+
+
+class StoppedError(Exception):
+    """What a test interrupts training with."""
