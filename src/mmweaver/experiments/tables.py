@@ -268,6 +268,20 @@ def _share_cell(metric: dict[str, Any] | None, form: str, *, edges: bool) -> str
     return f"{100 * metric['value']:.1f} %{of}" + (f" ({low:.1f} to {high:.1f})" if edges else "")
 
 
+def real_placements_table(folder: Path) -> str:
+    """One row a real room: its floor, and people against its measured points."""
+    (record,) = _records(folder / "real_placements")
+    lines = [
+        _line("room", "floor against marked places", "placements clear", "arms too", "refused"),
+        _line(*["---"] * 5),
+    ]
+    for row in record["rows"]:
+        floor, clear, arms = (row["metrics"][name] for name in ("floor_error_m", "placements_clear", "arms_clear"))
+        cells = [_share_cell(metric, "share", edges=False) for metric in (clear, arms)]
+        lines.append(_line(row["dataset"]["name"], f"{100 * floor['value']:.1f} cm", *cells, str(row["refused"])))
+    return "\n".join(lines)
+
+
 def motiongpt_table(folder: Path) -> str:
     """One row a set of motions: how often the classifier's first, and one of its first three, is what was asked."""
     (record,) = _records(folder / "motiongpt")
@@ -391,7 +405,7 @@ TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
     "mars": mars_table, "several_people": people_table, "micro_doppler": micro_doppler_table,
-    "affordances": affordances_table,
+    "affordances": affordances_table, "real_placements": real_placements_table,
     "segmenter": segmenter_table, "segmenter_affordances": segmenter_affordances_table,
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
     "motiongpt": motiongpt_table,
