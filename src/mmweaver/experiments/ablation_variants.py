@@ -9,8 +9,8 @@ class Variant:
     """Parts of the network that are left out, words in the names of terms that are, changes of the recipe, whether
     targets are single drawn signals, and whose photo is shown when it is judged."""
 
-    without: tuple[str, ...] = ()
-    terms_without: tuple[str, ...] = ()
+    without: tuple[str, ...] = ("correction",)
+    terms_without: tuple[str, ...] = ("correction",)
     recipe: tuple[tuple[str, Any], ...] = ()
     is_drawn: bool = False
     photo: str = "own"  # or "generic", "shuffled"
@@ -29,20 +29,20 @@ VARIANTS = {
     "generic photo": Variant(photo="generic"),
     "shuffled photo": Variant(photo="shuffled"),
     # anchors and what physics says
-    "no ghosts": Variant(without=("ghosts",)),
-    "no echoes between joints": Variant(without=("between joints",)),
-    "no physics of the body": Variant(without=("body prior",)),
-    "no physics of surfaces": Variant(without=("room prior",)),
-    "no physics at all": Variant(without=("room prior", "body prior")),
+    "no ghosts": Variant(without=("ghosts", "correction")),
+    "no echoes between joints": Variant(without=("between joints", "correction")),
+    "no physics of the body": Variant(without=("body prior", "correction")),
+    "no physics of surfaces": Variant(without=("room prior", "correction")),
+    "no physics at all": Variant(without=("room prior", "body prior", "correction")),
     # heads
-    "no steps of echoes": Variant(without=("steps",)),
-    "no correction of surfaces": Variant(without=("correction",)),
-    "no learned faces": Variant(without=("faces",)),
+    "no steps of echoes": Variant(without=("steps", "correction")),
+    "surfaces turned up and down": Variant(without=()),
+    "no learned faces": Variant(without=("faces", "correction")),
     # the encoder's picture; where surfaces stand is known in all
-    "colour alone": Variant(without=("depth", "mask")),
-    "depth alone": Variant(without=("colour", "mask")),
-    "mask alone": Variant(without=("colour", "depth")),
-    "no picture": Variant(without=("colour", "depth", "mask")),
+    "colour alone": Variant(without=("depth", "mask", "correction")),
+    "depth alone": Variant(without=("colour", "mask", "correction")),
+    "mask alone": Variant(without=("colour", "depth", "correction")),
+    "no picture": Variant(without=("colour", "depth", "mask", "correction")),
     # losses and targets
     "no target of the person alone": Variant(terms_without=("_person",)),
     "no target of the empty room": Variant(terms_without=("_empty",)),

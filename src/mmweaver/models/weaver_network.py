@@ -81,7 +81,7 @@ class WeaverNetwork(nn.Module):
         for network in (self.point, self.face, self.out):
             head = network[-1]
             assert isinstance(head, nn.Linear)
-            nn.init.normal_(head.weight, std=1e-3)
+            nn.init.normal_(head.weight, std=0.0 if network is self.point else 1e-3)
             nn.init.zeros_(head.bias)
 
     def encode_room(self, view: RoomView) -> RoomCode:

@@ -38,6 +38,7 @@ class TrainingRecipe(LoopRecipe):
     batch_size: int = 3  # sequences, each of another room
     frames: int = 8  # looked at in each
     mirror: bool = True  # every second batch with left and right exchanged
+    without: tuple[str, ...] = ("correction",)  # parts of the network that stay as physics has them (decision 102)
 
 
 class WeaverLearner(Learner):
@@ -120,9 +121,9 @@ def train(
 
 
 def begun(recipe: LoopRecipe, start: dict[str, torch.Tensor] | None) -> WeaverNetwork:
-    """The network that training begins with."""
+    """The network that training begins with; a recipe without parts of it leaves them alone."""
     torch.manual_seed(recipe.seed)
-    network = WeaverNetwork()
+    network = WeaverNetwork(without=recipe.without if isinstance(recipe, TrainingRecipe) else ())
     if start is not None:
         network.load_state_dict(start)
     return network
