@@ -10,7 +10,7 @@ class Variant:
     targets are single drawn signals, and whose photo is shown when it is judged."""
 
     without: tuple[str, ...] = ("correction",)
-    terms_without: tuple[str, ...] = ("correction",)
+    terms_without: tuple[str, ...] = ()
     recipe: tuple[tuple[str, Any], ...] = ()
     is_drawn: bool = False
     photo: str = "own"  # or "generic", "shuffled"
@@ -32,8 +32,8 @@ VARIANTS = {
     "no ghosts": Variant(without=("ghosts", "correction")),
     "no echoes between joints": Variant(without=("between joints", "correction")),
     "no physics of the body": Variant(without=("body prior", "correction")),
-    "no physics of surfaces": Variant(without=("room prior", "correction")),
-    "no physics at all": Variant(without=("room prior", "body prior", "correction")),
+    "no physics of surfaces": Variant(without=("room prior",)),
+    "no physics at all": Variant(without=("room prior", "body prior")),
     # heads
     "no steps of echoes": Variant(without=("steps", "correction")),
     "surfaces turned up and down": Variant(without=()),
