@@ -77,3 +77,12 @@ def test_leaving_a_part_out_changes_what_it_is_about(
     if part == "ghosts":
         assert moving[..., NUM_ANCHORS:].sum() > 0
         assert not other_moving[..., NUM_ANCHORS:].any()
+
+
+def test_without_a_picture_gradients_are_numbers(view: RoomView):
+    torch.manual_seed(0)
+    network = WeaverNetwork(without=("colour", "depth", "mask"))
+    network.encode_room(view).z_env.square().mean().backward()
+    gradients = [parameter.grad for parameter in network.environment.parameters() if parameter.grad is not None]
+    assert gradients
+    assert all(torch.isfinite(gradient).all() for gradient in gradients)

@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 from tests.training.tiny_data import StoppedError, tiny_data
@@ -11,7 +12,8 @@ from tests.training.tiny_data import StoppedError, tiny_data
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.training.activity_training import ActivityLearner, ActivityRecipe, train_activity
+from mmweaver.training.activity_examples import activity_examples
+from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityLearner, ActivityRecipe, train_activity
 from mmweaver.training.trainer import Progress
 from mmweaver.training.workplace import Workplace, moved
 
@@ -57,6 +59,13 @@ def test_maps_are_made_once_for_a_data_set(data: Path, tmp_path: Path, monkeypat
     (tmp_path / "checkpoint.pt").unlink()
     with pytest.raises(AssertionError, match="made again"):
         train_activity(other, tmp_path, replace(RECIPE, steps=1))
+
+
+def test_some_sequences_can_be_picked_by_what_they_show(data: Path):
+    every = activity_examples(data, TRAIN_SPLITS)
+    some = activity_examples(data, TRAIN_SPLITS, pick=lambda label: np.flatnonzero(label == label[0]))
+    assert set(some.label.tolist()) == {int(every.label[0])}
+    assert torch.equal(some.doppler[0], every.doppler[0])
 
 
 def test_two_shares_have_the_gradient_of_the_whole(data: Path, tmp_path: Path):

@@ -285,16 +285,16 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[
 
 def studied(judge_file: Path, data: Path, recordings: int | None) -> Study:
     """The recogniser and what it has seen elsewhere: all that it was trained on, or so many recordings of it."""
-    examples = activity_examples(data, TRAIN_SPLITS, judge_file.parent / TRAIN_MAPS, keep=False)
-    judge = load_activity(judge_file, examples.config)
     if recordings is None:
-        return Study(judge, Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label))
-    chosen = few_of(examples.label.numpy(), recordings)
-    frames = seen(judge, examples.doppler[chosen], examples.angle[chosen])
-    return Study(judge, Labelled(frames=frames, label=examples.label[chosen]), begins_anew=True)
+        examples = activity_examples(data, TRAIN_SPLITS, judge_file.parent / TRAIN_MAPS, keep=False)
+    else:
+        examples = activity_examples(data, TRAIN_SPLITS, pick=partial(few_of, count=recordings))
+    judge = load_activity(judge_file, examples.config)
+    base = Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label)
+    return Study(judge, base, begins_anew=recordings is not None)
 
 
-def few_of(label: np.ndarray, count: int) -> Tensor:
+def few_of(label: np.ndarray, count: int) -> np.ndarray:
     """Indices of `count` sequences, all activities in turn."""
     rng = stream(0, "activity gain recordings")
     order = rng.permutation(len(label))
@@ -302,7 +302,7 @@ def few_of(label: np.ndarray, count: int) -> Tensor:
     for name in np.unique(label):
         own = order[label[order] == name]
         place[own] = np.arange(len(own))
-    return torch.from_numpy(order[np.argsort(place[order], kind="stable")][:count])
+    return order[np.argsort(place[order], kind="stable")][:count]
 
 
 def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:

@@ -126,6 +126,8 @@ class WeaverNetwork(nn.Module):
         for name, channels in (("colour", [0, 1, 2]), ("depth", [3]), ("mask", [4])):
             if name in self.without:
                 kept[channels] = 0.0
+        if not kept.any():  # of an even black, group norms have gradients without end
+            return torch.full_like(image, 0.5)
         return image * kept[:, None, None]
 
     def _points(self, view: RoomView, places: Tensor) -> Echoes:

@@ -1,7 +1,7 @@
 """Labelled log maps of a data set, for training and judging the activity network."""
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -47,11 +47,17 @@ def maps_of(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[Tensor, Te
 
 
 def activity_examples(
-    folder: Path, splits: tuple[str, ...], kept: Path | None = None, *, keep: bool = True, device: str = "cpu"
+    folder: Path,
+    splits: tuple[str, ...],
+    kept: Path | None = None,
+    *,
+    keep: bool = True,
+    device: str = "cpu",
+    pick: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> ActivityExamples:
-    """The sequences of a data set that belong to some splits.
+    """The sequences of a data set that belong to some splits; of them those that `pick` chooses by their labels.
 
-    Their maps are read from the file `kept`, if it is of the same data set, else made and, with `keep`, left there;
+    Their maps are read from the file `kept`, if it is of the same sequences, else made and, with `keep`, left there;
     signals that are not stored are made on `device`. Raises InputError where there are no sequences.
     """
     rooms = read_rooms(folder, device=device)
@@ -61,6 +67,9 @@ def activity_examples(
     unknown = {room.activity[index] for room, index in chosen} - set(ACTIVITY_NAMES)
     if unknown:
         raise InputError(f"{folder} shows activities that this version does not know: {', '.join(sorted(unknown))}")
+    if pick is not None:
+        labels = np.array([ACTIVITY_NAMES.index(room.activity[index]) for room, index in chosen])
+        chosen = [chosen[int(number)] for number in pick(labels)]
     config = rooms[0].config
     mark = _mark(folder, chosen)
     maps = None if kept is None else _read(kept, mark)
