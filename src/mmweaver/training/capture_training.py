@@ -56,6 +56,7 @@ class CaptureRecipe(TrainingRecipe):
     validate_every: int = 25
     validation_batches: int = 4
     patience: int = 6
+    without: tuple[str, ...] = ()  # in its own room what rests may be learned
 
 
 @dataclass(frozen=True, kw_only=True)
