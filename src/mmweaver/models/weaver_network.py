@@ -40,6 +40,7 @@ WIDTH, HEADS, LAYERS = 128, 4, 2
 PARTS = (
     "faces", "ghosts", "correction", "colour", "depth", "mask", "room prior", "body prior", "between joints", "steps",
 )  # fmt: skip # that can be left out
+PICTURE = {"colour", "depth", "mask"}
 LARGEST_STEP = 12.0  # of a logarithm of power
 FAINTEST_M2 = 1e-4  # of a part of the body, before the network says otherwise
 LARGEST_CORRECTION = 2.0  # the same, for what physics says of the photographed room
@@ -126,7 +127,7 @@ class WeaverNetwork(nn.Module):
         for name, channels in (("colour", [0, 1, 2]), ("depth", [3]), ("mask", [4])):
             if name in self.without:
                 kept[channels] = 0.0
-        if not kept.any():  # of an even black, group norms have gradients without end
+        if self.without >= PICTURE:  # of an even black, group norms have gradients without end
             return torch.full_like(image, 0.5)
         return image * kept[:, None, None]
 
