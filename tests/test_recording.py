@@ -83,5 +83,8 @@ def test_lost_packets_are_told(tmp_path: Path):
 
 
 def test_a_recording_that_is_no_capture_needs_a_radar(tmp_path: Path):
+    with pytest.raises(InputError, match="does not exist"):
+        process_recording(tmp_path / "adc.bin", None)
+    (tmp_path / "adc.bin").write_bytes(b"\0" * 64)
     with pytest.raises(InputError, match="--radar"):
         process_recording(tmp_path / "adc.bin", None)

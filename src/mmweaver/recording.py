@@ -62,6 +62,8 @@ def process_recording(
     with the settings of the radar's .cfg. Raises InputError for anything that cannot be read so.
     """
     path, stages = Path(path), stages or Stages()
+    if not path.exists():
+        raise InputError(f"{path} does not exist; give a recording or a capture folder")
     if radar is None:
         raise InputError(f"{path}: which radar recorded it? give --radar; only a capture folder brings its own")
     config = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))

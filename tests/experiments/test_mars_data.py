@@ -9,7 +9,7 @@ from tests.rooms import STANDING_M
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import BONES, joint
-from mmweaver.experiments.mars_data import body_height_m, cut, joints_from_kinect, read_mars
+from mmweaver.experiments.mars_data import as_published, body_height_m, cloud_of, cut, joints_from_kinect, read_mars
 
 KINECT = (
     "pelvis", "spine2", "neck", "head", "left_shoulder", "left_elbow", "left_wrist", "left_wrist", "right_shoulder",
@@ -83,3 +83,9 @@ def test_what_is_no_recording_is_refused(tmp_path: Path):
     (tmp_path / "kinect_data_test.csv").write_text("a,b\n1,2\n")
     with pytest.raises(InputError, match="2 columns, 75"):
         read_mars(tmp_path, "test")
+
+
+def test_clouds_are_cut_to_the_recordings_box():
+    places = [(0.9, 2.0, 0.9), (1.1, 2.0, 0.0), (0.0, 2.0, 1.1), (0.0, 3.1, 0.0), (-1.0, 3.0, -1.0), (0.0, 2.0, -1.2)]
+    rows = np.array([[0, 1, *place, 0.0, 20 + index, 1.6e9] for index, place in enumerate(places)])
+    assert as_published(cloud_of(rows)).intensity.tolist() == [20, 24]

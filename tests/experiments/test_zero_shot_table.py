@@ -2,7 +2,7 @@
 
 import json
 
-from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
+from mmweaver.experiments.zero_shot_table import curve_table, limbs_table, zero_shot_table
 
 
 def metric(value: float) -> dict:
@@ -46,3 +46,16 @@ def test_the_curve_has_both_ways_side_by_side(tmp_path):
     assert "chance" in lines[2]
     assert lines[3].startswith("| 5 | 0.900")
     assert "0.700" in lines[3]
+
+
+def test_limbs_have_a_column_a_third(tmp_path):
+    (tmp_path / "zero_shot").mkdir()
+    rows = [
+        {"limb": limb, "from_db": at, "to_db": at + 4.0, "metrics": {"window": {"value": 0.8 + at / 100}}}
+        for limb in ("arms_db", "legs_db")
+        for at in (-8.0, -4.0, 0.0)
+    ]
+    (tmp_path / "zero_shot" / "limbs.json").write_text(json.dumps({"rows": rows}))
+    lines = limbs_table(tmp_path).splitlines()
+    assert lines[2] == "| arms | 0.720 (-8.0 to -4.0 dB) | 0.760 (-4.0 to 0.0 dB) | 0.800 (0.0 to 4.0 dB) |"
+    assert lines[3].startswith("| legs | ")

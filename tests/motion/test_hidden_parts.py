@@ -7,7 +7,16 @@ import pytest
 from tests.motion.rooms import FLOOR_Z_M, room
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
-from mmweaver.motion.hidden_parts import feet_of, hidden_along, hidden_share, legs_of, tops_of, under, unseen_share
+from mmweaver.motion.hidden_parts import (
+    feet_of,
+    hidden_along,
+    hidden_share,
+    legs_of,
+    pillars_of,
+    tops_of,
+    under,
+    unseen_share,
+)
 
 
 def test_low_points_reach_the_floor_and_high_ones_do_not():
@@ -119,3 +128,17 @@ def test_a_top_goes_on_behind_the_chairs_that_hide_a_part_of_it():
         tops = tops_of(dataclasses.replace(room(), photo=photo), points)
         between = (np.abs(tops[:, 0]) < 0.1) & (np.abs(tops[:, 1] - 2.25) < 0.1)
         assert between.any() == hidden
+
+
+def test_a_table_s_legs_are_pillars_and_a_seat_under_it_is_none():
+    scene = _with_table(3.0)
+    x, y = np.meshgrid(np.arange(-0.6, 0.6, 0.02), np.arange(2.0, 2.5, 0.02))
+    top = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, FLOOR_Z_M + 0.72)])
+    height = np.arange(0.1, 0.7, 0.02)
+    leg = np.column_stack([np.full(len(height), 0.5), np.full(len(height), 2.05), FLOOR_Z_M + height])
+    seat = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, FLOOR_Z_M + 0.45)])
+    seat = seat[np.abs(seat[:, 0]) < 0.2]
+    legs = pillars_of(scene, np.concatenate([top, leg, seat]))
+    assert len(legs) > 0
+    assert np.abs(legs[:, 0] - 0.5).max() < 0.06
+    assert len(pillars_of(scene, np.concatenate([top, seat]))) == 0

@@ -113,3 +113,8 @@ def test_broken_folders(folder: Path, tmp_path: Path):
     (camera / "depth_config.json").unlink()
     with pytest.raises(InputError, match="cannot read"):
         read_capture_photo(folder)
+
+
+def test_a_folder_that_is_not_there_is_said(tmp_path: Path):
+    with pytest.raises(InputError, match="does not exist"):
+        read_capture_photo(tmp_path / "nothing")

@@ -120,6 +120,9 @@ def test_exif_turns_the_picture(files: Files):
     assert "EXIF" in assumptions[0]
     Image.new("RGB", (96, 72)).save(files.rgb, exif=exif)
     assert "EXIF" in files.error()
+    exif[0x0112] = 99  # no direction
+    Image.new("RGB", (96, 72)).save(files.rgb, exif=exif)
+    assert not any("EXIF" in sentence for sentence in files.read()[1])
 
 
 @pytest.mark.parametrize(

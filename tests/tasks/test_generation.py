@@ -64,3 +64,25 @@ def test_activities_that_cannot_be_are_refused():
         replace(RECIPE, activities={"walk": ("a person walks",), "knit": ("a person knits",)})
     with pytest.raises(InputError, match="has no sentence"):
         replace(RECIPE, activities={"walk": ("a person walks",), "stand": ()})
+
+
+def test_habits_change_one_activity_alone():
+    still = replace(RECIPE, habits={"walk": {"vigour": (0.9, 0.91)}})
+    assert still.variation_of("walk").vigour == (0.9, 0.91)
+    assert still.variation_of("stand") == QUIET
+    same, other = (generate_window(one, "stand", 0, 3).cloud for one in (RECIPE, still))
+    assert np.array_equal(same.x_m, other.x_m)
+    with pytest.raises(InputError, match="fit no activity or no span"):
+        replace(RECIPE, habits={"walk": {"speed": (0.0, 1.0)}})
+    with pytest.raises(InputError, match="fit no activity or no span"):
+        replace(RECIPE, habits={"run": {"vigour": (0.0, 1.0)}})
+
+
+def test_a_window_may_be_any_part_of_a_way():
+    """Among a few walkers to and fro some come nearer, some go away, and they do so at different speeds."""
+    activities = {**RECIPE.activities, "walk": ("a person walks back and forth",)}
+    recipe = replace(RECIPE, activities=activities, variation=replace(QUIET, hurry=(0.3, 0.4)), window_s=1.0)
+    clouds = [generate_window(recipe, "walk", index, 5).cloud for index in range(6)]
+    speeds = [cloud.radial_velocity_mps[np.abs(cloud.radial_velocity_mps) > 0.1] for cloud in clouds]
+    mean = [float(speed.mean()) for speed in speeds if len(speed) > 5]
+    assert min(mean) < -0.3 < 0.3 < max(mean)

@@ -29,7 +29,8 @@ from mmweaver.dsp.firmware import FirmwareCloud, firmware_points
 from mmweaver.dsp.points import point_cloud
 from mmweaver.experiments.cloud_scores import CloudScores, part_of, score
 from mmweaver.experiments.empty_room import empty_room
-from mmweaver.experiments.mars_data import Stretch, body_height_m, cut, read_mars
+from mmweaver.experiments.joint_scatterers import run_joints
+from mmweaver.experiments.mars_data import Stretch, as_published, body_height_m, cut, read_mars
 from mmweaver.experiments.results import write_result
 from mmweaver.simulation.body import Body
 from mmweaver.simulation.receiver import Impairments
@@ -64,6 +65,8 @@ class Variant:
     motions: SmallMotions = SmallMotions()  # noqa: RUF009 (frozen)
     has_floor: bool = True
     wall_m: float | None = None
+    has_ghosts: bool = True
+    at_joints: bool = False  # a point at each joint is all the body there is
     smoothing_frames: float = 1.0  # of the Kinect's joints, which tremble by a centimetre from frame to frame
     joint_noise_m: float = 0.0
     num_points: int = 800
@@ -86,6 +89,9 @@ VARIANTS: dict[str, Variant] = {
     "skin_of_3200_points": Variant(num_points=3200),
     "no_floor_bounce": Variant(has_floor=False),
     "wall_at_3_m_behind": Variant(wall_m=3.0),
+    "wall_at_3_m_behind_no_ghosts": Variant(wall_m=3.0, has_ghosts=False),
+    "points_at_the_joints": Variant(at_joints=True),
+    "arms_and_legs_like_the_trunk": Variant(skin=SkinEcho(arms_db=0.0, legs_db=0.0)),
     "joint_noise_1_cm": Variant(joint_noise_m=0.01),
     "our_cfar": Variant(chain="cfar"),
     "peak_grouping": Variant(grouped=True),
@@ -107,6 +113,8 @@ def simulate(pieces: list[Stretch], setup: Setup, variant: Variant, seed: int = 
         IWR1443_MARS,
         variant.impairments,
     )
+    if not variant.has_ghosts:
+        simulator.room.mirrors = []
     gain, skin = 10 ** (variant.brighter_db / 10), variant.skin
     echo = replace(skin, reflectivity=skin.reflectivity * gain, albedo=skin.albedo * gain)
     adcs = []
@@ -117,11 +125,15 @@ def simulate(pieces: list[Stretch], setup: Setup, variant: Variant, seed: int = 
             joints_m=_smoothed(piece.joints_m, variant.smoothing_frames)
             + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape),
         )
-        run = simulator.run(
-            noisy.pose(setup.shift_m, setup.height_m), num_frames=int(piece.frame[-1]) + 1, seed=seed,
-            num_points=variant.num_points, echo=echo, motions=variant.motions,
-        )  # fmt: skip
-        adcs.append(run.adc)
+        pose, num = noisy.pose(setup.shift_m, setup.height_m), int(piece.frame[-1]) + 1
+        if variant.at_joints:
+            adc = run_joints(simulator, pose, num_frames=num, seed=seed, motions=variant.motions, brighter=gain)
+        else:
+            points = variant.num_points
+            adc = simulator.run(
+                pose, num_frames=num, seed=seed, num_points=points, echo=echo, motions=variant.motions
+            ).adc  # fmt: skip
+        adcs.append(adc)
     return adcs
 
 
@@ -131,7 +143,7 @@ def _smoothed(joints_m: np.ndarray, frames: float) -> np.ndarray:
 
 
 def detect(adcs: list[AdcCube], pieces: list[Stretch], setup: Setup, variant: Variant) -> Clouds:
-    """What the chain reports at the frames that were recorded."""
+    """What the chain reports at the frames that were recorded, cut to the box that the recordings were cut to."""
     settings = settings_of(setup)
     if variant.grouped:
         settings = replace(settings, group_range=True, group_doppler=True)
@@ -142,6 +154,7 @@ def detect(adcs: list[AdcCube], pieces: list[Stretch], setup: Setup, variant: Va
             cloud = point_cloud(remove_static(radar_cube(louder)), max_points_per_frame=64)
         else:
             cloud = firmware_points(louder, settings)
+        cloud = as_published(cloud)
         clouds.append(tuple(part_of(cloud, int(frame)) for frame in piece.frame))
     return clouds
 

@@ -26,6 +26,11 @@ FIRST = (
 )  # fmt: skip
 
 
+def mars_table(folder: Path) -> str:
+    """The table from a folder of results."""
+    return table(folder / "mars")
+
+
 def table(folder: Path) -> str:
     """Markdown: one row a method, floors and ceiling first; the Chamfer distance with its 95 % interval."""
     names = sorted(path.stem for path in folder.glob("*.json"))
@@ -49,4 +54,4 @@ def _cell(metrics: dict[str, Any], key: str) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(table(Path(sys.argv[1]) / "mars") + "\n")
+    sys.stdout.write(mars_table(Path(sys.argv[1])) + "\n")

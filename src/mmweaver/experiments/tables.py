@@ -12,6 +12,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.benchmark_tables import dataset_cost_table, weaver_speed_table
 from mmweaver.experiments.capture_tuning_table import capture_tuning_table
+from mmweaver.experiments.mars_table import mars_table
 from mmweaver.experiments.micro_doppler_table import micro_doppler_table
 from mmweaver.experiments.motion_tables import activities_table, kitml_table, realism_table
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
@@ -23,7 +24,7 @@ from mmweaver.experiments.weaver_use_tables import (
     photographed_table,
     told_apart_table,
 )
-from mmweaver.experiments.zero_shot_table import curve_table, zero_shot_table
+from mmweaver.experiments.zero_shot_table import curve_table, limbs_table, zero_shot_table
 
 SHOWN = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
 FINER, RADII = (1.5, 2.0, 3.0, 4.0), (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0)
@@ -211,15 +212,26 @@ def people_table(folder: Path) -> str:
 
 
 def statistics_table(folder: Path) -> str:
-    """Recorded beside simulated: one row a number, the simulated ones with their range over seeds."""
+    """Recorded beside simulated, one row a number, each with the range over its quarters; bold where those part."""
     (record,) = _records(folder / "signal_statistics")
     rows = record["rows"]
     lines = [_line("number", *(f"{row['dataset']['name']}, {row['dataset']['origin']}" for row in rows))]
     lines.append(_line(*["---"] * (1 + len(rows))))
     for name, metric in rows[0]["metrics"].items():
-        cells = [_with_interval(row["metrics"][name]) for row in rows]
+        cells = []
+        for real, made in zip(rows[::2], rows[1::2], strict=True):
+            both = [row["metrics"].get(name) for row in (real, made)]
+            cells += ["", ""] if both[0] is None else _beside(*both)
         lines.append(_line(f"{metric['definition']} ({metric['unit']})", *cells))
     return "\n".join(lines)
+
+
+def _beside(real: dict[str, Any], made: dict[str, Any]) -> list[str]:
+    (low, high), (least, most) = real["quarters"], made["quarters"]
+    part = high < least or most < low
+    texts = [f"{_number(one['value'])}; {_number(a)} to {_number(b)}" for one, a, b in (
+        (real, low, high), (made, least, most))]  # fmt: skip
+    return [f"**{text}**" for text in texts] if part else texts
 
 
 AFFORDANCES = (
@@ -255,6 +267,20 @@ def _share_cell(metric: dict[str, Any] | None, form: str, *, edges: bool) -> str
     of = f" of {metric['of']}" if "of" in metric else ""
     low, high = (100 * edge for edge in metric["interval"]) if edges else (0.0, 0.0)
     return f"{100 * metric['value']:.1f} %{of}" + (f" ({low:.1f} to {high:.1f})" if edges else "")
+
+
+def real_placements_table(folder: Path) -> str:
+    """One row a real room: its floor, and people against its measured points."""
+    (record,) = _records(folder / "real_placements")
+    lines = [
+        _line("room", "floor against marked places", "placements clear", "arms too", "refused"),
+        _line(*["---"] * 5),
+    ]
+    for row in record["rows"]:
+        floor, clear, arms = (row["metrics"][name] for name in ("floor_error_m", "placements_clear", "arms_clear"))
+        cells = [_share_cell(metric, "share", edges=False) for metric in (clear, arms)]
+        lines.append(_line(row["dataset"]["name"], f"{100 * floor['value']:.1f} cm", *cells, str(row["refused"])))
+    return "\n".join(lines)
 
 
 def motiongpt_table(folder: Path) -> str:
@@ -379,8 +405,8 @@ def _bounded(metric: dict[str, Any], with_edges: bool) -> str:
 TABLES = {
     "field_fidelity": fidelity_table, "super_resolution": super_resolution_table, "physics": physics_table,
     "real_rooms": rooms_table, "signal_statistics": statistics_table, "codecs": codecs_table,
-    "several_people": people_table, "micro_doppler": micro_doppler_table,
-    "affordances": affordances_table,
+    "mars": mars_table, "several_people": people_table, "micro_doppler": micro_doppler_table,
+    "affordances": affordances_table, "real_placements": real_placements_table,
     "segmenter": segmenter_table, "segmenter_affordances": segmenter_affordances_table,
     "activities": activities_table, "kitml": kitml_table, "motion_realism": realism_table,
     "motiongpt": motiongpt_table,
@@ -394,7 +420,7 @@ TABLES = {
     "capture_tuning": capture_tuning_table,
     "weaver_paper": paper_table, "weaver_ablation": ablation_table,
     "activity_accuracy": activity_table, "activity_gain": gain_table, "real_or_generated": told_apart_table,
-    "zero_shot": zero_shot_table, "zero_shot_curve": curve_table,
+    "zero_shot": zero_shot_table, "zero_shot_curve": curve_table, "zero_shot_limbs": limbs_table,
 }  # fmt: skip
 
 

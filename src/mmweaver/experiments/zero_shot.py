@@ -66,7 +66,7 @@ VARIED = ("tempo", "distance_m", "radar_height_m", "noise_db", "threshold_db", "
 def first_draws(recipe: Recipe, each: int, seed: int) -> list[Draw]:
     """The circumstances of each window in the order of `generate_windows` (its first draw, where it drew again)."""
     return [
-        draw(recipe.variation, stream(seed, "zero shot", label, index))
+        draw(recipe.variation_of(label), stream(seed, "zero shot", label, index))
         for index in range(each)
         for label in recipe.activities
     ]

@@ -49,6 +49,20 @@ def curve_table(folder: Path) -> str:
     return "\n".join(lines)
 
 
+def limbs_table(folder: Path) -> str:
+    """One row a limb, one column a third of the generated windows by how bright the limb was drawn."""
+    rows = _record(folder, "limbs")["rows"]
+    lines = [_line("", "faintest third", "middle", "brightest"), _line(*["---"] * 4)]
+    for limb in dict.fromkeys(row["limb"] for row in rows):
+        cells = [
+            f"{row['metrics']['window']['value']:.3f} ({row['from_db']:.1f} to {row['to_db']:.1f} dB)"
+            for row in rows
+            if row["limb"] == limb
+        ]
+        lines.append(_line(limb.removesuffix("_db"), *cells))
+    return "\n".join(lines)
+
+
 def _record(folder: Path, method: str) -> dict[str, Any]:
     return json.loads((folder / "zero_shot" / f"{method}.json").read_text(encoding="utf-8"))
 

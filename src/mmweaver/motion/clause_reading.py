@@ -228,7 +228,7 @@ def _refuse(clause: Clause) -> None:
     if texts & NEGATIONS and not still:
         raise InputError(f"{clause.text!r} says what is not done; say what the person does instead")
     if texts & MANY or {"of", "them"} <= texts or "guys" in texts:
-        raise InputError(f"{clause.text!r} speaks of several people; only one person can be shown")
+        raise InputError(f"{clause.text!r} speaks of several people; say it of one and give --text once for each")
     if texts & NOT_HUMAN:
         raise InputError(f"{clause.text!r} is not about a person alone; only one person can be shown")
     lemmas = {word.lemma for word in clause.words if word.is_activity}

@@ -13,6 +13,7 @@ _LEG_STEP_M, _TOP_M, _LEG_HALF_M = 0.05, 0.04, 0.025
 _LEAST_UNSEEN = 0.6
 _RIM_M, _SLICE_M, _THIN_M, _LONG_M = (0.58, 1.05), 0.03, 0.12, 0.55  # of a table's top: how high, thick and long
 _SQUARE_M, _REACH_M = 0.05, 5.0
+_LEG_M, _LEG_THICK_M = (0.3, 0.55), 0.04  # a leg is seen below a seat and above it
 _GAP = 13  # squares: so wide do chairs before a table hide its top
 _UNSEEN_M, _TOP_DEPTH_M, _ALONG_M = 0.1, 0.8, 0.03  # a top so little below the camera is seen by its rim alone
 _BEHIND_M, _BEHIND_PER_M2 = 0.065, 0.0035  # so far behind it, a measurement passed it by
@@ -140,6 +141,26 @@ def hidden_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> Fl
     points = np.concatenate([np.broadcast_to(places, (*shape, 2)), np.broadcast_to(height, shape)[..., None]], axis=-1)
     hidden = _behind_m(scene, points.reshape(-1, 3)) < -_BEFORE_M
     return hidden.reshape(*tracks_m.shape[:2], -1).mean(axis=-1)
+
+
+def pillars_of(scene: Scene, points: Points) -> Float[np.ndarray, "leg 3"]:
+    """Of points those of upright things, tables' legs mostly, and what is just behind them: no cushion of a seat."""
+    side = int(2 * _REACH_M / _SQUARE_M)
+    low, high = np.zeros((side, side), bool), np.zeros((side, side), bool)
+    height = points[:, 2] - scene.floor_z_m
+    square, inside = _squares(points, side)
+    low[tuple(square[inside & (height < _LEG_M[0])].T)] = True
+    high[tuple(square[inside & (height > _LEG_M[1]) & (height < _RIM_M[1])].T)] = True
+    legs = points[inside & (low & high)[tuple(square.T)] & (height < _RIM_M[1])]
+    away = legs * _LEG_THICK_M / np.maximum(np.linalg.norm(legs, axis=1, keepdims=True), 1e-6)
+    return np.concatenate([legs, legs + away])
+
+
+def _squares(points: Points, side: int) -> tuple[np.ndarray, np.ndarray]:
+    """Row and column of the square of each point (0 where none is), and whether there is one."""
+    square = np.floor((points[:, 1::-1] + _REACH_M) / _SQUARE_M).astype(int)
+    inside = (square.min(axis=1) >= 0) & (square.max(axis=1) < side)
+    return np.where(inside[:, None], square, 0), inside
 
 
 def under(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:

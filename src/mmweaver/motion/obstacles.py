@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, tops_of, under, unseen_share
+from mmweaver.motion.hidden_parts import feet_of, hidden_share, legs_of, pillars_of, tops_of, under, unseen_share
 
 Array = np.ndarray
 # Radii of a person of 1.75 m about the bones, and what may be pressed by them.
@@ -75,6 +75,11 @@ class Obstacles:
         return tops_of(self.scene, self._measured_m)
 
     @cached_property
+    def _legs_m(self) -> Float[Array, "point 3"]:
+        """Upright things, tables' legs among them: no thigh sinks into those as into a seat."""
+        return np.concatenate([pillars_of(self.scene, self._measured_m), legs_of(self.scene)])
+
+    @cached_property
     def _solid_m(self) -> Float[Array, "point 3"]:
         """What was measured above the floor, and what must be just behind and under it."""
         points = self._measured_m
@@ -114,15 +119,16 @@ class Obstacles:
         knees = lowest[joint("left_knee")] + lowest[joint("right_knee")]
         ahead = (knees - lowest[joint("left_hip")] - lowest[joint("right_hip")])[:2]
         ahead = ahead / max(float(np.hypot(*ahead)), 1e-6)
-        away = self._solid_m[:, :2] - np.array(seat)
-        near, height = np.hypot(*away.T) < _SEAT_REACH_M + 0.3, self._solid_m[:, 2] - lowest[joint("pelvis"), 2]
-        before = (away @ ahead > _SEAT_AHEAD_M) & (height > -_SEAT_UNDER_M)
-        beside = (away @ ahead > 0.0) & (height > _OVER_ARMRESTS_M)
-        tops = self._tops_m[np.hypot(*(self._tops_m[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + 0.3]
+        solid, tops, legs = (_about(points, seat) for points in (self._solid_m, self._tops_m, self._legs_m))
+        along, height = (solid[:, :2] - np.array(seat)) @ ahead, solid[:, 2] - lowest[joint("pelvis"), 2]
+        before = (along > _SEAT_AHEAD_M) & (height > -_SEAT_UNDER_M)
+        beside = (along > 0.0) & (height > _OVER_ARMRESTS_M)
         tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
         behind = (tops[:, :2] - np.array(seat)) @ ahead <= _SEAT_AHEAD_M
-        hard = np.concatenate([self._solid_m[near & (before | beside)], tops[~behind]])
-        return (KDTree(hard), 0.0), (KDTree(tops[behind]), _BEHIND_M)
+        legs = legs[(legs[:, :2] - np.array(seat)) @ ahead > _SEAT_AHEAD_M]
+        hard = np.concatenate([solid[before | beside], tops[~behind], legs])
+        quick = {"balanced_tree": False, "compact_nodes": False}  # each is asked but once
+        return (KDTree(hard, **quick), 0.0), (KDTree(tops[behind], **quick), _BEHIND_M)
 
     def hidden(self, pose: PoseSequence) -> tuple[float, float]:
         """Where the pelvis is lowest: how much of the trunk is hidden, and of the legs hidden or outside the photo."""
@@ -167,8 +173,8 @@ class Obstacles:
         sits = np.zeros(len(points), bool)
         for seat, tree, besides_m in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
-            before, _ = tree.query(points, distance_upper_bound=_FARTHEST_M)
-            worst = max(worst, float((radius + besides_m - before - allowed)[at_seat].max(initial=0.0)))
+            before, _ = tree.query(points[at_seat], distance_upper_bound=_FARTHEST_M)
+            worst = max(worst, float((radius[at_seat] + besides_m - before - allowed[at_seat]).max(initial=0.0)))
             sits |= at_seat
         unknown, _ = self._under.query(points[~sits], distance_upper_bound=_FARTHEST_M)
         worst = max(worst, float((radius[~sits] - unknown - allowed[~sits]).max(initial=0.0)))
@@ -188,6 +194,12 @@ class Obstacles:
                 # Far behind a wall is another room seen through a door.
                 worst = max(worst, float(into[into < 0.6].max(initial=0.0)))
         return worst
+
+
+def _about(points: Float[Array, "point 3"], seat: tuple[float, float]) -> Float[Array, "near 3"]:
+    """Those that can matter to who sits there."""
+    points = points[np.abs(points[:, 0] - seat[0]) < _SEAT_REACH_M + _FARTHEST_M]
+    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + _FARTHEST_M]
 
 
 def _along(joints: Float[Array, "joint 3"], *names: str) -> Float[Array, "place 3"]:

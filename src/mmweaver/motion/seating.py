@@ -16,7 +16,7 @@ LOWEST_M, HIGHEST_M = 0.3, 0.65
 _COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
 _COUCH_M, _BED_REACH_M = 0.8, 1.2
 _TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter at a table may look past it
-_WIDEST_TURN_RAD, _BODY_ON_SEAT_M, _LEFT_OUT = 0.9, 0.4, 0.4
+_WIDEST_TURN_RAD, _BODY_ON_SEAT_M, _LEFT_OUT = 1.4, 0.4, 0.4
 _BACK_M, _ROOM_BEHIND_M = 0.05, 0.4  # and sit back, where the seat is deep enough
 
 

@@ -13,6 +13,7 @@ SPAN_DB = 50.0  # what a power picture shows below its peak
 
 INK = "#22262b"
 PAPER = "#ffffff"
+_BEYOND_FONT = 0x2E80
 TRUTH = "#7fe3ff"  # what is known from the skeleton, drawn over what the radar saw
 # The same for several people: bright over power maps and photos, dark on white.
 PEOPLE = (TRUTH, "#8dff7a", "#ff9df2", "#ffffff", "#ffd24d", "#b3a6ff", "#5dffd0", "#ff8f70")
@@ -69,9 +70,12 @@ def person_colour(index: int, count: int, *, on_white: bool = False) -> str:
 
 
 def shortened(text: str, most: int) -> str:
-    """At most so many characters.
+    """At most so many characters, without those that the font has not (emoji and the like).
 
     >>> shortened("a person walks", 10)
     'a perso...'
+    >>> shortened("a person waves \U0001f44b", 20)
+    'a person waves '
     """
+    text = "".join(character for character in text if ord(character) < _BEYOND_FONT)
     return text if len(text) <= most else text[: most - 3] + "..."

@@ -75,6 +75,8 @@ def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None
     Raises InputError where there is no RealSense in the folder, no such photo, or a file is missing or damaged.
     """
     folder = photo_folder(path)
+    if folder is None and not Path(path).exists():
+        raise InputError(f"{path} does not exist; give a capture folder")
     if folder is None:
         raise InputError(f"{path} holds no RealSense ({DEPTH}); give --rgb and --depth instead")
     depth_config, colour_config = (_json(folder / f"{name}_config.json") for name in ("depth", "color"))

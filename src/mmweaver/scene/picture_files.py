@@ -24,7 +24,7 @@ def read_rgb(path: Path) -> tuple[RgbPixels, tuple[int, int], bool]:
 
     image = opened_picture(path)
     stored_size = image.size
-    turned = image.getexif().get(0x0112, 1) not in (0, 1)
+    turned = image.getexif().get(0x0112, 1) in range(2, 9)
     if turned:
         image = ImageOps.exif_transpose(image)
     if image.mode.startswith("I;16") or image.mode == "I":

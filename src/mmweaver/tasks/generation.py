@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -26,10 +26,12 @@ from mmweaver.tasks.point_recording import PointRecording
 from mmweaver.tasks.variation import Draw, Span, Variation, draw
 
 LEAD_S = 0.75  # of the motion's own time that is left out at the start at least: nobody is recorded from rest
-SLOWEST_MPS = 0.12  # slower, somebody who should go somewhere has arrived
+SLOWEST_MPS = 0.06  # slower, somebody who should go somewhere has arrived
 TRIES, UNSEEN_TRIES = 20, 3
+WITHIN_M = (0.55, 3.1)  # slant ranges of who stays in place
 BODY_REACH_M, SEEN_SHARE = 0.6, 0.5
 ROAM_HZ = (0.1, 0.6)  # of whoever stays in place, but not quite
+HURRY_HZ = (0.1, 0.5)  # of how a tempo changes on the way
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +45,7 @@ class Recipe:
     radar: RadarConfig
     firmware: FirmwareSettings
     variation: Variation = Variation()  # noqa: RUF009 (frozen)
-    roaming_mps: Mapping[str, Span] = field(default_factory=dict)  # of activities that roam unlike the others
+    habits: Mapping[str, Mapping[str, Span]] = field(default_factory=dict)  # an activity's own spans, by their names
     window_s: float = 2.0
 
     def __post_init__(self) -> None:
@@ -54,11 +56,22 @@ class Recipe:
                 raise InputError(f"activity {name!r} has no sentence; say how it is done")
             for sentence in sentences:
                 parse(sentence)
+        known = {one.name for one in fields(Variation)}
+        for name, spans in self.habits.items():
+            if name not in self.activities or not set(spans) <= known:
+                raise InputError(
+                    f"habits of {name!r} ({', '.join(spans)}) fit no activity or no span; activities:"
+                    f" {', '.join(self.activities)}; spans: {', '.join(sorted(known))}"
+                )
 
     @property
     def frames(self) -> int:
         """Frames of a window."""
         return max(round(self.window_s / self.radar.frame_period_s), 1)
+
+    def variation_of(self, activity: str) -> Variation:
+        """The spans that windows of an activity draw from."""
+        return replace(self.variation, **self.habits.get(activity, {}))
 
     def as_json(self) -> str:
         """Everything in it, as text: equal recipes give equal text."""
@@ -68,7 +81,7 @@ class Recipe:
 def generate_window(recipe: Recipe, label: str, index: int, seed: int) -> PointRecording:
     """The index-th window of an activity: the same recipe, label, index and seed give the same points."""
     rng = stream(seed, "zero shot", label, index)
-    own = replace(recipe.variation, roam_mps=recipe.roaming_mps.get(label, recipe.variation.roam_mps))
+    own = recipe.variation_of(label)
     unseen: list[PointRecording] = []
     refused: InputError | None = None
     for _ in range(TRIES):
@@ -135,21 +148,33 @@ def _pose(recipe: Recipe, now: Draw, sentence: str, person: int, rng: np.random.
     tempo = now.tempo * (recipe.variation.way_tempo if moves else 1.0)
     lasts_s = (recipe.frames * recipe.radar.frame_period_s + 0.1) * tempo  # of the motion's own time
     lead_s = LEAD_S + float(rng.uniform(0.0, 1.5))
+    if moves:  # any part of the way
+        lead_s = float(rng.uniform(LEAD_S, max(now.way_s - lasts_s, 2 * LEAD_S)))
+    whole_s = max(now.way_s if moves else 0.0, lead_s + lasts_s + 0.5)
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
-    window = (0.55, 3.1)
     start_m = None if moves and rng.random() < 0.5 else now.start_m
     pose = compose(
-        sentence, scene, duration_s=lead_s + lasts_s + 0.5, seed=person, range_window_m=window, start_m=start_m,
-        height_m=now.height_m,
+        sentence, scene, duration_s=whole_s, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,
+        start_m=start_m, height_m=now.height_m,
     ).pose  # fmt: skip
     joints_m = _vigorous(pose.joints_m, now.vigour)
     if moves and tempo * _speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
         raise InputError("the way ends before the window does")
     if not moves:
-        joints_m = _turned(joints_m, np.radians(now.turn_deg)) + _roaming(pose.time_s, now.roam_mps, rng)
-    return replace(
-        pose, time_s=(pose.time_s - lead_s) / tempo, joints_m=joints_m, subject=person % 1000,
-    )  # fmt: skip
+        joints_m = _turned(joints_m, np.radians(now.turn_deg))
+    joints_m = joints_m + _roaming(pose.time_s, now.roam_mps, rng)
+    time_s = _hurried(pose.time_s - lead_s, tempo, now.hurry if moves else 0.0, rng)
+    if time_s[-1] < recipe.frames * recipe.radar.frame_period_s:
+        raise InputError("the way ends before the window does")
+    return replace(pose, time_s=time_s, joints_m=joints_m, subject=person % 1000)
+
+
+def _hurried(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
+    """When each pose is reached, 0 where it was: at a tempo whose logarithm wanders by `hurry` rms."""
+    turn, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
+    slower = np.exp(-hurry * np.sin(turn * time_s + phase).sum(axis=0)) / tempo
+    reached = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
+    return reached - np.interp(0.0, time_s, reached)
 
 
 def _speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:

@@ -14,14 +14,20 @@ class Variation:
     """Spans that a recording draws from, evenly (`tempo` evenly in its logarithm).
 
     `tempo` speeds a motion up, times `way_tempo` where the person goes somewhere (slowly, in a small room); `vigour`
-    scales how far joints leave their mean place; `turn_deg` is the standard deviation of how far someone who stays in
-    place is turned away from the radar. `tilt_deg` turns the reported points about the radar, up where positive. What
-    ends in `_db` changes the radar's own noise figure, its CFAR's threshold, its receiver's gain, the skin's albedo,
-    and how bright arms and legs are beside the trunk.
+    scales how far joints leave their mean place. Of a way through the room: `near_m` and `far_m` say between which
+    distances it goes to and fro, `way_s` how long it lasts in the motion's own time (a window is any part of it),
+    `hurry` how much the tempo wanders (rms of its logarithm). `turn_deg` is the standard deviation of how far someone
+    who stays in place is turned away from the radar. `tilt_deg` turns the reported points about the radar, up where
+    positive. What ends in `_db` changes the radar's own noise figure, its CFAR's threshold, its receiver's gain, the
+    skin's albedo, and how bright arms and legs are beside the trunk.
     """
 
     tempo: Span = (0.75, 1.6)
     way_tempo: float = 0.85
+    near_m: Span = (0.6, 1.1)
+    far_m: Span = (2.2, 3.1)
+    way_s: Span = (5.0, 13.0)
+    hurry: Span = (0.0, 0.4)
     vigour: Span = (0.6, 1.15)
     turn_deg: float = 25.0
     roam_mps: Span = (0.0, 0.06)
@@ -34,10 +40,10 @@ class Variation:
     noise_db: Span = (10.0, 22.0)
     clutter_db: Span = (-15.0, 5.0)
     threshold_db: Span = (-4.0, 3.0)
-    gain_db: Span = (-16.0, 4.0)
+    gain_db: Span = (-16.0, 0.0)
     albedo_db: Span = (-6.0, 4.0)
     skin_exponents: tuple[float, ...] = (40.0, 100.0, 200.0)
-    arms_db: Span = (-8.0, 6.0)
+    arms_db: Span = (-8.0, 4.0)
     legs_db: Span = (-14.0, 0.0)
     skin_points: int = 4000
     wall_m: Span = (2.9, 5.4)
@@ -50,6 +56,9 @@ class Draw:
     """One recording's circumstances, in the units of Variation."""
 
     tempo: float
+    reach_m: Span
+    way_s: float
+    hurry: float
     vigour: float
     turn_deg: float
     roam_mps: float
@@ -104,6 +113,9 @@ def draw(variation: Variation, rng: np.random.Generator) -> Draw:
         legs_db=of(variation.legs_db),
         wall_m=of(variation.wall_m) if rng.random() < variation.wall_share else None,
         panels=tuple(_panel(rng) for _ in range(int(rng.integers(variation.most_panels + 1)))),
+        reach_m=(of(variation.near_m), of(variation.far_m)),
+        way_s=of(variation.way_s),
+        hurry=of(variation.hurry),
     )
 
 
