@@ -127,7 +127,7 @@ class WeaverNetwork(nn.Module):
         for name, channels in (("colour", [0, 1, 2]), ("depth", [3]), ("mask", [4])):
             if name in self.without:
                 kept[channels] = 0.0
-        if not kept.any():  # of an even black, group norms have gradients without end
+        if self.without >= {"colour", "depth", "mask"}:  # of an even black, group norms have gradients without end
             return torch.full_like(image, 0.5)
         return image * kept[:, None, None]
 
