@@ -13,7 +13,7 @@ pytest.importorskip("transformers")
 
 
 def test_the_same_motion_by_both_methods(tmp_path: Path):
-    views = views_of(SAMPLE_FOLDER, frames=12)
+    views = views_of(SAMPLE_FOLDER, frames=16)
     first, second = (views[name] for name in METHODS)
     assert np.array_equal(first.poses[0].joints_m, second.poses[0].joints_m)
     assert not np.array_equal(first.cube.values, second.cube.values)
