@@ -416,5 +416,5 @@ def check_request(
     if motion is not None:
         check_lasts(motion, frames * config.frame_period_s)
     for one in texts[0 if motion is None else 1 :]:
-        schedule(parse(one), frames * config.frame_period_s)
+        schedule(parse(one), frames * config.frame_period_s, 1 / config.frame_period_s)
     return config

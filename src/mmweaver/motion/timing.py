@@ -7,8 +7,8 @@ from mmweaver.motion.activities import BY_KEY
 from mmweaver.motion.plan import MotionPlan, Step
 
 
-def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
-    """The plan with start and end of every step.
+def schedule(plan: MotionPlan, duration_s: float, fps: float = 10.0) -> MotionPlan:
+    """The plan with start and end of every step; `fps` is only for what an error says.
 
     A single movement without a count may be cut short: a part of it is shown. Raises InputError where several
     movements, or a number of repetitions, cannot fit.
@@ -19,7 +19,7 @@ def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
         needed = sum(least)
         raise InputError(
             f"{len(plan.steps)} movement(s) need at least {needed:.1f} s, there are {duration_s:.1f} s; ask for more"
-            f" frames (at 10 a second {int(needed * 10 + 0.999)} of them) or say less"
+            f" frames (at {fps:.3g} a second {int(needed * fps + 0.999)} of them) or say less"
         )
     spans = _spans(plan.steps, max(duration_s, sum(least)))
     steps: list[Step] = []
