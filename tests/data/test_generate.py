@@ -5,6 +5,9 @@ import json
 import os
 import platform
 import shutil
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +17,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.data.generate import generate, make_one
 from mmweaver.data.plan import DatasetPlan
-from mmweaver.data.store import PLAN_FILE, read_rooms
+from mmweaver.data.store import PLAN_FILE, is_being_written, read_rooms
 
 zarr = pytest.importorskip("zarr")
 PLAN = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=4)
@@ -98,3 +101,17 @@ def contents(folder: Path) -> dict[str, str]:
     """{file: its sha256}."""
     files = (file for file in sorted(folder.rglob("*")) if file.is_file())
     return {str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="the state of a process is not to be had here")
+def test_what_a_dead_worker_left_is_swept_before_anybody_asks_after_it(tmp_path: Path):
+    """A worker that was killed stays in the list of processes until its parent asks how it ended."""
+    child = subprocess.Popen([sys.executable, "-c", "pass"])
+    deadline = time.monotonic() + 30
+    while Path(f"/proc/{child.pid}/stat").exists() and time.monotonic() < deadline:
+        if Path(f"/proc/{child.pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
+            break
+        time.sleep(0.01)
+    host = platform.node().replace(".", "-") or "here"
+    assert not is_being_written(tmp_path / f".office_000.{host}.{child.pid}")
+    child.wait()

@@ -38,9 +38,7 @@ def generate(
     rooms = plan.rooms()
     check_for_leaks(rooms)
     start(folder, plan, config)
-    for leftover in folder.glob(".*.*"):
-        if leftover.is_dir() and not is_being_written(leftover):
-            shutil.rmtree(leftover, ignore_errors=True)
+    _sweep(folder)
     missing = [room for room in rooms if not is_done(folder, room.name)]
     tasks = ((folder, room, config, plan.num_frames, plan.geometry_only) for room in missing)
     reports = []
@@ -49,7 +47,15 @@ def generate(
             reports.append(report)
             if listener is not None:
                 listener(report)
+    _sweep(folder)
     return reports
+
+
+def _sweep(folder: Path) -> None:
+    """Takes away what a kill left half written."""
+    for leftover in folder.glob(".*.*"):
+        if leftover.is_dir() and not is_being_written(leftover):
+            shutil.rmtree(leftover, ignore_errors=True)
 
 
 Task = tuple[Path, RoomSpec, RadarConfig, int, bool]
