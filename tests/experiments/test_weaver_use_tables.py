@@ -12,6 +12,7 @@ from mmweaver.experiments.weaver_use_tables import (
     gain_table,
     paper_table,
     photographed_table,
+    small_gain_table,
     told_apart_table,
 )
 
@@ -38,6 +39,8 @@ def test_they_show_values_with_intervals(tmp_path: Path):
     _put(tmp_path, "weaver_paper/test_room.json",
          [{"method": "zeros", "metrics": {name: _metric(0.25) for name in names}}])  # fmt: skip
     assert "| kinds of rooms | 4 | 2 | 50.0 % (40.0 to 60.0) | 8 % |" in activity_table(tmp_path)
+    (tmp_path / "activity_gain/recordings_60.json").write_text(json.dumps({"rows": gains[:1]}))
+    assert len(small_gain_table(tmp_path).splitlines()) == 3
     shown = gain_table(tmp_path).splitlines()
     assert shown[2] == "| other_rooms | 50.0 % (40.0 to 60.0) |  |  |"
     assert shown[3].endswith("| +5.0 (-5.0 to +15.0) | +0.200 (+0.100 to +0.300) |")

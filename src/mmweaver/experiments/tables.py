@@ -22,6 +22,7 @@ from mmweaver.experiments.weaver_use_tables import (
     gain_table,
     paper_table,
     photographed_table,
+    small_gain_table,
     told_apart_table,
 )
 from mmweaver.experiments.zero_shot_table import curve_table, limbs_table, zero_shot_table
@@ -419,7 +420,8 @@ TABLES = {
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "capture_tuning": capture_tuning_table,
     "weaver_paper": paper_table, "weaver_ablation": ablation_table,
-    "activity_accuracy": activity_table, "activity_gain": gain_table, "real_or_generated": told_apart_table,
+    "activity_accuracy": activity_table, "activity_gain": gain_table, "activity_gain_60": small_gain_table,
+    "real_or_generated": told_apart_table,
     "zero_shot": zero_shot_table, "zero_shot_curve": curve_table, "zero_shot_limbs": limbs_table,
 }  # fmt: skip
 

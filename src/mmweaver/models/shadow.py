@@ -9,6 +9,7 @@ from torch import Tensor
 from mmweaver.models.body_prior import middling_body
 from mmweaver.models.echoes import Echoes
 
+WIDEST_M = 0.2  # from a bone to the skin at most
 BEHIND_M = 0.1  # farther than the body at least
 CORNERS = 0.93  # mean radius of a hull of six corners, which the simulator's shadows are cast by
 
@@ -26,8 +27,21 @@ def hidden(resting: Echoes, joints_m: Tensor) -> Tensor:
     radius = CORNERS * torch.from_numpy(body.radii_m).float()
     width = torch.from_numpy(body.widths).float()
     far = resting.range_m.cpu() - BEHIND_M
-    each = zip(starts, axes, rotations[..., 0], strict=True)
-    return torch.stack([_met(ways, far, radius, width, *one) for one in each]).to(joints_m.device)
+    out = torch.zeros(len(starts), len(ways), dtype=torch.bool)
+    for row, start, axis, right in zip(out, starts, axes, rotations[..., 0], strict=True):
+        near = _towards(ways, start, start + axis)
+        row[near] = _met(ways[near], far[near], radius, width, start, axis, right)
+    return out.to(joints_m.device)
+
+
+def _towards(ways: Tensor, *ends_m: Tensor) -> Tensor:
+    """The rays within the cone that the body fills, wide enough for its flesh too."""
+    ends = torch.cat(ends_m)
+    distance = ends.norm(dim=-1)
+    unit = ends / distance[:, None]
+    middle = torch.nn.functional.normalize(unit.mean(dim=0), dim=0)
+    widest = torch.acos((unit @ middle).min().clamp(-1, 1)) + torch.asin((WIDEST_M / distance.min()).clamp(max=1.0))
+    return torch.nonzero(ways @ middle > torch.cos(widest.clamp(max=torch.pi)))[:, 0]
 
 
 def _met(

@@ -91,6 +91,7 @@ class Body:
         self.echo = echo or SkinEcho()
         self.scale = height_m / REFERENCE_HEIGHT_M
         self.height_m = height_m
+        self._posed: tuple[bytes, tuple[np.ndarray, np.ndarray, np.ndarray]] | None = None
         rng = stream(subject, "body", num_points)
         area = np.array([self._side_area(capsule) for capsule in CAPSULES])
         self.part = np.sort(rng.choice(len(CAPSULES), size=num_points, p=area / area.sum()))
@@ -129,8 +130,15 @@ class Body:
     def frames(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Capsule starts (time, capsule, 3), axes as vectors start -> end, and rotations (time, capsule, 3, 3).
 
-        A rotation's columns are the capsule's right, front and along directions in the radar's frame.
+        A rotation's columns are the capsule's right, front and along directions in the radar's frame. Skin and shadow
+        ask for the same poses: the last ones are kept.
         """
+        asked = joints_m.tobytes()
+        if self._posed is None or self._posed[0] != asked:
+            self._posed = asked, self._frames(joints_m)
+        return self._posed[1]
+
+    def _frames(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         torso = _torso_rotation(joints_m)
         starts, axes, rotations = [], [], []
         for capsule in CAPSULES:
