@@ -269,8 +269,7 @@ def _shortest_turn(torso: np.ndarray, rest: np.ndarray, unit: np.ndarray) -> np.
     cos = (old * unit).sum(-1)[..., None]
     moved = [start[..., i] for i in range(2)]
     turned = [
-        v * cos + _cross(axis, v) + axis * (axis * v).sum(-1, keepdims=True) / np.maximum(1 + cos, 1e-3)
-        for v in moved
+        v * cos + _cross(axis, v) + axis * (axis * v).sum(-1, keepdims=True) / np.maximum(1 + cos, 1e-3) for v in moved
     ]
     return np.stack([*turned, unit], axis=-1)
 
