@@ -33,3 +33,10 @@ def test_the_shadow_moves_with_the_person():
     echoes = _echoes([(0.0, 4.0, 0.1), (1.0, 4.0, 0.1)])
     joints = torch.stack([_standing(0.0, 2.0, 1.2), _standing(0.5, 2.0, 1.2)])
     assert hidden(echoes, joints).tolist() == [[True, False], [False, True]]
+
+
+def test_thighs_hide_all_along_and_not_about_joints_alone():
+    """A wall's foot, the strongest echo of a room, shone between hip and knee."""
+    heights = [0.52 + 0.02 * step for step in range(16)]
+    behind = [(0.095 * 2, 4.0, 2 * (height - 0.7)) for height in heights]  # seen past a leg 2 m away
+    assert all(hidden(_echoes(behind), _standing(0.0, 2.0, 0.7)[None])[0].tolist())

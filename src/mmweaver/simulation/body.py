@@ -133,10 +133,10 @@ class Body:
         A rotation's columns are the capsule's right, front and along directions in the radar's frame. Skin and shadow
         ask for the same poses: the last ones are kept.
         """
-        asked = joints_m.tobytes()
-        if self._posed is None or self._posed[0] != asked:
-            self._posed = asked, self._frames(joints_m)
-        return self._posed[1]
+        asked, kept = joints_m.tobytes(), self._posed
+        if kept is None or kept[0] != asked:
+            kept = self._posed = asked, self._frames(joints_m)
+        return kept[1]
 
     def _frames(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         torso = _torso_rotation(joints_m)
