@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 import numpy as np
-from jaxtyping import Int
+from jaxtyping import Bool, Int
 
-from mmweaver.core.records import Plane, RgbdPhoto
+from mmweaver.core.records import ClassMask, Plane, RgbdPhoto
 from mmweaver.core.shapes import Array, Points, Rotation
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.scene.depth_grid import DepthGrid, GridBool
@@ -29,9 +29,20 @@ def cells_of(grid: DepthGrid, photo: RgbdPhoto, names: frozenset[str]) -> GridBo
     """The cells of a photo's grid that show one of these classes; None without a mask, or where it shows none."""
     if photo.classes is None or grid.class_index is None:
         return None
-    wanted = [number for number, name in enumerate(photo.classes.names) if name in names]
-    found = np.isin(grid.class_index, wanted)
+    found = np.isin(grid.class_index, numbers_of(photo.classes, names))
     return found if found.any() else None
+
+
+def numbers_of(classes: ClassMask, names: frozenset[str]) -> list[int]:
+    """The numbers that a mask has for classes of these names."""
+    return [number for number, name in enumerate(classes.names) if name in names]
+
+
+def regions_of(classes: ClassMask, names: frozenset[str], smallest: float) -> list[Bool[Array, "height width"]]:
+    """The connected regions of pixels of these classes that are at least that share of the picture."""
+    regions, count = labelled(np.isin(classes.index, numbers_of(classes, names)))
+    each = [regions == region for region in range(1, count + 1)]
+    return [region for region in each if region.mean() >= smallest]
 
 
 def sittable_squares(photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: float) -> GridClass | None:

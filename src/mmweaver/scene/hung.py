@@ -12,9 +12,9 @@ from jaxtyping import Bool
 from mmweaver.core.records import Plane, RgbdPhoto
 from mmweaver.core.shapes import Array, Rotation
 from mmweaver.geometry.pinhole import unproject
-from mmweaver.scene.coco_stuff import DOORS, GLASS, MIRRORS, SCREENS, material_of
+from mmweaver.scene.class_evidence import regions_of
+from mmweaver.scene.coco_stuff import DOORS, GLASS, MATERIAL, MIRRORS, SCREENS
 from mmweaver.scene.depth_grid import depth_tolerance_m
-from mmweaver.scene.patches import labelled
 
 SMALLEST = 0.004  # of the picture
 MIN_AREA_M2, MIN_SIDE_M = 0.15, 0.3
@@ -30,15 +30,11 @@ def hung_panels(photo: RgbdPhoto, radar_from_camera: Rotation, walls: Sequence[P
         return ()
     rays = unproject(np.ones_like(photo.depth_m), photo.intrinsics) @ radar_from_camera.T
     found = []
-    for number, name in enumerate(photo.classes.names):
+    for name in photo.classes.names:
         if name not in GLASS | MIRRORS | DOORS | SCREENS:
             continue
-        regions, count = labelled(photo.classes.index == number)
-        for region in range(1, count + 1):
-            pixels = regions == region
-            if pixels.mean() < SMALLEST:
-                continue
-            panel = _on_a_wall(pixels, photo, rays, walls, material_of(name) or "")
+        for pixels in regions_of(photo.classes, frozenset({name}), SMALLEST):
+            panel = _on_a_wall(pixels, photo, rays, walls, MATERIAL[name])
             if panel is not None:
                 found.append(panel)
     return tuple(found)

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Bool, Float
 
-from mmweaver.core.records import ClassMask, RgbdPhoto
+from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.shapes import Array, DepthPixels
+from mmweaver.scene.class_evidence import numbers_of, regions_of
 from mmweaver.scene.coco_stuff import GLASS, MIRRORS, SCREENS, WALLS
-from mmweaver.scene.patches import grown, labelled
+from mmweaver.scene.patches import grown
 
 SMALLEST = 0.002  # of the picture
 RIM = 0.02  # width of the rim around a pane that tells its plane, in picture widths
@@ -27,7 +28,7 @@ def with_panes(photo: RgbdPhoto) -> tuple[RgbdPhoto, tuple[str, ...]]:
     if photo.classes is None:
         return photo, ()
     depth_m, filled = photo.depth_m.copy(), 0
-    for pane in _regions(photo.classes, GLASS | MIRRORS):
+    for pane in regions_of(photo.classes, GLASS | MIRRORS, SMALLEST):
         plane_m = _plane_depth(_rim(pane, photo), photo.depth_m)
         if plane_m is None:
             continue
@@ -36,7 +37,7 @@ def with_panes(photo: RgbdPhoto) -> tuple[RgbdPhoto, tuple[str, ...]]:
         depth_m[behind] = plane_m[behind]
         filled += bool(behind.any())
     screens = 0
-    for screen in _regions(photo.classes, SCREENS):
+    for screen in regions_of(photo.classes, SCREENS, SMALLEST):
         lost = screen & ~np.isfinite(depth_m)
         plane_m = _plane_depth(screen & ~lost, photo.depth_m) if lost.any() else None
         if plane_m is not None:
@@ -51,21 +52,12 @@ def with_panes(photo: RgbdPhoto) -> tuple[RgbdPhoto, tuple[str, ...]]:
     return replace(photo, depth_m=depth_m), tuple(f"{count} {what}" for count, what in said if count)
 
 
-def _regions(classes: ClassMask, names: frozenset[str]) -> list[Bool[Array, "height width"]]:
-    """The connected regions of pixels of these classes that are large enough to matter."""
-    wanted = [index for index, name in enumerate(classes.names) if name in names]
-    regions, count = labelled(np.isin(classes.index, wanted))
-    each = [regions == region for region in range(1, count + 1)]
-    return [region for region in each if region.mean() >= SMALLEST]
-
-
 def _rim(pane: Bool[Array, "height width"], photo: RgbdPhoto) -> Bool[Array, "height width"]:
     """What was measured just around a pane: of the wall if that is seen, for curtains hang before it."""
     reach = max(2, round(RIM * pane.shape[1]))
     rim = grown(pane, reach) & ~pane & np.isfinite(photo.depth_m)
     assert photo.classes is not None
-    walls = [index for index, name in enumerate(photo.classes.names) if name in WALLS]
-    of_wall = rim & np.isin(photo.classes.index, walls)
+    of_wall = rim & np.isin(photo.classes.index, numbers_of(photo.classes, WALLS))
     return of_wall if of_wall.sum() >= FEWEST_RIM_PIXELS else rim
 
 
