@@ -22,6 +22,7 @@ from mmweaver.data.plan import Withheld
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.experiments.results import write_result
+from mmweaver.experiments.weaver_table import interval
 from mmweaver.metrics.maps import log_map_difference_db, log_map_ssim
 from mmweaver.scene.procedural.kinds import KINDS
 from mmweaver.scene.procedural.room import make_room
@@ -92,20 +93,19 @@ def main() -> None:
     given = parser.parse_args()
     rooms = [(kind, layout) for kind in KINDS if kind not in Withheld().test_kinds for layout in given.layouts]
     scores = [judged(kind, layout) for kind, layout in rooms]
-    rows = [_row(method, scores) for method in scores[0]]
+    names = [f"{kind}_{layout}" for kind, layout in rooms]
+    rows = [_row(method, scores, names) for method in scores[0]]
     settings = {"layouts": given.layouts, "kinds": sorted({kind for kind, _ in rooms}), "radar": "awr1843"}
     path = write_result(given.out, experiment="photographed_room", method="echoes", config=settings, rows=rows)
     sys.stdout.write(f"{path}\n")
 
 
-def _row(method: str, scores: list[Scores]) -> dict[str, Any]:
+def _row(method: str, scores: list[Scores], rooms: list[str]) -> dict[str, Any]:
     metrics = {}
     for name, (unit, definition) in METRICS.items():
-        values = np.array([score[method][name] for score in scores])
-        draws = stream(0, "rooms", name).integers(0, len(values), (2000, len(values)))
-        low, high = np.percentile(values[draws].mean(axis=1), [2.5, 97.5])
+        mean, low, high = interval(np.array([score[method][name] for score in scores]), rooms)
         metrics[name] = {
-            "value": float(values.mean()), "low": float(low), "high": float(high), "unit": unit,
+            "value": mean, "low": low, "high": high, "unit": unit,
             "definition": definition, "version": 1,
             "floor": {"zeros": float(np.mean([score["zeros"][name] for score in scores]))},
         }  # fmt: skip

@@ -22,13 +22,12 @@ from mmweaver.core.shapes import Points
 from mmweaver.core.skeleton import joint
 from mmweaver.experiments.affordances import RANGE_WINDOW_M, SECONDS, share_of
 from mmweaver.experiments.results import write_result
-from mmweaver.experiments.room_contact import ALLOWED_M, FRAME_S, ON_SEAT_M
+from mmweaver.experiments.room_contact import ALLOWED_M, ON_SEAT_M, sampled
 from mmweaver.experiments.room_sentences import SENTENCES
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.scene.photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.simulation.body import CAPSULES, REFERENCE_HEIGHT_M
 
 SEEDS = range(10)
 MARKS = Path(__file__).with_name("real_rooms_classes.json")
@@ -71,16 +70,8 @@ def deepest_m(tree: Any, pose: PoseSequence, seat_m: Float[Array, "2"] | None) -
 
     About a seat trunk and thighs may sink in, for they sit there.
     """
-    steps = np.arange(pose.time_s[0], pose.time_s[-1], FRAME_S)
-    rows = np.unique(np.clip(np.searchsorted(pose.time_s, steps), 0, len(pose.time_s) - 1))
-    joints = pose.joints_m[rows].astype(float)
     worst = {"body": 0.0, "arms": 0.0}
-    for capsule in CAPSULES:
-        start, end = joints[:, joint(capsule.start)], joints[:, joint(capsule.end)]
-        share = _ALONG[:, None, None]
-        points = (start * (1 - share) + end * share).reshape(-1, 3)
-        radius = np.interp(_ALONG, [0, 1], [capsule.start_radius_m, capsule.end_radius_m])
-        radius = np.repeat(radius * pose.height_m / REFERENCE_HEIGHT_M, len(rows))
+    for capsule, points, radius in sampled(pose, _ALONG):
         allowed = np.full(len(points), ALLOWED_M)
         if seat_m is not None and capsule.start in _SINKS:
             allowed[np.hypot(*(points[:, :2] - seat_m).T) < _ON_SEAT_REACH_M] = ON_SEAT_M

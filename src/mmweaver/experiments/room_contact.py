@@ -1,5 +1,6 @@
 """How deep a moving body gets into the furniture and walls of a room whose boxes are known."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +9,7 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
 from mmweaver.scene.procedural.parts import Boxes
 from mmweaver.scene.procedural.room import ProceduralRoom
-from mmweaver.simulation.body import CAPSULES, REFERENCE_HEIGHT_M
+from mmweaver.simulation.body import CAPSULES, REFERENCE_HEIGHT_M, Capsule
 
 ALLOWED_M = 0.03  # clothes and cushions give way; boxes have sharp corners where furniture is round
 ON_SEAT_M = 0.16  # what one sits or leans on: the flesh of a capsule sinks into it
@@ -28,23 +29,29 @@ class Contact:
     arms_where: str = ""
 
 
+def sampled(pose: PoseSequence, along: np.ndarray) -> Iterator[tuple[Capsule, np.ndarray, np.ndarray]]:
+    """Each capsule of a body, points (point, 3) at shares `along` its bone 15 times a second, and the radii there."""
+    steps = np.arange(pose.time_s[0], pose.time_s[-1], FRAME_S)
+    rows = np.unique(np.clip(np.searchsorted(pose.time_s, steps), 0, len(pose.time_s) - 1))
+    joints = pose.joints_m[rows].astype(float)
+    for capsule in CAPSULES:
+        start, end = joints[:, joint(capsule.start)], joints[:, joint(capsule.end)]
+        share = along[:, None, None]
+        points = (start * (1 - share) + end * share).reshape(-1, 3)
+        radius = np.interp(along, [0, 1], [capsule.start_radius_m, capsule.end_radius_m])
+        radius = np.repeat(radius * pose.height_m / REFERENCE_HEIGHT_M, len(rows))
+        yield capsule, points, radius
+
+
 def contact(room: ProceduralRoom, pose: PoseSequence, seat_m: np.ndarray | None = None) -> Contact:
     """Capsules of the body against all boxes and walls, 15 times a second.
 
     `seat_m` is where the person sits, if so: the piece under it (found within 0.4 m) may be sunk into.
     """
-    steps = np.arange(pose.time_s[0], pose.time_s[-1], FRAME_S)
-    rows = np.unique(np.clip(np.searchsorted(pose.time_s, steps), 0, len(pose.time_s) - 1))
-    joints = pose.joints_m[rows].astype(float)
     boxes = _solid(room)
     own = _piece_under(boxes, seat_m)
     worst = {"body": (0.0, ""), "arms": (0.0, "")}
-    for capsule in CAPSULES:
-        start, end = joints[:, joint(capsule.start)], joints[:, joint(capsule.end)]
-        share = _ALONG[:, None, None]
-        points = (start * (1 - share) + end * share).reshape(-1, 3)
-        radius = np.interp(_ALONG, [0, 1], [capsule.start_radius_m, capsule.end_radius_m])
-        radius = np.repeat(radius * pose.height_m / REFERENCE_HEIGHT_M, len(rows))
+    for capsule, points, radius in sampled(pose, _ALONG):
         depth = radius[:, None] - boxes.distance_m(points) - ALLOWED_M
         if capsule.start in _SEATED and own is not None:
             depth[:, own] -= ON_SEAT_M - ALLOWED_M
