@@ -7,9 +7,9 @@ Reference: paper, section "Generalization via Hypernetworks", Environment Encode
 
 import math
 
-import torch
 from torch import Tensor, nn
 
+from mmweaver.models.efficientnet import Block, Stem, shapes
 from mmweaver.models.room_view import IMAGE_CHANNELS
 
 Z_ENV = 512
@@ -22,19 +22,12 @@ class EnvironmentEncoder(nn.Module):
 
     def __init__(self, *, batch_norm: bool = False) -> None:
         super().__init__()
-        from transformers import EfficientNetConfig, EfficientNetModel
-
-        b0 = EfficientNetModel(
-            EfficientNetConfig(
-                width_coefficient=1.0, depth_coefficient=1.0, hidden_dim=1280, num_channels=IMAGE_CHANNELS
-            )
-        )
-        self.stem = b0.embeddings
-        self.blocks = nn.ModuleList(list(b0.encoder.blocks)[:BLOCKS])
+        chosen = shapes()[:BLOCKS]
+        self.stem = Stem(IMAGE_CHANNELS)
+        self.blocks = nn.ModuleList(Block(shape) for shape in chosen)
         if not batch_norm:
             _group_norms(self)
-        channels = _channels(self.stem, self.blocks)
-        self.project = nn.Sequential(nn.Linear(channels, Z_ENV), nn.SiLU(), nn.Linear(Z_ENV, Z_ENV))
+        self.project = nn.Sequential(nn.Linear(chosen[-1].channels_out, Z_ENV), nn.SiLU(), nn.Linear(Z_ENV, Z_ENV))
 
     def forward(self, image: Tensor) -> tuple[Tensor, Tensor]:
         x = self.stem(image)
@@ -44,18 +37,6 @@ class EnvironmentEncoder(nn.Module):
             if index + 1 == MAP_BLOCK:
                 places = x
         return self.project(x.mean(dim=(2, 3))), places
-
-
-def _channels(stem: nn.Module, blocks: nn.ModuleList) -> int:
-    stem.eval()
-    blocks.eval()
-    with torch.no_grad():
-        x = stem(torch.zeros(1, IMAGE_CHANNELS, 32, 32))
-        for block in blocks:
-            x = block(x)
-    stem.train()
-    blocks.train()
-    return x.shape[1]
 
 
 def _group_norms(module: nn.Module) -> None:

@@ -48,14 +48,13 @@ def _met(
     ways: Tensor, far_m: Tensor, radius_m: Tensor, width: Tensor, start_m: Tensor, axis_m: Tensor, right: Tensor
 ) -> Tensor:
     """Whether each ray (ray, 3) comes nearer to a capsule (capsule, 3) than its radius before it gets `far_m`."""
-    along = ways @ axis_m.T  # (ray, capsule)
-    begun = ways @ start_m.T
+    along, begun, across_m = ways @ axis_m.T, ways @ start_m.T, ways @ right.T  # (ray, capsule)
+    length2, slope = axis_m.square().sum(-1), (axis_m * start_m).sum(-1)
     # the point of the bone nearest to the ray, both seen along the ray
-    across = axis_m.square().sum(-1) - along.square()
-    share = ((along * begun - (axis_m * start_m).sum(-1)) / across.clamp(min=1e-9)).clamp(0, 1)
+    share = ((along * begun - slope) / (length2 - along.square()).clamp(min=1e-9)).clamp(0, 1)
     gone = begun + share * along
-    gap = start_m + share[..., None] * axis_m - gone[..., None] * ways[:, None]
-    sideways = (gap * right).sum(-1)
-    distance = (gap.square().sum(-1) - sideways.square() * (1 - width**-2)).clamp(min=0).sqrt()
+    sideways = (start_m * right).sum(-1) + share * (axis_m * right).sum(-1) - gone * across_m
+    gap2 = start_m.square().sum(-1) + share * (2 * slope + share * length2) - gone.square()
     reach = radius_m[:, 0] + share * (radius_m[:, 1] - radius_m[:, 0])
-    return ((distance < reach) & (gone > 0) & (gone < far_m[:, None])).any(dim=-1)
+    met = gap2 - sideways.square() * (1 - width**-2) < reach.square()
+    return (met & (gone > 0) & (gone < far_m[:, None])).any(dim=-1)
