@@ -5,7 +5,7 @@ import numpy as np
 from mmweaver import Weaver
 
 weaver = Weaver(radar="awr1843")
-result = weaver.generate(weaver.sample_room(), "a person jumps", frames=2)
+result = weaver.generate(weaver.sample_room(), "a person jumps", frames=2, keep_adc=True)
 assert result.adc is not None
 chirp = result.adc.samples[0, 0, 0, 0]  # frame, loop, tx, rx
 profile = np.abs(np.fft.fft(chirp * np.hanning(len(chirp))))

@@ -25,7 +25,7 @@ TEXT = "a person walks towards the radar"
 
 @pytest.fixture(scope="module")
 def weaver() -> Weaver:
-    return Weaver()
+    return Weaver("physics")
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def room(weaver: Weaver) -> Room:
 def walk(weaver: Weaver, room: Room, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of one short sequence."""
     out = tmp_path_factory.mktemp("walk") / "out"
-    weaver.generate(room, TEXT, frames=6, seed=3).save(out, adc_data_bin=True)
+    weaver.generate(room, TEXT, frames=6, seed=3, keep_adc=True).save(out, adc_data_bin=True)
     return out
 
 
@@ -88,10 +88,33 @@ def test_the_person_nears_and_stands_on_the_floor(walk: Path, room: Room):
 
 
 def test_the_same_seed_gives_the_same_bits(walk: Path, tmp_path: Path):
-    again = Weaver(radar=AWR1843)
-    again.generate(again.sample_room(), TEXT, frames=6, seed=3).save(tmp_path / "again", adc_data_bin=True)
+    again = Weaver("physics", radar=AWR1843)
+    made = again.generate(again.sample_room(), TEXT, frames=6, seed=3, keep_adc=True)
+    made.save(tmp_path / "again", adc_data_bin=True)
     for name in ("radar.npz", "pose.npz", "points.npz", "adc_data.bin", "radar.json", "preview.png", "preview.gif"):
         assert (walk / name).read_bytes() == (tmp_path / "again" / name).read_bytes(), name
+
+
+def test_the_network_is_the_default(room: Room, tmp_path: Path):
+    made = Weaver().generate(room, TEXT, frames=6, seed=3)
+    meta = made.save(tmp_path / "out")
+    assert (meta["method"], made.adc) == ("weaver", None)
+    assert "weave the signal" in meta["seconds"]
+    named = Weaver("weaver").generate(room, TEXT, frames=6, seed=3)
+    assert made.cube.values.tobytes() == named.cube.values.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("texts", "asked", "because"), [(TEXT, {"keep_adc": True}, "ADC"), ([TEXT, "a person stands"], {}, "each other")]
+)
+def test_physics_makes_what_the_network_cannot(weaver: Weaver, room: Room, texts: str | list[str], asked: dict,
+                                               because: str):  # fmt: skip
+    made = Weaver().generate(room, texts, frames=2, **asked)
+    assert made.meta["method"] == "physics"
+    assert any("not the network" in sentence and because in sentence for sentence in made.meta["assumed"])
+    traced = weaver.generate(room, texts, frames=2, **asked)
+    assert made.cube.values.tobytes() == traced.cube.values.tobytes()
+    assert not any("network" in sentence for sentence in traced.meta["assumed"])
 
 
 def test_another_seed_and_another_frame_rate_change_the_signal(weaver: Weaver, room: Room):
@@ -103,7 +126,7 @@ def test_another_seed_and_another_frame_rate_change_the_signal(weaver: Weaver, r
 
 
 def test_dropping_the_samples_changes_nothing_else(weaver: Weaver, room: Room):
-    kept = weaver.generate(room, TEXT, frames=2)
+    kept = weaver.generate(room, TEXT, frames=2, keep_adc=True)
     dropped = weaver.generate(room, TEXT, frames=2, keep_adc=False)
     assert isinstance(kept.adc, AdcCube)
     assert np.array_equal(kept.cube.values, dropped.cube.values)
@@ -114,7 +137,7 @@ def test_dropping_the_samples_changes_nothing_else(weaver: Weaver, room: Room):
 
 def test_firmware_points_leave_the_signal_as_it_is(weaver: Weaver, room: Room):
     board = Weaver(points="firmware").generate(room, TEXT, frames=4, seed=3, keep_adc=False)
-    ours = weaver.generate(room, TEXT, frames=4, seed=3)
+    ours = weaver.generate(room, TEXT, frames=4, seed=3, keep_adc=True)
     assert board.adc is None
     assert np.array_equal(board.cube.values, ours.cube.values)
     assert np.array_equal(board.points.x_m, firmware_points(ours.adc).x_m)
@@ -126,7 +149,7 @@ def test_firmware_points_leave_the_signal_as_it_is(weaver: Weaver, room: Room):
 
 def test_a_listener_hears_every_stage():
     heard: list[str] = []
-    weaver = Weaver(listener=heard.append)
+    weaver = Weaver("physics", listener=heard.append)
     result = weaver.generate(weaver.sample_room(), TEXT, frames=1)
     assert heard == list(result.stages.seconds)
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -21,15 +21,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Signal:
-    """What a method gives: the cube, the ADC samples where it has any, and what it assumed."""
+    """What a method gives: the cube, the ADC samples where it has any, and what it assumed.
+
+    `method` is the name of the one that made it, where a method leaves the work to others.
+    """
 
     cube: RadarCube
     adc: AdcCube | None
     assumptions: tuple[str, ...]
+    method: str | None = None
 
 
 class Method(Protocol):
-    """A way from a scene and the people moving in it to the signal; physics now, a network later.
+    """A way from a scene and the people moving in it to the signal.
 
     ADC samples are given where the method has them and `keep_adc` asks for them.
     """
@@ -89,10 +93,8 @@ class Physics:
         return self._ready[2]
 
 
-WOVEN_ASSUMPTIONS = (
-    "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn",
-    "ADC samples are those of least energy that give the network's cube",
-)
+WOVEN = "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
+LEAST_ENERGY = "ADC samples are those of least energy that give the network's cube"
 SUPERIMPOSED = "several people are superimposed: they do not hide each other"
 
 
@@ -130,8 +132,8 @@ class Woven:
             motions = [FrameMotion.of(pose, config, num_frames) for pose in poses]
             cube = room.cube(motions, seed=seed)
             adc = adc_from_cube(cube) if keep_adc else None
-        told = WOVEN_ASSUMPTIONS if len(poses) < 2 else (*WOVEN_ASSUMPTIONS, SUPERIMPOSED)
-        return Signal(cube=cube, adc=adc, assumptions=told)
+        told = {WOVEN: True, LEAST_ENERGY: keep_adc, SUPERIMPOSED: len(poses) > 1}
+        return Signal(cube=cube, adc=adc, assumptions=tuple(sentence for sentence, is_true in told.items() if is_true))
 
     def _room(self, scene: Scene, config: RadarConfig) -> "WovenRoom":
         from mmweaver.models.weaver_method import WovenRoom
@@ -143,4 +145,36 @@ class Woven:
         return self._ready[2]
 
 
-METHODS: Registry[Callable[[], Method]] = Registry("method", [("physics", Physics), ("weaver", Woven)])
+BECAUSE_OF_ADC = "physics made the signal, not the network, for raw ADC samples are asked for; a network has none"
+BECAUSE_OF_PEOPLE = "physics made the signal, not the network, which does not know how people hide each other"
+
+
+class Auto:
+    """The network, and physics for what the network knows nothing of: raw ADC samples and several people."""
+
+    def __init__(self) -> None:
+        self._woven, self._physics = Woven(), Physics()
+
+    def __call__(
+        self,
+        scene: Scene,
+        poses: tuple[PoseSequence, ...],
+        config: RadarConfig,
+        *,
+        num_frames: int,
+        seed: int,
+        keep_adc: bool,
+        stages: Stages,
+    ) -> Signal:
+        reason = BECAUSE_OF_ADC if keep_adc else BECAUSE_OF_PEOPLE if len(poses) > 1 else None
+        method = self._woven if reason is None else self._physics
+        signal = method(scene, poses, config, num_frames=num_frames, seed=seed, keep_adc=keep_adc, stages=stages)
+        if reason is None:
+            return replace(signal, method="weaver")
+        return replace(signal, method="physics", assumptions=(*signal.assumptions, reason))
+
+
+DEFAULT_METHOD = "auto"
+METHODS: Registry[Callable[[], Method]] = Registry(
+    "method", [(DEFAULT_METHOD, Auto), ("weaver", Woven), ("physics", Physics)]
+)

@@ -25,7 +25,7 @@ from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect
 from mmweaver.formats.radar_file import load_firmware, load_radar
-from mmweaver.methods import METHODS, Woven
+from mmweaver.methods import DEFAULT_METHOD, METHODS, Woven
 from mmweaver.motion.company import MOST_PEOPLE, Place, compose_company
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
@@ -121,16 +121,18 @@ class Generation:
 class Weaver:
     """Generates radar signals with one method and one radar.
 
-    `method` is a name in METHODS, `radar` a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
-    hears the name of each stage as it begins. `points` chooses the point cloud: "cfar", this project's own, or
-    "firmware", that of TI's demo; `firmware` are its settings (default: what the radar's .cfg or preset says).
-    `weights`: a file or folder of `mmweaver train`, or a Hub name, for the method "weaver"; `from_pretrained` is the
-    short way. Raises InputError for what is not known.
+    `method` is a name in METHODS: "weaver", the network, "physics", or "auto", the network for all that it can make,
+    which is everything but raw ADC samples and several people. `radar` is a preset's name, a TI .cfg or radar.json
+    file, or a RadarConfig. `listener` hears the name of each stage as it begins. `points` chooses the point cloud:
+    "cfar", this project's own, or "firmware", that of TI's demo, which needs ADC samples; `firmware` are its settings
+    (default: what the radar's .cfg or preset says).
+    `weights`: a file or folder of `mmweaver train`, or a Hub name, for the network, which then makes all signals;
+    `from_pretrained` is the short way. Raises InputError for what is not known.
     """
 
     def __init__(
         self,
-        method: str = "physics",
+        method: str = DEFAULT_METHOD,
         radar: str | Path | RadarConfig = "awr1843",
         *,
         listener: Callable[[str], object] | None = None,
@@ -138,9 +140,9 @@ class Weaver:
         firmware: FirmwareSettings | None = None,
         weights: str | Path | None = None,
     ):
-        self.method_name = method
-        if weights is not None and method != "weaver":
+        if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
+        self.method_name = method if weights is None else "weaver"
         self.method = Woven(_found(weights)) if weights is not None else METHODS[method]()
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
@@ -238,7 +240,7 @@ class Weaver:
         heading_rad: float | None = None,
         height_m: float | Sequence[float | None] | None = None,
         as_recorded: bool = False,
-        keep_adc: bool = True,
+        keep_adc: bool = False,
     ) -> Generation:
         """The signal of who does in the room what the text says (one text a person), or what a `motion` shows.
 
@@ -248,8 +250,8 @@ class Weaver:
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
-        half a metre apart. Without `keep_adc` the raw samples are
-        dropped as soon as they are processed, for long sequences. The same seed gives the same bits. Raises
+        half a metre apart. `keep_adc` asks for the raw samples too, which take several times the cube's memory and,
+        unless a method is named, make physics the method. The same seed gives the same bits. Raises
         InputError for a request that cannot be met.
         """
         needs_adc = keep_adc or self.points == "firmware"
@@ -286,7 +288,7 @@ class Weaver:
             "version": __version__,
             "text": people[0].plan.text if text is None else text if isinstance(text, str) else list(text),
             "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
-            "method": self.method_name,
+            "method": signal.method or self.method_name,
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(config),
@@ -385,7 +387,7 @@ def check_request(
     fps: float | None = None,
     seed: int = 0,
     at: Place | Sequence[Place | None] | None = None,
-    keep_adc: bool = True,
+    keep_adc: bool = False,
 ) -> RadarConfig:
     """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
 

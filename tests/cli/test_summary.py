@@ -10,6 +10,7 @@ META = {
     "files": {"radar.npz": "the cube", "preview.png": "pictures"},
     "assumed": ["a stool", "D455 field of view"],
     "seconds": {"simulate": 0.5, "draw": 1.0},
+    "method": "weaver",
     "frames": 20,
     "radar": {"name": "awr1843"},
     "resolution": {
@@ -21,7 +22,8 @@ META = {
 
 def test_people_hear_where_what_and_on_which_assumptions():
     text = "\n".join(summary_lines("walk", META))
-    for word in ("walk", "1.5 s", "radar.npz", "4.40 cm", "1.75 m", "(-0.08, 1.37)", "assumed: a stool", "D455"):
+    files = ("walk", "1.5 s", "radar.npz")
+    for word in (*files, "the network", "4.40 cm", "1.75 m", "(-0.08, 1.37)", "assumed: a stool", "D455"):
         assert word in text
 
 
@@ -31,6 +33,7 @@ def test_machines_read_json(capsys: pytest.CaptureFixture[str]):
     assert summary["files"]["radar.npz"] == "walk/radar.npz"
     assert summary["assumed"] == META["assumed"]
     assert summary["seconds"] == META["seconds"]
+    assert summary["method"] == "weaver"
 
 
 def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]):

@@ -19,7 +19,6 @@ from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.weaver import Weaver
 
 pytest.importorskip("zarr")
-pytest.importorskip("transformers")
 
 
 def test_train_then_generate(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
@@ -48,7 +47,8 @@ def test_train_then_generate(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     for words, told in (
         (["train", "weaver", "--data", str(tmp_path), "--out", str(tmp_path / "o")], "no data set"),
-        (["generate", "--demo", "--weights", "w", "--out", str(tmp_path / "g")], "weights are for the method"),
+        (["generate", "--demo", "--method", "physics", "--weights", "w", "--out", str(tmp_path / "g")],
+         "weights are for the method"),
         (["generate", "--demo", "--method", "weaver", "--weights", str(tmp_path / "no"), "--out", str(tmp_path / "g")],
          "does not exist"),
     ):  # fmt: skip

@@ -17,7 +17,6 @@ from mmweaver.cli.main import main
 from mmweaver.models.weights import load_into
 
 pytest.importorskip("zarr")
-pytest.importorskip("transformers")
 
 
 def test_activity_then_paper(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -75,7 +75,6 @@ def test_the_same_command_does_not_mix_both(folders: dict[bool, Path]):
 
 
 def test_the_network_trains_on_it_without_a_ray_caster(folders: dict[bool, Path], tmp_path: Path):
-    pytest.importorskip("transformers")
     code = f"""
 import sys
 sys.modules["embreex"] = None

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip("transformers")
-pytest.importorskip("safetensors")
 
 from mmweaver.experiments import motiongpt_scores
 from mmweaver.experiments.motiongpt_data import ACTIVITIES, library_examples

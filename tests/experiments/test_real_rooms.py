@@ -7,7 +7,7 @@ from mmweaver.weaver import Weaver
 
 
 def test_a_person_elsewhere_is_told_from_one_in_place():
-    weaver = Weaver()
+    weaver = Weaver("physics")
     room = weaver.sample_room()
     result = weaver.generate(room, "someone does jumping jacks", seed=0)
     track = agreement(result)

@@ -4,15 +4,11 @@ import json
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from mmweaver.experiments.segmenter import REAL_TRUTH, marked_right, run
 from mmweaver.experiments.segmenter_table import segmenter_affordances_table, segmenter_table
 from mmweaver.scene.builtin_segmenter import GROUP_NAMES
 from mmweaver.scene.sample import sample_photo
-
-pytest.importorskip("torch")
-pytest.importorskip("safetensors")
 
 
 def test_marked_places_name_groups_and_lie_in_the_picture():

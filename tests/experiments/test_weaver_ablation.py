@@ -23,7 +23,6 @@ from mmweaver.models.weaver_network import PARTS
 from mmweaver.training.weaver_training import TrainingRecipe
 
 pytest.importorskip("zarr")
-pytest.importorskip("transformers")
 RECIPE = TrainingRecipe(steps=2, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
 
 

@@ -3,13 +3,10 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 from PIL import Image
 
 from mmweaver.experiments.woven_rooms import METHODS, draw_rooms, views_of
 from mmweaver.scene.sample import SAMPLE_FOLDER
-
-pytest.importorskip("transformers")
 
 
 def test_the_same_motion_by_both_methods(tmp_path: Path):

@@ -14,8 +14,6 @@ from mmweaver.models.weaver_method import FrameMotion
 from mmweaver.models.weaver_network import WeaverNetwork
 from mmweaver.scene.procedural.room import make_room
 
-pytest.importorskip("transformers")
-
 
 @pytest.fixture(scope="module")
 def view() -> RoomView:

@@ -16,7 +16,6 @@ from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample import sample_photo
 
-pytest.importorskip("transformers")
 CARD = WeightsCard(
     recipe="paper", licence="MIT", dataset_sha256="", radar="awr1843", steps=1, seed=0, validation_loss=1.0,
     mmweaver_version="0",

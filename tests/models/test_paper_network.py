@@ -7,8 +7,6 @@ from mmweaver.fields.paper_inr import InrShape, evaluate
 from mmweaver.fields.positional_encoding import positional_encoding
 from mmweaver.models.paper_network import Hypernetwork, PaperNetwork, evaluate_each
 
-pytest.importorskip("transformers")
-
 
 def _count(module: torch.nn.Module) -> int:
     return sum(parameter.numel() for parameter in module.parameters())

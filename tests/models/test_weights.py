@@ -9,7 +9,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.models.weaver_network import WeaverNetwork
 from mmweaver.models.weights import WeightsCard, load_weights, read_card, save_weights
 
-pytest.importorskip("transformers")
 CARD = WeightsCard(
     recipe="weaver", licence="MIT", dataset_sha256="0" * 64, radar="awr1843", steps=1, seed=0, validation_loss=1.0,
     mmweaver_version="0",

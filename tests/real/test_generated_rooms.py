@@ -23,7 +23,7 @@ ROOMS = {
 @pytest.mark.parametrize("room", list(ROOMS))
 def test_the_person_is_where_the_skeleton_is(real_data: Path, room: str):
     folder = real_data / "rooms" / room
-    weaver = Weaver()
+    weaver = Weaver("physics")
     place = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
     tracks = []
     for text in ROOMS[room]:
@@ -40,7 +40,7 @@ def test_the_person_is_where_the_skeleton_is(real_data: Path, room: str):
 def test_a_corner_too_small_for_a_walk_is_said(real_data: Path):
     """There are 0.7 m to go: the person takes a step and stands, or is refused; never silently."""
     folder = real_data / "rooms" / "redwood_chair_corner"
-    weaver = Weaver()
+    weaver = Weaver("physics")
     place = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
     short = weaver.generate(place, "a person walks towards the radar", seed=1)
     assert any("there is room to go" in sentence for sentence in short.meta["assumed"])

@@ -17,8 +17,6 @@ from mmweaver.scene.builtin_segmenter import (
 from mmweaver.scene.coco_stuff import NAMES
 from mmweaver.scene.procedural.room import make_room
 
-pytest.importorskip("safetensors")
-
 
 def test_groups_are_classes_of_coco_stuff_and_each_class_is_in_one():
     members = [name for group in GROUPS for name in group]

@@ -13,14 +13,13 @@ from mmweaver.training.capture_training import CaptureRecipe, gain_of, tune, wri
 from mmweaver.training.captures import Capture, read_capture, rooms_of
 from mmweaver.weaver import Weaver
 
-pytest.importorskip("transformers")
 RECIPE = CaptureRecipe(steps=6, batch_size=1, frames=2, validate_every=3, validation_batches=1, warm_up_steps=1,
                        learning_rate=1e-3)  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def captures(tmp_path_factory: pytest.TempPathFactory) -> list[Capture]:
-    weaver, found = Weaver(), []
+    weaver, found = Weaver("physics"), []
     room = weaver.sample_room()
     for seed in (1, 2):
         out = tmp_path_factory.mktemp("captures") / f"take{seed}"

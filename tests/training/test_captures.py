@@ -20,7 +20,7 @@ from mmweaver.weaver import Weaver
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of mmweaver generate."""
     out = tmp_path_factory.mktemp("capture") / "walk"
-    weaver = Weaver()
+    weaver = Weaver("physics")
     weaver.generate(weaver.sample_room(), "a person walks towards the radar", frames=8, seed=3).save(out)
     return out
 

@@ -12,7 +12,6 @@ from mmweaver.models.paper_method import unit_sqrt_mw
 from mmweaver.training.paper_examples import PaperRoom, draw_paper_batch, paper_rooms
 
 pytest.importorskip("zarr")
-pytest.importorskip("transformers")
 
 
 @pytest.fixture(scope="module", params=[False, True], ids=["signals", "geometry"])

@@ -18,7 +18,6 @@ from mmweaver.training.trainer import Progress
 from mmweaver.training.workplace import Workplace, moved
 
 pytest.importorskip("zarr")
-pytest.importorskip("transformers")
 RECIPE = PaperRecipe(steps=4, batch_size=2, validate_every=2, validation_batches=2)
 
 

@@ -17,7 +17,6 @@ from mmweaver.training.paper_training import PaperRecipe, train_paper
 from mmweaver.training.recipe_weights import write_recipe_weights
 
 pytest.importorskip("zarr")
-pytest.importorskip("transformers")
 
 
 def test_weights_are_read_again_and_their_page_tells_the_floor(tmp_path: Path):

@@ -8,9 +8,6 @@ from mmweaver.scene.builtin_segmenter import load_network
 from mmweaver.training.segmenter import TEST_KINDS, TRAIN_KINDS, Recipe, save_weights, train
 from mmweaver.training.segmenter_data import Example, make_example
 
-pytest.importorskip("torch")
-pytest.importorskip("safetensors")
-
 
 @pytest.fixture(scope="module")
 def example() -> Example:

@@ -7,8 +7,6 @@ from mmweaver.scene.builtin_segmenter import GROUP_NAMES
 from mmweaver.training.segmenter_data import Example, make_example
 from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
 
-pytest.importorskip("torch")
-
 
 @pytest.fixture(scope="module")
 def example() -> Example:

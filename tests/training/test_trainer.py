@@ -15,8 +15,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.training.trainer import Progress
 from mmweaver.training.workplace import Workplace
 
-pytest.importorskip("safetensors")
-
 
 def weights(out: Path) -> dict[str, torch.Tensor]:
     return torch.load(out / "checkpoint.pt", weights_only=True)["parts"]["network"]

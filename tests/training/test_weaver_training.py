@@ -16,7 +16,6 @@ from mmweaver.training.weaver_training import TrainingRecipe, WeaverLearner, tra
 from mmweaver.training.workplace import Workplace, moved
 
 pytest.importorskip("zarr")
-pytest.importorskip("transformers")
 RECIPE = TrainingRecipe(steps=4, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
 
 

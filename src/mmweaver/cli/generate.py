@@ -27,6 +27,7 @@ EXAMPLES = """examples:
       --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --frames 40 --radar mmmesh --out drink/ --bin
+  mmweaver generate --demo --method physics --out traced/
   mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
   mmweaver generate --demo --motion-model small --text "a person waves with the left hand" --out wave/
 """
@@ -64,16 +65,21 @@ def add_verb(verbs: Any) -> None:
     radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
     radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
     radar.add_argument(
-        "--method", default="physics", help="how the signal is made: physics (default), or weaver, a trained network"
+        "--method",
+        default="auto",
+        help="how the signal is made: weaver, the trained network; physics; or auto (default), weaver but for --bin,"
+        " --points firmware and several people, which physics makes",
     )
     radar.add_argument(
-        "--weights", metavar="FILE|DIR|HUB", help="weights of mmweaver train, for --method weaver; or their Hub name"
+        "--weights", metavar="FILE|DIR|HUB", help="the network's weights, of mmweaver train; or their name on the Hub"
     )
     add_points_option(radar)
     radar.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     output = parser.add_argument_group("output")
     output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
-    output.add_argument("--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would")
+    output.add_argument(
+        "--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would; physics makes it"
+    )
     add_layout_options(output)
     add_output_options(output)
     parser.set_defaults(run=run)

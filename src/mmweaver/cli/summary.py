@@ -4,6 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+MADE_BY = {"weaver": "weaver, the network", "physics": "physics"}
+
 
 def print_summary(out: str | Path, meta: dict[str, Any], *, as_json: bool, quiet: bool) -> None:
     """Where the files are, what was assumed and how long it took, on stdout."""
@@ -16,7 +18,8 @@ def print_summary(out: str | Path, meta: dict[str, Any], *, as_json: bool, quiet
 def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
     """The same for machines: paths of the files, assumptions, seconds of each stage."""
     files = {name: str(Path(out) / name) for name in meta["files"]}
-    return {"out": str(out), "files": files, "assumed": meta["assumed"], "seconds": meta["seconds"]}
+    method = {"method": meta["method"]} if "method" in meta else {}
+    return {"out": str(out), "files": files, **method, "assumed": meta["assumed"], "seconds": meta["seconds"]}
 
 
 def summary_lines(out: str | Path, meta: dict[str, Any]) -> list[str]:
@@ -25,6 +28,7 @@ def summary_lines(out: str | Path, meta: dict[str, Any]) -> list[str]:
     paths = {name: str(Path(out) / name) for name in meta["files"]}
     width = max(map(len, paths.values()))
     lines += [f"  {paths[name]:<{width}}  {text}" for name, text in meta["files"].items()]
+    lines += [f"method:  {MADE_BY.get(meta['method'], meta['method'])}"] if "method" in meta else []
     lines.append(_radar_line(meta))
     people = [meta["person"]] if "person" in meta else meta.get("people", [])
     lines += [_person_line(person) for person in people]

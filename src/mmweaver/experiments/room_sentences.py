@@ -107,7 +107,7 @@ def main() -> None:
     parser.add_argument("--rooms", type=Path, required=True, help="folder of the four real rooms")
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
     arguments = parser.parse_args()
-    weaver = Weaver()
+    weaver = Weaver("physics")
     for name, sentences in SENTENCES.items():
         folder = arguments.rooms / name
         room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")

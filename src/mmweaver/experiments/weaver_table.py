@@ -3,6 +3,7 @@
     python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --out results
     python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --split test_person --most 40
     python -m mmweaver.experiments.weaver_table --data DATASET --weights FILE --paper PAPER/weights.safetensors
+    python -m mmweaver.experiments.weaver_table --data OF_ANOTHER_RADAR --elsewhere hupr
 
 Truth is the simulator in the true room. Everybody is given the exact joints. `twin` is the same simulator with other
 surface micro-phases of room and person: the best that anyone can do who does not know them. `twin_skin` knows the
@@ -201,6 +202,7 @@ def main() -> None:
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
     parser.add_argument("--only", nargs="*", help="rows (default: all)")
+    parser.add_argument("--elsewhere", metavar="NAME", help="data of another radar or length: a result of this name")
     parser.add_argument("--out", type=Path, default=Path("results"))
     arguments = parser.parse_args()
     weights = arguments.weights or shipped_weights()
@@ -228,8 +230,8 @@ def main() -> None:
     table = scored(cases, methods)
     rows = [_row(name, values, names, arguments.split) for name, values in table.items()]
     write_result(
-        arguments.out, experiment="weaver", method=arguments.split,
-        config=about, rows=rows,
+        arguments.out, experiment="weaver_elsewhere" if arguments.elsewhere else "weaver",
+        method=arguments.elsewhere or arguments.split, config=about, rows=rows,
     )  # fmt: skip
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())

@@ -96,7 +96,8 @@ class _Depthwise(nn.Module):
         super().__init__()
         half = kernel // 2
         # of an even number of rows, half of them are left: what is missing is added below and to the right
-        self.padding = nn.ZeroPad2d((half - 1, half) * 2 if stride == 2 else half)
+        before = half - 1 if stride == 2 else half
+        self.padding = nn.ZeroPad2d((before, half, before, half))
         self.depthwise_conv = nn.Conv2d(channels, channels, kernel, stride=stride, groups=channels, bias=False)
         self.depthwise_norm = _norm(channels)
 

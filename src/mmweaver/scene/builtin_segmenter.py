@@ -87,10 +87,8 @@ def make_network() -> Any:
 
 def load_network(path: Path = WEIGHTS) -> Any:
     """The trained network, ready to run. Raises InputError where its file is missing or holds something else."""
-    try:
-        from safetensors.torch import load_file
-    except ImportError:
-        raise InputError("the built-in segmenter needs safetensors; pip install 'mmweaver[segmentation]'") from None
+    from safetensors.torch import load_file
+
     network = make_network()
     try:
         network.load_state_dict({name: value.float() for name, value in load_file(path).items()}, strict=False)

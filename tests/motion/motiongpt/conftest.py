@@ -3,4 +3,3 @@
 import pytest
 
 pytest.importorskip("transformers")
-pytest.importorskip("safetensors")

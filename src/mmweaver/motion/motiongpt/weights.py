@@ -9,9 +9,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from mmweaver.core.atomic_files import atomic_file
-from mmweaver.core.errors import InputError
 from mmweaver.motion.motiongpt.checkpoint import LANGUAGE, MEAN, STD, VAE, VOCABULARY
-from mmweaver.motion.motiongpt.language import EXTRA
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
 
 if TYPE_CHECKING:
@@ -37,10 +35,8 @@ def save_weights(
     half: bool = False,
 ) -> None:
     """One safetensors file with weights, mean, std and words; with `half` the weights as float16."""
-    try:
-        from safetensors.torch import save_file
-    except ImportError:
-        raise InputError(EXTRA) from None
+    from safetensors.torch import save_file
+
     state = {name: value for name, value in state_of(tokenizer, language).items() if not name.endswith(SAME)}
     state = {name: (value.half() if half else value).contiguous().clone() for name, value in state.items()}
     state |= {MEAN: torch.from_numpy(mean.astype(np.float32)), STD: torch.from_numpy(std.astype(np.float32))}
