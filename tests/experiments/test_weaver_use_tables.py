@@ -7,9 +7,12 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.weaver_use_tables import (
+    ELSEWHERE,
     ablation_table,
     activity_table,
+    elsewhere_table,
     gain_table,
+    paper_few_table,
     paper_table,
     photographed_table,
     small_gain_table,
@@ -49,6 +52,26 @@ def test_they_show_values_with_intervals(tmp_path: Path):
     _put(tmp_path, "photographed_room/echoes.json", [{"method": "twin", "metrics": both}])
     assert photographed_table(tmp_path).endswith("| twin | 0.50 (0.40 to 0.60) | 6.00 |")
     assert "| zeros | 0.250 | 0.2 |" in paper_table(tmp_path)
+    for name in ("few_train", "few_test_room"):
+        (tmp_path / "weaver_paper" / f"{name}.json").write_text(
+            (tmp_path / "weaver_paper" / "test_room.json").read_text()
+        )
+    few = paper_few_table(tmp_path).splitlines()
+    assert [line.split(" | ")[0] for line in few[2:]] == ["| zeros, what it trained on", "| zeros, unseen kinds"]
+
+
+def test_elsewhere_has_a_line_for_each_radar(tmp_path: Path):
+    rows = [
+        {"method": name, "num_rooms": 12, "metrics": {"ra_ssim": _metric(0.25), "rd_ssim": _metric(0.5)}}
+        for name in ("zeros", "generic_room_physics", "weaver", "physics_in_photographed_room", "twin")
+    ]
+    folder = tmp_path / "weaver_elsewhere"
+    folder.mkdir()
+    for name in ELSEWHERE:
+        (folder / f"{name}.json").write_text(json.dumps({"rows": rows}))
+    lines = elsewhere_table(tmp_path).splitlines()
+    assert len(lines) == 2 + len(ELSEWHERE)
+    assert lines[2] == "| preset `hupr` | 12 |" + " 0.25 / 0.50 |" * 5
 
 
 def test_without_results_they_say_so(tmp_path: Path):

@@ -21,7 +21,7 @@ EXAMPLES = """examples:
   torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
   mmweaver train activity --data data/ --out judge/
   mmweaver train paper --data data/ --out paper/ --features judge/weights.safetensors
-  mmweaver generate --demo --method weaver --weights run/ --out woven/
+  mmweaver generate --demo --weights run/ --out woven/
 """
 
 

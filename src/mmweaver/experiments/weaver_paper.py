@@ -88,6 +88,7 @@ def main() -> None:
     parser.add_argument("--each", type=int, default=3, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
+    parser.add_argument("--called", help="the result's name (default: the split)")
     parser.add_argument("--out", type=Path, default=Path("results"))
     arguments = parser.parse_args()
     torch.set_num_threads(1)
@@ -97,7 +98,7 @@ def main() -> None:
     rows = rows_of(scores_of(cases, paper_method(arguments.weights), kept), cases)
     card = load_into(PaperNetwork(), arguments.weights, recipe=RECIPE)
     write_result(
-        arguments.out, experiment="weaver_paper", method=arguments.split,
+        arguments.out, experiment="weaver_paper", method=arguments.called or arguments.split,
         config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each,
                 "learning_curve": learning_curve(arguments.weights.parent)}, rows=rows,
     )  # fmt: skip

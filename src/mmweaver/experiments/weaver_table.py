@@ -7,15 +7,16 @@
 
 Truth is the simulator in the true room. Everybody is given the exact joints. `twin` is the same simulator with other
 surface micro-phases of room and person: the best that anyone can do who does not know them. `twin_skin` knows the
-room's. `paper` is the paper's own network (`mmweaver train paper`); `energy_db`, a cube's energy over the truth's,
-tells whether it has collapsed. Intervals: bootstrap over rooms.
+room's. `static_mean` is that of the truth itself, `training_mean` that of the rooms trained on. `paper` is the paper's
+own network (`mmweaver train paper`); `energy_db`, a cube's energy over the truth's, tells whether it has collapsed.
+Intervals: bootstrap over rooms.
 """
 
 import argparse
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -111,6 +112,22 @@ def nearest(train: list[StoredRoom]) -> Method:
         gap = np.linalg.norm(joints - case.joints[0][None], axis=-1).mean(axis=(1, 2))
         room, index = pool[int(gap.argmin())]
         return room.cube(index)
+
+    return method
+
+
+def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
+    """The mean of one sequence of each training room over frames and rooms: the static mean without the truth's."""
+    found = [(room, room.split.index("train")) for room in train if "train" in room.split][:most]
+
+    @lru_cache(maxsize=1)
+    def mean() -> np.ndarray:
+        total = sum(room.cube(index).values.mean(axis=0, dtype=np.complex128) for room, index in found)
+        return (total / len(found)).astype(np.complex64)
+
+    def method(case: Case) -> RadarCube:
+        like = case.room.cube(case.index)
+        return replace(like, values=np.repeat(mean()[None], len(like.values), axis=0))
 
     return method
 
@@ -214,6 +231,7 @@ def main() -> None:
     methods: dict[str, Method] = {
         "weaver": woven(network, lambda case: case.room),
         "wrong_photo": woven(network, lambda case: case.other),
+        "training_mean": training_mean(rooms),
         "nearest_training_pose": nearest(rooms),
         "generic_room_physics": simulated(lambda case: generic_scene, skin=TWIN, micro_seed=1),
         "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=TWIN, micro_seed=1),

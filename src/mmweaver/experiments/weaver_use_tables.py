@@ -20,6 +20,24 @@ PAPER = (
 )  # fmt: skip
 
 
+ELSEWHERE = {
+    "hupr": "preset `hupr`", "mmmesh": "`mmmesh`", "iwr6843": "`iwr6843`", "iwr1443_mars": "`iwr1443_mars`",
+    "awr1843_100_frames": "`awr1843`, 100 frames",
+}  # fmt: skip
+BESIDE = ("zeros", "generic_room_physics", "weaver", "physics_in_photographed_room", "twin")
+
+
+def elsewhere_table(folder: Path) -> str:
+    """Radars and lengths that the network was not trained on, in unseen kinds of rooms."""
+    lines = [f"| seen by | rooms | {' | '.join(f'{name}, RA / RD' for name in BESIDE)} |", "|" + " --- |" * 7]
+    for name, text in ELSEWHERE.items():
+        rows = {row["method"]: row for row in _rows(folder / "weaver_elsewhere" / f"{name}.json")}
+        pairs = ([rows[one]["metrics"][metric] for metric in ("ra_ssim", "rd_ssim")] for one in BESIDE)
+        cells = (" / ".join(f"{metric['value']:.2f}" for metric in pair) for pair in pairs)
+        lines.append(f"| {text} | {rows['weaver']['num_rooms']} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
 def activity_table(folder: Path) -> str:
     """Accuracy of the activity network on what it has not seen."""
     lines = ["| not seen before | sequences | rooms | accuracy | chance |", "|" + " --- |" * 5]
@@ -34,10 +52,20 @@ def activity_table(folder: Path) -> str:
 
 def paper_table(folder: Path) -> str:
     """The recipe `paper` in unseen kinds of rooms, beside the floors."""
+    return _paper_rows(folder, {"": "test_room"})
+
+
+def paper_few_table(folder: Path) -> str:
+    """The same after the paper's 1,000 passes through few sequences: on these, and in unseen kinds of rooms."""
+    return _paper_rows(folder, {", what it trained on": "few_train", ", unseen kinds": "few_test_room"})
+
+
+def _paper_rows(folder: Path, names: dict[str, str]) -> str:
     lines = [f"| method | {' | '.join(text for _, text, _ in PAPER)} |", "|" + " --- |" * (1 + len(PAPER))]
-    for row in _rows(folder / "weaver_paper" / "test_room.json"):
-        cells = (f"{row['metrics'][name]['value']:.{digits}f}" for name, _, digits in PAPER)
-        lines.append(f"| {row['method']} | {' | '.join(cells)} |")
+    for text, name in names.items():
+        for row in _rows(folder / "weaver_paper" / f"{name}.json"):
+            cells = (f"{row['metrics'][column]['value']:.{digits}f}" for column, _, digits in PAPER)
+            lines.append(f"| {row['method']}{text} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 

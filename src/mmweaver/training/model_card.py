@@ -48,7 +48,7 @@ WEAVER = Page(
     about="""A network of mmWeaver: a photo of a room with depth and a person's joints in, the echoes that an FMCW MIMO
 radar at the camera would see out. Phases are drawn, the signal follows from the radar's own response.
 
-    mmweaver generate --rgb rgb.png --depth depth.png --text "a person walks" --method weaver --weights . --out walk/
+    mmweaver generate --rgb rgb.png --depth depth.png --text "a person walks" --weights . --out walk/
 
 ```python
 from mmweaver import Weaver
