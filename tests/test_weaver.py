@@ -14,9 +14,18 @@ from mmweaver.core.presets import AWR1843, MMMESH
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
+from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.firmware import firmware_points
-from mmweaver.formats.npz_files import read_npz, read_points_npz, read_pose_npz, read_poses_npz, read_radar_npz
+from mmweaver.formats.npz_files import (
+    read_npz,
+    read_points_npz,
+    read_pose_npz,
+    read_poses_npz,
+    read_radar_npz,
+    write_radar_npz,
+)
 from mmweaver.methods import METHODS, Signal
+from mmweaver.simulation.simulator import Simulator
 from mmweaver.weaver import MAX_FRAMES, Room, Weaver, check_request
 
 README = Path(__file__).resolve().parents[1] / "README.md"
@@ -115,6 +124,27 @@ def test_physics_makes_what_the_network_cannot(weaver: Weaver, room: Room, texts
     traced = weaver.generate(room, texts, frames=2, **asked)
     assert made.cube.values.tobytes() == traced.cube.values.tobytes()
     assert not any("network" in sentence for sentence in traced.meta["assumed"])
+
+
+def test_a_recording_of_the_empty_room_is_the_networks_alone(weaver: Weaver, room: Room, tmp_path: Path):
+    simulator = Simulator(room.scene, AWR1843, micro_seed=7)
+    recording = radar_cube(simulator.run((), num_frames=4, seed=1).adc)
+    write_radar_npz(tmp_path / "radar.npz", recording)
+    (tmp_path / "radar.json").write_text(AWR1843.to_json())
+    known = room.with_empty_recording(tmp_path)
+    made = Weaver().generate(known, [TEXT, "a person stands"], frames=4)
+    assert made.meta["method"] == "weaver"
+    assert len(made.meta["inputs"]["empty_room"]["sha256"]) == 64
+    assert any("recording of the empty room" in sentence for sentence in made.meta["assumed"])
+    same = Weaver().generate(room.with_empty_recording(recording), [TEXT, "a person stands"], frames=4)
+    assert np.allclose(made.cube.values, same.cube.values, rtol=1e-4, atol=1e-9)
+    for method, asked in ((weaver, {}), (Weaver(), {"keep_adc": True})):
+        with pytest.raises(InputError, match="nothing from a recording"):
+            method.generate(known, TEXT, frames=2, **asked)
+    with pytest.raises(InputError, match="other settings"):
+        Weaver(radar="hupr").generate(known, TEXT, frames=2)
+    with pytest.raises(InputError, match=r"no radar\.npz"):
+        room.with_empty_recording(tmp_path / "nowhere")
 
 
 def test_another_seed_and_another_frame_rate_change_the_signal(weaver: Weaver, room: Room):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
@@ -51,6 +52,12 @@ class Method(Protocol):
     ) -> Signal: ...
 
 
+NO_RECORDING = (
+    "physics and raw ADC samples take nothing from a recording of the empty room, the network does: leave out the"
+    " recording, or physics and the samples"
+)
+
+
 class Physics:
     """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
 
@@ -68,6 +75,8 @@ class Physics:
         keep_adc: bool,
         stages: Stages,
     ) -> Signal:
+        if scene.empty_recording is not None:
+            raise InputError(NO_RECORDING)
         with stages("prepare the room"):
             simulator = self._simulator(scene, config)
         grid = CubeGrid.of(config, num_frames)
@@ -94,6 +103,10 @@ class Physics:
 
 
 WOVEN = "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
+RECORDED = (
+    "what rests is that of the recording of the empty room; echoes of people were written by a network trained on"
+    " simulated rooms, and the phases of their skin are drawn"
+)
 LEAST_ENERGY = "ADC samples are those of least energy that give the network's cube"
 SUPERIMPOSED = "several people are superimposed: they do not hide each other"
 
@@ -132,8 +145,13 @@ class Woven:
             motions = [FrameMotion.of(pose, config, num_frames) for pose in poses]
             cube = room.cube(motions, seed=seed)
             adc = adc_from_cube(cube) if keep_adc else None
-        told = {WOVEN: True, LEAST_ENERGY: keep_adc, SUPERIMPOSED: len(poses) > 1}
-        return Signal(cube=cube, adc=adc, assumptions=tuple(sentence for sentence, is_true in told.items() if is_true))
+        told = {
+            WOVEN: room.empty is None, RECORDED: room.empty is not None, LEAST_ENERGY: keep_adc,
+            SUPERIMPOSED: len(poses) > 1,
+        }  # fmt: skip
+        of_recording = () if room.empty is None else room.empty.assumptions
+        sentences = (*(sentence for sentence, is_true in told.items() if is_true), *of_recording)
+        return Signal(cube=cube, adc=adc, assumptions=sentences)
 
     def _room(self, scene: Scene, config: RadarConfig) -> "WovenRoom":
         from mmweaver.models.weaver_method import WovenRoom
@@ -141,7 +159,7 @@ class Woven:
 
         if self._ready is None or self._ready[0] is not scene or self._ready[1] != config:
             network, _ = load_weights(self.weights or shipped_weights())
-            self._ready = (scene, config, WovenRoom(network, scene, config))
+            self._ready = (scene, config, WovenRoom(network, scene, config, empty=scene.empty_recording))
         return self._ready[2]
 
 
@@ -150,7 +168,10 @@ BECAUSE_OF_PEOPLE = "physics made the signal, not the network, which does not kn
 
 
 class Auto:
-    """The network, and physics for what the network knows nothing of: raw ADC samples and several people."""
+    """The network, and physics for what the network knows nothing of: raw ADC samples and several people.
+
+    With a recording of the empty room, which physics has no use for, the network superimposes several people.
+    """
 
     def __init__(self) -> None:
         self._woven, self._physics = Woven(), Physics()
@@ -166,7 +187,8 @@ class Auto:
         keep_adc: bool,
         stages: Stages,
     ) -> Signal:
-        reason = BECAUSE_OF_ADC if keep_adc else BECAUSE_OF_PEOPLE if len(poses) > 1 else None
+        with_recording = scene.empty_recording is not None
+        reason = BECAUSE_OF_ADC if keep_adc else BECAUSE_OF_PEOPLE if len(poses) > 1 and not with_recording else None
         method = self._woven if reason is None else self._physics
         signal = method(scene, poses, config, num_frames=num_frames, seed=seed, keep_adc=keep_adc, stages=stages)
         if reason is None:

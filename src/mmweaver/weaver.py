@@ -66,6 +66,21 @@ class Room:
         inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in told]}
         return replace(self, scene=with_told(self.scene, told), inputs=inputs)
 
+    def with_empty_recording(self, source: str | Path | RadarCube) -> "Room":
+        """The room with a recording of it by your radar, nobody there: what rests is taken from that, phases and all.
+
+        `source`: a folder of `mmweaver process`, its radar.npz, a capture folder, or the cube. Only the network takes
+        it. Raises InputError for what is no recording.
+        """
+        if isinstance(source, RadarCube):
+            return replace(self, scene=replace(self.scene, empty_recording=source))
+        from mmweaver.training.captures import recorded_cube
+
+        recording = recorded_cube(Path(source))
+        file = next((one for one in (Path(source), Path(source) / "radar.npz") if one.is_file()), None)
+        inputs = self.inputs | {"empty_room": {"path": str(source)} if file is None else file_digest(file)}
+        return replace(self, scene=replace(self.scene, empty_recording=recording), inputs=inputs)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Generation:

@@ -201,6 +201,8 @@ PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json
         ([*PICTURES, "--radar", "nope"], "awr1843"),
         ([*PICTURES, "--radar", "lines.cfg"], "lines.cfg"),
         ([*PICTURES, "--radar", "missing.json"], "missing.json"),
+        ([*PICTURES, "--empty-room", "nowhere"], "radar.npz"),
+        ([*PICTURES, "--empty-room", ".", "--bin"], "--empty-room is for the network"),
         ([*PICTURES, "--method", "magic"], "physics"),
         ([*PICTURES, "--tx-order", "0,1"], "tx_order"),
         ([*PICTURES, "--out", "full"], "--overwrite"),

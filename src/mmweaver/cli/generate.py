@@ -16,10 +16,12 @@ from mmweaver.cli.own_motion import (
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
+    from mmweaver.core.records import RadarCube
     from mmweaver.weaver import Room, Weaver
 
 DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
 DEMO_OUT = "demo"
+DEFAULT_RADAR = "awr1843"
 NUM_STAGES = 9
 EXAMPLES = """examples:
   mmweaver generate --demo
@@ -28,6 +30,8 @@ EXAMPLES = """examples:
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --frames 40 --radar mmmesh --out drink/ --bin
   mmweaver generate --demo --method physics --out traced/
+  mmweaver process empty.bin --radar profile.cfg --out empty/       # your room with nobody in it, a few seconds
+  mmweaver generate --rgb rgb.png --depth depth.png --empty-room empty/ --text "a person walks" --out walk/
   mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
   mmweaver generate --demo --motion-model small --text "a person waves with the left hand" --out wave/
 """
@@ -60,8 +64,9 @@ def add_verb(verbs: Any) -> None:
     add_motion_options(person)
     radar = parser.add_argument_group("the radar")
     radar.add_argument(
-        "--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default awr1843)"
-    )
+        "--radar", metavar="NAME|FILE",
+        help="preset, TI .cfg or radar.json (default awr1843, or what --empty-room was recorded with)",
+    )  # fmt: skip
     radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
     radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
     radar.add_argument(
@@ -121,6 +126,11 @@ def _add_room_options(parser: argparse.ArgumentParser) -> None:
         "--capture", type=Path, metavar="DIR",
         help="instead: a capture folder of mmwave-capture-std; its RealSense's photo and depth",
     )  # fmt: skip
+    room.add_argument(
+        "--empty-room", type=Path, metavar="DIR|NPZ",
+        help="a recording of this room by your radar with nobody there, a folder of mmweaver process or a capture"
+        " folder: what rests is taken from it, phases and all, and the person is added",
+    )  # fmt: skip
     room.add_argument("--photo", type=whole, default=0, metavar="N", help="which photo of the capture (default 0)")
     room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
 
@@ -139,10 +149,11 @@ def run(arguments: argparse.Namespace) -> int:
         from mmweaver.formats.radar_file import load_firmware, load_radar
         from mmweaver.weaver import Weaver, check_request
 
-        radar = load_radar(arguments.radar)
+        recording = _recording(arguments)
+        radar = recording.config if recording and not arguments.radar else load_radar(arguments.radar or DEFAULT_RADAR)
         if arguments.tx_order is not None:
             radar = replace(radar, tx_order=arguments.tx_order)
-        firmware = load_firmware(arguments.radar) if arguments.points == "firmware" else None
+        firmware = load_firmware(arguments.radar or DEFAULT_RADAR) if arguments.points == "firmware" else None
         weaver = Weaver(
             method=arguments.method, radar=radar, listener=bar, points=arguments.points, firmware=firmware,
             weights=arguments.weights,
@@ -221,7 +232,22 @@ def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
 
 def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     room = _seen_room(weaver, arguments)
-    return room.with_landmarks(*arguments.landmark) if arguments.landmark else room
+    room = room.with_landmarks(*arguments.landmark) if arguments.landmark else room
+    return room.with_empty_recording(arguments.empty_room) if arguments.empty_room else room
+
+
+def _recording(arguments: argparse.Namespace) -> "RadarCube | None":
+    """The recording of the empty room, if one is given. Raises InputError for what physics would have to take."""
+    if arguments.empty_room is None:
+        return None
+    if arguments.method == "physics" or arguments.bin or arguments.points == "firmware":
+        raise InputError(
+            "--empty-room is for the network, which has no raw samples; leave it out, or --method physics, --bin and"
+            " --points firmware"
+        )
+    from mmweaver.training.captures import recorded_cube
+
+    return recorded_cube(arguments.empty_room)
 
 
 def _seen_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":

@@ -201,6 +201,7 @@ class Scene:
     seats: tuple[Seat, ...]
     assumptions: tuple[str, ...]  # sentences for meta.json
     landmarks: tuple[Landmark, ...] = ()
+    empty_recording: RadarCube | None = None  # the same radar in the same place, with nobody there
 
     @property
     def floor(self) -> Plane:

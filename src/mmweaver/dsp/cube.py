@@ -70,6 +70,14 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     return AdcCube(samples=samples.reshape(shape).astype(np.complex64), config=config, scale=cube.scale)
 
 
+def resting_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
+    """One frame of what rests, of its value (range, antenna) at zero Doppler: a window's response fills few bins."""
+    weight = doppler_weight(config.num_loops).astype(np.complex128)
+    response = _fft(weight, 0)[:, None] * tdm_compensation(config)
+    values = still[:, None, :] * (response / response[config.num_loops // 2])
+    return RadarCube(values=values[None].astype(np.complex64), grid=CubeGrid.of(config, 1), config=config, scale=1.0)
+
+
 def remove_static_adc(adc: AdcCube) -> AdcCube:
     """Takes the mean over the loops of each frame away: what does not move vanishes, for every antenna and sample."""
     still = adc.samples.mean(axis=1, keepdims=True, dtype=np.complex128)

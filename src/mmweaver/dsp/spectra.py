@@ -11,7 +11,7 @@ from mmweaver.core.shapes import PerAngle, PerIndex, RangeAngleMap, RangeDoppler
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows, has_elevation
 
 __all__ = [
-    "azimuth_axis_rad", "elevation_axis_rad", "has_elevation", "moving_doppler", "range_azimuth_power",
+    "azimuth_axis_rad", "elevation_axis_rad", "has_elevation", "moving_doppler", "noise_power", "range_azimuth_power",
     "range_doppler_power", "range_elevation_power",
 ]  # fmt: skip
 
@@ -42,6 +42,12 @@ def moving_doppler(cube: RadarCube) -> Bool[np.ndarray, " doppler"]:
     """
     num = cube.values.shape[2]
     return np.abs(np.arange(num) - num // 2) > (1 if num >= 5 else 0)
+
+
+def noise_power(cube: RadarCube) -> float | None:
+    """Of a cell: the median where nothing rests, for people fill few cells. None for a radar of one loop."""
+    moving = moving_doppler(cube)
+    return float(np.median(range_doppler_power(cube)[:, :, moving])) if moving.any() else None
 
 
 def range_azimuth_power(cube: RadarCube, azimuth_rad: PerAngle, *, moving_only: bool = False) -> RangeAngleMap:

@@ -7,9 +7,9 @@
 
 Truth is the simulator in the true room. Everybody is given the exact joints. `twin` is the same simulator with other
 surface micro-phases of room and person: the best that anyone can do who does not know them. `twin_skin` knows the
-room's. `static_mean` is that of the truth itself, `training_mean` that of the rooms trained on. `paper` is the paper's
-own network (`mmweaver train paper`); `energy_db`, a cube's energy over the truth's, tells whether it has collapsed.
-Intervals: bootstrap over rooms.
+room's, and `weaver_with_empty_room` was given a recording of the room without the person. `static_mean` is that of the
+truth itself, `training_mean` that of the rooms trained on. `paper` is the paper's own network (`mmweaver train paper`);
+`energy_db`, a cube's energy over the truth's, tells whether it has collapsed. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -28,6 +28,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.data.make import make_sequence
 from mmweaver.data.plan import SequenceSpec
 from mmweaver.data.store import StoredRoom, read_plan, read_rooms
+from mmweaver.dsp.cube import radar_cube
 from mmweaver.experiments.results import write_result
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.paper_method import paper_method
@@ -103,6 +104,21 @@ def woven(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom]) -> Meth
     return method
 
 
+def with_recording(network: WeaverNetwork) -> Method:
+    """The network, given the photo and two seconds of the empty room as the radar records it, noise and all."""
+
+    def method(case: Case) -> RadarCube:
+        frames, config = len(case.joints[0]), case.room.config
+        true_room = Simulator(case.true_scene, config)
+        recording = radar_cube(true_room.run((), num_frames=frames, seed=case.spec.seed + TWIN).adc)
+        woven_room = WovenRoom(network, reconstruct(case.room.photo), config, empty=recording)
+        joints, velocity = case.joints
+        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=TWIN + case.spec.person)
+        return woven_room.cube([motion], seed=case.index)
+
+    return method
+
+
 def nearest(train: list[StoredRoom]) -> Method:
     """The training sequence whose joints are nearest in the radar's frame, as it was recorded."""
     pool = [(room, index) for room in train for index, split in enumerate(room.split) if split == "train"]
@@ -122,8 +138,8 @@ def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
 
     @lru_cache(maxsize=1)
     def mean() -> np.ndarray:
-        total = sum(room.cube(index).values.mean(axis=0, dtype=np.complex128) for room, index in found)
-        return (total / len(found)).astype(np.complex64)
+        each = np.stack([room.cube(index).values.mean(axis=0) for room, index in found])
+        return each.mean(axis=0, dtype=np.complex128).astype(np.complex64)
 
     def method(case: Case) -> RadarCube:
         like = case.room.cube(case.index)
@@ -230,6 +246,7 @@ def main() -> None:
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods: dict[str, Method] = {
         "weaver": woven(network, lambda case: case.room),
+        "weaver_with_empty_room": with_recording(network),
         "wrong_photo": woven(network, lambda case: case.other),
         "training_mean": training_mean(rooms),
         "nearest_training_pose": nearest(rooms),

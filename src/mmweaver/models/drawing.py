@@ -35,10 +35,11 @@ class StaticDraw:
     num_strong: int  # rows that a shadow is noticed of
     at_range: Tensor  # (row, range)
     echo: Tensor  # (row, antenna) complex
+    recorded: Tensor | None = None  # (range, antenna): where the empty room was recorded, its layer
 
     def layer(self) -> Tensor:
         """(range, antenna), complex."""
-        return self.at_range.T @ self.echo
+        return self.at_range.T @ self.echo if self.recorded is None else self.recorded
 
     @property
     def strong(self) -> Tensor:

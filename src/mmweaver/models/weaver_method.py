@@ -17,7 +17,9 @@ from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.body_anchors import facing
 from mmweaver.models.drawing import draw_moving, draw_static, field_of
 from mmweaver.models.echoes import Echoes
+from mmweaver.models.empty_room import EmptyRoom
 from mmweaver.models.mean_power import MeanPower
+from mmweaver.models.radar_view import points_of
 from mmweaver.models.room_view import RoomView
 from mmweaver.models.shadow import hidden
 from mmweaver.models.weaver_network import RoomCode, WeaverNetwork
@@ -43,7 +45,9 @@ class FrameMotion:
 class WovenRoom:
     """A room that the network has encoded for one radar; `field` may then be asked for many motions.
 
-    The network runs on `device` and is moved there; phases are drawn and echoes rendered on the CPU.
+    The network runs on `device` and is moved there; phases are drawn and echoes rendered on the CPU. `empty`: a
+    recording of the room by this radar with nobody there, which what rests is then taken from. Raises InputError for
+    one of another radar.
     """
 
     def __init__(
@@ -54,6 +58,7 @@ class WovenRoom:
         *,
         room_seed: int = 0,
         device: str = "cpu",
+        empty: RadarCube | None = None,
     ):
         self.network, self.config, self.device = network.to(device), config, device
         self.radar = MeanPower(config)
@@ -62,6 +67,12 @@ class WovenRoom:
             self.code: RoomCode = network.encode_room(_on(view, device))
             resting = _first(_on(self.code.resting, "cpu"))
             self._drawn = draw_static(resting, self.radar.response, room_seed)
+            self.empty: EmptyRoom | None = None
+            if empty is not None:
+                expected = self.radar.maps(points_of(resting, self.radar.response)).range_azimuth
+                self.empty = EmptyRoom.of(empty, expected, self.radar)
+                self._drawn = self.empty.conditioned(self._drawn)
+                self.radar.noise = self.empty.noise_power
             self._strong = _chosen(resting, self._drawn.strong)
             self.static = self._drawn.layer()
 
@@ -78,13 +89,19 @@ class WovenRoom:
         return field_of(self.static, together, self.config, len(together.range_bin), self.radar.noise)
 
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
-        """The signal of everybody, the shadows they cast on the room, and the receiver's noise, in sqrt(mW)."""
+        """The signal of everybody, the shadows they cast on the room, and the receiver's noise.
+
+        In sqrt(mW), or in the units of the recording of the empty room.
+        """
         field = self.field(motions)
         with torch.inference_mode(), one_thread():
             values = field.native()
             self._take_shadows_off(values, motions)
             cube = RadarCube(values=values, grid=field.grid, config=self.config, scale=1.0)
-        return replace(field.with_noise(cube, seed), scale=1.0)
+        whole = field.with_noise(cube, seed)
+        if self.empty is None:
+            return replace(whole, scale=1.0)
+        return replace(whole, values=whole.values / np.float32(self.empty.unit), scale=self.empty.unit)
 
     def _take_shadows_off(self, values: np.ndarray, motions: Sequence[FrameMotion]) -> None:
         """Takes off what the room does not return because somebody stands before it."""

@@ -18,6 +18,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.echoes import Echoes
+from mmweaver.models.empty_room import agreeing_gain
 from mmweaver.models.mean_power import PowerMaps
 from mmweaver.models.radar_view import points_of
 from mmweaver.models.weaver_network import WeaverNetwork
@@ -41,7 +42,6 @@ from mmweaver.training.workplace import Workplace
 
 RESTING_HEADS = ("point", "face")
 NOBODY_M = (0.0, 2.5, -0.5)  # where the joints are said to be of people whose echoes then count for nothing
-SHOWN = 1e-4  # of the strongest cell: what the recording's gain is taken from
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -172,17 +172,15 @@ def _loss_of(trainer: Trainer, network: WeaverNetwork) -> float:
 def gain_of(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
     """The factor of amplitude at which recordings and network agree on the resting room, by the median."""
     learner = WeaverLearner(network, rooms[0].config).eval()
-    ratios = []
+    maps = []
     for room in rooms:
         one = RoomExamples(room, SPLIT)
         with torch.inference_mode():
             view = type(one.view).stacked([one.view])
             resting = learner.network.encode_room(view).resting
             expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
-        own = one.empty.range_azimuth
-        shown = (own > SHOWN * own.max()) & (expected > SHOWN * expected.max())
-        ratios.append((expected[shown] / own[shown]).log())
-    return float(torch.cat(ratios).median().div(2).exp())
+        maps.append((expected, one.empty.range_azimuth))
+    return agreeing_gain(maps)
 
 
 def _drawing(rooms: list[RecordedRoom], recipe: CaptureRecipe, seed: int, noise: tuple[float, float, float]) -> Draw:

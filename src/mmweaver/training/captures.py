@@ -25,7 +25,7 @@ from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.data.store import StoredRoom
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.dsp.spectra import noise_power
 from mmweaver.formats.capture_std import is_capture, read_radar_capture
 from mmweaver.formats.npz_files import read_pose_npz, read_radar_npz
 from mmweaver.motion.resample import joints_and_velocities
@@ -63,9 +63,8 @@ class RecordedRoom(StoredRoom):
 
     @property
     def noise_power(self) -> float:
-        """Of a cell: the median where nothing rests, for people fill few cells."""
-        cube = self._cube(self.values)
-        return float(np.median(range_doppler_power(cube)[:, :, moving_doppler(cube)]))
+        """Of a cell; 0 where a radar of one loop cannot tell it."""
+        return noise_power(self._cube(self.values)) or 0.0
 
     def cube(self, index: int, frames: np.ndarray | None = None, *, twin: int = 0) -> RadarCube:
         """A sequence, or some of its frames; a recording has no twin."""
@@ -89,17 +88,23 @@ def read_capture(
 
     Raises InputError for a folder that is none, has no photo, or joints that do not belong to its frames.
     """
-    if (folder / CUBE).is_file():
-        cube = read_radar_npz(folder / CUBE)
-    elif is_capture(folder):
-        cube = radar_cube(read_radar_capture(folder).packets.adc)
-    else:
-        raise InputError(f"{folder} holds no {CUBE} and is no capture folder; make one with: mmweaver process")
+    cube = recorded_cube(folder)
     photo = _own_photo(folder) if rgb is None else read_photo(rgb, depth, camera)[0]
     pose = read_pose_npz(folder / POSE) if (folder / POSE).is_file() else None
     if pose is not None:
         _check_times(folder, pose, cube)
     return Capture(folder=folder, cube=cube, photo=photo, pose=pose)
+
+
+def recorded_cube(source: Path) -> RadarCube:
+    """The cube of a recording: a radar.npz, a folder that holds one, or a capture folder. Raises InputError."""
+    if source.is_file():
+        return read_radar_npz(source)
+    if (source / CUBE).is_file():
+        return read_radar_npz(source / CUBE)
+    if is_capture(source):
+        return radar_cube(read_radar_capture(source).packets.adc)
+    raise InputError(f"{source} holds no {CUBE} and is no capture folder; make one with: mmweaver process")
 
 
 def rooms_of(captures: Sequence[Capture]) -> list[RecordedRoom]:

@@ -13,6 +13,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.data.store import StoredRoom, read_rooms
+from mmweaver.dsp.cube import resting_cube
 from mmweaver.dsp.spectra import (
     azimuth_axis_rad,
     elevation_axis_rad,
@@ -70,13 +71,7 @@ class RoomExamples:
         """Maps (range, other) of the room without a person."""
         if self._expected is not None:
             return self._expected.empty
-        config = self.room.config
-        values = np.zeros((1, len(self.room.empty), config.num_loops, config.num_antennas), np.complex64)
-        middle = config.num_loops // 2
-        # a Hann window's response to what rests: three bins
-        for step, share in ((-1, -0.5), (0, 1.0), (1, -0.5)):
-            values[0, :, middle + step] = share * self.room.empty
-        return _one(power_maps(values, config))
+        return _one(power_maps(resting_cube(self.room.empty, self.room.config).values, self.room.config))
 
     @cached_property
     def _expected(self) -> ExpectedMaps | None:
