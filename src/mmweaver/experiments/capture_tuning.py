@@ -4,6 +4,7 @@
 
 Rooms are of kinds that the weights never saw. Of each, a few sequences are written as capture folders, as a user would
 have them, and what `mmweaver train weaver --captures` runs is run on them; scored are other sequences of the room.
+`captures_as_empty_room` takes the same captures, with people in them, for `--empty-room`, and tunes nothing.
 `captures_mean` repeats the mean of the captures: it knows the room with its phases, and nobody in it. `twin`, where the
 data set is of this version's motion library, is the simulator in the true room with other phases. Intervals: bootstrap
 over rooms. It goes on where it was stopped.
@@ -20,7 +21,7 @@ import numpy as np
 from PIL import Image
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import PoseSequence, RadarCube, RgbdPhoto
+from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.seeding import stream
 from mmweaver.data.make import make_sequence
 from mmweaver.data.plan import PEOPLE_HEIGHT_M, SequenceSpec
@@ -92,6 +93,8 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
     scene = reconstruct(read_capture(work / "tuned_with_joints" / "take0").photo)
     methods: dict[str, Method] = {name: _woven(WovenRoom(network, scene, room.config, room_seed=1), room)
                                   for name, network in networks.items()}  # fmt: skip
+    takes = _together([read_capture(work / "tuned_with_joints" / f"take{k}").cube for k in range(len(given))])
+    methods["captures_as_empty_room"] = _woven(WovenRoom(start, scene, room.config, empty=takes), room)
     methods["captures_mean"] = _mean(room, given)
     twin = _twin(room, plan_seed)
     try:
@@ -121,6 +124,13 @@ def _woven(woven: WovenRoom, room: StoredRoom) -> Method:
         return woven.cube([motion], seed=index)
 
     return method
+
+
+def _together(cubes: list[RadarCube]) -> RadarCube:
+    """One recording after the other."""
+    values = np.concatenate([cube.values for cube in cubes])
+    config = cubes[0].config
+    return RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=cubes[0].scale)
 
 
 def _mean(room: StoredRoom, given: np.ndarray) -> Method:
