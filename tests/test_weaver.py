@@ -114,14 +114,20 @@ def test_the_network_is_the_default(room: Room, tmp_path: Path):
 
 
 @pytest.mark.parametrize(
-    ("texts", "asked", "because"), [(TEXT, {"keep_adc": True}, "ADC"), ([TEXT, "a person stands"], {}, "each other")]
+    ("radar", "texts", "asked", "because"),
+    [
+        ("awr1843", TEXT, {"keep_adc": True}, "ADC"),
+        ("awr1843", [TEXT, "a person stands"], {}, "each other"),
+        ("hupr", TEXT, {}, "last long"),
+    ],
 )
-def test_physics_makes_what_the_network_cannot(weaver: Weaver, room: Room, texts: str | list[str], asked: dict,
-                                               because: str):  # fmt: skip
-    made = Weaver().generate(room, texts, frames=2, **asked)
+def test_physics_makes_what_the_network_cannot(
+    room: Room, radar: str, texts: str | list[str], asked: dict, because: str
+):
+    made = Weaver(radar=radar).generate(room, texts, frames=2, **asked)
     assert made.meta["method"] == "physics"
     assert any("not the network" in sentence and because in sentence for sentence in made.meta["assumed"])
-    traced = weaver.generate(room, texts, frames=2, **asked)
+    traced = Weaver("physics", radar).generate(room, texts, frames=2, **asked)
     assert made.cube.values.tobytes() == traced.cube.values.tobytes()
     assert not any("network" in sentence for sentence in traced.meta["assumed"])
 

@@ -108,6 +108,10 @@ RECORDED = (
     " simulated rooms, and the phases of their skin are drawn"
 )
 LEAST_ENERGY = "ADC samples are those of least energy that give the network's cube"
+LONGEST_FRAME_S = 0.04  # of chirps: of 28 ms the network is as good as physics, of 62 ms a little worse
+CONSTANT = (
+    "velocities are constant within a frame, whose chirps last long: limbs smear less over Doppler than they should"
+)
 SUPERIMPOSED = "several people are superimposed: they do not hide each other"
 
 
@@ -147,7 +151,7 @@ class Woven:
             adc = adc_from_cube(cube) if keep_adc else None
         told = {
             WOVEN: room.empty is None, RECORDED: room.empty is not None, LEAST_ENERGY: keep_adc,
-            SUPERIMPOSED: len(poses) > 1,
+            SUPERIMPOSED: len(poses) > 1, CONSTANT: config.active_time_s > LONGEST_FRAME_S,
         }  # fmt: skip
         of_recording = () if room.empty is None else room.empty.assumptions
         sentences = (*(sentence for sentence, is_true in told.items() if is_true), *of_recording)
@@ -164,13 +168,17 @@ class Woven:
 
 
 BECAUSE_OF_ADC = "physics made the signal, not the network, for raw ADC samples are asked for; a network has none"
+BECAUSE_OF_LENGTH = (
+    "physics made the signal, not the network, to which people's velocities are constant within a frame's chirps, and"
+    " these last long"
+)
 BECAUSE_OF_PEOPLE = "physics made the signal, not the network, which does not know how people hide each other"
 
 
 class Auto:
-    """The network, and physics for what the network knows nothing of: raw ADC samples and several people.
+    """The network, and physics for what the network knows too little of: raw ADC samples, several people, long frames.
 
-    With a recording of the empty room, which physics has no use for, the network superimposes several people.
+    With a recording of the empty room, of which physics has no use, the network makes all but ADC samples.
     """
 
     def __init__(self) -> None:
@@ -187,8 +195,10 @@ class Auto:
         keep_adc: bool,
         stages: Stages,
     ) -> Signal:
-        with_recording = scene.empty_recording is not None
-        reason = BECAUSE_OF_ADC if keep_adc else BECAUSE_OF_PEOPLE if len(poses) > 1 and not with_recording else None
+        reason = BECAUSE_OF_ADC if keep_adc else None
+        if reason is None and scene.empty_recording is None:
+            is_long = config.active_time_s > LONGEST_FRAME_S
+            reason = BECAUSE_OF_PEOPLE if len(poses) > 1 else BECAUSE_OF_LENGTH if is_long else None
         method = self._woven if reason is None else self._physics
         signal = method(scene, poses, config, num_frames=num_frames, seed=seed, keep_adc=keep_adc, stages=stages)
         if reason is None:

@@ -137,7 +137,7 @@ class Weaver:
     """Generates radar signals with one method and one radar.
 
     `method` is a name in METHODS: "weaver", the network, "physics", or "auto", the network for all that it can make,
-    which is everything but raw ADC samples and several people. `radar` is a preset's name, a TI .cfg or radar.json
+    which is all but raw ADC samples, several people, and frames of long chirps (see `methods.Auto`). `radar` is a preset's name, a TI .cfg or radar.json
     file, or a RadarConfig. `listener` hears the name of each stage as it begins. `points` chooses the point cloud:
     "cfar", this project's own, or "firmware", that of TI's demo, which needs ADC samples; `firmware` are its settings
     (default: what the radar's .cfg or preset says).

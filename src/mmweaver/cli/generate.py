@@ -73,7 +73,7 @@ def add_verb(verbs: Any) -> None:
         "--method",
         default="auto",
         help="how the signal is made: weaver, the trained network; physics; or auto (default), weaver but for --bin,"
-        " --points firmware and several people, which physics makes",
+        " --points firmware, several people and chirps of more than 40 ms a frame, which physics makes",
     )
     radar.add_argument(
         "--weights", metavar="FILE|DIR|HUB", help="the network's weights, of mmweaver train; or their name on the Hub"
