@@ -109,9 +109,7 @@ RECORDED = (
 )
 LEAST_ENERGY = "ADC samples are those of least energy that give the network's cube"
 LONGEST_FRAME_S = 0.04  # of chirps: of 28 ms the network is as good as physics, of 62 ms a little worse
-CONSTANT = (
-    "velocities are constant within a frame, whose chirps last long: limbs smear less over Doppler than they should"
-)
+CONSTANT = "velocities are constant within a frame, whose chirps last long: limbs smear too little over Doppler"
 SUPERIMPOSED = "several people are superimposed: they do not hide each other"
 
 

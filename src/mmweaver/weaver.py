@@ -137,10 +137,10 @@ class Weaver:
     """Generates radar signals with one method and one radar.
 
     `method` is a name in METHODS: "weaver", the network, "physics", or "auto", the network for all that it can make,
-    which is all but raw ADC samples, several people, and frames of long chirps (see `methods.Auto`). `radar` is a preset's name, a TI .cfg or radar.json
-    file, or a RadarConfig. `listener` hears the name of each stage as it begins. `points` chooses the point cloud:
-    "cfar", this project's own, or "firmware", that of TI's demo, which needs ADC samples; `firmware` are its settings
-    (default: what the radar's .cfg or preset says).
+    which is all but raw ADC samples, several people, and frames of long chirps (see `methods.Auto`). `radar` is a
+    preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener` hears the name of each stage as it begins.
+    `points` chooses the point cloud: "cfar", this project's own, or "firmware", that of TI's demo, which needs ADC
+    samples; `firmware` are its settings (default: what the radar's .cfg or preset says).
     `weights`: a file or folder of `mmweaver train`, or a Hub name, for the network, which then makes all signals;
     `from_pretrained` is the short way. Raises InputError for what is not known.
     """
