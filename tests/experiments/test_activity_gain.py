@@ -18,12 +18,14 @@ from mmweaver.experiments.activity_gain import (
     gains,
     judged,
     motions_in,
+    recorded_in,
     rows_of,
     simulated_in,
     unseen_rooms,
 )
 from mmweaver.experiments.kept_rooms import KeptRooms
 from mmweaver.models.activity_network import ActivityNetwork
+from mmweaver.models.weaver_network import WeaverNetwork
 
 pytest.importorskip("zarr")
 
@@ -100,3 +102,17 @@ def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_know
     old, new = (Study(network, base, begins_anew=anew).head().state_dict() for anew in (False, True))
     assert torch.equal(old["first.weight"], network.head.first.weight)
     assert not torch.equal(new["first.weight"], old["first.weight"])
+
+
+def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
+    """The network that was given the empty room has the truth's own resting echoes."""
+    (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
+    torch.manual_seed(0)
+    make = recorded_in(WeaverNetwork().eval())(room)
+    (_, pose), *_ = motions_in(room, 1, seed=0)
+    rest = AWR1843.num_loops // 2
+    cubes = [make(pose, seed) for seed in (1, 2)]
+    still = [cube.values[:, :, rest].mean(axis=0) for cube in cubes]
+    truth = room.room.empty
+    for one in still:
+        assert np.abs(np.vdot(one, truth)) > 0.5 * np.linalg.norm(one) * np.linalg.norm(truth)

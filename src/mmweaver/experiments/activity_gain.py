@@ -136,6 +136,19 @@ def woven_in(network: WeaverNetwork, scene_of: Callable[[UnseenRoom], Scene]) ->
     return method
 
 
+def recorded_in(network: WeaverNetwork) -> Method:
+    """The network, given a photo and a recording of the room with nobody in it."""
+
+    def method(room: UnseenRoom) -> Maker:
+        config, num_frames = room.room.config, room.room.joints_m.shape[1]
+        true_room = Simulator(room.true_scene(room.room), config)
+        recording = radar_cube(true_room.run((), num_frames=num_frames, seed=TWIN).adc)
+        woven = WovenRoom(network, room.photographed, config, empty=recording)
+        return lambda pose, seed: woven.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
+
+    return method
+
+
 def paper_in(weights: Path) -> Method:
     """The paper's network."""
     network = load_paper(weights)
@@ -309,6 +322,7 @@ def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
     """Whose data is tried."""
     methods: dict[str, Method] = {
         "weaver": woven_in(weaver, lambda room: room.photographed),
+        "weaver_with_empty_room": recorded_in(weaver),
         "wrong_photo": woven_in(weaver, lambda room: reconstruct(room.other.photo)),
         "generic_room_physics": simulated_in(lambda room: room.true_scene(room.generic), micro_seed=1),
         "physics_in_photographed_room": simulated_in(lambda room: room.photographed, micro_seed=1),
