@@ -367,7 +367,7 @@ UNSEEN = {
     "test_room": "kind of room", "test_layout": "layout of a seen kind", "test_person": "person",
     "test_activity": "activity",
 }  # fmt: skip
-BESIDE = ("nearest_training_pose", "weaver", "physics_in_photographed_room", "twin")
+BESIDE = ("nearest_training_pose", "weaver", "weaver_with_empty_room", "physics_in_photographed_room", "twin")
 
 
 def weaver_unseen_table(folder: Path) -> str:
