@@ -8,6 +8,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.experiments.weaver_use_tables import (
     ELSEWHERE,
+    SHORT,
     ablation_table,
     activity_table,
     elsewhere_table,
@@ -15,6 +16,7 @@ from mmweaver.experiments.weaver_use_tables import (
     paper_few_table,
     paper_table,
     photographed_table,
+    short_table,
     small_gain_table,
     told_apart_table,
 )
@@ -58,6 +60,14 @@ def test_they_show_values_with_intervals(tmp_path: Path):
         )
     few = paper_few_table(tmp_path).splitlines()
     assert [line.split(" | ")[0] for line in few[2:]] == ["| zeros, what it trained on", "| zeros, unseen kinds"]
+
+
+def test_the_short_table_has_its_rows_in_its_own_order(tmp_path: Path):
+    metrics = {"ra_ssim": _metric(0.25), "rd_ssim": _metric(0.5)}
+    _put(tmp_path, "weaver/test_room.json", [{"method": name, "metrics": metrics} for name in reversed(SHORT)])
+    lines = short_table(tmp_path).splitlines()
+    assert lines[2] == "| all zeros | 0.25 (0.15 to 0.35) | 0.50 (0.40 to 0.60) |"
+    assert [line.split(" | ")[0][2:] for line in lines[2:]] == list(SHORT.values())
 
 
 def test_elsewhere_has_a_line_for_each_radar(tmp_path: Path):

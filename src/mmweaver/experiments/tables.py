@@ -24,6 +24,7 @@ from mmweaver.experiments.weaver_use_tables import (
     paper_few_table,
     paper_table,
     photographed_table,
+    short_table,
     small_gain_table,
     told_apart_table,
 )
@@ -421,7 +422,7 @@ TABLES = {
     "weaver_few_shot": weaver_few_shot_table,
     "dataset_cost": dataset_cost_table, "weaver_speed": weaver_speed_table,
     "capture_tuning": capture_tuning_table,
-    "weaver_elsewhere": elsewhere_table,
+    "weaver_elsewhere": elsewhere_table, "weaver_short": short_table,
     "weaver_paper": paper_table, "weaver_paper_few": paper_few_table, "weaver_ablation": ablation_table,
     "activity_accuracy": activity_table, "activity_gain": gain_table, "activity_gain_60": small_gain_table,
     "real_or_generated": told_apart_table,

@@ -20,6 +20,28 @@ PAPER = (
 )  # fmt: skip
 
 
+SHORT = {
+    "zeros": "all zeros", "generic_room_physics": "physics in some other room", "weaver": "the network, from the photo",
+    "physics_in_photographed_room": "physics, from the photo",
+    "twin": "the true room, phases drawn: the best that a photo can give",
+    "weaver_with_empty_room": "the network, with a recording of the empty room",
+    "twin_skin": "the true room, its phases known: the best that a recording can give",
+}  # fmt: skip
+
+
+def short_table(folder: Path) -> str:
+    """The deciding table in few words, for the README."""
+    rows = {row["method"]: row for row in _rows(folder / "weaver" / "test_room.json")}
+    lines = ["| made by | range-azimuth, SSIM | range-Doppler, SSIM |", "| --- | --- | --- |"]
+    for name, text in SHORT.items():
+        cells = (
+            f"{metric['value']:.2f} ({metric['low']:.2f} to {metric['high']:.2f})"
+            for metric in (rows[name]["metrics"][view] for view in ("ra_ssim", "rd_ssim"))
+        )
+        lines.append(f"| {text} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
 ELSEWHERE = {
     "hupr": "preset `hupr`", "mmmesh": "`mmmesh`", "iwr6843": "`iwr6843`", "iwr1443_mars": "`iwr1443_mars`",
     "awr1843_100_frames": "`awr1843`, 100 frames",
