@@ -20,6 +20,28 @@ if TYPE_CHECKING:
     from mmweaver.models.weaver_method import WovenRoom
 
 
+LONGEST_FRAME_S = 0.04  # of chirps: of 28 ms the network is as good as physics, of 62 ms a little worse
+# what meta.json says
+WOVEN = "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
+RECORDED = (
+    "what rests is that of the recording of the empty room; echoes of people were written by a network trained on"
+    " simulated rooms, and the phases of their skin are drawn"
+)
+LEAST_ENERGY = "ADC samples are those of least energy that give the network's cube"
+CONSTANT = "velocities are constant within a frame, whose chirps last long: limbs smear too little over Doppler"
+SUPERIMPOSED = "several people are superimposed: they do not hide each other"
+BECAUSE_OF_ADC = "physics made the signal, not the network, for raw ADC samples are asked for; a network has none"
+BECAUSE_OF_LENGTH = (
+    "physics made the signal, not the network, to which people's velocities are constant within a frame's chirps, and"
+    " these last long"
+)
+BECAUSE_OF_PEOPLE = "physics made the signal, not the network, which does not know how people hide each other"
+NO_RECORDING = (
+    "physics and raw ADC samples take nothing from a recording of the empty room, the network does: leave out the"
+    " recording, or physics and the samples"
+)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Signal:
     """What a method gives: the cube, the ADC samples where it has any, and what it assumed.
@@ -50,12 +72,6 @@ class Method(Protocol):
         keep_adc: bool,
         stages: Stages,
     ) -> Signal: ...
-
-
-NO_RECORDING = (
-    "physics and raw ADC samples take nothing from a recording of the empty room, the network does: leave out the"
-    " recording, or physics and the samples"
-)
 
 
 class Physics:
@@ -100,17 +116,6 @@ class Physics:
         if self._ready is None or self._ready[0] is not scene or self._ready[1] != config:
             self._ready = (scene, config, Simulator(scene, config))
         return self._ready[2]
-
-
-WOVEN = "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
-RECORDED = (
-    "what rests is that of the recording of the empty room; echoes of people were written by a network trained on"
-    " simulated rooms, and the phases of their skin are drawn"
-)
-LEAST_ENERGY = "ADC samples are those of least energy that give the network's cube"
-LONGEST_FRAME_S = 0.04  # of chirps: of 28 ms the network is as good as physics, of 62 ms a little worse
-CONSTANT = "velocities are constant within a frame, whose chirps last long: limbs smear too little over Doppler"
-SUPERIMPOSED = "several people are superimposed: they do not hide each other"
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
@@ -163,14 +168,6 @@ class Woven:
             network, _ = load_weights(self.weights or shipped_weights())
             self._ready = (scene, config, WovenRoom(network, scene, config, empty=scene.empty_recording))
         return self._ready[2]
-
-
-BECAUSE_OF_ADC = "physics made the signal, not the network, for raw ADC samples are asked for; a network has none"
-BECAUSE_OF_LENGTH = (
-    "physics made the signal, not the network, to which people's velocities are constant within a frame's chirps, and"
-    " these last long"
-)
-BECAUSE_OF_PEOPLE = "physics made the signal, not the network, which does not know how people hide each other"
 
 
 class Auto:

@@ -66,20 +66,19 @@ class Room:
         inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in told]}
         return replace(self, scene=with_told(self.scene, told), inputs=inputs)
 
-    def with_empty_recording(self, source: str | Path | RadarCube) -> "Room":
+    def with_empty_recording(self, source: str | Path | RadarCube, *, came_from: Path | None = None) -> "Room":
         """The room with a recording of it by your radar, nobody there: what rests is taken from that, phases and all.
 
-        `source`: a folder of `mmweaver process`, its radar.npz, a capture folder, or the cube. Only the network takes
-        it. Raises InputError for what is no recording.
+        `source`: a folder of `mmweaver process`, its radar.npz, a capture folder, or the cube (`came_from`: its file or
+        folder, for meta.json). Only the network takes it. Raises InputError for what is no recording.
         """
-        if isinstance(source, RadarCube):
-            return replace(self, scene=replace(self.scene, empty_recording=source))
-        from mmweaver.training.captures import recorded_cube
+        if not isinstance(source, RadarCube):
+            from mmweaver.training.captures import recorded_cube
 
-        recording = recorded_cube(Path(source))
-        file = next((one for one in (Path(source), Path(source) / "radar.npz") if one.is_file()), None)
-        inputs = self.inputs | {"empty_room": {"path": str(source)} if file is None else file_digest(file)}
-        return replace(self, scene=replace(self.scene, empty_recording=recording), inputs=inputs)
+            came_from = Path(source)
+            source = recorded_cube(came_from)
+        inputs = self.inputs if came_from is None else self.inputs | {"empty_room": _origin(came_from)}
+        return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -323,6 +322,12 @@ def _found(weights: str | Path, revision: str | None = None) -> Path:
     from mmweaver.models.find_weights import find_weights
 
     return find_weights(weights, revision=revision)
+
+
+def _origin(place: Path) -> dict[str, str]:
+    """What meta.json says of a recording's file or folder."""
+    file = next((one for one in (place, place / "radar.npz") if one.is_file()), None)
+    return {"path": str(place)} if file is None else file_digest(file)
 
 
 def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...]) -> list[str]:

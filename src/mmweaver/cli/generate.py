@@ -173,7 +173,7 @@ def run(arguments: argparse.Namespace) -> int:
         motion = read_own_motion(arguments) or motion_of_model(arguments, only, seconds)
         check_request(weaver.radar, text=texts, motion=motion, **request)
         request |= placing_options(arguments)
-        result = weaver.generate(_read_room(weaver, arguments), texts, motion=motion, **request)
+        result = weaver.generate(_read_room(weaver, arguments, recording), texts, motion=motion, **request)
         meta = result.save(
             out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq"
         )
@@ -230,10 +230,10 @@ def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
     return arguments.text, arguments.out
 
 
-def _read_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
+def _read_room(weaver: "Weaver", arguments: argparse.Namespace, recording: "RadarCube | None") -> "Room":
     room = _seen_room(weaver, arguments)
     room = room.with_landmarks(*arguments.landmark) if arguments.landmark else room
-    return room.with_empty_recording(arguments.empty_room) if arguments.empty_room else room
+    return room if recording is None else room.with_empty_recording(recording, came_from=arguments.empty_room)
 
 
 def _recording(arguments: argparse.Namespace) -> "RadarCube | None":
