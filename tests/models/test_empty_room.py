@@ -96,16 +96,17 @@ def test_what_moves_in_the_recording_is_told(scene: Scene, recording: RadarCube)
     assert any("moves" in sentence for sentence in woven.empty.assumptions)
 
 
-@pytest.mark.parametrize("harm", ["radar", "nan", "zeros", "none"])
+@pytest.mark.parametrize("harm", ["radar", "slower", "nan", "zeros", "none"])
 def test_what_is_no_recording_of_this_radar_is_refused(scene: Scene, recording: RadarCube, harm: str):
     values = recording.values
     harmed = {
         "radar": replace(recording, config=replace(AWR1843, chirp_slope_hz_per_s=0.9 * AWR1843.chirp_slope_hz_per_s)),
+        "slower": replace(recording, config=replace(AWR1843, num_loops=512, frame_period_s=0.5)),
         "nan": replace(recording, values=values * np.float32("nan")),
         "zeros": replace(recording, values=np.zeros_like(values)),
         "none": replace(recording, values=values[:0]),
     }[harm]
-    with pytest.raises(InputError, match="other settings" if harm == "radar" else "no signal"):
+    with pytest.raises(InputError, match="other settings" if harm in ("radar", "slower") else "no signal"):
         _woven(scene, harmed)
 
 
