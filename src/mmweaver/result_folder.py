@@ -42,10 +42,12 @@ def save_results(
     iq_order: str = "iq",
     overwrite: bool = False,
     stages: Stages | None = None,
+    pictures: bool = True,
 ) -> dict[str, Any]:
     """Writes all files into the folder `out`, or none; returns what meta.json holds.
 
-    Where `adc` is given it is written as `adc_data.bin`, I or Q first as `iq_order` says. Raises InputError where
+    Without `pictures` there are no previews. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
+    `iq_order` says. Raises InputError where
     `out` holds other files and `overwrite` is not set, or where it cannot be written.
     """
     stages = stages or Stages()
@@ -66,10 +68,11 @@ def save_results(
                     "counts_per_unit": counts,
                 }
             (stage / "radar.json").write_text(view.cube.config.to_json())
-        with stages("draw preview.png"):
-            draw_preview(view, stage / "preview.png")
-        with stages("draw preview.gif"):
-            draw_animation(view, stage / "preview.gif")
+        if pictures:
+            with stages("draw preview.png"):
+                draw_preview(view, stage / "preview.png")
+            with stages("draw preview.gif"):
+                draw_animation(view, stage / "preview.gif")
         names = {file.name for file in stage.iterdir()} | {"meta.json"}
         meta["files"] = {name: text for name, text in FILES.items() if name in names}
         meta["seconds"] = {name: round(seconds, 3) for name, seconds in stages.seconds.items()}

@@ -109,12 +109,14 @@ class Generation:
         return self.scene.photo
 
     def save(
-        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: bool = False, iq_order: str = "iq"
-    ) -> dict[str, Any]:
+        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: bool = False, iq_order: str = "iq",
+        pictures: bool = True,
+    ) -> dict[str, Any]:  # fmt: skip
         """Writes all files and pictures into a folder, or none of them; returns what meta.json holds.
 
-        `adc_data_bin` asks for the raw samples too, as a DCA1000 writes them, I or Q first. Raises InputError where
-        the folder cannot be written, or holds other files and `overwrite` is not set.
+        Without `pictures` the files alone, much quicker. `adc_data_bin` asks for the raw samples too, as a DCA1000
+        writes them, I or Q first. Raises InputError where the folder cannot be written, or holds other files and
+        `overwrite` is not set.
         """
         if adc_data_bin and self.adc is None:
             raise InputError(
@@ -127,7 +129,7 @@ class Generation:
         )  # fmt: skip
         return save_results(
             out, view, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order, overwrite=overwrite,
-            stages=self.stages,
+            stages=self.stages, pictures=pictures,
         )  # fmt: skip
 
 
@@ -157,7 +159,9 @@ class Weaver:
         if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
         self.method_name = method if weights is None else "weaver"
-        self.method = Woven(_found(weights)) if weights is not None else METHODS[method]()
+        file = None if weights is None else _found(weights)
+        self.method = METHODS[method]() if file is None else Woven(file)
+        self.weights = None if file is None else file_digest(file)
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
         check_points(points, self.radar)
@@ -303,6 +307,7 @@ class Weaver:
             "text": people[0].plan.text if text is None else text if isinstance(text, str) else list(text),
             "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
             "method": signal.method or self.method_name,
+            "weights": self.weights,
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(config),

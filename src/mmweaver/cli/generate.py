@@ -1,6 +1,7 @@
 """mmweaver generate: photo and sentence in, radar signal out."""
 
 import argparse
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,8 @@ from mmweaver.cli.own_motion import (
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from mmweaver.core.records import RadarCube
     from mmweaver.weaver import Room, Weaver
 
@@ -30,6 +33,7 @@ EXAMPLES = """examples:
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --frames 40 --radar mmmesh --out drink/ --bin
   mmweaver generate --demo --method physics --out traced/
+  mmweaver generate --demo --texts sentences.txt --repeat 20 --no-pictures --out set/       # one sentence a line
   mmweaver process empty.bin --radar profile.cfg --out empty/       # your room with nobody in it, a few seconds
   mmweaver generate --rgb rgb.png --depth depth.png --empty-room empty/ --text "a person walks" --out walk/
   mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
@@ -52,6 +56,18 @@ def add_verb(verbs: Any) -> None:
         "--text",
         action="append",
         help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
+    )
+    person.add_argument(
+        "--texts", type=Path, metavar="FILE",
+        help="many sequences instead, one a line of this file, each in a folder of its own under --out; the room is"
+        " read once, and what is there already stays",
+    )  # fmt: skip
+    person.add_argument(
+        "--repeat",
+        type=whole,
+        default=1,
+        metavar="N",
+        help="with --texts: N of each, with seeds of their own",
     )
     person.add_argument(
         "--at",
@@ -85,6 +101,7 @@ def add_verb(verbs: Any) -> None:
     output.add_argument(
         "--bin", action="store_true", help="also write adc_data.bin, as a DCA1000 would; physics makes it"
     )
+    output.add_argument("--no-pictures", action="store_true", help="leave out preview.png and preview.gif")
     add_layout_options(output)
     add_output_options(output)
     parser.set_defaults(run=run)
@@ -139,6 +156,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then makes the signal and writes it. Raises InputError."""
     text, out = _check_inputs(arguments)
     check_motion_options(arguments)
+    if arguments.texts is not None:
+        return _run_many(arguments, out)
 
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
@@ -146,27 +165,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_output_folder(out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
-        from mmweaver.formats.radar_file import load_firmware, load_radar
-        from mmweaver.weaver import Weaver, check_request
+        from mmweaver.weaver import check_request
 
         recording = _recording(arguments)
-        radar = recording.config if recording and not arguments.radar else load_radar(arguments.radar or DEFAULT_RADAR)
-        if arguments.tx_order is not None:
-            radar = replace(radar, tx_order=arguments.tx_order)
-        firmware = load_firmware(arguments.radar or DEFAULT_RADAR) if arguments.points == "firmware" else None
-        weaver = Weaver(
-            method=arguments.method, radar=radar, listener=bar, points=arguments.points, firmware=firmware,
-            weights=arguments.weights,
-        )  # fmt: skip
-        request = {
-            "frames": arguments.frames,
-            "fps": arguments.fps,
-            "seed": arguments.seed,
-            "at": _places(arguments),
-            "keep_adc": arguments.bin,
-        }
+        weaver = _weaver(arguments, recording, bar)
+        request = _request(arguments) | {"at": _places(arguments)}
         texts = text if text is None or len(text) > 1 else text[0]
-        seconds = arguments.frames / arguments.fps if arguments.fps else arguments.frames * radar.frame_period_s
+        period_s = 1 / arguments.fps if arguments.fps else weaver.radar.frame_period_s
+        seconds = arguments.frames * period_s
         only = texts if isinstance(texts, str) else None
         if arguments.motion_model is not None and only is None and text is not None:
             raise InputError("--motion-model acts out one text; give --text once")
@@ -175,10 +181,55 @@ def run(arguments: argparse.Namespace) -> int:
         request |= placing_options(arguments)
         result = weaver.generate(_read_room(weaver, arguments, recording), texts, motion=motion, **request)
         meta = result.save(
-            out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq"
-        )
+            out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq",
+            pictures=not arguments.no_pictures,
+        )  # fmt: skip
     print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
+
+
+def _run_many(arguments: argparse.Namespace, out: Path) -> int:
+    """Many sequences in one room."""
+    from mmweaver.cli.many import asked_of, make_many, told
+    from mmweaver.weaver import check_request
+
+    asked = asked_of(arguments, out)
+    recording = _recording(arguments)
+    weaver = _weaver(arguments, recording)
+    for text in {one.text for one in asked}:
+        try:
+            check_request(weaver.radar, text=text, **_request(arguments))
+        except InputError as error:
+            raise InputError(f"{arguments.texts}, {text[:60]!r}: {error}") from None
+    arguments.out = out
+    summary = make_many(weaver, _read_room(weaver, arguments, recording), asked, _request(arguments), arguments)
+    if arguments.json:
+        print(json.dumps(summary, indent=2, ensure_ascii=False))
+    elif not arguments.quiet:
+        print(told(summary))
+    return 0
+
+
+def _weaver(
+    arguments: argparse.Namespace, recording: "RadarCube | None", listener: "Callable[[str], object] | None" = None
+) -> "Weaver":
+    from mmweaver.formats.radar_file import load_firmware, load_radar
+    from mmweaver.weaver import Weaver
+
+    radar = recording.config if recording and not arguments.radar else load_radar(arguments.radar or DEFAULT_RADAR)
+    if arguments.tx_order is not None:
+        radar = replace(radar, tx_order=arguments.tx_order)
+    firmware = load_firmware(arguments.radar or DEFAULT_RADAR) if arguments.points == "firmware" else None
+    return Weaver(
+        method=arguments.method, radar=radar, listener=listener, points=arguments.points, firmware=firmware,
+        weights=arguments.weights,
+    )  # fmt: skip
+
+
+def _request(arguments: argparse.Namespace) -> dict[str, Any]:
+    return {
+        "frames": arguments.frames, "fps": arguments.fps, "seed": arguments.seed, "keep_adc": arguments.bin,
+    }  # fmt: skip
 
 
 def _places(arguments: argparse.Namespace) -> Any:
@@ -199,7 +250,8 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
                 "--demo brings its own room; leave out --rgb, --depth, --camera and all else that tells of a room, or"
                 " leave out --demo"
             )
-        text = [DEMO_TEXT] if arguments.text is None and arguments.motion is None else arguments.text
+        is_told = arguments.text is not None or arguments.motion is not None or arguments.texts is not None
+        text = arguments.text if is_told else [DEMO_TEXT]
         return text, arguments.out or Path(DEMO_OUT)
     if arguments.capture is not None:
         if any(given is not None for given in (arguments.depth, arguments.camera, arguments.depth_model)):
@@ -221,7 +273,7 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
 
 
 def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
-    if arguments.text is None and arguments.motion is None:
+    if arguments.text is None and arguments.motion is None and arguments.texts is None:
         raise InputError(
             "what does the person do? give --text, for example --text 'a person walks to the left', or --motion"
         )
