@@ -46,7 +46,7 @@ def test_what_an_earlier_run_made_otherwise_is_not_touched(
 ):
     words = [*SHORT, "--texts", str(texts), "--out", str(tmp_path / "set")]
     assert main(words) == 0
-    for more in (["--method", "physics"], ["--seed", "1"], ["--radar", "mmmesh"]):
+    for more in (["--method", "physics"], ["--seed", "1"], ["--radar", "mmmesh"], ["--bin"]):
         assert main([*words, *more]) == 2
         assert "holds something else" in capsys.readouterr().err
     assert main([*words, "--method", "physics", "--overwrite"]) == 0

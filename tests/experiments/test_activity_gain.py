@@ -18,10 +18,10 @@ from mmweaver.experiments.activity_gain import (
     gains,
     judged,
     motions_in,
-    recorded_in,
     rows_of,
     simulated_in,
     unseen_rooms,
+    woven_in,
 )
 from mmweaver.experiments.kept_rooms import KeptRooms
 from mmweaver.models.activity_network import ActivityNetwork
@@ -108,7 +108,7 @@ def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
     """The network that was given the empty room has the truth's own resting echoes."""
     (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
     torch.manual_seed(0)
-    make = recorded_in(WeaverNetwork().eval())(room)
+    make = woven_in(WeaverNetwork().eval(), lambda one: one.photographed, recorded=True)(room)
     (_, pose), *_ = motions_in(room, 1, seed=0)
     rest = AWR1843.num_loops // 2
     cubes = [make(pose, seed) for seed in (1, 2)]

@@ -110,6 +110,13 @@ def test_what_is_no_recording_of_this_radar_is_refused(scene: Scene, recording: 
         _woven(scene, harmed)
 
 
+def test_a_recording_of_some_other_place_has_no_scale():
+    """Leakage at one range outshines all, and the photo knows of nothing there."""
+    expected, own = torch.tensor([[1.0, 1e-9]]), torch.tensor([[1e-9, 1.0]])
+    with pytest.raises(InputError, match="no echo where the photo has a surface"):
+        agreeing_gain([(expected, own)])
+
+
 def test_the_gain_is_the_middle_of_what_both_show():
     expected = torch.tensor([[4.0, 4.0, 400.0, 1e-9]])
     own = torch.ones(1, 4)

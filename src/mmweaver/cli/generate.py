@@ -190,19 +190,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_many(arguments: argparse.Namespace, out: Path) -> int:
     """Many sequences in one room."""
-    from mmweaver.cli.many import asked_of, make_many, told
-    from mmweaver.weaver import check_request
+    from mmweaver.cli.many import asked_of, check_texts, make_many, told
 
-    asked = asked_of(arguments, out)
+    asked, request = asked_of(arguments, out), _request(arguments)
     recording = _recording(arguments)
     weaver = _weaver(arguments, recording)
-    for text in {one.text for one in asked}:
-        try:
-            check_request(weaver.radar, text=text, **_request(arguments))
-        except InputError as error:
-            raise InputError(f"{arguments.texts}, {text[:60]!r}: {error}") from None
-    arguments.out = out
-    summary = make_many(weaver, _read_room(weaver, arguments, recording), asked, _request(arguments), arguments)
+    config = check_texts(weaver, asked, request, arguments.texts)
+    summary = make_many(weaver, _read_room(weaver, arguments, recording), asked, request, config, arguments)
     if arguments.json:
         print(json.dumps(summary, indent=2, ensure_ascii=False))
     elif not arguments.quiet:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
+    from mmweaver.core.radar_config import RadarConfig
     from mmweaver.weaver import Room, Weaver
 
 LIST = "sequences.json"
@@ -53,27 +54,39 @@ def asked_of(arguments: argparse.Namespace, out: Path) -> list[Asked]:
     ]
 
 
+def check_texts(weaver: "Weaver", asked: list[Asked], request: dict[str, Any], file: Path) -> "RadarConfig":
+    """The radar at the frame rate asked for. Raises InputError for a sentence that cannot be acted out in the time."""
+    from mmweaver.weaver import check_request
+
+    config = weaver.radar
+    for text in dict.fromkeys(one.text for one in asked):
+        try:
+            config = check_request(weaver.radar, text=text, **request)
+        except InputError as error:
+            raise InputError(f"{file}, {text[:60]!r}: {error}") from None
+    return config
+
+
 def make_many(
-    weaver: "Weaver", room: "Room", asked: list[Asked], request: dict[str, Any], arguments: argparse.Namespace
-) -> dict[str, Any]:
+    weaver: "Weaver", room: "Room", asked: list[Asked], request: dict[str, Any], config: "RadarConfig",
+    arguments: argparse.Namespace,
+) -> dict[str, Any]:  # fmt: skip
     """Makes what is not there yet and tells what there is; a sentence for which the room has no place is left out.
 
-    Raises InputError where nothing could be made, or a folder holds something else.
+    Raises InputError where nothing could be made, or, before anything is made, where a folder holds something else.
     """
     from tqdm import tqdm
 
     from mmweaver.core.atomic_files import atomic_file
-    from mmweaver.result_folder import plain, radar_meta
-    from mmweaver.weaver import check_request
 
-    config = check_request(weaver.radar, text=asked[0].text, **request)
-    same = {"frames": request["frames"], "weights": weaver.weights, "inputs": room.inputs, **radar_meta(config)}
-    same |= {} if arguments.method == "auto" else {"method": arguments.method}
+    out = asked[0].folder.parent
+    wanted = _wanted(weaver, room, request, config, arguments)
+    there = set() if arguments.overwrite else {one.folder for one in asked if _is_there(one, *wanted)}
     made: list[dict[str, Any]] = []
     refused: list[dict[str, Any]] = []
     for one in tqdm(asked, unit="sequence", delay=2, disable=arguments.quiet or None):
         entry: dict[str, Any] = {"folder": one.folder.name, "text": one.text, "seed": one.seed}
-        if not arguments.overwrite and _is_there(one, plain({**same, "text": one.text, "seed": one.seed})):
+        if one.folder in there:
             made.append(entry)
             continue
         try:
@@ -88,8 +101,8 @@ def make_many(
         made.append(entry)
     if not made:
         raise InputError(f"none of {len(asked)} sequences could be made; the first: {refused[0]['why']}")
-    summary = {"out": str(arguments.out), "sequences": made, "refused": refused}
-    with atomic_file(arguments.out / LIST) as partial:
+    summary = {"out": str(out), "sequences": made, "refused": refused}
+    with atomic_file(out / LIST) as partial:
         partial.write_text(json.dumps(summary, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     return summary
 
@@ -102,14 +115,28 @@ def told(summary: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _is_there(one: Asked, wanted: dict[str, Any]) -> bool:
+def _wanted(
+    weaver: "Weaver", room: "Room", request: dict[str, Any], config: "RadarConfig", arguments: argparse.Namespace
+) -> tuple[dict[str, Any], set[str]]:
+    """What meta.json says of all that is asked for, and the files that not every run writes."""
+    from mmweaver.methods import DEFAULT_METHOD
+    from mmweaver.result_folder import plain, radar_meta
+
+    same = {"frames": request["frames"], "points": weaver.points, "weights": weaver.weights, "inputs": room.inputs}
+    method = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
+    files = {"adc_data.bin": arguments.bin, "preview.png": not arguments.no_pictures}
+    return plain({**same, **method, **radar_meta(config)}), {name for name, is_asked in files.items() if is_asked}
+
+
+def _is_there(one: Asked, said: dict[str, Any], files: set[str]) -> bool:
     """Whether an earlier run made just this, as its meta.json says. Raises InputError where it made something else."""
     meta = one.folder / "meta.json"
     if not one.folder.exists():
         return False
     try:
         found = json.loads(meta.read_text(encoding="utf-8"))
-        is_same = all(found[name] == value for name, value in wanted.items())
+        wanted = {**said, "text": one.text, "seed": one.seed}
+        is_same = files <= set(found["files"]) and all(found[name] == value for name, value in wanted.items())
     except (OSError, ValueError, KeyError, TypeError):
         is_same = False
     if not is_same:

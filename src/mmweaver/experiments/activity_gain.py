@@ -36,7 +36,7 @@ from mmweaver.data.store import StoredRoom, read_plan, read_rooms
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.experiments.kept_rooms import KeptRooms, digest
 from mmweaver.experiments.results import write_result
-from mmweaver.experiments.weaver_table import TWIN, interval
+from mmweaver.experiments.weaver_table import TWIN, empty_room, interval
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.paper_method import load_paper, paper_field
 from mmweaver.models.weaver_method import FrameMotion, WovenRoom
@@ -125,25 +125,13 @@ def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) ->
     return method
 
 
-def woven_in(network: WeaverNetwork, scene_of: Callable[[UnseenRoom], Scene]) -> Method:
-    """The network, given a photo."""
+def woven_in(network: WeaverNetwork, scene_of: Callable[[UnseenRoom], Scene], *, recorded: bool = False) -> Method:
+    """The network, given a photo, and `recorded` with a recording of the room with nobody in it."""
 
     def method(room: UnseenRoom) -> Maker:
         config, num_frames = room.room.config, room.room.joints_m.shape[1]
-        woven = WovenRoom(network, scene_of(room), config, room_seed=1)
-        return lambda pose, seed: woven.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
-
-    return method
-
-
-def recorded_in(network: WeaverNetwork) -> Method:
-    """The network, given a photo and a recording of the room with nobody in it."""
-
-    def method(room: UnseenRoom) -> Maker:
-        config, num_frames = room.room.config, room.room.joints_m.shape[1]
-        true_room = Simulator(room.true_scene(room.room), config)
-        recording = radar_cube(true_room.run((), num_frames=num_frames, seed=TWIN).adc)
-        woven = WovenRoom(network, room.photographed, config, empty=recording)
+        empty = empty_room(room.true_scene(room.room), config, num_frames, TWIN) if recorded else None
+        woven = WovenRoom(network, scene_of(room), config, room_seed=1, empty=empty)
         return lambda pose, seed: woven.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
 
     return method
@@ -322,7 +310,7 @@ def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
     """Whose data is tried."""
     methods: dict[str, Method] = {
         "weaver": woven_in(weaver, lambda room: room.photographed),
-        "weaver_with_empty_room": recorded_in(weaver),
+        "weaver_with_empty_room": woven_in(weaver, lambda room: room.photographed, recorded=True),
         "wrong_photo": woven_in(weaver, lambda room: reconstruct(room.other.photo)),
         "generic_room_physics": simulated_in(lambda room: room.true_scene(room.generic), micro_seed=1),
         "physics_in_photographed_room": simulated_in(lambda room: room.photographed, micro_seed=1),

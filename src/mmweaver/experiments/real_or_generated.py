@@ -22,7 +22,7 @@ from mmweaver.data.store import StoredRoom, read_plan, read_rooms
 from mmweaver.experiments.cube_statistics import cube_statistics
 from mmweaver.experiments.kept_rooms import KeptRooms, digest
 from mmweaver.experiments.results import write_result
-from mmweaver.experiments.weaver_table import TWIN, Case, Method, cases_of, interval, simulated, with_recording, woven
+from mmweaver.experiments.weaver_table import TWIN, Case, Method, cases_of, interval, simulated, woven
 from mmweaver.models.activity_network import load_activity
 from mmweaver.models.paper_method import paper_method
 from mmweaver.models.weights import load_weights, shipped_weights
@@ -105,7 +105,7 @@ def main() -> None:
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods: dict[str, Method] = {
         "weaver": woven(network, _own_room),
-        "weaver_with_empty_room": with_recording(network),
+        "weaver_with_empty_room": woven(network, _own_room, recorded=True),
         "generic_room_physics": simulated(lambda case: generic_scene, skin=TWIN, micro_seed=1),
         "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=TWIN, micro_seed=1),
         "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.data.make import make_sequence
@@ -92,11 +93,15 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
     return method
 
 
-def woven(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom]) -> Method:
-    """The network, given a photo."""
+def woven(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
+    """The network, given a photo, and `recorded` with as many frames of the empty room as the radar records them."""
 
     def method(case: Case) -> RadarCube:
-        woven_room = WovenRoom(network, reconstruct(room_of(case).photo), case.room.config, room_seed=1)
+        config = case.room.config
+        empty = None
+        if recorded:
+            empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + TWIN)
+        woven_room = WovenRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, empty=empty)
         joints, velocity = case.joints
         motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=TWIN + case.spec.person)
         return woven_room.cube([motion], seed=case.index)
@@ -104,19 +109,9 @@ def woven(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom]) -> Meth
     return method
 
 
-def with_recording(network: WeaverNetwork) -> Method:
-    """The network, given the photo and two seconds of the empty room as the radar records it, noise and all."""
-
-    def method(case: Case) -> RadarCube:
-        frames, config = len(case.joints[0]), case.room.config
-        true_room = Simulator(case.true_scene, config)
-        recording = radar_cube(true_room.run((), num_frames=frames, seed=case.spec.seed + TWIN).adc)
-        woven_room = WovenRoom(network, reconstruct(case.room.photo), config, empty=recording)
-        joints, velocity = case.joints
-        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=TWIN + case.spec.person)
-        return woven_room.cube([motion], seed=case.index)
-
-    return method
+def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int) -> RadarCube:
+    """What the radar records of a room with nobody in it, noise and all."""
+    return radar_cube(Simulator(scene, config).run((), num_frames=num_frames, seed=seed).adc)
 
 
 def nearest(train: list[StoredRoom]) -> Method:
@@ -246,7 +241,7 @@ def main() -> None:
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods: dict[str, Method] = {
         "weaver": woven(network, lambda case: case.room),
-        "weaver_with_empty_room": with_recording(network),
+        "weaver_with_empty_room": woven(network, lambda case: case.room, recorded=True),
         "wrong_photo": woven(network, lambda case: case.other),
         "training_mean": training_mean(rooms),
         "nearest_training_pose": nearest(rooms),

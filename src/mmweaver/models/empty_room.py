@@ -92,12 +92,18 @@ def check_recording(recording: RadarCube, config: RadarConfig) -> None:
 
 def agreeing_gain(maps: Sequence[tuple[Tensor, Tensor]]) -> float:
     """The factor of amplitude at which recorded power maps agree with expected ones, pairs of (expected, recorded), by
-    the median of what both show."""
+    the median of what both show. Raises InputError where they show nothing in common."""
     ratios = []
     for expected, own in maps:
         shown = (own > SHOWN * own.max()) & (expected > SHOWN * expected.max())
         ratios.append((expected[shown] / own[shown]).log())
-    return float(torch.cat(ratios).median().div(2).exp())
+    both = torch.cat(ratios)
+    if not len(both):
+        raise InputError(
+            "the recording shows no echo where the photo has a surface, so its scale cannot be found; is it of this"
+            " room, and is the range window that of the room?"
+        )
+    return float(both.median().div(2).exp())
 
 
 def _moves(recording: RadarCube, noise: float) -> bool:
