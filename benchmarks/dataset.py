@@ -18,8 +18,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from measuring import report, results_folder
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.data.generate import generate
-from mmweaver.data.plan import DatasetPlan
+from mmweaver.datasets.dataset_plan import DatasetPlan
+from mmweaver.datasets.generate_rooms import generate
 
 KINDS = ("office", "living_room", "kitchen", "gym")
 PLAN = DatasetPlan(kinds=KINDS, lightings=("day", "lamps"), num_layouts=1, sequences_a_room=24)

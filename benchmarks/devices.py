@@ -20,35 +20,35 @@ from measuring import report, results_folder
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.dsp.torch_cube import torch_cube
-from mmweaver.models.room_view import (
+from mmweaver.dsp.cube_torch import torch_cube
+from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scene_tensors import (
     IMAGE_COLUMNS,
     IMAGE_ROWS,
     NUM_PLANES,
     NUM_POINTS,
     PLANE_FEATURES,
     POINT_FEATURES,
-    RoomView,
+    SceneTensors,
 )
-from mmweaver.models.weaver_method import FrameMotion, WovenRoom
-from mmweaver.models.weaver_network import WeaverNetwork
-from mmweaver.simulation.body import DEFAULT_NUM_POINTS
-from mmweaver.simulation.echoes import GHOST_POINTS
-from mmweaver.simulation.mirrors import Mirror
-from mmweaver.simulation.receiver import IDEAL, Receiver
-from mmweaver.simulation.replay import Look, Replay
-from mmweaver.simulation.room import RestingRoom, StaticEchoes, ways_m
-from mmweaver.simulation.synthesis import EchoRows, FrameClock, synthesise
-from mmweaver.simulation.torch_synthesis import TorchSynthesis
-from mmweaver.simulation.visibility import Visibility
+from mmweaver.paths.adc_synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.paths.adc_synthesis_torch import TorchSynthesis
+from mmweaver.paths.body_model import DEFAULT_NUM_POINTS
+from mmweaver.paths.body_paths import GHOST_POINTS
+from mmweaver.paths.image_method import SpecularReflector
+from mmweaver.paths.receiver import IDEAL, Receiver
+from mmweaver.paths.resynthesis import Resynthesis, TracedMotion
+from mmweaver.paths.static_paths import PreparedRoom, StaticEchoes, path_lengths_m
+from mmweaver.paths.visibility import Visibility
 
 NUM_FRAMES, ECHOES, FACES, HIDDEN, ROWS = 20, 8300, 5, 400, 900
 
 
-def made_up_room(rng: np.random.Generator) -> RestingRoom:
+def made_up_room(rng: np.random.Generator) -> PreparedRoom:
     place = rng.uniform((-2, 0.7, -1), (2, 4.0, 1.2), (ECHOES, 3))
     amplitude = 1e-3 * (rng.normal(size=ECHOES) + 1j * rng.normal(size=ECHOES))
-    echoes = StaticEchoes(way_m=ways_m(place, AWR1843), amplitude=amplitude, first_m=place, last_m=place)
+    echoes = StaticEchoes(way_m=path_lengths_m(place, AWR1843), amplitude=amplitude, first_m=place, last_m=place)
     mirrors = []
     for turn in np.linspace(-1.2, 1.2, FACES):
         normal = -np.array([np.sin(turn), np.cos(turn), 0.0])
@@ -58,11 +58,11 @@ def made_up_room(rng: np.random.Generator) -> RestingRoom:
             kind="wall", centre_m=-3.5 * normal, normal=normal, axis_u=along, axis_v=up, half_size_m=(2.5, 1.3),
             material="plasterboard",
         )  # fmt: skip
-        mirrors.append(Mirror(plane=plane, offset_m=-3.5))
-    return RestingRoom(AWR1843, mirrors, echoes, {"diffuse": ECHOES, "specular": 0, "edges": 0})
+        mirrors.append(SpecularReflector(plane=plane, offset_m=-3.5))
+    return PreparedRoom(AWR1843, mirrors, echoes, {"diffuse": ECHOES, "specular": 0, "edges": 0})
 
 
-def made_up_look(rng: np.random.Generator, clock: FrameClock) -> Look:
+def made_up_look(rng: np.random.Generator, clock: FrameClock) -> TracedMotion:
     time_s = np.arange(NUM_FRAMES)[:, None] * AWR1843.frame_period_s + clock.node_s
     joints = rng.normal((0.0, 2.3, -0.2), (0.2, 0.1, 0.4), (NUM_JOINTS, 3))
     joints_m = joints + np.array([0.1, -0.4, 0.0]) * time_s[..., None, None]
@@ -73,7 +73,7 @@ def made_up_look(rng: np.random.Generator, clock: FrameClock) -> Look:
         over_faces=rng.random((NUM_FRAMES, FACES, GHOST_POINTS)) < 0.5,
         hidden=hidden,
     )
-    return Look(joints_m=joints_m.astype(np.float32), visibility=visibility, subject=0, height_m=1.75, seed=0)
+    return TracedMotion(joints_m=joints_m.astype(np.float32), visibility=visibility, subject=0, height_m=1.75, seed=0)
 
 
 def error(device: str) -> float:
@@ -90,10 +90,10 @@ def error(device: str) -> float:
 
 def measured(device: str) -> dict[str, float]:
     rng = np.random.default_rng(0)
-    replay, other = Replay(made_up_room(rng), device), Replay(made_up_room(rng), device, IDEAL)
+    replay, other = Resynthesis(made_up_room(rng), device), Resynthesis(made_up_room(rng), device, IDEAL)
     look, frames = made_up_look(rng, replay.synthesis.clock), np.arange(NUM_FRAMES)
 
-    def cube(of: Replay, twin: int) -> Callable[[], object]:
+    def cube(of: Resynthesis, twin: int) -> Callable[[], object]:
         return lambda: torch_cube(of.samples(look, frames, twin=twin), AWR1843).cpu()
 
     values = {"relative_error_of_moving_echoes": error(device)}
@@ -117,7 +117,7 @@ def measured(device: str) -> dict[str, float]:
 def network_seconds(device: str) -> dict[str, float]:
     """Motion to cube by the network, the room encoded once; its echoes are drawn and rendered on the CPU."""
     generator = torch.Generator().manual_seed(0)
-    view = RoomView(
+    view = SceneTensors(
         image=torch.rand(5, IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
         depth_m=1 + 3 * torch.rand(IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
         point_m=torch.rand(NUM_POINTS, 3, generator=generator) * 2.5 + torch.tensor([-1.2, 0.8, -1.2]),
@@ -131,7 +131,7 @@ def network_seconds(device: str) -> dict[str, float]:
         plane_features=torch.rand(NUM_PLANES, PLANE_FEATURES, generator=generator),
     )
     torch.manual_seed(0)
-    room = WovenRoom(WeaverNetwork().eval(), view, AWR1843, device=device)
+    room = LearnedRoom(WeaverNetwork().eval(), view, AWR1843, device=device)
     joints = np.random.default_rng(0).normal((0.0, 2.3, -0.2), (0.2, 0.1, 0.4), (NUM_FRAMES, NUM_JOINTS, 3))
     motion = FrameMotion(
         joints_m=joints.astype(np.float32), velocity_mps=np.zeros_like(joints, dtype=np.float32), subject=0
@@ -145,7 +145,7 @@ def network_seconds(device: str) -> dict[str, float]:
     return {"network_motion_to_cube_cpu_s": min(cpu), "network_motion_to_cube_wall_s": min(wall)}
 
 
-def rows_seconds(replay: Replay, look: Look) -> float:
+def rows_seconds(replay: Resynthesis, look: TracedMotion) -> float:
     """Wall seconds of the device's share of 20 frames: synthesis, room, receiver, transforms."""
     rng, synthesis = np.random.default_rng(2), replay.synthesis
     nodes = len(synthesis.clock.node_s)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mmweaver.experiments.results import write_result
+from studies.report.result_files import write_result
 
 RESULTS = Path(__file__).resolve().parents[1] / "results"
 

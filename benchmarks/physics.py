@@ -35,10 +35,10 @@ def simulation_costs() -> dict[str, float]:
     from mmweaver import Weaver
     from mmweaver.dsp.cube import radar_cube
     from mmweaver.motion.compose import compose
-    from mmweaver.simulation.body import body_of
-    from mmweaver.simulation.echoes import BodyEchoes
-    from mmweaver.simulation.exact import exact_frame
-    from mmweaver.simulation.simulator import Simulator
+    from mmweaver.paths.body_model import body_of
+    from mmweaver.paths.body_paths import BodyEchoes
+    from mmweaver.paths.exact import exact_frame
+    from mmweaver.paths.ray_traced import Simulator
 
     weaver = Weaver(method="physics", radar="awr1843")
     scene = weaver.sample_room().scene

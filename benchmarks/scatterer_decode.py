@@ -12,10 +12,10 @@ from measuring import least_cpu_seconds, least_seconds, report, results_folder
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
+from mmweaver.dsp.point_response import Points
+from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers
-from mmweaver.fields.scatterers.response import Points
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.fields.scatterers.stretch import Stretch
 
 NUM_FRAMES = 20
 REPEATS = 200  # so many that some run finds the machine free
@@ -37,7 +37,7 @@ def field_of(num_points: int) -> ScattererField:
         points=points, static=torch.ones(64, 12, dtype=torch.complex64),
         calibration=torch.ones(12, dtype=torch.complex64), noise_power=1e-6,
     )  # fmt: skip
-    return ScattererField(layers, Stretch.of(AWR1843, NUM_FRAMES, 0), CubeGrid.of(AWR1843, NUM_FRAMES), 1.0, 1.0)
+    return ScattererField(layers, FitWindow.of(AWR1843, NUM_FRAMES, 0), CubeGrid.of(AWR1843, NUM_FRAMES), 1.0, 1.0)
 
 
 def decode_costs() -> dict[str, float]:

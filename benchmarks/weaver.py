@@ -22,11 +22,11 @@ from measuring import RESULTS, report
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.models.weaver_method import FrameMotion, WovenRoom
+from mmweaver.generate import Weaver
+from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.motion.compose import compose
-from mmweaver.simulation.simulator import Simulator
-from mmweaver.weaver import Weaver
+from mmweaver.paths.ray_traced import Simulator
 
 SENTENCE = "a person walks towards the radar, then waves with the left hand"
 NUM_FRAMES, ROUNDS = 20, 15
@@ -57,11 +57,11 @@ def costs(weights: Path, *, with_physics: bool) -> dict[str, float]:
 
     pose = posed()
     network, _ = load_weights(weights)
-    room = WovenRoom(network, scene, config)
+    room = LearnedRoom(network, scene, config)
     steps: dict[str, Callable[[], object]] = {
         "sentence_to_motion": posed,
         "weaver_motion_to_cube": lambda: room.cube([FrameMotion.of(pose, config, NUM_FRAMES)], seed=0),
-        "weaver_encode_room": lambda: WovenRoom(network, scene, config),
+        "weaver_encode_room": lambda: LearnedRoom(network, scene, config),
     }
     if with_physics:
         simulator = Simulator(scene, config)

@@ -15,23 +15,23 @@ if TYPE_CHECKING:
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
     from mmweaver.formats.npz_files import read_radar_npz
     from mmweaver.formats.radar_file import load_radar
-    from mmweaver.recording import Recording, process_recording
-    from mmweaver.weaver import Generation, Weaver
+    from mmweaver.generate import Generation, Weaver
+    from mmweaver.recordings.recording import Recording, process_recording
 
 _HOME = {
     "AdcCube": "core.records",
-    "Generation": "weaver",
+    "Generation": "generate",
     "InputError": "core.errors",
     "PRESETS": "core.presets",
     "PointCloud": "core.records",
     "PoseSequence": "core.records",
     "RadarConfig": "core.radar_config",
     "RadarCube": "core.records",
-    "Recording": "recording",
+    "Recording": "recordings.recording",
     "Scene": "core.records",
-    "Weaver": "weaver",
+    "Weaver": "generate",
     "load_radar": "formats.radar_file",
-    "process_recording": "recording",
+    "process_recording": "recordings.recording",
     "read_radar_npz": "formats.npz_files",
 }
 

@@ -14,15 +14,15 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Sc
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
-from mmweaver.simulation.simulator import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
+from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
 
 if TYPE_CHECKING:
-    from mmweaver.models.weaver_method import WovenRoom
+    from mmweaver.models.learned_paths import LearnedRoom
 
 
 LONGEST_FRAME_S = 0.04  # of chirps: of 28 ms the network is as good as physics, of 62 ms a little worse
 # what meta.json says
-WOVEN = "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
+LEARNED_NOTE = "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
 RECORDED = (
     "what rests is that of the recording of the empty room; echoes of people were written by a network trained on"
     " simulated rooms, and the phases of their skin are drawn"
@@ -122,7 +122,7 @@ def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int
     return num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples
 
 
-class Woven:
+class Learned:
     """The network: a learned field, drawn and rendered. The room is encoded once and kept for the next call.
 
     `weights` is a file that `mmweaver train` wrote; without one, those that come with mmweaver. Raises InputError for
@@ -131,7 +131,7 @@ class Woven:
 
     def __init__(self, weights: Path | None = None) -> None:
         self.weights = weights
-        self._ready: tuple[Scene, RadarConfig, WovenRoom] | None = None
+        self._ready: tuple[Scene, RadarConfig, LearnedRoom] | None = None
 
     def __call__(
         self,
@@ -144,7 +144,7 @@ class Woven:
         keep_adc: bool,
         stages: Stages,
     ) -> Signal:
-        from mmweaver.models.weaver_method import FrameMotion
+        from mmweaver.models.learned_paths import FrameMotion
 
         with stages("encode the room"):
             room = self._room(scene, config)
@@ -153,20 +153,20 @@ class Woven:
             cube = room.cube(motions, seed=seed)
             adc = adc_from_cube(cube) if keep_adc else None
         told = {
-            WOVEN: room.empty is None, RECORDED: room.empty is not None, LEAST_ENERGY: keep_adc,
+            LEARNED_NOTE: room.empty is None, RECORDED: room.empty is not None, LEAST_ENERGY: keep_adc,
             SUPERIMPOSED: len(poses) > 1, CONSTANT: config.active_time_s > LONGEST_FRAME_S,
         }  # fmt: skip
         of_recording = () if room.empty is None else room.empty.assumptions
         sentences = (*(sentence for sentence, is_true in told.items() if is_true), *of_recording)
         return Signal(cube=cube, adc=adc, assumptions=sentences)
 
-    def _room(self, scene: Scene, config: RadarConfig) -> "WovenRoom":
-        from mmweaver.models.weaver_method import WovenRoom
+    def _room(self, scene: Scene, config: RadarConfig) -> "LearnedRoom":
+        from mmweaver.models.learned_paths import LearnedRoom
         from mmweaver.models.weights import load_weights, shipped_weights
 
         if self._ready is None or self._ready[0] is not scene or self._ready[1] != config:
             network, _ = load_weights(self.weights or shipped_weights())
-            self._ready = (scene, config, WovenRoom(network, scene, config, empty=scene.empty_recording))
+            self._ready = (scene, config, LearnedRoom(network, scene, config, empty=scene.empty_recording))
         return self._ready[2]
 
 
@@ -177,7 +177,7 @@ class Auto:
     """
 
     def __init__(self) -> None:
-        self._woven, self._physics = Woven(), Physics()
+        self._woven, self._physics = Learned(), Physics()
 
     def __call__(
         self,
@@ -203,5 +203,5 @@ class Auto:
 
 DEFAULT_METHOD = "auto"
 METHODS: Registry[Callable[[], Method]] = Registry(
-    "method", [(DEFAULT_METHOD, Auto), ("weaver", Woven), ("physics", Physics)]
+    "method", [(DEFAULT_METHOD, Auto), ("weaver", Learned), ("physics", Physics)]
 )

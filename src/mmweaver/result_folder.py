@@ -14,11 +14,11 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.stages import Stages
+from mmweaver.figures.animation import draw_animation
+from mmweaver.figures.figure_data import FigureData
+from mmweaver.figures.preview import draw_preview
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
-from mmweaver.pictures.animation import draw_animation
-from mmweaver.pictures.preview import draw_preview
-from mmweaver.pictures.view import View
 
 META_VERSION = 1
 FILES = {
@@ -35,7 +35,7 @@ FILES = {
 
 def save_results(
     out: str | Path,
-    view: View,
+    view: FigureData,
     meta: dict[str, Any],
     *,
     adc: AdcCube | None = None,

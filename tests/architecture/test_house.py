@@ -10,32 +10,47 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
 
 ROOT = Path(__file__).resolve().parents[2]
-SOURCES = sorted((ROOT / "src" / "mmweaver").rglob("*.py"))
+PACKAGE = sorted((ROOT / "src" / "mmweaver").rglob("*.py"))
+SOURCES = [*PACKAGE, *sorted((ROOT / "studies").rglob("*.py"))]
 VAGUE = {"utils", "util", "helpers", "misc", "common", "base"}
 
 
 def test_every_test_file_mirrors_a_source_file():
-    """tests/dsp/test_cfar.py stands for src/mmweaver/dsp/cfar.py; physics, architecture and real data stand apart."""
-    apart = {"physics", "architecture", "real"}
+    """tests/dsp/test_cfar.py stands for src/mmweaver/dsp/cfar.py, tests/studies/x for studies/x."""
+    without_source = {"physics", "architecture", "real"}
     for test in sorted((ROOT / "tests").rglob("test_*.py")):
         place = test.relative_to(ROOT / "tests")
-        if place.parts[0] in apart:
+        if place.parts[0] in without_source:
             continue
-        mirrored = ROOT / "src" / "mmweaver" / place.parent / place.name.removeprefix("test_")
-        assert mirrored.is_file(), f"{place} mirrors no source file"
+        root = ROOT if place.parts[0] == "studies" else ROOT / "src" / "mmweaver"
+        assert (root / place.parent / place.name.removeprefix("test_")).is_file(), f"{place} mirrors no source file"
 
 
-@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT / "src")))
-def test_sizes_and_names(path: Path):
-    text = path.read_text()
-    assert len(text.splitlines()) <= 500, "split this file"
-    assert path.stem not in VAGUE, "say what is in it"
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.FunctionDef):
-            length = (node.end_lineno or node.lineno) - node.lineno + 1
-            assert length <= 80, f"{node.name} has {length} lines"
-            names = [argument.arg for argument in node.args.args + node.args.kwonlyargs]
-            assert "range" not in names, f"{node.name} shadows range"
+def test_sizes_and_names():
+    for path in SOURCES:
+        text = path.read_text()
+        assert len(text.splitlines()) <= 500, f"split {path}"
+        assert path.stem not in VAGUE, f"say what is in {path}"
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef):
+                length = (node.end_lineno or node.lineno) - node.lineno + 1
+                assert length <= 80, f"{path}: {node.name} has {length} lines"
+                names = [argument.arg for argument in node.args.args + node.args.kwonlyargs]
+                assert "range" not in names, f"{path}: {node.name} shadows range"
+
+
+def test_no_public_class_and_no_file_has_a_name_twice():
+    """But for the command line, whose files are named after their commands."""
+    classes: dict[str, Path] = {}
+    files: dict[str, Path] = {}
+    for path in SOURCES:
+        if path.stem not in ("__init__", "__main__") and path.parent.name != "cli":
+            assert path.stem not in files, f"{path} and {files.get(path.stem)}"
+            files[path.stem] = path
+        for node in ast.parse(path.read_text()).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                assert node.name not in classes, f"{node.name} in {path} and {classes.get(node.name)}"
+                classes[node.name] = path
 
 
 def test_shapes_are_checked_in_tests():

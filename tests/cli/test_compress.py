@@ -3,10 +3,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.fields.echoes import SMALL, crowd
 
 from mmweaver.cli.main import main
 from mmweaver.formats.npz_files import write_radar_npz
+from tests.fields.echoes import SMALL, crowd
 
 
 @pytest.fixture

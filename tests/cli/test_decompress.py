@@ -2,11 +2,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.fields.echoes import crowd, error_db
 
 from mmweaver.cli.main import main
-from mmweaver.fields.codec.mmw import compressed
+from mmweaver.compression.mmw_codec import compressed
 from mmweaver.formats.npz_files import read_radar_npz
+from tests.fields.echoes import crowd, error_db
 
 
 @pytest.fixture(scope="module")

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from tests.captures import write_camera
 
 from mmweaver import result_folder
 from mmweaver.cli.main import main
 from mmweaver.formats.npz_files import read_npz, read_radar_npz
-from mmweaver.scene.sample import sample_photo
+from mmweaver.scene.sample_photo import sample_photo
+from tests.captures import write_camera
 
 WALK = "a person walks towards the radar"
 

@@ -2,10 +2,10 @@ import json
 from pathlib import Path
 
 import pytest
-from tests.fields.echoes import crowd
 
 from mmweaver.cli.main import main
-from mmweaver.fields.codec.mmw import compressed
+from mmweaver.compression.mmw_codec import compressed
+from tests.fields.echoes import crowd
 
 
 def test_what_a_file_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

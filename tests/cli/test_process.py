@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.captures import counts, radar_of_cfg, write_radar
 
 from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
@@ -13,6 +12,7 @@ from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
 from mmweaver.formats.dca1000 import write_bin
 from mmweaver.formats.npz_files import read_npz, read_points_npz, read_radar_npz
+from tests.captures import counts, radar_of_cfg, write_radar
 
 BARE_CFG = """channelCfg 15 7 0
 adcCfg 2 1

@@ -14,9 +14,9 @@ import torch
 
 from mmweaver.cli.main import main
 from mmweaver.core.errors import InputError
-from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.generate import Weaver
+from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
-from mmweaver.weaver import Weaver
 
 pytest.importorskip("zarr")
 

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 import torch
 from safetensors.torch import load_file
-from tests.training.tiny_data import tiny_data
 
 from mmweaver.cli.main import main
 from mmweaver.models.weights import load_into
+from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 

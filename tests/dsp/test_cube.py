@@ -10,7 +10,7 @@ from mmweaver.core.presets import AWR1843, BGT60, HUPR, IWR6843, MMMESH, PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.cube import adc_from_cube, radar_cube, remove_static, remove_static_adc, resting_cube
+from mmweaver.dsp.cube import adc_from_cube, radar_cube, remove_static, remove_static_adc, static_cube
 
 
 def noise_adc(config: RadarConfig, num_frames: int = 1) -> AdcCube:
@@ -114,5 +114,5 @@ def test_an_unknown_removal_is_refused():
 def test_what_rests_is_known_from_zero_doppler_alone(config: RadarConfig):
     once = noise_adc(config).samples[:, :1]
     whole = radar_cube(AdcCube(samples=np.repeat(once, config.num_loops, axis=1), config=config, scale=1.0))
-    made = resting_cube(whole.values[0, :, config.num_loops // 2], config)
+    made = static_cube(whole.values[0, :, config.num_loops // 2], config)
     assert error_db(made.values, whole.values) < -80

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from tests.cubes import point_adc, point_cube
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.dsp.detection import check_points, detect
 from mmweaver.dsp.firmware import FirmwareCloud, firmware_points
 from mmweaver.dsp.points import point_cloud
+from tests.cubes import point_adc, point_cube
 
 
 def test_by_name():

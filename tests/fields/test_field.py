@@ -2,12 +2,12 @@
 
 import numpy as np
 from jaxtyping import Complex
-from tests.cubes import SMALL
 
 from mmweaver.core.records import CubeGrid
 from mmweaver.fields import field as field_module
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.sampling import Coordinates
+from tests.cubes import SMALL
 
 
 class Formula(SignalField):

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 import torch
-from tests.cubes import SMALL
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
@@ -17,6 +16,7 @@ from mmweaver.fields.paper_inr import (
 )
 from mmweaver.fields.positional_encoding import harmonics
 from mmweaver.fields.sampling import finer_grid
+from tests.cubes import SMALL
 
 
 def random_field(config=SMALL, num_frames: int = 3, *, is_centred: bool = True, activation: str = "relu") -> InrField:

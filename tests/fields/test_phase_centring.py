@@ -2,12 +2,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.cubes import SMALL, point_adc, point_cube
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.fields.phase_centring import centred, centring_turn, centring_turn_at, uncentred
+from tests.cubes import SMALL, point_adc, point_cube
 
 
 def turn_per_bin_rad(values: np.ndarray, axis: int) -> float:

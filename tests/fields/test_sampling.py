@@ -4,7 +4,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
-from mmweaver.fields.sampling import antenna_at, antenna_coordinate, coordinates_on, drawn_grid, finer_grid
+from mmweaver.fields.sampling import antenna_at, antenna_coordinate, coordinates_on, finer_grid, sampled_grid
 
 NATIVE = CubeGrid.of(AWR1843, 3)
 
@@ -60,7 +60,7 @@ def test_one_antenna_is_enough():
 
 def test_drawn_coordinates_stay_within_the_radius():
     for radius in (0, 1, 7):
-        _, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, drawn_grid(NATIVE, radius, seed=0))
+        _, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, sampled_grid(NATIVE, radius, seed=0))
         for at in (range_bin, doppler_bin, antenna):
             offset = at - np.arange(len(at))
             assert offset.min() > -1e-6
@@ -72,10 +72,10 @@ def test_drawn_coordinates_stay_within_the_radius():
 
 def test_the_radius_is_one_of_the_papers():
     with pytest.raises(InputError, match="0 to 7"):
-        drawn_grid(NATIVE, 8, seed=0)
+        sampled_grid(NATIVE, 8, seed=0)
 
 
 def test_draws_follow_the_seed():
-    one, again, other = (drawn_grid(NATIVE, 3, seed=seed).range_m for seed in (0, 0, 1))
+    one, again, other = (sampled_grid(NATIVE, 3, seed=seed).range_m for seed in (0, 0, 1))
     assert (one == again).all()
     assert (one != other).any()

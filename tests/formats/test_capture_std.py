@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
-from tests.captures import CFG, counts, radar_of_cfg, write_radar
 
 from mmweaver.core.errors import InputError
 from mmweaver.formats.capture_std import is_capture, radar_folder, read_radar_capture
+from tests.captures import CFG, counts, radar_of_cfg, write_radar
 
 
 @pytest.fixture

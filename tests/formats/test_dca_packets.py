@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.captures import PAYLOAD, START_S, Packet, counts, packets_of, pcap_of, radar_of_cfg
 
 from mmweaver.core.errors import InputError
 from mmweaver.formats.dca_packets import PacketCapture, read_pcap
+from tests.captures import PAYLOAD, START_S, Packet, counts, packets_of, pcap_of, radar_of_cfg
 
 FRAME_BYTES = 8 * 2 * 4 * 64 * 4
 

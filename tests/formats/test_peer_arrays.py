@@ -3,15 +3,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.fields.echoes import direction_of, middle_s
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import HUPR, MMMESH, RF_GENESIS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.formats.peer_arrays import read_hupr, read_mmmesh, read_rf_genesis, recognised
-from mmweaver.recording import read_any_cube
-from mmweaver.simulation.exact import exact_frame
+from mmweaver.paths.exact import exact_frame
+from mmweaver.recordings.recording import read_any_cube
+from tests.fields.echoes import direction_of, middle_s
 
 
 def simulated_frame(config: RadarConfig = HUPR, azimuth_rad: float = 0.3) -> np.ndarray:

@@ -2,11 +2,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.cubes import SMALL, point_cube
 
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.metrics.cells import cells_of, noise_floor
+from tests.cubes import SMALL, point_cube
 
 
 def test_the_floor_of_noise_is_its_power():

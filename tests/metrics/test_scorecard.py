@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.cubes import point_cube
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.metrics.scorecard import METRICS, Scorecard, scorecard
+from tests.cubes import point_cube
 
 HEADLINES = [name for name, metric in METRICS.items() if metric.is_headline]
 

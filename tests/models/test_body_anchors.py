@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from tests.rooms import STANDING_M, back_wall, floor, scene_of, side_wall
 
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import JOINT_NAMES
-from mmweaver.models.body_anchors import MIRRORED, NUM_MIRRORS, Anchors, ghost_anchors
-from mmweaver.models.room_view import RoomView
+from mmweaver.models.body_anchors import MIRRORED, NUM_REFLECTORS, Anchors, ghost_anchors
+from mmweaver.models.scene_tensors import SceneTensors
+from tests.rooms import STANDING_M, back_wall, floor, scene_of, side_wall
 
 SPINE = 1  # of MIRRORED
 STANDING = torch.tensor([STANDING_M[name] for name in JOINT_NAMES]) + torch.tensor([0.0, 2.0, -1.2])
@@ -19,13 +19,13 @@ STANDING = torch.tensor([STANDING_M[name] for name in JOINT_NAMES]) + torch.tens
 
 def _ghosts(*planes: Plane) -> Anchors:
     """Of one person who stands still, (face, joint)."""
-    view = RoomView.stacked([RoomView.of(scene_of((floor(), *planes)), PRESETS["awr1843"])])
+    view = SceneTensors.stacked([SceneTensors.of(scene_of((floor(), *planes)), PRESETS["awr1843"])])
     joints = STANDING.float()[None, None]
     return ghost_anchors(joints, torch.zeros_like(joints), view)
 
 
 def _by_face(values: torch.Tensor) -> torch.Tensor:
-    return values[0, 0].unflatten(0, (NUM_MIRRORS, len(MIRRORED)))
+    return values[0, 0].unflatten(0, (NUM_REFLECTORS, len(MIRRORED)))
 
 
 def test_a_ghost_lies_between_the_body_and_its_image():

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import torch
-from tests.rooms import STANDING_M
 
 from mmweaver.core.skeleton import JOINT_NAMES, joint
-from mmweaver.models.body_anchors import NUM_GHOSTS, NUM_MIRRORS
+from mmweaver.models.body_anchors import NUM_GHOSTS, NUM_REFLECTORS
 from mmweaver.models.body_prior import BOTH_WAYS, body_prior, ghost_section
-from mmweaver.simulation.body import Body
+from mmweaver.paths.body_model import ScatteringBody
+from tests.rooms import STANDING_M
 
 
 def _standing(y: float, turn_deg: float = 0.0) -> np.ndarray:
@@ -29,7 +29,7 @@ def test_its_sum_is_that_of_a_simulated_person():
         joints = _standing(2.0, turn_deg)
         totals = []
         for subject in range(20):
-            body = Body(subject, 1.75)
+            body = ScatteringBody(subject, 1.75)
             skin = body.skin(joints[None])
             cos = -(skin.normal * skin.place_m).sum(-1) / np.linalg.norm(skin.place_m, axis=-1)
             totals.append((body.echo.back(cos) * body.area_m2 * body.brightness).sum())
@@ -59,6 +59,6 @@ def test_ghosts_share_out_what_the_body_returns():
     prior = body_prior(joints)
     ghosts = ghost_section(joints, prior)
     assert ghosts.shape == (1, 1, NUM_GHOSTS)
-    of_each_face = ghosts.unflatten(-1, (NUM_MIRRORS, -1)).sum(-1)
+    of_each_face = ghosts.unflatten(-1, (NUM_REFLECTORS, -1)).sum(-1)
     whole = float(BOTH_WAYS * prior.cross_section_m2.sum())
-    assert of_each_face.flatten().tolist() == pytest.approx([whole] * NUM_MIRRORS, rel=1e-4)
+    assert of_each_face.flatten().tolist() == pytest.approx([whole] * NUM_REFLECTORS, rel=1e-4)

@@ -14,7 +14,7 @@ from mmweaver.models.paper_method import load_paper, paper_field, paper_method, 
 from mmweaver.models.paper_network import PaperNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample import sample_photo
+from mmweaver.scene.sample_photo import sample_photo
 
 CARD = WeightsCard(
     recipe="paper", licence="MIT", dataset_sha256="", radar="awr1843", steps=1, seed=0, validation_loss=1.0,

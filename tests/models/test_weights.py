@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from mmweaver.core.errors import InputError
-from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import WeightsCard, load_weights, read_card, save_weights
 
 CARD = WeightsCard(

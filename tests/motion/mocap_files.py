@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
+from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import compose
-from mmweaver.motion.resample import resample
 from rooms import FLOOR_Z_M, WINDOW_M, room
 
 Array = np.ndarray

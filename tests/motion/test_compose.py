@@ -8,9 +8,9 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
 from mmweaver.core.skeleton import BONES, joint
-from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
+from mmweaver.motion.animation.skeleton_proportions import SHORTEST_M, TALLEST_M, SkeletonProportions
 from mmweaver.motion.compose import Motion, compose
-from mmweaver.motion.floor_map import FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap
 from rooms import FLOOR_Z_M, WINDOW_M, furnished, room, seat, sofa_room
 
 ACTIVITIES = (
@@ -257,6 +257,6 @@ def test_walking_while_waving_has_the_legs_of_one_and_the_hand_of_the_other():
 
 def test_body_proportions():
     for height in (1.63, 1.96):
-        body = Body(height)
+        body = SkeletonProportions(height)
         assert body.leg_m / height == pytest.approx(0.474, abs=0.01)
         assert body.pelvis_height_m(1.0) / height == pytest.approx(0.565, abs=0.01)

@@ -4,19 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.rooms import back_wall, floor, plane, scene_of, side_wall, standing_person
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube
-from mmweaver.simulation.antenna import mirror_gain, scatterer_gain
-from mmweaver.simulation.materials import MATERIALS, reflection
-from mmweaver.simulation.mirrors import mirrors_of, specular_paths
-from mmweaver.simulation.receiver import IDEAL, Impairments
-from mmweaver.simulation.simulator import Simulator
-from mmweaver.simulation.skin import LAMBERT
-from mmweaver.simulation.small_motions import STILL, SmallMotions
-from mmweaver.simulation.synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
+from mmweaver.paths.adc_synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.paths.antenna import scatterer_gain, specular_gain
+from mmweaver.paths.image_method import specular_paths, specular_reflectors
+from mmweaver.paths.materials import MATERIALS, reflection
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.receiver import IDEAL, Impairments
+from mmweaver.paths.skin_scattering import LAMBERT
+from tests.rooms import back_wall, floor, plane, scene_of, side_wall, standing_person
 
 CLOCK = FrameClock(AWR1843)
 
@@ -87,7 +87,7 @@ def test_a_living_person_never_rests():
     """Who stands sways and breathes by millimetres a second: faint against the body, far above nothing."""
     simulator = Simulator(scene_of((floor(),)), AWR1843, IDEAL)
     moving_db = []
-    for motions in (SmallMotions(), STILL):
+    for motions in (MicroMotionSettings(), STILL):
         adc = simulator.run(standing_person((0.2, 2.0, -1.2)), num_frames=4, seed=0, motions=motions).adc.samples
         person = adc - simulator.room_adc
         moving = person - person.mean(axis=1, keepdims=True)
@@ -133,7 +133,7 @@ def test_jitter_lets_resting_clutter_leak_into_doppler():
 
 def test_one_wall_is_the_closed_form_image():
     wall = back_wall(y_m=2.5)
-    (path,) = specular_paths(mirrors_of((wall,)), AWR1843.wavelength_m, AWR1843.centre_frequency_hz)
+    (path,) = specular_paths(specular_reflectors((wall,)), AWR1843.wavelength_m, AWR1843.centre_frequency_hz)
     assert np.allclose(path.shift_m, [0, 5.0, 0])
     assert np.allclose(path.corners_m, [[0, 2.5, 0]])
     material = MATERIALS["plasterboard"]
@@ -141,7 +141,7 @@ def test_one_wall_is_the_closed_form_image():
     assert path.coefficient == pytest.approx(gamma, rel=1e-3)
     room = Simulator(scene_of((wall,)), AWR1843, IDEAL).room
     start = room.counts["diffuse"]
-    assert abs(room.echoes.amplitude[start]) == pytest.approx(mirror_gain(AWR1843) * abs(gamma) / 5.0, rel=1e-3)
+    assert abs(room.echoes.amplitude[start]) == pytest.approx(specular_gain(AWR1843) * abs(gamma) / 5.0, rel=1e-3)
     tx, rx = np.asarray(AWR1843.tx_position_m), np.asarray(AWR1843.rx_position_m)
     image = tx * [1, -1, 1] + [0, 5.0, 0]
     assert np.allclose(room.echoes.way_m[start], np.linalg.norm(image[:, None] - rx, axis=-1), atol=1e-9)
@@ -150,7 +150,7 @@ def test_one_wall_is_the_closed_form_image():
 def test_a_corner_has_its_double_bounce_once():
     """Wall and floor at right angles: two single images and one corner image, straight through the corner."""
     paths = specular_paths(
-        mirrors_of((back_wall(y_m=2.5), floor(-1.2))), AWR1843.wavelength_m, AWR1843.centre_frequency_hz
+        specular_reflectors((back_wall(y_m=2.5), floor(-1.2))), AWR1843.wavelength_m, AWR1843.centre_frequency_hz
     )
     images = sorted(tuple(np.round(path.shift_m, 6)) for path in paths)
     assert images == [(0.0, 0.0, -2.4), (0.0, 5.0, -2.4), (0.0, 5.0, 0.0)]
@@ -158,7 +158,7 @@ def test_a_corner_has_its_double_bounce_once():
     assert np.allclose(corner.corners_m, [0, 2.5, -1.2], atol=1e-6)
     way = np.array([0, 5.0, -2.4]) / np.hypot(5.0, 2.4)
     expected = 1.0 + 0j
-    for mirror in mirrors_of((back_wall(y_m=2.5), floor(-1.2))):
+    for mirror in specular_reflectors((back_wall(y_m=2.5), floor(-1.2))):
         expected *= complex(mirror.coefficient(np.abs(way @ mirror.plane.normal), AWR1843.centre_frequency_hz))
     assert corner.coefficient == pytest.approx(expected, rel=0.05)
 
@@ -188,8 +188,8 @@ def test_furniture_hides_the_person_and_the_person_hides_the_wall():
     echo = hidden.run(person, num_frames=1, seed=0).adc.samples[0] - hidden.room_adc
     assert np.abs(echo).max() == 0
     without_shadow = seen.run(person, num_frames=1, seed=0).adc.samples[0] - seen.room_adc
-    from mmweaver.simulation.body import body_of
-    from mmweaver.simulation.echoes import BodyEchoes
+    from mmweaver.paths.body_model import body_of
+    from mmweaver.paths.body_paths import BodyEchoes
 
     echoes = BodyEchoes(seen.room, body_of(person), seen._joints_at_nodes(person, np.arange(1)))
     shadow = echoes.shadowed(0)
@@ -231,7 +231,7 @@ def test_cutting_the_frames_changes_no_bit(monkeypatch: pytest.MonkeyPatch):
     simulator = Simulator(scene_of((floor(), back_wall())), AWR1843)
     person = standing_person((0.2, 2.0, -1.2), (0.0, -0.5, 0.0))
     whole = simulator.run(person, num_frames=3, seed=0).adc.samples
-    monkeypatch.setattr("mmweaver.simulation.simulator.CHUNK_FRAMES", 2)
+    monkeypatch.setattr("mmweaver.paths.ray_traced.CHUNK_FRAMES", 2)
     assert whole.tobytes() == simulator.run(person, num_frames=3, seed=0).adc.samples.tobytes()
 
 

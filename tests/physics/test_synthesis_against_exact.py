@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.simulation.exact import exact_frame
-from mmweaver.simulation.synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.paths.adc_synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.paths.exact import exact_frame
 
 
 def moving_points(count: int, speed_mps: float, acceleration_mps2: float, seed: int = 0):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.experiments.real_rooms import agreement
-from mmweaver.weaver import Weaver
+from mmweaver.generate import Weaver
+from studies.scene.real_rooms import agreement
 
 WALK = "a person walks towards the radar, then waves with the left hand"
 SENTENCES = ("someone does jumping jacks", "the user is sitting on a chair and drinks water", "a man boxes quickly")

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.experiments.empty_room import empty_room
-from mmweaver.experiments.motiongpt_data import wide_room
-from mmweaver.motion.mocap.arrays import clips_of
-from mmweaver.motion.mocap.dense import densely
+from mmweaver.motion.mocap.clip_placement import place_clip
+from mmweaver.motion.mocap.clip_resampling import densely
 from mmweaver.motion.mocap.humanml3d import CONTACTS, features_from_joints, joints_from_features
-from mmweaver.motion.mocap.placing import place_clip
-from mmweaver.motion.mocap.read import read_motion
+from mmweaver.motion.mocap.joint_arrays import clips_of
+from mmweaver.motion.mocap.read_motion import read_motion
+from studies.motion.motiongpt_data import wide_room
+from studies.physics.empty_room_cube import empty_room
 
 SAMPLE = Path("motion") / "humanml3d_sample"
 CMU = Path("motion") / "cmu" / "cmu_joints_m_120fps.npz"

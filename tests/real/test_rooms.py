@@ -9,7 +9,7 @@ import pytest
 from mmweaver.core.records import Scene
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.geometry.rotations import pitch_and_roll_rad
-from mmweaver.scene.photo import read_photo
+from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 
 ROOMS = ("kinect2_living_room", "kinect_dining_room", "redwood_chair_corner", "tum_office_desk")

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.assemble import assemble
-from mmweaver.motion.body import Body
-from mmweaver.motion.plan import Step
-from mmweaver.motion.root_path import Move, RootPath
+from mmweaver.motion.animation.assemble import assemble
+from mmweaver.motion.animation.root_path import Move, RootPath
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.language.plan import Step
 
 RATE_HZ = 120.0
 # Joints of the recordings' 38: root, left and right hip, knee, ankle, toes, wrist.
@@ -85,7 +85,7 @@ def ours(speed_mps: float, seed: int) -> Gait:
         RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=(move,)),
         ((move,),),
         (0.45,),
-        Body(1.75),
+        SkeletonProportions(1.75),
         seed=seed,
         duration_s=seconds,
         floor_z_m=0.0,

@@ -7,9 +7,9 @@ import pytest
 
 pytest.importorskip("sklearn")
 
-from mmweaver.tasks.frozen_activity import load_frozen
-from mmweaver.tasks.recording_files import read_recordings
-from mmweaver.tasks.scoring import judge, report
+from mmweaver.recognition.frozen_activity import load_frozen
+from mmweaver.recognition.recording_files import read_recordings
+from mmweaver.recognition.scoring import evaluate_recogniser, report
 
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "zero_shot"
 
@@ -18,7 +18,7 @@ RESULTS = Path(__file__).resolve().parents[2] / "results" / "zero_shot"
 def test_the_score_is_that_of_the_results(real_data: Path, name: str):
     frozen = load_frozen(name)
     people = read_recordings(real_data / "pointclouds" / "radhar", frozen.labels)
-    found = report(judge(frozen.train(), people, frozen.window_s))
+    found = report(evaluate_recogniser(frozen.train(), people, frozen.window_s))
     told = json.loads((RESULTS / f"{name}.json").read_text())["rows"][0]["metrics"]
     for key in ("window", "three_windows", "recording"):
         assert abs(found[key]["balanced_accuracy"] - told[key]["value"]) < 0.01, key

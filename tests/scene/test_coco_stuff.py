@@ -2,8 +2,8 @@
 
 import pytest
 
+from mmweaver.paths.materials import MATERIALS
 from mmweaver.scene.coco_stuff import ALIASES, GLASS, MATERIAL, MIRRORS, NAMES, coco_class, material_of
-from mmweaver.simulation.materials import MATERIALS
 
 
 def test_numbers_are_those_of_coco_stuff():

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from tests.training.tiny_data import StoppedError, tiny_data
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.training.activity_examples import activity_examples
 from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityLearner, ActivityRecipe, train_activity
+from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.trainer import Progress
-from mmweaver.training.workplace import Workplace, moved
+from tests.training.tiny_data import StoppedError, tiny_data
 
 pytest.importorskip("zarr")
 RECIPE = ActivityRecipe(steps=4, batch_size=2, validate_every=2)
@@ -81,7 +81,7 @@ def test_two_shares_have_the_gradient_of_the_whole(data: Path, tmp_path: Path):
 
 
 def test_bf16_and_another_device_take_part(data: Path, tmp_path: Path):
-    trainer = train_activity(data, tmp_path, RECIPE, workplace=Workplace(precision="bf16"))
+    trainer = train_activity(data, tmp_path, RECIPE, workplace=ComputeDevice(precision="bf16"))
     assert torch.isfinite(torch.tensor(trainer.best.value))
     learner = ActivityLearner(ActivityNetwork(AWR1843)).to("meta")
     terms = learner(moved(trainer._train(0, (0, 1)), torch.device("meta")))

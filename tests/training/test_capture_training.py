@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.generate import Weaver
+from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, sha256_of
+from mmweaver.recordings.captures import Capture, read_capture, rooms_of
 from mmweaver.training.capture_training import CaptureRecipe, gain_of, tune, write_tuned
-from mmweaver.training.captures import Capture, read_capture, rooms_of
-from mmweaver.weaver import Weaver
 
 RECIPE = CaptureRecipe(steps=6, batch_size=1, frames=2, validate_every=3, validation_batches=1, warm_up_steps=1,
                        learning_rate=1e-3)  # fmt: skip

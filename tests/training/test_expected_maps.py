@@ -7,11 +7,11 @@ import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.data.generate import generate
-from mmweaver.data.plan import DatasetPlan
-from mmweaver.data.store import StoredRoom, read_rooms
+from mmweaver.datasets.dataset_plan import DatasetPlan
+from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
+from mmweaver.datasets.generate_rooms import generate
 from mmweaver.training.expected_maps import ExpectedMaps
-from mmweaver.training.weaver_examples import examples, power_maps
+from mmweaver.training.network_examples import examples, power_maps
 
 pytest.importorskip("zarr")
 DRAWS = 16

@@ -7,7 +7,7 @@ import torch
 
 pytest.importorskip("transformers")
 
-from mmweaver.motion.motiongpt.language import sample_codes
+from mmweaver.motion.motiongpt.language_model import sample_codes
 from mmweaver.training.motion_language import LanguageRecipe, train_language
 
 SIZES: dict[str, Any] = {

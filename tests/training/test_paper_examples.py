@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from tests.training.tiny_data import tiny_data
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.paper_method import unit_sqrt_mw
-from mmweaver.training.paper_examples import PaperRoom, draw_paper_batch, paper_rooms
+from mmweaver.training.paper_examples import PaperRoom, paper_rooms, sample_paper_batch
+from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 
@@ -22,7 +22,7 @@ def room(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 
 def test_patches_hold_what_the_cube_holds_at_those_coordinates(room: PaperRoom):
-    batch = draw_paper_batch([room], 0, 0, size=1)
+    batch = sample_paper_batch([room], 0, 0, size=1)
     assert batch.truth[0].shape == (2, 21, 32, 12)
     assert batch.encoded[0].shape == (21 * 32 * 12, 51)
     r, d, a = (batch.encoded[0, :, at] for at in (0, 17, 34))
@@ -34,9 +34,9 @@ def test_patches_hold_what_the_cube_holds_at_those_coordinates(room: PaperRoom):
 
 
 def test_processes_share_a_batch(room: PaperRoom):
-    whole = draw_paper_batch([room], 0, 3, size=4)
+    whole = sample_paper_batch([room], 0, 3, size=4)
     for rank in (0, 1):
-        part = draw_paper_batch([room], 0, 3, size=4, share=(rank, 2))
+        part = sample_paper_batch([room], 0, 3, size=4, share=(rank, 2))
         assert torch.equal(part.truth, whole.truth[rank::2])
         assert torch.equal(part.motion, whole.motion[rank::2])
-    assert not torch.equal(whole.truth, draw_paper_batch([room], 0, 4, size=4).truth)
+    assert not torch.equal(whole.truth, sample_paper_batch([room], 0, 4, size=4).truth)

@@ -2,12 +2,12 @@
 
 import pytest
 import torch
-from tests.cubes import point_cube
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.metrics.signal import complex_ssim
+from mmweaver.metrics.cube_errors import complex_ssim
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.training.paper_loss import SHARE_CSSIM, paper_loss
+from tests.cubes import point_cube
 
 
 def _terms(made: torch.Tensor, truth: torch.Tensor) -> dict[str, float]:

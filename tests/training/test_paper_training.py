@@ -5,17 +5,17 @@ from pathlib import Path
 
 import pytest
 import torch
-from tests.training.tiny_data import StoppedError, tiny_data
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.models.paper_network import PaperNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
-from mmweaver.training.paper_examples import draw_paper_batch, paper_rooms
+from mmweaver.training.device import ComputeDevice, moved
+from mmweaver.training.paper_examples import paper_rooms, sample_paper_batch
 from mmweaver.training.paper_training import PaperLearner, PaperRecipe, train_paper
 from mmweaver.training.trainer import Progress
-from mmweaver.training.workplace import Workplace, moved
+from tests.training.tiny_data import StoppedError, tiny_data
 
 pytest.importorskip("zarr")
 RECIPE = PaperRecipe(steps=4, batch_size=2, validate_every=2, validation_batches=2)
@@ -68,11 +68,11 @@ def test_a_longer_run_goes_on_and_no_other_setting_may_change(data: Path, featur
 def test_bf16_does_no_harm_and_nothing_stays_on_the_cpu(data: Path, features: Path):
     from mmweaver.models.activity_network import load_activity
 
-    batch = draw_paper_batch(paper_rooms(data, "train"), 0, 0, size=2)
+    batch = sample_paper_batch(paper_rooms(data, "train"), 0, 0, size=2)
     torch.manual_seed(0)
     learner = PaperLearner(PaperNetwork(), load_activity(features, AWR1843), AWR1843).eval()
     exact = sum(float(term.detach()) for term in learner(batch).values())
-    with torch.inference_mode(), Workplace(precision="bf16").arithmetic():
+    with torch.inference_mode(), ComputeDevice(precision="bf16").arithmetic():
         mixed = learner(batch)
     assert all(term.dtype == torch.float32 for term in mixed.values())
     assert sum(float(term) for term in mixed.values()) == pytest.approx(exact, rel=0.02)

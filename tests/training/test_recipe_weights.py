@@ -4,17 +4,17 @@ from pathlib import Path
 
 import pytest
 import torch
-from tests.training.tiny_data import tiny_data
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
-from mmweaver.data.store import read_rooms
+from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.models.activity_network import load_activity
 from mmweaver.models.paper_method import load_paper
 from mmweaver.models.weights import read_card
 from mmweaver.training.activity_training import ActivityRecipe, train_activity
 from mmweaver.training.paper_training import PaperRecipe, train_paper
 from mmweaver.training.recipe_weights import write_recipe_weights
+from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.seeding import stream
-from mmweaver.scene.segmenter_features import CHANNELS, COLOURS, HEIGHT, MEASURED
+from mmweaver.scene.segmentation.segmenter_features import CHANNELS, COLOURS, HEIGHT, MEASURED
 from mmweaver.training.segmenter_data import make_example, make_examples, varied
 
 

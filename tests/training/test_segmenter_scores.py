@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from mmweaver.scene.builtin_segmenter import GROUP_NAMES
-from mmweaver.training.segmenter_data import Example, make_example
+from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
+from mmweaver.training.segmenter_data import SegmenterExample, make_example
 from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
 
 
 @pytest.fixture(scope="module")
-def example() -> Example:
+def example() -> SegmenterExample:
     return make_example("office", 1000)
 
 
-def test_scores_of_perfect_and_of_constant_guesses(example: Example):
+def test_scores_of_perfect_and_of_constant_guesses(example: SegmenterExample):
     perfect = scores(confusion([example], lambda features: example.groups))
     assert (perfect["miou"], perfect["right"]) == (1.0, 1.0)
     wall = GROUP_NAMES.index("wall-other")
@@ -23,6 +23,6 @@ def test_scores_of_perfect_and_of_constant_guesses(example: Example):
     assert constant["right"] == pytest.approx(share, abs=1e-3)
 
 
-def test_geometry_alone_finds_the_floor(example: Example):
+def test_geometry_alone_finds_the_floor(example: SegmenterExample):
     found = scores(confusion([example], by_geometry))
     assert found["iou"]["floor-other"] > 0.6

@@ -2,14 +2,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.cubes import SMALL, point_cube
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.fields.paper_inr import InrField
 from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.signal import nmse_db, peak_of
-from mmweaver.training.single_signal import PAPER, PAPER_BASE, RECIPES, TUNED_SHORT, FitRecipe, _Draw, fit
+from mmweaver.metrics.cube_errors import nmse_db, peak_of
+from mmweaver.training.single_signal import PAPER, PAPER_BASE, RECIPES, TUNED_SHORT, InrFitRecipe, _Draw, fit
+from tests.cubes import SMALL, point_cube
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +17,7 @@ def cube() -> RadarCube:
     return point_cube(replace(SMALL, num_range_bins=16), num_frames=3, noise=0.05)
 
 
-def quick(recipe: FitRecipe, **changes) -> FitRecipe:
+def quick(recipe: InrFitRecipe, **changes) -> InrFitRecipe:
     return replace(recipe, **{"steps": 60, "points": 1_024, **changes})
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 import torch
-from tests.training.toy_learner import RECIPE, ToyLearner, draw, trainer
 
 from mmweaver.core.errors import InputError
+from mmweaver.training.device import ComputeDevice
 from mmweaver.training.trainer import Progress
-from mmweaver.training.workplace import Workplace
+from tests.training.toy_learner import RECIPE, ToyLearner, draw, trainer
 
 
 def weights(out: Path) -> dict[str, torch.Tensor]:
@@ -64,7 +64,7 @@ def test_two_processes_are_one_with_the_same_batch_even_after_a_kill(tmp_path: P
 
 def test_a_batch_that_cannot_be_shared_is_refused(tmp_path: Path):
     with pytest.raises(InputError, match="multiple"):
-        trainer(tmp_path, workplace=Workplace(share=(0, 3)))
+        trainer(tmp_path, workplace=ComputeDevice(share=(0, 3)))
 
 
 def test_steps_without_meaning_are_passed_over_and_many_end_it(tmp_path: Path):
@@ -106,7 +106,10 @@ def test_rows_of_steps_that_were_lost_go(tmp_path: Path):
 
 def test_bf16_trains_as_well(tmp_path: Path):
     long = replace(RECIPE, steps=200)
-    plain, mixed = trainer(tmp_path / "a", long), trainer(tmp_path / "b", long, workplace=Workplace(precision="bf16"))
+    plain, mixed = (
+        trainer(tmp_path / "a", long),
+        trainer(tmp_path / "b", long, workplace=ComputeDevice(precision="bf16")),
+    )
     plain.run()
     mixed.run()
     assert mixed.best.value == pytest.approx(plain.best.value, rel=0.3)
@@ -129,6 +132,6 @@ def test_tensorboard_holds_figures_and_pictures(tmp_path: Path):
 def test_devices_and_precisions_that_are_not_there_are_refused():
     for words, told in ((("nonsense", "auto"), "device"), (("cpu", "int4"), "precision")):
         with pytest.raises(InputError, match=told):
-            Workplace.chosen(*words)
-    assert Workplace.chosen("cpu").precision == "float32"
+            ComputeDevice.chosen(*words)
+    assert ComputeDevice.chosen("cpu").precision == "float32"
     assert isinstance(ToyLearner(), torch.nn.Module)

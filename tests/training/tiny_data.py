@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.data.generate import generate
-from mmweaver.data.plan import DatasetPlan
+from mmweaver.datasets.dataset_plan import DatasetPlan
+from mmweaver.datasets.generate_rooms import generate
 
 
 def tiny_data(folder: Path, *, geometry_only: bool = False) -> Path:

@@ -13,8 +13,8 @@ import torch
 from torch import Tensor, nn
 
 from mmweaver.core.seeding import stream
+from mmweaver.training.device import ComputeDevice, Share
 from mmweaver.training.trainer import Learner, LoopRecipe, Progress, Trainer
-from mmweaver.training.workplace import Share, Workplace
 
 RECIPE = LoopRecipe(
     name="toy", steps=8, batch_size=4, learning_rate=0.05, warm_up_steps=2, validate_every=4, validation_batches=3
@@ -50,7 +50,7 @@ def trainer(out: Path, recipe: LoopRecipe = RECIPE, **options) -> Trainer:
 
 if __name__ == "__main__":
     torch.set_num_threads(1)
-    made = trainer(Path(sys.argv[1]), workplace=Workplace.chosen("cpu"), save_every_s=0.0)
+    made = trainer(Path(sys.argv[1]), workplace=ComputeDevice.chosen("cpu"), save_every_s=0.0)
 
     def killing(progress: Progress) -> None:
         if made.workplace.is_first and sys.argv[2:] == [str(progress.step)]:

@@ -61,13 +61,13 @@ def run(arguments: argparse.Namespace) -> int:
     start = time.monotonic()
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read the recording")
-        from mmweaver.recording import read_any_cube
+        from mmweaver.recordings.recording import read_any_cube
 
         cube = read_any_cube(
             arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
             iq_order=arguments.iq_order or "iq", tx_order=arguments.tx_order,
         )  # fmt: skip
-        from mmweaver.fields.codec.mmw import compressed, errors_db
+        from mmweaver.compression.mmw_codec import compressed, errors_db
 
         data = compressed(
             cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise, progress=bar

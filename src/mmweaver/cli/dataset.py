@@ -55,9 +55,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
-    from mmweaver.data.cost import check_for_space, cost_of
-    from mmweaver.data.generate import generate
-    from mmweaver.data.plan import DatasetPlan, check_for_leaks
+    from mmweaver.datasets.dataset_cost import check_for_space, cost_of
+    from mmweaver.datasets.dataset_plan import DatasetPlan, check_for_leaks
+    from mmweaver.datasets.generate_rooms import generate
     from mmweaver.formats.radar_file import load_radar
 
     config = load_radar(arguments.radar)
@@ -99,7 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _kinds(text: str | None) -> tuple[str, ...]:
-    from mmweaver.scene.procedural.kinds import KINDS
+    from mmweaver.scene.procedural.room_kinds import KINDS
 
     known = tuple(KINDS)
     if text is None:

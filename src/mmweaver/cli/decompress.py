@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         check_output_file(out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read")
-        from mmweaver.fields.codec.mmw import read_cube
+        from mmweaver.compression.mmw_codec import read_cube
 
         cube = read_cube(arguments.file, arguments.frames, with_residual=not arguments.scatterers)
         bar("write")

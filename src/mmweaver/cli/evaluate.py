@@ -33,13 +33,13 @@ def add_verb(verbs: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the scores on stdout. Raises InputError for a folder without readable recordings."""
-    from mmweaver.tasks.frozen_activity import load_frozen
-    from mmweaver.tasks.recording_files import read_recordings
-    from mmweaver.tasks.scoring import judge, report
+    from mmweaver.recognition.frozen_activity import load_frozen
+    from mmweaver.recognition.recording_files import read_recordings
+    from mmweaver.recognition.scoring import evaluate_recogniser, report
 
     frozen = load_frozen(arguments.frozen)
     recordings = read_recordings(arguments.recordings, frozen.labels)
-    scores = report(judge(frozen.train(), recordings, frozen.window_s))
+    scores = report(evaluate_recogniser(frozen.train(), recordings, frozen.window_s))
     scores = {"task": arguments.task, "frozen": arguments.frozen, **frozen.provenance, **scores}
     print(json.dumps(scores, indent=2) if arguments.json else "\n".join(lines(scores)))
     return 0

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, number, place, told, whole
-from mmweaver.cli.own_motion import (
+from mmweaver.cli.motion_options import (
     add_motion_options,
     check_motion_options,
     motion_of_model,
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from mmweaver.core.records import RadarCube
-    from mmweaver.weaver import Room, Weaver
+    from mmweaver.generate import Room, Weaver
 
 DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
 DEMO_OUT = "demo"
@@ -165,7 +165,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_output_folder(out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
-        from mmweaver.weaver import check_request
+        from mmweaver.generate import check_request
 
         recording = _recording(arguments)
         weaver = _weaver(arguments, recording, bar)
@@ -190,7 +190,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_many(arguments: argparse.Namespace, out: Path) -> int:
     """Many sequences in one room."""
-    from mmweaver.cli.many import asked_of, check_texts, make_many, told
+    from mmweaver.cli.batch import asked_of, check_texts, make_many, told
 
     asked, request = asked_of(arguments, out), _request(arguments)
     recording = _recording(arguments)
@@ -208,7 +208,7 @@ def _weaver(
     arguments: argparse.Namespace, recording: "RadarCube | None", listener: "Callable[[str], object] | None" = None
 ) -> "Weaver":
     from mmweaver.formats.radar_file import load_firmware, load_radar
-    from mmweaver.weaver import Weaver
+    from mmweaver.generate import Weaver
 
     radar = recording.config if recording and not arguments.radar else load_radar(arguments.radar or DEFAULT_RADAR)
     if arguments.tx_order is not None:
@@ -291,7 +291,7 @@ def _recording(arguments: argparse.Namespace) -> "RadarCube | None":
             "--empty-room is for the network, which has no raw samples; leave it out, or --method physics, --bin and"
             " --points firmware"
         )
-    from mmweaver.training.captures import recorded_cube
+    from mmweaver.recordings.captures import recorded_cube
 
     return recorded_cube(arguments.empty_room)
 

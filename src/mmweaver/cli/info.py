@@ -24,7 +24,7 @@ def add_verb(verbs: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the description on stdout. Raises InputError where the file is damaged."""
-    from mmweaver.fields.codec.mmw import described
+    from mmweaver.compression.mmw_codec import described
 
     facts = described(arguments.file)
     print(json.dumps(facts, indent=2) if arguments.json else "\n".join(_lines(facts)))

@@ -31,9 +31,9 @@ def add_verb(verbs: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Acts the sentence out; writes what was asked for. Raises InputError."""
-    from mmweaver.motion.alone import act_out
-    from mmweaver.motion.sentence import parse
-    from mmweaver.motion.timing import natural_s
+    from mmweaver.motion.empty_floor import act_out
+    from mmweaver.motion.language.sentence import parse
+    from mmweaver.motion.language.timing import natural_s
 
     _check_files(arguments)
     seconds = arguments.seconds if arguments.seconds is not None else natural_s(parse(arguments.text))
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
         with atomic_file(arguments.out) as temporary:
             write_pose_npz(temporary, motion.pose)
     if arguments.picture is not None:
-        from mmweaver.pictures.motion_strip import draw_strip
+        from mmweaver.figures.motion_strip import draw_strip
 
         draw_strip(motion.pose, arguments.picture, title=arguments.text)
     steps = [

@@ -22,7 +22,7 @@ def add_verb(verbs: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the table of activities on stdout."""
-    from mmweaver.motion.activities import BODY, HANDS
+    from mmweaver.motion.language.activities import BODY, HANDS
 
     if arguments.json:
         rows = [

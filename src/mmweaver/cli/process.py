@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         from mmweaver.core.stages import Stages
         from mmweaver.formats.capture_std import is_capture
-        from mmweaver.recording import process_capture, process_recording
+        from mmweaver.recordings.recording import process_capture, process_recording
 
         if is_capture(arguments.file):
             _check_capture(arguments)

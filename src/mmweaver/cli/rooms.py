@@ -41,10 +41,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then makes all rooms or none. Raises InputError."""
     from mmweaver.cli.progress import StageBar
     from mmweaver.core.atomic_files import check_output_folder, staged_folder
-    from mmweaver.scene.procedural.kinds import KINDS
     from mmweaver.scene.procedural.lighting import LIGHTINGS
-    from mmweaver.scene.procedural.room import MAX_LAYOUTS, make_room
+    from mmweaver.scene.procedural.procedural_room import MAX_LAYOUTS, make_room
     from mmweaver.scene.procedural.room_files import write_room
+    from mmweaver.scene.procedural.room_kinds import KINDS
 
     kinds = list(KINDS) if arguments.kinds is None else [word.strip() for word in arguments.kinds.split(",")]
     for kind in kinds:

@@ -11,8 +11,8 @@ from mmweaver.cli.arguments import number, whole
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
+    from mmweaver.training.device import ComputeDevice
     from mmweaver.training.trainer import Listener, Progress
-    from mmweaver.training.workplace import Workplace
 
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
@@ -92,9 +92,9 @@ def run(arguments: argparse.Namespace) -> int:
     import json
 
     _check(arguments)
-    from mmweaver.training.workplace import Workplace
+    from mmweaver.training.device import ComputeDevice
 
-    place = Workplace.chosen(arguments.device, arguments.precision)
+    place = ComputeDevice.chosen(arguments.device, arguments.precision)
     is_quiet = arguments.quiet or not place.is_first
     summary = _on_captures(arguments, place, is_quiet) if arguments.captures else _on_data(arguments, place, is_quiet)
     if not place.is_first:
@@ -127,10 +127,10 @@ def _check(arguments: argparse.Namespace) -> None:
         raise InputError(f"--save-every must be 0 or more seconds, not {arguments.save_every:g}")
 
 
-def _on_data(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
+def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
     if arguments.recipe != "weaver":
         return _on_data_otherwise(arguments, place, is_quiet)
-    from mmweaver.training.weaver_training import TrainingRecipe, train, write_weights
+    from mmweaver.training.network_training import TrainingRecipe, train, write_weights
 
     recipe = TrainingRecipe(**_given(arguments))
     start = None if arguments.start is None else _start(arguments.start)[0]
@@ -142,7 +142,7 @@ def _on_data(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) 
     return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
 
 
-def _on_data_otherwise(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
+def _on_data_otherwise(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
     from mmweaver.training.recipe_weights import write_recipe_weights
 
     recipe = train_recipes.recipe_of(arguments.recipe, _given(arguments))
@@ -155,9 +155,9 @@ def _on_data_otherwise(arguments: argparse.Namespace, place: "Workplace", is_qui
     }  # fmt: skip
 
 
-def _on_captures(arguments: argparse.Namespace, place: "Workplace", is_quiet: bool) -> dict[str, Any]:
+def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
+    from mmweaver.recordings.captures import read_capture
     from mmweaver.training.capture_training import recipe_for, tune, write_tuned
-    from mmweaver.training.captures import read_capture
 
     start, licence = _start(arguments.start)
     photo = {"rgb": arguments.rgb, "depth": arguments.depth, "camera": arguments.camera}

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
+    from mmweaver.training.device import ComputeDevice
     from mmweaver.training.trainer import Listener, Trainer
-    from mmweaver.training.workplace import Workplace
 
 
 def check(arguments: argparse.Namespace) -> None:
@@ -29,7 +29,7 @@ def recipe_of(name: str, given: dict[str, Any]) -> Any:
 
 
 def on_data(
-    arguments: argparse.Namespace, recipe: Any, told: "Listener", place: "Workplace", options: dict[str, Any]
+    arguments: argparse.Namespace, recipe: Any, told: "Listener", place: "ComputeDevice", options: dict[str, Any]
 ) -> "Trainer":
     """Trains recipe `activity` or `paper`. Raises InputError."""
     from mmweaver.training.activity_training import train_activity
@@ -44,7 +44,7 @@ def on_data(
 
 def _start(arguments: argparse.Namespace) -> Any:
     """Weights to begin with, of the same recipe."""
-    from mmweaver.data.store import read_radar
+    from mmweaver.datasets.dataset_store import read_radar
     from mmweaver.models.activity_network import load_activity
     from mmweaver.models.find_weights import find_weights
     from mmweaver.models.paper_method import load_paper

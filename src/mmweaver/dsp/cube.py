@@ -70,7 +70,7 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     return AdcCube(samples=samples.reshape(shape).astype(np.complex64), config=config, scale=cube.scale)
 
 
-def resting_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
+def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
     """One frame of what rests, of its value (range, antenna) at zero Doppler: a window's response fills few bins."""
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     response = _fft(weight, 0)[:, None] * tdm_compensation(config)

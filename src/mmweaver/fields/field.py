@@ -1,7 +1,6 @@
 """What every field is: a radar sequence as a function of continuous coordinates."""
 
 from abc import ABC, abstractmethod
-from pathlib import Path
 
 import numpy as np
 from jaxtyping import Complex
@@ -26,13 +25,6 @@ class SignalField(ABC):
     config: RadarConfig
     grid: CubeGrid
     scale: float
-
-    @staticmethod
-    def read(path: Path | str) -> "SignalField":
-        """The field of a .mmw file. Raises InputError where it cannot be read or is damaged."""
-        from mmweaver.fields.codec.mmw_field import MmwField
-
-        return MmwField(path)
 
     @property
     @abstractmethod

@@ -41,7 +41,7 @@ def finer_grid(grid: CubeGrid, *, n_r: float = 1.0, n_d: float = 1.0, n_a: float
     )
 
 
-def drawn_grid(grid: CubeGrid, radius: int, seed: int) -> CubeGrid:
+def sampled_grid(grid: CubeGrid, radius: int, seed: int) -> CubeGrid:
     """Range, Doppler and antenna coordinates drawn evenly from [j, j + radius / 8], one draw for each index j.
 
     The last index of each axis stays. Raises InputError for a radius outside 0 to 7.

@@ -11,7 +11,7 @@ from torch import Tensor
 
 from mmweaver.core.skeleton import NUM_JOINTS, joint
 from mmweaver.models.precision import in_full_precision
-from mmweaver.models.room_view import NUM_PLANES, RoomView
+from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
 
 # from joint, to joint, how far along (above 1: past the second)
 _MIDDLE = (
@@ -30,8 +30,8 @@ ANCHORS: tuple[tuple[int, int, float], ...] = (
 NUM_ANCHORS = len(ANCHORS)
 # the few anchors that stand for the body in mirrors, each for the anchors nearest to it
 MIRRORED = tuple(joint(name) for name in ("pelvis", "spine3", "head", "left_knee", "right_knee"))
-NUM_MIRRORS = 5  # the floor and the next largest faces
-NUM_GHOSTS = len(MIRRORED) * NUM_MIRRORS
+NUM_REFLECTORS = 5  # the floor and the next largest faces
+NUM_GHOSTS = len(MIRRORED) * NUM_REFLECTORS
 BODY_FEATURES, GHOST_FEATURES = 21, 16
 _EDGE_M = 0.1  # about a Fresnel zone: how softly a face ends
 
@@ -56,7 +56,7 @@ def anchor_places(joints: Tensor) -> Tensor:
 
 
 @in_full_precision
-def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anchors:
+def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
     """Direct echoes. Joints (room, frame, 22, 3) in the radar's frame; `room` has a leading axis too."""
     place, speed = anchor_places(joints_m), anchor_places(velocity_mps)
     bone = _bones(joints_m)
@@ -85,12 +85,12 @@ def body_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anch
 
 
 @in_full_precision
-def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anchors:
+def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) -> Anchors:
     """Echoes over one face of the room: (room, frame, ghost)."""
     place = joints_m[..., MIRRORED, :][..., None, :, :]  # (room, frame, 1, joint, 3)
     speed = velocity_mps[..., MIRRORED, :][..., None, :, :]
-    centre = room.plane_centre_m[:, None, :NUM_MIRRORS, None]
-    axes = room.plane_axes[:, None, :NUM_MIRRORS, None]
+    centre = room.plane_centre_m[:, None, :NUM_REFLECTORS, None]
+    axes = room.plane_axes[:, None, :NUM_REFLECTORS, None]
     normal = axes[..., 2, :]
     height = ((place - centre) * normal).sum(-1)
     own_height = -(centre * normal).sum(-1)  # of the radar above the face
@@ -103,7 +103,7 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anc
     bounce = share[..., None] * image
     turn = -(torch.nn.functional.normalize(bounce - place, dim=-1) * to_place).sum(-1)
     corner = bounce - centre
-    half = room.plane_half_m[:, None, :NUM_MIRRORS, None]
+    half = room.plane_half_m[:, None, :NUM_REFLECTORS, None]
     margin = torch.stack([half[..., i] - (corner * axes[..., i, :]).sum(-1).abs() for i in (0, 1)], dim=-1)
     valid = (height > 0.02) & (own_height > 0.02) & (half[..., 0] > 0)
     radial = 0.5 * ((moving * to_image).sum(-1) + (speed * to_place).sum(-1))
@@ -111,8 +111,8 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: RoomView) -> Anc
     inside = (0.5 * (1 + torch.erf(margin / _EDGE_M))).prod(dim=-1)
     # what faces both the radar and the face is the less, the more the wave is turned
     both = (0.5 * (1 + turn)).clamp(0, 1).square()
-    left = valid * both * inside.square() * _reflected(room.plane_reflection[:, None, :NUM_MIRRORS, None], cos)
-    material = room.plane_features[:, None, :NUM_MIRRORS, None, :5].expand(*cos.shape, 5)
+    left = valid * both * inside.square() * _reflected(room.plane_reflection[:, None, :NUM_REFLECTORS, None], cos)
+    material = room.plane_features[:, None, :NUM_REFLECTORS, None, :5].expand(*cos.shape, 5)
     features = torch.stack(
         [near.expand_as(far) / 3, far / 3, radial / 2, cos, *torch.tanh(3 * margin).unbind(-1), height / 2,
          own_height.expand_as(far) / 2, torch.log10(left + 1e-4) / 2,
@@ -155,7 +155,7 @@ def facing(joints_m: Tensor) -> Tensor:
     return torch.nn.functional.normalize(torch.linalg.cross(across, up), dim=-1)
 
 
-def _clearance(place: Tensor, distance: Tensor, room: RoomView) -> tuple[Tensor, Tensor]:
+def _clearance(place: Tensor, distance: Tensor, room: SceneTensors) -> tuple[Tensor, Tensor]:
     """How much farther than the anchor the photo's surface lies (at it, above, beside it), and whether in view."""
     seen, inside = [], torch.zeros_like(distance)
     for x, z in ((0.0, 0.0), (0.0, 0.1), (0.12, 0.0), (-0.12, 0.0)):
@@ -181,4 +181,4 @@ def _depth_behind(distance: Tensor, towards: Tensor) -> Tensor:
     return (torch.exp(-((angle / 0.05) ** 2)) * torch.tanh(5 * near)).sum(-1) / 4
 
 
-assert NUM_MIRRORS <= NUM_PLANES
+assert NUM_REFLECTORS <= NUM_PLANES

@@ -5,17 +5,13 @@ network turns this up and down, as it does with what physics says of the room's 
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_MIRRORS, anchor_places
-from mmweaver.simulation.body import REFERENCE_HEIGHT_M, Body
-
-NUM_POINTS = 600
-SUBJECT = 90_000  # nobody's skin
+from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_REFLECTORS, anchor_places
+from mmweaver.paths.body_model import average_body
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,11 +47,11 @@ def ghost_section(joints_m: Tensor, prior: BodyPrior) -> Tensor:
     nearest = torch.cdist(places, places[..., MIRRORED, :]).argmin(dim=-1)
     of = torch.nn.functional.one_hot(nearest, len(MIRRORED)).to(prior.cross_section_m2)
     section = BOTH_WAYS * (prior.cross_section_m2[..., None, :] @ of)[..., 0, :]
-    return section.repeat(*[1] * (section.dim() - 1), NUM_MIRRORS)
+    return section.repeat(*[1] * (section.dim() - 1), NUM_REFLECTORS)
 
 
 def _one(joints_m: np.ndarray, anchors_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    body = middling_body()
+    body = average_body()
     skin = body.skin(joints_m.astype(float))
     distance = np.linalg.norm(skin.place_m, axis=-1)
     cos = -(skin.normal * skin.place_m).sum(-1) / np.maximum(distance, 1e-6)
@@ -66,9 +62,3 @@ def _one(joints_m: np.ndarray, anchors_m: np.ndarray) -> tuple[np.ndarray, np.nd
     total = section @ of
     behind = (section * distance) @ of / np.maximum(total, 1e-12) - np.linalg.norm(anchors_m, axis=-1)
     return total, np.where(total > 1e-9, np.clip(behind, -0.3, 0.3), 0.0)
-
-
-@lru_cache(maxsize=1)
-def middling_body() -> Body:
-    """A person of middle height; nobody's skin."""
-    return Body(SUBJECT, REFERENCE_HEIGHT_M, NUM_POINTS)

@@ -10,7 +10,7 @@ import math
 from torch import Tensor, nn
 
 from mmweaver.models.efficientnet import Block, Stem, shapes
-from mmweaver.models.room_view import IMAGE_CHANNELS
+from mmweaver.models.scene_tensors import IMAGE_CHANNELS
 
 Z_ENV = 512
 BLOCKS = 13  # of EfficientNet-B0's 16: with the projection 2.1 M parameters, as the paper counts

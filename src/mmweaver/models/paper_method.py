@@ -13,7 +13,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube, Scene
 from mmweaver.fields.paper_inr import InrField, InrShape
 from mmweaver.models.paper_network import PaperNetwork
-from mmweaver.models.room_view import RoomView
+from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_into
 from mmweaver.scene.reconstruction import reconstruct
 
@@ -46,7 +46,7 @@ def paper_field(
     """The INR that the network writes of a room's photo and one motion. Raises InputError for other joints."""
     if joints_m.shape != velocity_mps.shape or joints_m.shape[1:] != (22, 3):
         raise InputError(f"the network needs joints and velocities (frame, 22, 3), not {joints_m.shape}")
-    return field_of_image(network, RoomView.of(scene, config).image, config, joints_m, velocity_mps)
+    return field_of_image(network, SceneTensors.of(scene, config).image, config, joints_m, velocity_mps)
 
 
 def field_of_image(

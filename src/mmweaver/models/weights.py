@@ -16,7 +16,7 @@ from torch import nn
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
-from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.network import WeaverNetwork
 
 FORMAT = "mmweaver weights"
 FORMAT_VERSION = 1

@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.seeding import stream
-from mmweaver.motion.assemble import assemble
-from mmweaver.motion.body import SHORTEST_M, TALLEST_M, Body
-from mmweaver.motion.clearest import clearest
-from mmweaver.motion.floor_map import FloorMap
-from mmweaver.motion.obstacles import Obstacles
-from mmweaver.motion.placement import Placement, place
-from mmweaver.motion.plan import MotionPlan
-from mmweaver.motion.sentence import parse
-from mmweaver.motion.targets import without_things
-from mmweaver.motion.timing import schedule
+from mmweaver.motion.animation.assemble import assemble
+from mmweaver.motion.animation.skeleton_proportions import SHORTEST_M, TALLEST_M, SkeletonProportions
+from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.timing import schedule
+from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.collision_ranking import most_clear
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.placement import Placement, place
+from mmweaver.motion.planning.targets import without_things
 
 LONGEST_S = 600.0
 
@@ -56,7 +56,7 @@ def compose(
         plan = without_things(plan)
     if height_m is None:
         height_m = float(stream(seed, "motion", "height").uniform(SHORTEST_M, TALLEST_M))
-    body = Body(height_m)
+    body = SkeletonProportions(height_m)
     floor = FloorMap(scene, range_window_m, height_m)
     plan, spot_notes = _jogging_without_a_way(plan)
 
@@ -69,7 +69,7 @@ def compose(
             seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
         )  # fmt: skip
 
-    best = clearest(draw, moved, Obstacles.of(scene))
+    best = most_clear(draw, moved, CollisionMap.of(scene))
     notes = plan.notes + spot_notes + best.placement.assumptions + best.notes
     return Motion(pose=best.pose, plan=plan, assumptions=notes)
 

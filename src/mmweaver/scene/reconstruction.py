@@ -7,16 +7,16 @@ import numpy as np
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
-from mmweaver.scene.class_evidence import cells_of, sittable_squares
-from mmweaver.scene.closed_room import close_room, wall_faces
+from mmweaver.scene.affordances.free_space import find_free_space
+from mmweaver.scene.affordances.landmarks import find_landmarks
+from mmweaver.scene.affordances.seats import find_seats
 from mmweaver.scene.coco_stuff import ROUGH, WALLS
-from mmweaver.scene.depth_grid import GridBool, GridVectors, make_grid
-from mmweaver.scene.free_space import find_free_space
-from mmweaver.scene.height_map import make_height_map
-from mmweaver.scene.hung import hung_panels, with_hung
-from mmweaver.scene.landmarks import find_landmarks
-from mmweaver.scene.levelling import level_room
-from mmweaver.scene.materials import (
+from mmweaver.scene.layout.class_evidence import cells_of, sittable_squares
+from mmweaver.scene.layout.gravity_alignment import level_room
+from mmweaver.scene.layout.height_map import make_height_map
+from mmweaver.scene.layout.mesh import floor_faces, make_mesh
+from mmweaver.scene.layout.room_layout import close_room, wall_faces
+from mmweaver.scene.layout.surface_materials import (
     ASSUMPTION,
     ASSUMPTION_OF_CLASSES,
     MATERIAL_NAMES,
@@ -24,10 +24,10 @@ from mmweaver.scene.materials import (
     cell_materials,
     with_material,
 )
-from mmweaver.scene.mesh import floor_faces, make_mesh
-from mmweaver.scene.panes import with_panes
-from mmweaver.scene.seats import find_seats
-from mmweaver.scene.surfaces import LevelGrid, Surface, floor_cells
+from mmweaver.scene.layout.surfaces import LevelGrid, Surface, floor_cells
+from mmweaver.scene.layout.transparent_surfaces import with_transparent_surfaces
+from mmweaver.scene.layout.wall_panels import hung_panels, with_hung
+from mmweaver.scene.photo.depth_grid import GridBool, GridVectors, make_grid
 
 _FLOOR_MARGIN_M = 0.3
 _MIN_FLOOR_M = 3.0  # length and half width that the floor is given at least
@@ -42,7 +42,7 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
 
     Raises InputError where the depth shows no surfaces.
     """
-    photo, closed_panes = with_panes(photo)
+    photo, closed_panes = with_transparent_surfaces(photo)
     grid = make_grid(photo)
     room = level_room(grid)
     gravity, radar_from_camera, level, surfaces = room.gravity, room.radar_from_camera, room.grid, room.surfaces

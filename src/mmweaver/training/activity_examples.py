@@ -13,7 +13,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
-from mmweaver.data.store import StoredRoom, plan_text, read_rooms
+from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.log_maps import LogMaps
 

@@ -13,8 +13,8 @@ from mmweaver.core.seeding import stream
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
 from mmweaver.training.activity_examples import ActivityExamples, activity_examples, varied
 from mmweaver.training.confusion_sheet import draw_confusion
+from mmweaver.training.device import ComputeDevice, Share
 from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
-from mmweaver.training.workplace import Share, Workplace
 
 # The two activities that are withheld from the weaver are no test here, and the network shall know all twelve.
 TRAIN_SPLITS = ("train", "test_activity")
@@ -76,7 +76,7 @@ def train_activity(
     *,
     start: dict[str, Tensor] | None = None,
     listener: Listener | None = None,
-    workplace: Workplace | None = None,
+    workplace: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer:
     """Trains on a data set, or goes on from `out`/checkpoint.pt; what comes back holds the best network.
@@ -84,7 +84,7 @@ def train_activity(
     `start`: weights to fine-tune. `options` go to `Trainer`. The log maps of all sequences are kept in `out`, for
     where signals are not stored they cost more than the training. Raises InputError for a folder without data.
     """
-    place = workplace or Workplace()
+    place = workplace or ComputeDevice()
     kept = {"keep": place.is_first, "device": str(place.device)}
     unseen = activity_examples(data, ("validation",), out / UNSEEN_MAPS, **kept)
     examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **kept)

@@ -17,28 +17,28 @@ from torch import Tensor
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.models.echoes import Echoes
-from mmweaver.models.empty_room import agreeing_gain
-from mmweaver.models.mean_power import PowerMaps
-from mmweaver.models.radar_view import points_of
-from mmweaver.models.weaver_network import WeaverNetwork
+from mmweaver.models.background import agreeing_gain
+from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import sha256_of
-from mmweaver.training.captures import SPLIT, Capture, RecordedRoom, rooms_of
+from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.paths.radar_equation import points_of
+from mmweaver.recordings.captures import SPLIT, Capture, RecordedRoom, rooms_of
+from mmweaver.training.device import ComputeDevice
 from mmweaver.training.model_card import model_card
-from mmweaver.training.trainer import Draw, Listener, Trainer
-from mmweaver.training.weaver_examples import Batch, RoomExamples, draw_batch
-from mmweaver.training.weaver_training import (
+from mmweaver.training.network_examples import NetworkBatch, RoomExamples, sample_batch
+from mmweaver.training.network_training import (
     CARD_FILE,
     EXPLAINED,
     VALIDATION_SEED,
+    NetworkLearner,
     TrainingRecipe,
-    WeaverLearner,
     begun,
     card_of,
     compared,
     save_trained,
 )
-from mmweaver.training.workplace import Workplace
+from mmweaver.training.trainer import Draw, Listener, Trainer
 
 RESTING_HEADS = ("point", "face")
 NOBODY_M = (0.0, 2.5, -0.5)  # where the joints are said to be of people whose echoes then count for nothing
@@ -60,7 +60,7 @@ class CaptureRecipe(TrainingRecipe):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RestingRecipe(CaptureRecipe):
+class StaticClutterRecipe(CaptureRecipe):
     """The same for two small heads, which bear larger steps."""
 
     learning_rate: float = 5e-3
@@ -68,17 +68,17 @@ class RestingRecipe(CaptureRecipe):
 
 def recipe_for(captures: Sequence[Capture], **given: Any) -> CaptureRecipe:
     """The recipe for captures with joints, or for none; `given` replaces its values."""
-    return CaptureRecipe(**given) if any(one.pose is not None for one in captures) else RestingRecipe(**given)
+    return CaptureRecipe(**given) if any(one.pose is not None for one in captures) else StaticClutterRecipe(**given)
 
 
 @dataclass(frozen=True, kw_only=True)
-class CaptureBatch(Batch):
+class CaptureBatch(NetworkBatch):
     """A batch of captures; where a person is not `known` the maps are those of the room at rest."""
 
     known: Tensor  # (sequence,) 0 or 1
 
 
-class CaptureLearner(WeaverLearner):
+class CaptureLearner(NetworkLearner):
     """Learns from captures; who is not known has no echo. The receiver's noise is the recording's."""
 
     def __init__(self, network: WeaverNetwork, config: RadarConfig, noise_power: float, *, everything: bool):
@@ -87,7 +87,7 @@ class CaptureLearner(WeaverLearner):
         for name, parameter in network.named_parameters():
             parameter.requires_grad_(everything or name.split(".")[0] in RESTING_HEADS)
 
-    def moving(self, code: Any, batch: Batch) -> Echoes:
+    def moving(self, code: Any, batch: NetworkBatch) -> Echoes:
         echoes = super().moving(code, batch)
         if not isinstance(batch, CaptureBatch):
             return echoes
@@ -95,7 +95,7 @@ class CaptureLearner(WeaverLearner):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tuned:
+class TuningResult:
     """A run on captures, and how the recordings were taken."""
 
     trainer: Trainer
@@ -112,9 +112,9 @@ def tune(
     *,
     start: dict[str, Tensor],
     listener: Listener | None = None,
-    workplace: Workplace | None = None,
+    workplace: ComputeDevice | None = None,
     **options: Any,
-) -> Tuned:
+) -> TuningResult:
     """Fine-tunes weights on captures; the last capture is kept aside for validation, unless it is the only one.
 
     Recordings whose scale is not known get the one gain at which the weights they begin with agree with them most.
@@ -140,10 +140,10 @@ def tune(
     )  # fmt: skip
     before = _loss_of(trainer, begun(recipe, start))
     trainer.run(listener)
-    return Tuned(trainer=trainer, rooms=rooms, held_out=held_out, loss_before=before, gain=gain)
+    return TuningResult(trainer=trainer, rooms=rooms, held_out=held_out, loss_before=before, gain=gain)
 
 
-def write_tuned(out: Path, tuned: Tuned, *, start: dict[str, Tensor], licence_of_start: str = "MIT") -> Path:
+def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], licence_of_start: str = "MIT") -> Path:
     """Writes `out`/weights.safetensors and its README.md; gives the weights' path."""
     digest = hashlib.sha256("".join(room.sha256 for room in tuned.rooms).encode()).hexdigest()
     more = {"tuned_from": sha256_of(start), "licence": licence_of_start}
@@ -162,7 +162,7 @@ def write_tuned(out: Path, tuned: Tuned, *, start: dict[str, Tensor], licence_of
 def _loss_of(trainer: Trainer, network: WeaverNetwork) -> float:
     """The validation loss that other weights have."""
     learner = trainer.learner
-    assert isinstance(learner, WeaverLearner)
+    assert isinstance(learner, NetworkLearner)
     own, learner.network = learner.network, network.to(learner.device)
     loss = trainer.validation_loss()
     learner.network = own
@@ -171,7 +171,7 @@ def _loss_of(trainer: Trainer, network: WeaverNetwork) -> float:
 
 def gain_of(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
     """The factor of amplitude at which recordings and network agree on the resting room, by the median."""
-    learner = WeaverLearner(network, rooms[0].config).eval()
+    learner = NetworkLearner(network, rooms[0].config).eval()
     maps = []
     for room in rooms:
         one = RoomExamples(room, SPLIT)
@@ -187,13 +187,13 @@ def _drawing(rooms: list[RecordedRoom], recipe: CaptureRecipe, seed: int, noise:
     pool = [RoomExamples(room, SPLIT) for room in rooms]
 
     def draw(step: int, share: tuple[int, int]) -> CaptureBatch:
-        batch = draw_batch(pool, seed, step, size=recipe.batch_size, frames=recipe.frames, share=share)
+        batch = sample_batch(pool, seed, step, size=recipe.batch_size, frames=recipe.frames, share=share)
         return _with_nobody(batch, noise)
 
     return draw
 
 
-def _with_nobody(batch: Batch, noise: tuple[float, float, float]) -> CaptureBatch:
+def _with_nobody(batch: NetworkBatch, noise: tuple[float, float, float]) -> CaptureBatch:
     """Sequences without joints show the room at rest."""
     known = torch.isfinite(batch.joints_m).flatten(1).all(dim=1)
     place = torch.tensor(NOBODY_M).expand(NUM_JOINTS, 3) + 0.1 * torch.eye(NUM_JOINTS, 3)

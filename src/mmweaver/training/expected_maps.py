@@ -9,11 +9,11 @@ from dataclasses import fields
 import numpy as np
 import torch
 
-from mmweaver.data.store import StoredRoom
-from mmweaver.models.apparent import moving_points, resting_points
-from mmweaver.models.mean_power import MeanPower, PowerMaps
-from mmweaver.simulation.echoes import BodyEchoes
-from mmweaver.simulation.synthesis import FrameClock
+from mmweaver.datasets.dataset_store import StoredRoom
+from mmweaver.paths.adc_synthesis import FrameClock
+from mmweaver.paths.apparent_paths import moving_points, static_points
+from mmweaver.paths.body_paths import BodyEchoes
+from mmweaver.paths.mean_power import MeanPower, PowerMaps
 
 
 class ExpectedMaps:
@@ -24,7 +24,7 @@ class ExpectedMaps:
         self.room, self.radar = room, _radar(room)
         self.node_s = FrameClock(room.config).node_s
         self.resting = room.geometry.room.echoes
-        self.empty = self.radar.maps(resting_points(self.resting, self.radar.response))
+        self.empty = self.radar.maps(static_points(self.resting, self.radar.response))
 
     def frames(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps]:
         """Maps (frame, range, other) of frames of a sequence: of room, person and noise, and of the person alone."""
@@ -35,7 +35,7 @@ class ExpectedMaps:
     def _frame(self, person: BodyEchoes, number: int) -> tuple[PowerMaps, PowerMaps]:
         response = self.radar.response
         moving = self.radar.maps(moving_points(person.rows(number), self.node_s, response))
-        hidden = self.radar.maps(resting_points(person.shadowed(number), response))
+        hidden = self.radar.maps(static_points(person.shadowed(number), response))
         names = [field.name for field in fields(PowerMaps)]
         maps = {}
         for name, noise in zip(names, self.radar.noise_maps(), strict=True):

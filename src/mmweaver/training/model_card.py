@@ -73,7 +73,7 @@ perceptual loss.
         about="""The paper's own network as the paper trains it, kept for comparison: a photo of a room with depth and a
 person's joints in, the weights of an implicit representation of the complex signal out. For use take recipe weaver.
 
-    python -m mmweaver.experiments.weaver_paper --data data/ --weights weights.safetensors""",
+    python -m studies.network.paper_rows --data data/ --weights weights.safetensors""",
         limits="- Where its loss is that of all zeros it has collapsed: its signals hold hardly any energy.\n"
         "- One radar ({radar}).",
     ),

@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.seeding import stream
-from mmweaver.motion.motiongpt.language import build_t5
+from mmweaver.motion.motiongpt.language_model import build_t5
 from mmweaver.training.resuming import Resumable
 
 if TYPE_CHECKING:

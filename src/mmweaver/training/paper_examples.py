@@ -17,14 +17,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 from mmweaver.core.seeding import stream
-from mmweaver.data.store import StoredRoom, read_rooms
+from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
 from mmweaver.fields.positional_encoding import encode_axis, normalised
 from mmweaver.metrics.cells import cells_of
-from mmweaver.metrics.signal import span_of
+from mmweaver.metrics.cube_errors import span_of
 from mmweaver.models.paper_method import motion_of, unit_sqrt_mw
-from mmweaver.models.room_view import RoomView
+from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.training.workplace import Share
+from mmweaver.training.device import Share
 
 POINTS, FRAMES = 16_384, 2
 
@@ -53,7 +53,7 @@ class PaperRoom:
         """(5, row, column): colour, depth and classes of the reconstructed room."""
         geometry = self.room.geometry
         photographed = None if geometry is None else geometry.photographed
-        return RoomView.of(reconstruct(self.room.photo), self.room.config, photographed).image
+        return SceneTensors.of(reconstruct(self.room.photo), self.room.config, photographed).image
 
 
 def paper_rooms(folder: Path, split: str, device: str = "cpu") -> list[PaperRoom]:
@@ -65,7 +65,7 @@ def paper_rooms(folder: Path, split: str, device: str = "cpu") -> list[PaperRoom
     return rooms
 
 
-def draw_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: int, share: Share = (0, 1)) -> PaperBatch:
+def sample_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: int, share: Share = (0, 1)) -> PaperBatch:
     """`size` sequences of as many rooms, of them the share of one process; the same seed and step give the same."""
     rng = stream(seed, "paper batch", step)
     images, motions, frames, encoded, truth, span = [], [], [], [], [], []

@@ -14,13 +14,13 @@ from mmweaver.models.activity_network import ActivityNetwork, load_activity
 from mmweaver.models.paper_method import field_of_image, unit_sqrt_mw
 from mmweaver.models.paper_network import PaperNetwork, evaluate_each
 from mmweaver.models.precision import exactly
+from mmweaver.training.device import ComputeDevice
 from mmweaver.training.expected_maps import stacked
-from mmweaver.training.paper_examples import PaperBatch, PaperRoom, draw_paper_batch, paper_rooms
+from mmweaver.training.network_examples import power_maps
+from mmweaver.training.paper_examples import PaperBatch, PaperRoom, paper_rooms, sample_paper_batch
 from mmweaver.training.paper_loss import paper_loss
 from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
 from mmweaver.training.validation_sheet import MOST_ROWS, draw_sheet
-from mmweaver.training.weaver_examples import power_maps
-from mmweaver.training.workplace import Workplace
 
 VALIDATION_SEED = 10_000  # added to the recipe's
 
@@ -100,7 +100,7 @@ def train_paper(
     features: Path,
     start: dict[str, Tensor] | None = None,
     listener: Listener | None = None,
-    workplace: Workplace | None = None,
+    workplace: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer:
     """Trains on split `train`, or goes on from `out`/checkpoint.pt; `features`: weights of recipe `activity`.
@@ -108,7 +108,7 @@ def train_paper(
     Keeps what is best on split `validation`. `start`: weights to fine-tune. `options` go to `Trainer`. Raises
     InputError for folders without data and foreign weights.
     """
-    device = str((workplace or Workplace()).device)
+    device = str((workplace or ComputeDevice()).device)
     rooms, unseen = paper_rooms(data, "train", device), paper_rooms(data, "validation", device)
     config = rooms[0].room.config
     perceiver = load_activity(features, config)
@@ -127,7 +127,7 @@ def train_paper(
 
 def _drawing(rooms: list[PaperRoom], recipe: PaperRecipe, seed: int) -> Draw:
     """Batches of rooms, by step."""
-    return lambda step, share: draw_paper_batch(rooms, seed, step, size=recipe.batch_size, share=share)
+    return lambda step, share: sample_paper_batch(rooms, seed, step, size=recipe.batch_size, share=share)
 
 
 def patches(network: PaperNetwork, batch: PaperBatch) -> Tensor:

@@ -8,7 +8,7 @@ from torch import nn
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.version import __version__
-from mmweaver.data.store import plan_text, read_radar, read_rooms
+from mmweaver.datasets.dataset_store import plan_text, read_radar, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
 from mmweaver.training.activity_training import TRAIN_SPLITS

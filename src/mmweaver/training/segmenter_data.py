@@ -10,18 +10,26 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array
-from mmweaver.scene.builtin_segmenter import group_of_classes
-from mmweaver.scene.depth_grid import make_grid
+from mmweaver.scene.photo.depth_grid import make_grid
 from mmweaver.scene.procedural.lighting import LIGHTINGS
-from mmweaver.scene.procedural.room import make_room
-from mmweaver.scene.segmenter_features import COLOURS, EVERY, HEIGHT, HEIGHT_UNIT_M, MEASURED, SLOPE, grid_features
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.segmentation.builtin_segmenter import group_of_classes
+from mmweaver.scene.segmentation.segmenter_features import (
+    COLOURS,
+    EVERY,
+    HEIGHT,
+    HEIGHT_UNIT_M,
+    MEASURED,
+    SLOPE,
+    grid_features,
+)
 
 _CROP = (48, 64)  # cells; a multiple of what the network halves
 _MOST_PIECES = 40
 
 
 @dataclass(frozen=True, kw_only=True)
-class Example:
+class SegmenterExample:
     """One room: what the network sees of its cells, and their groups."""
 
     kind: str
@@ -29,7 +37,7 @@ class Example:
     groups: Int[Array, "row column"]
 
 
-def make_example(kind: str, seed: int) -> Example:
+def make_example(kind: str, seed: int) -> SegmenterExample:
     """A room of that kind as the product would see it. Raises InputError where the room cannot be arranged."""
     rng = stream(seed, "segmenter", kind)
     lighting = list(LIGHTINGS)[int(rng.integers(len(LIGHTINGS)))]
@@ -38,10 +46,12 @@ def make_example(kind: str, seed: int) -> Example:
     grid = make_grid(photo)
     assert grid.class_index is not None
     groups = group_of_classes(photo.classes.names)[grid.class_index[::EVERY, ::EVERY]]
-    return Example(kind=kind, features=grid_features(grid), groups=groups.astype(np.int64))
+    return SegmenterExample(kind=kind, features=grid_features(grid), groups=groups.astype(np.int64))
 
 
-def make_examples(kinds: tuple[str, ...], per_kind: int, first_seed: int, folder: Path | None = None) -> list[Example]:
+def make_examples(
+    kinds: tuple[str, ...], per_kind: int, first_seed: int, folder: Path | None = None
+) -> list[SegmenterExample]:
     """So many rooms of each kind; seeds that give no room are passed over. `folder` keeps them for the next time."""
     found = []
     for kind in kinds:
@@ -56,7 +66,7 @@ def make_examples(kinds: tuple[str, ...], per_kind: int, first_seed: int, folder
     return found
 
 
-def _kept(kind: str, seed: int, folder: Path | None) -> Example:
+def _kept(kind: str, seed: int, folder: Path | None) -> SegmenterExample:
     if folder is None:
         return make_example(kind, seed)
     path = folder / f"{kind}-{seed}.npz"
@@ -66,12 +76,12 @@ def _kept(kind: str, seed: int, folder: Path | None) -> Example:
         with atomic_file(path) as temporary, temporary.open("wb") as file:
             np.savez(file, features=made.features.astype(np.float16), groups=made.groups.astype(np.uint8))
     with np.load(path, allow_pickle=False) as stored:
-        return Example(
+        return SegmenterExample(
             kind=kind, features=stored["features"].astype(np.float32), groups=stored["groups"].astype(np.int64)
         )
 
 
-def varied(example: Example, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def varied(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """A mirrored piece of a room in other colours and light, with holes and errors in its depth."""
     features, groups = _piece(example, rng)
     measured = features[MEASURED] > 0
@@ -83,7 +93,7 @@ def varied(example: Example, rng: np.random.Generator) -> tuple[np.ndarray, np.n
     return features.astype(np.float32), groups
 
 
-def _piece(example: Example, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def _piece(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     rows, columns = example.groups.shape
     top, left = (int(rng.integers(max(size - crop, 0) + 1)) for size, crop in zip((rows, columns), _CROP, strict=True))
     part = (slice(top, top + _CROP[0]), slice(left, left + _CROP[1]))

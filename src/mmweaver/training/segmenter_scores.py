@@ -7,12 +7,12 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from mmweaver.core.shapes import Array
-from mmweaver.scene.builtin_segmenter import GROUP_NAMES
-from mmweaver.scene.segmenter_features import HEIGHT, HEIGHT_UNIT_M, MEASURED, SLOPE
-from mmweaver.training.segmenter_data import Example
+from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
+from mmweaver.scene.segmentation.segmenter_features import HEIGHT, HEIGHT_UNIT_M, MEASURED, SLOPE
+from mmweaver.training.segmenter_data import SegmenterExample
 
 
-def confusion(examples: list[Example], guess: Callable[[np.ndarray], np.ndarray]) -> Int[Array, "truth guess"]:
+def confusion(examples: list[SegmenterExample], guess: Callable[[np.ndarray], np.ndarray]) -> Int[Array, "truth guess"]:
     """Cells by true and guessed group; `guess` maps features to groups."""
     total = np.zeros((len(GROUP_NAMES),) * 2, np.int64)
     for example in examples:

@@ -28,7 +28,7 @@ from mmweaver.metrics.cells import Cells, cells_of
 
 
 @dataclass(frozen=True, kw_only=True)
-class FitRecipe:
+class InrFitRecipe:
     """How one sequence is fitted.
 
     `favour` names what half of the draws are taken from: "active_ranges" (frames' ranges with something that moves,
@@ -50,12 +50,12 @@ class FitRecipe:
     has_time_axis: bool = False  # the base INR over (t, r, d, a)
 
 
-PAPER = FitRecipe(name="paper", steps=500, learning_rate=1e-4)
+PAPER = InrFitRecipe(name="paper", steps=500, learning_rate=1e-4)
 PAPER_BASE = replace(PAPER, name="paper_base", has_time_axis=True)
 # The other reading of "500 epochs": each passes over all points of a 20-frame cube, 30 batches.
 PAPER_FULL_PASSES = replace(PAPER, name="paper_full_passes", steps=15_000)
 PAPER_CENTRED = replace(PAPER_FULL_PASSES, name="paper_full_passes_centred", is_centred=True)
-TUNED = FitRecipe(
+TUNED = InrFitRecipe(
     name="tuned",
     steps=15_000,
     learning_rate=1e-2,
@@ -73,7 +73,7 @@ SIREN_SHORT = replace(TUNED_SHORT, name="siren_short", activation="sine", highes
 RELU_SHORT = replace(TUNED_SHORT, name="relu_short", activation="relu", learning_rate=2e-3)
 RAW_SHORT = replace(RELU_SHORT, name="raw_short", is_centred=False)
 
-RECIPES: Registry[FitRecipe] = Registry(
+RECIPES: Registry[InrFitRecipe] = Registry(
     "fit recipe",
     [
         (recipe.name, recipe)
@@ -94,7 +94,7 @@ class Fit:
     last_loss: float  # mean squared error of the last tenth of the steps, in units of the network
 
 
-def fit(cube: RadarCube, recipe: FitRecipe, *, seed: int = 0, device: str = "cpu") -> Fit:
+def fit(cube: RadarCube, recipe: InrFitRecipe, *, seed: int = 0, device: str = "cpu") -> Fit:
     """The paper's INR fitted to one cube by Adam on the squared error of I and Q.
 
     The same seed gives the same bits on one machine. Raises InputError where the cube is all zeros or not finite.
@@ -133,7 +133,7 @@ class _Batch:
 class _Draw:
     """Batches of cells, and the weight of each in the loss."""
 
-    def __init__(self, cube: RadarCube, recipe: FitRecipe, seed: int):
+    def __init__(self, cube: RadarCube, recipe: InrFitRecipe, seed: int):
         self.rng = stream(seed, "single signal", "points")
         self.num_points = recipe.points
         self.num_frames, *_, self.num_antennas = cube.grid.shape
@@ -170,7 +170,7 @@ def _active_ranges(cells: Cells) -> np.ndarray:
 class _Network:
     """The parameters in training."""
 
-    def __init__(self, cube: RadarCube, recipe: FitRecipe, seed: int, device: str):
+    def __init__(self, cube: RadarCube, recipe: InrFitRecipe, seed: int, device: str):
         self.recipe, self.device, self.grid_shape = recipe, device, cube.grid.shape
         self.shape = inr_shape(recipe, cube.grid.shape)
         self.theta = self.shape.fresh(stream(seed, "single signal", "weights")).to(device).requires_grad_()
@@ -236,7 +236,7 @@ class _Network:
         return InrField(**about, gamma=self.gamma, beta=self.beta)
 
 
-def inr_shape(recipe: FitRecipe, grid_shape: tuple[int, ...]) -> InrShape:
+def inr_shape(recipe: InrFitRecipe, grid_shape: tuple[int, ...]) -> InrShape:
     """The network that a recipe asks for, on a grid of (frame, range, doppler, antenna) cells."""
     highest = recipe.highest_harmonic
     if highest is None:

@@ -24,9 +24,9 @@ from torch import Tensor, nn
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
+from mmweaver.training.device import ComputeDevice, Share
 from mmweaver.training.resuming import Resumable
 from mmweaver.training.run_log import RunLog
-from mmweaver.training.workplace import Share, Workplace
 
 BEST_FILE = "best.safetensors"
 WORST_SKIPS = 20  # steps in a row whose gradients are no numbers before training gives up
@@ -112,12 +112,12 @@ class Trainer:
         *,
         train: Draw,
         validation: Draw,
-        workplace: Workplace | None = None,
+        workplace: ComputeDevice | None = None,
         is_tuning: bool = False,
         tensorboard: bool = False,
         save_every_s: float | None = None,
     ):
-        self.workplace = workplace or Workplace()
+        self.workplace = workplace or ComputeDevice()
         self.learner = learner.to(self.workplace.device)
         self.recipe, self.out, self._train, self._validation = recipe, out, train, validation
         if recipe.batch_size % self.workplace.share[1]:

@@ -8,8 +8,8 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.dsp.spectra import azimuth_axis_rad
-from mmweaver.metrics.maps import log_map_difference_db
-from mmweaver.models.mean_power import PowerMaps
+from mmweaver.metrics.map_scores import log_map_difference_db
+from mmweaver.paths.mean_power import PowerMaps
 
 SPAN_DB = 50.0
 MOST_ROWS = 3

@@ -1,13 +1,13 @@
 import torch
-from tests.fields.echoes import SMALL, crowd
 
 from mmweaver.fields.beams import beams_of
+from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import rendered, static_cells
-from mmweaver.fields.scatterers.stretch import Stretch
+from tests.fields.echoes import SMALL, crowd
 
 
-def left_db(working: torch.Tensor, stretch: Stretch, recipe: FitRecipe) -> tuple[float, torch.Tensor]:
+def left_db(working: torch.Tensor, stretch: FitWindow, recipe: FitRecipe) -> tuple[float, torch.Tensor]:
     layers = fitted(working, stretch, recipe)
     left = working - rendered(layers, stretch.response, stretch.axes)
     error = 10 * torch.log10(left.abs().square().sum() / working.abs().square().sum())
@@ -16,7 +16,7 @@ def left_db(working: torch.Tensor, stretch: Stretch, recipe: FitRecipe) -> tuple
 
 def test_a_crowd_is_found_down_to_its_noise():
     cube = crowd()
-    stretch = Stretch.of(SMALL, 3, 0)
+    stretch = FitWindow.of(SMALL, 3, 0)
     working = stretch.working(cube.values)
     noise_db = 10 * torch.log10(torch.tensor(2 * 2e-4**2) / working.abs().square().mean())
     error, counts = left_db(working, stretch, FitRecipe(num_points=90, stages=10))
@@ -29,7 +29,7 @@ def test_a_crowd_is_found_down_to_its_noise():
 
 def test_swapping_the_weakest_helps_or_does_no_harm():
     cube = crowd()
-    stretch = Stretch.of(SMALL, 3, 0)
+    stretch = FitWindow.of(SMALL, 3, 0)
     working = stretch.working(cube.values)
     plain, _ = left_db(working, stretch, FitRecipe(num_points=30, stages=5))
     swapped, _ = left_db(working, stretch, FitRecipe(num_points=30, stages=5, swaps=2))
@@ -40,7 +40,7 @@ def test_frames_of_noise_get_no_scatterers():
     parts = torch.randn(2, 2, 24, 16, 12, generator=torch.Generator().manual_seed(0))
     noise = torch.complex(parts[0], parts[1])
     recipe = FitRecipe(num_points=50, stages=5, with_static=False, least_gain=40.0)
-    layers = fitted(noise, Stretch.of(SMALL, 2, 0), recipe)
+    layers = fitted(noise, FitWindow.of(SMALL, 2, 0), recipe)
     assert int(layers.counts().sum()) == 0
     assert 0.8 < layers.noise_power / 2 < 1.2
 
@@ -49,7 +49,7 @@ def test_gains_of_the_antennas_are_learned():
     cube = crowd(num_points=20)
     gain = torch.ones(12, dtype=torch.complex64)
     gain[3], gain[7] = 1.2, torch.polar(torch.tensor(1.0), torch.tensor(0.3))
-    stretch = Stretch.of(SMALL, 3, 0)
+    stretch = FitWindow.of(SMALL, 3, 0)
     working = stretch.working(cube.values) * gain
     recipe = FitRecipe(num_points=80, stages=10, last_steps=12)
     plain, _ = left_db(working, stretch, recipe)
@@ -62,7 +62,7 @@ def test_gains_of_the_antennas_are_learned():
 
 def test_so_many_numbers_are_not_exceeded_and_static_beams_worth_nothing_go():
     """A wall straight ahead beside a crowd: few beams keep it, and the points get the rest."""
-    stretch = Stretch.of(SMALL, 3, 0)
+    stretch = FitWindow.of(SMALL, 3, 0)
     wall = torch.zeros(24, 12, dtype=torch.complex64)
     wall[6:10] = 0.3
     working = stretch.working(crowd().values) + static_cells(wall, stretch.response, stretch.axes)

@@ -1,13 +1,13 @@
 import torch
-from tests.fields.echoes import SMALL, direction_of, exact_point
 
+from mmweaver.dsp.point_response import PointResponse
+from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.greedy import Beams, matched_power, next_points
-from mmweaver.fields.scatterers.response import PointResponse
-from mmweaver.fields.scatterers.stretch import Stretch
+from tests.fields.echoes import SMALL, direction_of, exact_point
 
 
 def test_the_first_scatterer_is_within_a_cell_and_a_beam_of_the_truth():
-    stretch = Stretch.of(SMALL, 1, 0)
+    stretch = FitWindow.of(SMALL, 1, 0)
     towards = direction_of(0.35, 0.0)
     target = stretch.working(exact_point(SMALL, 1.4, 1.1, towards)[None])
     response, axes = stretch.response, stretch.axes
@@ -18,7 +18,7 @@ def test_the_first_scatterer_is_within_a_cell_and_a_beam_of_the_truth():
 
 
 def test_what_is_too_weak_is_left():
-    stretch = Stretch.of(SMALL, 2, 0)
+    stretch = FitWindow.of(SMALL, 2, 0)
     target = torch.zeros(2, 24, 16, 12, dtype=torch.complex64)
     target[1, 5, 5] = 1.0
     response, axes = stretch.response, stretch.axes

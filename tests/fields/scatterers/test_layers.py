@@ -1,6 +1,6 @@
 import torch
-from tests.fields.echoes import SMALL
 
+from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.fields.scatterers.layers import (
     Layers,
     at_rest,
@@ -11,7 +11,7 @@ from mmweaver.fields.scatterers.layers import (
     static_values,
     strongest,
 )
-from mmweaver.fields.scatterers.response import PointResponse, Points
+from tests.fields.echoes import SMALL
 
 
 def some(amplitudes: list[list[float]]) -> Points:

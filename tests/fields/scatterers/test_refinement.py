@@ -1,9 +1,9 @@
 import pytest
 import torch
-from tests.fields.echoes import SMALL
 
+from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.fields.scatterers.refinement import Damping, refined
-from mmweaver.fields.scatterers.response import PointResponse, Points
+from tests.fields.echoes import SMALL
 
 RESPONSE = PointResponse(SMALL)
 AXES = RESPONSE.axes()
@@ -66,7 +66,7 @@ def test_a_step_is_that_of_the_explicit_jacobian():
 
     Ours leaves out the slow turns (TDM, migration, squint), so it is near, not equal.
     """
-    from mmweaver.fields.scatterers.layout import ScattererLayout
+    from mmweaver.fields.scatterers.layout_vector import ScattererLayout
 
     truth = drawn(3, num_frames=1)
     layout = ScattererLayout.over(AXES, 3)

@@ -5,7 +5,7 @@ import pytest
 from mocap_files import walk
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.mocap.axes import UNITS_M, UPS, is_mirrored, metres_of, turned_up, unit_of, up_of
+from mmweaver.motion.mocap.axes import UNITS_M, UPS, is_reflected, metres_of, turned_up, unit_of, up_of
 
 
 @pytest.mark.parametrize("unit", UNITS_M)
@@ -48,5 +48,5 @@ def test_who_lies_is_asked_about():
 
 
 def test_mirrored_bodies_are_noticed():
-    assert not is_mirrored(walk())
-    assert is_mirrored(walk() * np.array([-1.0, 1.0, 1.0]))
+    assert not is_reflected(walk())
+    assert is_reflected(walk() * np.array([-1.0, 1.0, 1.0]))

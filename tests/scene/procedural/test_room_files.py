@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.scene.class_file import read_class_file
-from mmweaver.scene.photo import read_photo
-from mmweaver.scene.procedural.room import make_room
+from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_files import write_room
+from mmweaver.scene.read_photo import read_photo
+from mmweaver.scene.segmentation.class_file import read_class_file
 
 
 def test_what_is_written_is_read_back(tmp_path: Path):

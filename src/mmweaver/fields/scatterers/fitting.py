@@ -6,6 +6,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.fields.beams import beams_of
+from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.greedy import Beams, next_points
 from mmweaver.fields.scatterers.layers import (
     Layers,
@@ -18,7 +19,6 @@ from mmweaver.fields.scatterers.layers import (
     values_of_point,
 )
 from mmweaver.fields.scatterers.refinement import Damping, refined
-from mmweaver.fields.scatterers.stretch import Stretch
 
 DENSE_SHARE = 0.5  # of the stages; then the static layer loses the beams that are not worth their numbers
 WEAK_SHARE = 0.05  # so many scatterers are weak
@@ -47,7 +47,7 @@ class FitRecipe:
     least_gain: float = 8.0
 
 
-def fitted(target: Tensor, stretch: Stretch, recipe: FitRecipe) -> Layers:
+def fitted(target: Tensor, stretch: FitWindow, recipe: FitRecipe) -> Layers:
     """Layers whose rendering is close to the working frames `target`, in the least-squares sense."""
     with torch.no_grad():
         return _Fit(target, stretch, recipe).run()
@@ -56,7 +56,7 @@ def fitted(target: Tensor, stretch: Stretch, recipe: FitRecipe) -> Layers:
 class _Fit:
     """State of one fit. `residual` is always target / calibration - static - points."""
 
-    def __init__(self, target: Tensor, stretch: Stretch, recipe: FitRecipe):
+    def __init__(self, target: Tensor, stretch: FitWindow, recipe: FitRecipe):
         self.target, self.recipe, self.stretch = target, recipe, stretch
         self.response, self.axes = stretch.response, stretch.axes
         self.to_beams = torch.from_numpy(beams_of(stretch.config)).to(target.dtype)

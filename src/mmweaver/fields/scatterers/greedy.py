@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 from torch.nn.functional import max_pool2d
 
-from mmweaver.fields.scatterers.response import Axes, PointResponse, Points
+from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
 BEAMS_A_WAVELENGTH = 2.2  # a little more than the array's own resolution
 FRAMES_AT_ONCE = 4

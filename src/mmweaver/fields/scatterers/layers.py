@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor
 
-from mmweaver.fields.scatterers.response import Axes, PointResponse, Points
+from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
 VALUES_OF_POINT = 4  # range, velocity, complex amplitude; and one for each direction the array can tell
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import torch
 from torch import Tensor
 
+from mmweaver.dsp.point_response import Axes, PointResponse, Points
 from mmweaver.fields.scatterers.layers import picked
-from mmweaver.fields.scatterers.response import Axes, PointResponse, Points
 
 LARGEST_STEP_BINS = 0.5
 LARGEST_STEP_DIRECTION = 0.25

@@ -19,15 +19,15 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import CubeValues
+from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.dsp.windows import hann
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.sampling import Coordinates, antenna_at, coordinates_on
-from mmweaver.fields.scatterers.between import between, between_rows
+from mmweaver.fields.scatterers.cell_noise import cell_noise
+from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
+from mmweaver.fields.scatterers.interpolation import between, between_rows
 from mmweaver.fields.scatterers.layers import Layers, rendered
-from mmweaver.fields.scatterers.noise import cell_noise
-from mmweaver.fields.scatterers.response import PointResponse, Points
-from mmweaver.fields.scatterers.stretch import Stretch, overlap_hop
 
 POINTS_A_FRAME = 83  # of six values: about the 10,018 values of the paper's INR in 20 frames
 STATIC_POINTS = 200  # into which the static layer is turned for another radar
@@ -37,7 +37,7 @@ SAMPLES_AT_ONCE = 1 << 14
 class ScattererField(SignalField):
     """Points and a static layer (`layers`), where they lie (`stretch`), and the amplitude of 1.0 (`peak`)."""
 
-    def __init__(self, layers: Layers, stretch: Stretch, grid: CubeGrid, scale: float, peak: float):
+    def __init__(self, layers: Layers, stretch: FitWindow, grid: CubeGrid, scale: float, peak: float):
         self.layers, self.stretch = layers, stretch
         self.config, self.grid, self.scale, self.peak = stretch.config, grid, scale, peak
 
@@ -53,7 +53,7 @@ class ScattererField(SignalField):
         peak = float(np.abs(values).max(initial=0.0))
         if peak == 0.0:
             raise InputError("the cube is all zeros: there is nothing to fit")
-        stretch = Stretch.of(cube.config, len(values), overlap_hop(cube))
+        stretch = FitWindow.of(cube.config, len(values), overlap_hop(cube))
         working = stretch.working(values / np.float32(peak))
         recipe = recipe or FitRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
         return cls(fitted(working, stretch, recipe), stretch, cube.grid, cube.scale, peak)

@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.body import ALLOWED_M
+from mmweaver.motion.animation.skeleton_proportions import ALLOWED_M
 from mmweaver.motion.mocap.clip import body_height
 
 Array = np.ndarray
@@ -79,7 +79,7 @@ def turned_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "fram
     return np.stack(turned, axis=-1)
 
 
-def is_mirrored(joints: Float[Array, "frame 22 3"]) -> bool:
+def is_reflected(joints: Float[Array, "frame 22 3"]) -> bool:
     """Whether left and right are exchanged (left-handed axes): the toes then point out of the back. z up."""
     across = joints[:, joint("left_hip")] - joints[:, joint("right_hip")]
     across = across + joints[:, joint("left_shoulder")] - joints[:, joint("right_shoulder")]

@@ -9,11 +9,12 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import Joints
 from mmweaver.core.skeleton import joint
-from mmweaver.motion.body import ALLOWED_M
+from mmweaver.motion.animation.skeleton_proportions import ALLOWED_M
 
 Array = np.ndarray
 
-# Legs and trunk (hips to shoulders) are this share of the height in the library's own body (motion/body.py); the SMPL
+# Legs and trunk (hips to shoulders) are this share of the height in the library's own body
+# (motion/animation/skeleton_proportions.py); the SMPL
 # mean body has 0.776. Spine and head joints would say more, but every skeleton puts them elsewhere.
 BONES_OF_HEIGHT = 0.474 + 0.295
 LEGS = (("hip", "knee"), ("knee", "ankle"))

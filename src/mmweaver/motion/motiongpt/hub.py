@@ -5,7 +5,7 @@ from pathlib import Path
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.hub_log import hub_log_off
-from mmweaver.motion.motiongpt.language import EXTRA
+from mmweaver.motion.motiongpt.language_model import EXTRA
 
 PUBLISHED = "OpenMotionLab/MotionGPT-base"
 CHECKPOINT = "motiongpt_s3_h3d.tar"

@@ -10,11 +10,11 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.shapes import Array
-from mmweaver.scene.procedural import things
-from mmweaver.scene.procedural.groups import BACK, MIDDLE, Group
-from mmweaver.scene.procedural.kinds import Kind
+from mmweaver.scene.procedural import objects
+from mmweaver.scene.procedural.groups import BACK, MIDDLE, FurnitureGroup
 from mmweaver.scene.procedural.palette import Palette
 from mmweaver.scene.procedural.parts import Boxes, Piece, Placed, outlines_of
+from mmweaver.scene.procedural.room_kinds import Kind
 
 HEAD_M, STEP_OVER_M = 1.9, 0.03  # what stands between these heights is in a walker's way
 BODY_RADIUS_M = 0.25
@@ -65,12 +65,12 @@ def draw_shell(kind: Kind, palette: Palette, rng: np.random.Generator, layout: n
     """Size, door and windows belong to the room; the radar's place and turn, and theirs in the walls, to the layout."""
     behind = float(rng.uniform(0.3, 1.4))
     size = (float(rng.uniform(*kind.width_m)), behind + float(rng.uniform(*kind.back_m)), float(rng.uniform(2.4, 2.8)))
-    openings = [things.door(palette, rng, float(rng.uniform(0.8, 0.95)))]
-    openings += [things.window(palette, rng, float(rng.uniform(1.1, 1.7))) for _ in range(kind.num_windows)]
+    openings = [objects.door(palette, rng, float(rng.uniform(0.8, 0.95)))]
+    openings += [objects.window(palette, rng, float(rng.uniform(1.1, 1.7))) for _ in range(kind.num_windows)]
     empty = Shell(
         size_m=size,
         openings=tuple(openings),
-        lamp=things.ceiling_lamp(palette),
+        lamp=objects.ceiling_lamp(palette),
         fixed=(),
         radar_m=(size[0] / 2, behind, float(layout.uniform(0.5, 1.5))),
         radar_yaw_rad=0.0,
@@ -107,7 +107,7 @@ def with_openings(shell: Shell, rng: np.random.Generator) -> Shell:
 
 
 def arrange(
-    kind: Kind, shell: Shell, wanted: Sequence[tuple[Group, bool]], rng: np.random.Generator
+    kind: Kind, shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator
 ) -> tuple[Shell, tuple[Placed, ...], FreeFloor]:
     """Puts in door and windows, then the groups, those marked True always, so that enough floor stays free.
 
@@ -157,7 +157,7 @@ def covered(boxes: Boxes, x_m: Float[Array, " x"], y_m: Float[Array, " y"]) -> B
 
 
 def _once(
-    shell: Shell, wanted: Sequence[tuple[Group, bool]], rng: np.random.Generator, leave_out: float
+    shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator, leave_out: float
 ) -> tuple[Placed, ...] | None:
     """One try: the pieces; None where a group that must stand found no place."""
     placed: list[Placed] = []
@@ -174,7 +174,9 @@ def _once(
     return tuple(placed)
 
 
-def _best_place(shell: Shell, group: Group, taken: Boxes, rng: np.random.Generator) -> tuple[Placed, ...] | None:
+def _best_place(
+    shell: Shell, group: FurnitureGroup, taken: Boxes, rng: np.random.Generator
+) -> tuple[Placed, ...] | None:
     """Of the first few places without overlap the one that the radar sees best."""
     best, found = None, 0
     for _ in range(_DRAWS):
@@ -193,7 +195,7 @@ def _best_place(shell: Shell, group: Group, taken: Boxes, rng: np.random.Generat
     return None if best is None else best[1]
 
 
-def _candidate(shell: Shell, group: Group, rng: np.random.Generator) -> tuple[Placed, ...]:
+def _candidate(shell: Shell, group: FurnitureGroup, rng: np.random.Generator) -> tuple[Placed, ...]:
     width, depth, _ = shell.size_m
     if group.site == MIDDLE:
         turn = float(rng.integers(4)) * np.pi / 2 + float(rng.normal(0, 0.05))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mmweaver.scene.procedural import seating, storage, tables, things
+from mmweaver.scene.procedural import objects, seat_furniture, storage_furniture, table_furniture
 from mmweaver.scene.procedural.palette import Palette
 from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, Placed, outlines_of
 
@@ -18,14 +18,14 @@ GAP_M = 0.02  # between furniture and the wall behind it
 
 
 @dataclass(frozen=True, kw_only=True)
-class Group:
+class FurnitureGroup:
     """Pieces in the group's own frame, and where in a room it may stand."""
 
     items: tuple[Placed, ...]
     site: str = WALL  # wall (any), back, side, middle
 
 
-Maker = Callable[[Palette, np.random.Generator], Group]
+Maker = Callable[[Palette, np.random.Generator], FurnitureGroup]
 
 
 def at(piece: Piece, x: float | int, y: float | int, z: float = 0.0, turn_deg: float = 0.0) -> Placed:
@@ -48,7 +48,7 @@ def _top_m(piece: Piece, lowest: float = 0.0) -> float:
     return max(top for top in areas if top > lowest)
 
 
-def drawn(make: Maker, palette: Palette, rng: np.random.Generator) -> Group:
+def drawn(make: Maker, palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A group whose own pieces do not cut into each other; drawn again until they do not."""
     for _ in range(_DRAWS):
         group = make(palette, rng)
@@ -60,227 +60,239 @@ def drawn(make: Maker, palette: Palette, rng: np.random.Generator) -> Group:
 
 
 # Work ---------------------------------------------------------------------------------------------------------------
-def desk_place(palette: Palette, rng: np.random.Generator) -> Group:
+def desk_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """Desk, monitor, keyboard, a cup, a chair drawn back from it."""
-    desk = tables.desk(palette, rng, float(rng.uniform(1.2, 1.6)))
+    desk = table_furniture.desk(palette, rng, float(rng.uniform(1.2, 1.6)))
     wall = at_wall(desk)
     top, half = _top_m(desk), float(desk.high_m[0])
-    items = [wall, at(things.monitor(palette, rng), rng.uniform(-0.1, 0.2), wall.y_m + 0.14, top)]
-    items.append(at(things.keyboard(palette, rng), items[-1].x_m, wall.y_m - 0.16, top))
-    items.append(at(things.cup(palette, rng), -half + 0.18, wall.y_m - 0.05, top))
+    items = [wall, at(objects.monitor(palette, rng), rng.uniform(-0.1, 0.2), wall.y_m + 0.14, top)]
+    items.append(at(objects.keyboard(palette, rng), items[-1].x_m, wall.y_m - 0.16, top))
+    items.append(at(objects.cup(palette, rng), -half + 0.18, wall.y_m - 0.05, top))
     if rng.random() < 0.5:
-        items.append(at(things.books(palette, rng), half - 0.22, wall.y_m + 0.05, top))
+        items.append(at(objects.books(palette, rng), half - 0.22, wall.y_m + 0.05, top))
     away = float(-desk.low_m[1]) + rng.uniform(0.22, 0.42)
     items.append(
         at(
-            seating.office_chair(palette, rng),
+            seat_furniture.office_chair(palette, rng),
             rng.uniform(-0.08, 0.12),
             wall.y_m - away,
             0.0,
             180 + rng.uniform(-35, 35),
         )
     )
-    return Group(items=tuple(items))
+    return FurnitureGroup(items=tuple(items))
 
 
-def laptop_desk(palette: Palette, rng: np.random.Generator) -> Group:
+def laptop_desk(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """Desk with a laptop and a lamp, a plain chair."""
-    desk = tables.desk(palette, rng, float(rng.uniform(1.0, 1.25)))
+    desk = table_furniture.desk(palette, rng, float(rng.uniform(1.0, 1.25)))
     wall, top = at_wall(desk), _top_m(desk)
     away = float(-desk.low_m[1]) + rng.uniform(0.24, 0.4)
     items = (
         wall,
-        at(things.laptop(palette, rng), 0.0, wall.y_m - 0.08, top),
-        at(things.table_lamp(palette, rng), float(desk.low_m[0]) + 0.16, wall.y_m + 0.12, top),
-        at(seating.chair(palette, rng), rng.uniform(-0.1, 0.1), wall.y_m - away, 0.0, 180 + rng.uniform(-15, 15)),
+        at(objects.laptop(palette, rng), 0.0, wall.y_m - 0.08, top),
+        at(objects.table_lamp(palette, rng), float(desk.low_m[0]) + 0.16, wall.y_m + 0.12, top),
+        at(
+            seat_furniture.chair(palette, rng), rng.uniform(-0.1, 0.1), wall.y_m - away, 0.0, 180 + rng.uniform(-15, 15)
+        ),
     )
-    return Group(items=items)
+    return FurnitureGroup(items=items)
 
 
-def bench_place(palette: Palette, rng: np.random.Generator) -> Group:
+def bench_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A laboratory's bench with instruments and a stool."""
-    made = tables.lab_bench(palette, rng, float(rng.uniform(1.5, 2.1)))
+    made = table_furniture.lab_bench(palette, rng, float(rng.uniform(1.5, 2.1)))
     wall, half = at_wall(made), float(made.high_m[0])
-    items = [wall, at(things.instrument(palette, rng), -half + 0.4, wall.y_m - 0.05, 0.90)]
-    items.append(at(things.monitor(palette, rng), half - 0.45, wall.y_m + 0.02, 0.90))
-    items.append(at(seating.stool(palette, rng), rng.uniform(-0.4, 0.4), wall.y_m - 0.62, 0.0, rng.uniform(0, 40)))
-    return Group(items=tuple(items))
+    items = [wall, at(objects.instrument(palette, rng), -half + 0.4, wall.y_m - 0.05, 0.90)]
+    items.append(at(objects.monitor(palette, rng), half - 0.45, wall.y_m + 0.02, 0.90))
+    items.append(
+        at(seat_furniture.stool(palette, rng), rng.uniform(-0.4, 0.4), wall.y_m - 0.62, 0.0, rng.uniform(0, 40))
+    )
+    return FurnitureGroup(items=tuple(items))
 
 
-def workbench_place(palette: Palette, rng: np.random.Generator) -> Group:
+def workbench_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """Workbench, a carton on it, a stool."""
-    made = tables.workbench(palette, rng, float(rng.uniform(1.4, 1.8)))
+    made = table_furniture.workbench(palette, rng, float(rng.uniform(1.4, 1.8)))
     wall = at_wall(made)
     top = float(made.parts[4].high_m[2])
-    items = [wall, at(things.carton(palette, rng), -0.3, wall.y_m - 0.03, top)]
-    items.append(at(seating.stool(palette, rng), rng.uniform(0.0, 0.4), wall.y_m - 0.62))
-    return Group(items=tuple(items))
+    items = [wall, at(objects.carton(palette, rng), -0.3, wall.y_m - 0.03, top)]
+    items.append(at(seat_furniture.stool(palette, rng), rng.uniform(0.0, 0.4), wall.y_m - 0.62))
+    return FurnitureGroup(items=tuple(items))
 
 
-def meeting_place(palette: Palette, rng: np.random.Generator) -> Group:
+def meeting_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A long table with chairs on both sides, laptops on it."""
     length = float(rng.uniform(1.5, 1.9))
-    made = tables.table(palette, rng, (length, float(rng.uniform(0.8, 0.95))), name="meeting table")
-    items = [at(made, 0, 0), at(things.laptop(palette, rng), -0.3, -0.15, _top_m(made))]
+    made = table_furniture.table(palette, rng, (length, float(rng.uniform(0.8, 0.95))), name="meeting table")
+    items = [at(made, 0, 0), at(objects.laptop(palette, rng), -0.3, -0.15, _top_m(made))]
     out = float(made.high_m[1]) + 0.30
     for x in (-length / 4, length / 4):
         for side, turn in ((-1, 180.0), (1, 0.0)):
             y = side * (out + rng.uniform(0.0, 0.1))
-            items.append(at(seating.office_chair(palette, rng), x, y, 0.0, turn + rng.uniform(-15, 15)))
-    return Group(items=tuple(items), site=MIDDLE)
+            items.append(at(seat_furniture.office_chair(palette, rng), x, y, 0.0, turn + rng.uniform(-15, 15)))
+    return FurnitureGroup(items=tuple(items), site=MIDDLE)
 
 
-def pupils(palette: Palette, rng: np.random.Generator) -> Group:
+def pupils(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A school table for two with two chairs; its pupils look at the wall behind it."""
-    made = tables.table(palette, rng, (1.3, 0.55), name="school table")
-    items = [at(made, 0, 0), at(things.books(palette, rng), -0.3, 0.0, _top_m(made))]
+    made = table_furniture.table(palette, rng, (1.3, 0.55), name="school table")
+    items = [at(made, 0, 0), at(objects.books(palette, rng), -0.3, 0.0, _top_m(made))]
     for x in (-0.33, 0.33):
-        items.append(at(seating.chair(palette, rng), x, -0.52 - rng.uniform(0, 0.1), 0.0, 180 + rng.uniform(-12, 12)))
-    return Group(items=tuple(items), site=MIDDLE)
+        items.append(
+            at(seat_furniture.chair(palette, rng), x, -0.52 - rng.uniform(0, 0.1), 0.0, 180 + rng.uniform(-12, 12))
+        )
+    return FurnitureGroup(items=tuple(items), site=MIDDLE)
 
 
-def teacher(palette: Palette, rng: np.random.Generator) -> Group:
+def teacher(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A whiteboard with a desk before it."""
-    made = tables.desk(palette, rng, 1.3)
+    made = table_furniture.desk(palette, rng, 1.3)
     y = -1.25
     items = (
-        at(things.whiteboard(palette, rng, 2.0), 0, 0),
+        at(objects.whiteboard(palette, rng, 2.0), 0, 0),
         at(made, 0.9, y, 0.0, 180.0),
-        at(things.laptop(palette, rng), 0.9, y, _top_m(made), 180.0),
-        at(seating.chair(palette, rng), 0.9, y + 0.68),
+        at(objects.laptop(palette, rng), 0.9, y, _top_m(made), 180.0),
+        at(seat_furniture.chair(palette, rng), 0.9, y + 0.68),
     )
-    return Group(items=items, site=BACK)
+    return FurnitureGroup(items=items, site=BACK)
 
 
-def board(palette: Palette, rng: np.random.Generator) -> Group:
+def board(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A whiteboard alone."""
-    return Group(items=(at(things.whiteboard(palette, rng, float(rng.uniform(1.2, 1.8))), 0, 0),))
+    return FurnitureGroup(items=(at(objects.whiteboard(palette, rng, float(rng.uniform(1.2, 1.8))), 0, 0),))
 
 
 # Home ---------------------------------------------------------------------------------------------------------------
-def sofa_place(palette: Palette, rng: np.random.Generator) -> Group:
+def sofa_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """Sofa, a low table before it on a rug, a lamp beside it."""
-    made = seating.sofa(palette, rng, 2 + int(rng.random() < 0.45))
+    made = seat_furniture.sofa(palette, rng, 2 + int(rng.random() < 0.45))
     wall = at_wall(made)
     front = wall.y_m + float(made.low_m[1])
-    low = tables.coffee_table(palette, rng)
+    low = table_furniture.coffee_table(palette, rng)
     y = front - 0.42 - float(low.high_m[1])
     items = [wall, at(low, rng.uniform(-0.2, 0.2), y)]
-    items.append(at(things.books(palette, rng), items[1].x_m + 0.1, y, _top_m(low)))
+    items.append(at(objects.books(palette, rng), items[1].x_m + 0.1, y, _top_m(low)))
     if rng.random() < 0.7:
         side = 1 if rng.random() < 0.5 else -1
-        items.append(at(things.floor_lamp(palette, rng), side * (float(made.high_m[0]) + 0.26), -0.30))
-    return Group(items=tuple(items))
+        items.append(at(objects.floor_lamp(palette, rng), side * (float(made.high_m[0]) + 0.26), -0.30))
+    return FurnitureGroup(items=tuple(items))
 
 
-def sofa_alone(palette: Palette, rng: np.random.Generator) -> Group:
+def sofa_alone(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A sofa with nothing before it."""
-    return Group(items=(at_wall(seating.sofa(palette, rng, 2)),))
+    return FurnitureGroup(items=(at_wall(seat_furniture.sofa(palette, rng, 2)),))
 
 
-def armchair_place(palette: Palette, rng: np.random.Generator) -> Group:
+def armchair_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """An armchair, a little turned."""
-    made = seating.armchair(palette, rng)
-    return Group(items=(at(made, 0, -0.62, 0.0, rng.uniform(-20, 20)),))
+    made = seat_furniture.armchair(palette, rng)
+    return FurnitureGroup(items=(at(made, 0, -0.62, 0.0, rng.uniform(-20, 20)),))
 
 
-def television_place(palette: Palette, rng: np.random.Generator) -> Group:
+def television_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A low sideboard with a television."""
-    made = storage.cabinet(palette, rng, (float(rng.uniform(1.3, 1.7)), 0.40, 0.48), name="sideboard")
+    made = storage_furniture.cabinet(palette, rng, (float(rng.uniform(1.3, 1.7)), 0.40, 0.48), name="sideboard")
     wall = at_wall(made)
-    return Group(items=(wall, at(things.television(palette, rng), 0, wall.y_m + 0.02, 0.48)))
+    return FurnitureGroup(items=(wall, at(objects.television(palette, rng), 0, wall.y_m + 0.02, 0.48)))
 
 
-def television_on_wall(palette: Palette, rng: np.random.Generator) -> Group:
+def television_on_wall(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """Flat on the wall."""
-    return Group(items=(at(things.television(palette, rng, on_wall=True), 0, 0),))
+    return FurnitureGroup(items=(at(objects.television(palette, rng, on_wall=True), 0, 0),))
 
 
-def bed_place(palette: Palette, rng: np.random.Generator) -> Group:
+def bed_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """Bed and nightstands with lamps."""
-    made = seating.bed(palette, rng)
+    made = seat_furniture.bed(palette, rng)
     items = [at_wall(made)]
     for side in (-1, 1):
         if side > 0 or rng.random() < 0.6:
-            stand = storage.nightstand(palette, rng)
+            stand = storage_furniture.nightstand(palette, rng)
             x = side * (float(made.high_m[0]) + 0.25)
             wall = at_wall(stand, x)
-            items += [wall, at(things.table_lamp(palette, rng), x, wall.y_m, 0.48)]
-    return Group(items=tuple(items))
+            items += [wall, at(objects.table_lamp(palette, rng), x, wall.y_m, 0.48)]
+    return FurnitureGroup(items=tuple(items))
 
 
-def dining_place(palette: Palette, rng: np.random.Generator) -> Group:
+def dining_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A table laid, with four chairs."""
     size = (float(rng.uniform(1.2, 1.5)), float(rng.uniform(0.8, 0.95)))
-    made = tables.table(palette, rng, size, name="dining table")
-    items = [at(made, 0, 0), at(things.bowl(palette, rng), rng.uniform(-0.2, 0.2), 0.0, _top_m(made))]
+    made = table_furniture.table(palette, rng, size, name="dining table")
+    items = [at(made, 0, 0), at(objects.bowl(palette, rng), rng.uniform(-0.2, 0.2), 0.0, _top_m(made))]
     for x in (-0.33, 0.33):
         for side, turn in ((-1, 180.0), (1, 0.0)):
             y = side * (size[1] / 2 + rng.uniform(0.17, 0.34))
-            items.append(at(seating.chair(palette, rng), x, y, 0.0, turn + rng.uniform(-8, 8)))
-    return Group(items=tuple(items), site=MIDDLE)
+            items.append(at(seat_furniture.chair(palette, rng), x, y, 0.0, turn + rng.uniform(-8, 8)))
+    return FurnitureGroup(items=tuple(items), site=MIDDLE)
 
 
-def small_dining(palette: Palette, rng: np.random.Generator) -> Group:
+def small_dining(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A small table and two chairs."""
-    made = tables.table(palette, rng, (0.8, 0.75), name="dining table")
-    items = [at(made, 0, 0), at(things.cup(palette, rng), 0.15, 0.1, _top_m(made))]
+    made = table_furniture.table(palette, rng, (0.8, 0.75), name="dining table")
+    items = [at(made, 0, 0), at(objects.cup(palette, rng), 0.15, 0.1, _top_m(made))]
     for side, turn in ((-1, 90.0), (1, -90.0)):
         x = side * (0.4 + rng.uniform(0.2, 0.36))
-        items.append(at(seating.chair(palette, rng), x, rng.uniform(-0.1, 0.1), 0.0, turn + rng.uniform(-20, 20)))
-    return Group(items=tuple(items), site=MIDDLE)
+        items.append(
+            at(seat_furniture.chair(palette, rng), x, rng.uniform(-0.1, 0.1), 0.0, turn + rng.uniform(-20, 20))
+        )
+    return FurnitureGroup(items=tuple(items), site=MIDDLE)
 
 
-def kitchen_row(palette: Palette, rng: np.random.Generator) -> Group:
+def kitchen_row(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """Counter, cooker, refrigerator, cabinets above."""
     width = float(rng.uniform(1.4, 1.9))
-    made, cooker, cold = tables.counter(palette, rng, width), storage.oven(palette, rng), storage.fridge(palette, rng)
+    made, cooker, cold = (
+        table_furniture.counter(palette, rng, width),
+        storage_furniture.oven(palette, rng),
+        storage_furniture.fridge(palette, rng),
+    )
     left = -(width + 0.6 + 0.62) / 2
     wall = at_wall(made, left + width / 2)
     items = [wall, at_wall(cooker, left + width + 0.31), at_wall(cold, left + width + 0.62 + 0.31)]
-    items.append(at(things.wall_cabinet(palette, rng, width - 0.2), wall.x_m, 0))
+    items.append(at(objects.wall_cabinet(palette, rng, width - 0.2), wall.x_m, 0))
     sink = made.parts[3]
     away = 0.28 - width / 2 if sink.low_m[0] + sink.high_m[0] > 0 else width / 2 - 0.28  # the end without the sink
-    items.append(at(things.microwave(palette, rng), wall.x_m + away, -0.22, 0.91))
-    return Group(items=tuple(items))
+    items.append(at(objects.microwave(palette, rng), wall.x_m + away, -0.22, 0.91))
+    return FurnitureGroup(items=tuple(items))
 
 
-def kitchen_counter(palette: Palette, rng: np.random.Generator) -> Group:
+def kitchen_counter(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """A counter alone, cabinets above."""
     width = float(rng.uniform(1.2, 1.6))
-    wall = at_wall(tables.counter(palette, rng, width))
-    return Group(items=(wall, at(things.wall_cabinet(palette, rng, width), 0, 0)))
+    wall = at_wall(table_furniture.counter(palette, rng, width))
+    return FurnitureGroup(items=(wall, at(objects.wall_cabinet(palette, rng, width), 0, 0)))
 
 
 # One piece at a wall -------------------------------------------------------------------------------------------------
 def single(make: Callable[[Palette, np.random.Generator], Piece], site: str = WALL) -> Maker:
     """One thing with its back at the wall."""
-    return lambda palette, rng: Group(items=(at_wall(make(palette, rng)),), site=site)
+    return lambda palette, rng: FurnitureGroup(items=(at_wall(make(palette, rng)),), site=site)
 
 
 def hung(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
     """One thing on a wall."""
-    return lambda palette, rng: Group(items=(at(make(palette, rng), 0, 0),))
+    return lambda palette, rng: FurnitureGroup(items=(at(make(palette, rng), 0, 0),))
 
 
 def standing(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
     """One thing in the open."""
-    return lambda palette, rng: Group(items=(at(make(palette, rng), 0, 0),), site=MIDDLE)
+    return lambda palette, rng: FurnitureGroup(items=(at(make(palette, rng), 0, 0),), site=MIDDLE)
 
 
 def shelves(count: int) -> Maker:
     """A row of bookcases."""
 
-    def make(palette: Palette, rng: np.random.Generator) -> Group:
+    def make(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
         width = float(rng.uniform(0.75, 0.95))
         height = float(rng.uniform(1.7, 2.1))
-        cases = [storage.bookcase(palette, rng, width, height) for _ in range(count)]
+        cases = [storage_furniture.bookcase(palette, rng, width, height) for _ in range(count)]
         start = -(count - 1) * (width + 0.005) / 2
-        return Group(items=tuple(at_wall(case, start + k * (width + 0.005)) for k, case in enumerate(cases)))
+        return FurnitureGroup(items=tuple(at_wall(case, start + k * (width + 0.005)) for k, case in enumerate(cases)))
 
     return make
 
 
-def treadmill_place(palette: Palette, rng: np.random.Generator) -> Group:
+def treadmill_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """With its front into the room."""
-    return Group(items=(at(things.treadmill(palette, rng), 0, -0.85),))
+    return FurnitureGroup(items=(at(objects.treadmill(palette, rng), 0, -0.85),))

@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
 from mmweaver.scene.procedural.palette import Palette
-from mmweaver.scene.procedural.parts import Look, Part, Placed
+from mmweaver.scene.procedural.parts import Appearance, Part, Placed
 
 FACE_M = 0.25  # longest side: the simulator's edges are those of small faces
 _ROWS, _COLUMNS, _RING = 9, 20, 20
@@ -25,16 +25,16 @@ class Mesh:
     faces: Faces
     look: PerFace
     piece: PerFace
-    looks: tuple[Look, ...]
+    looks: tuple[Appearance, ...]
 
 
 def mesh_of(size_m: tuple[float, float, float], placed: Sequence[Placed], palette: Palette) -> Mesh:
     """The shell and everything in it."""
     vertices, faces, look, piece = [], [], [], []
-    looks: dict[Look, int] = {}
+    looks: dict[Appearance, int] = {}
     count = 0
 
-    def add(corners: np.ndarray, triangles: np.ndarray, of: Look, number: int) -> None:
+    def add(corners: np.ndarray, triangles: np.ndarray, of: Appearance, number: int) -> None:
         nonlocal count
         vertices.append(corners)
         faces.append(triangles + count)
@@ -57,7 +57,7 @@ def mesh_of(size_m: tuple[float, float, float], placed: Sequence[Placed], palett
     )
 
 
-def _shell(size_m: tuple[float, float, float], palette: Palette) -> list[tuple[np.ndarray, Look]]:
+def _shell(size_m: tuple[float, float, float], palette: Palette) -> list[tuple[np.ndarray, Appearance]]:
     w, d, h = size_m
     quads = [
         ([(0, 0, 0), (w, 0, 0), (w, d, 0), (0, d, 0)], palette.floor),

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mmweaver.scene.procedural.parts import Colour, Look
+from mmweaver.scene.procedural.parts import Appearance, Colour
 
 _WOODS: tuple[Colour, ...] = (
     (0.46, 0.27, 0.13), (0.55, 0.38, 0.21), (0.25, 0.13, 0.06), (0.36, 0.20, 0.10), (0.62, 0.47, 0.30),
@@ -51,19 +51,19 @@ _WALLS: dict[str, tuple[str, str, str]] = {
 class Palette:
     """Looks to build with; `named` gives one the class of the thing it is used for."""
 
-    wood: Look
-    dark_wood: Look
-    cloth: Look
-    accent: Look
-    metal: Look
-    dark: Look
-    white: Look
-    wall: Look
-    floor: Look
-    ceiling: Look
+    wood: Appearance
+    dark_wood: Appearance
+    cloth: Appearance
+    accent: Appearance
+    metal: Appearance
+    dark: Appearance
+    white: Appearance
+    wall: Appearance
+    floor: Appearance
+    ceiling: Appearance
 
     @staticmethod
-    def named(look: Look, coco: str) -> Look:
+    def named(look: Appearance, coco: str) -> Appearance:
         return replace(look, coco=coco)
 
 
@@ -82,16 +82,16 @@ def draw_palette(rng: np.random.Generator, walls: tuple[str, ...], floors: tuple
     elif sort[2] == "concrete":
         wall = (0.48, 0.47, 0.45)
     return Palette(
-        wood=Look(_varied(rng, wood), "wood", "furniture-other", "grain"),
-        dark_wood=Look(_varied(rng, dark), "wood", "furniture-other", "grain"),
-        cloth=Look(_varied(rng, cloth), "fabric", "furniture-other", "weave"),
-        accent=Look(_varied(rng, accent), "fabric", "furniture-other", "weave"),
-        metal=Look((0.35, 0.35, 0.36), "metal", "furniture-other"),
-        dark=Look((0.03, 0.03, 0.032), "chipboard", "furniture-other"),
-        white=Look(_varied(rng, (0.66, 0.65, 0.62)), "chipboard", "furniture-other"),
-        wall=Look(_varied(rng, wall), sort[0], sort[1], sort[2]),
-        floor=Look(_varied(rng, colour), material, coco, pattern),
-        ceiling=Look((0.82, 0.82, 0.80), "ceiling_board", "ceiling-other", "plaster"),
+        wood=Appearance(_varied(rng, wood), "wood", "furniture-other", "grain"),
+        dark_wood=Appearance(_varied(rng, dark), "wood", "furniture-other", "grain"),
+        cloth=Appearance(_varied(rng, cloth), "fabric", "furniture-other", "weave"),
+        accent=Appearance(_varied(rng, accent), "fabric", "furniture-other", "weave"),
+        metal=Appearance((0.35, 0.35, 0.36), "metal", "furniture-other"),
+        dark=Appearance((0.03, 0.03, 0.032), "chipboard", "furniture-other"),
+        white=Appearance(_varied(rng, (0.66, 0.65, 0.62)), "chipboard", "furniture-other"),
+        wall=Appearance(_varied(rng, wall), sort[0], sort[1], sort[2]),
+        floor=Appearance(_varied(rng, colour), material, coco, pattern),
+        ceiling=Appearance((0.82, 0.82, 0.80), "ceiling_board", "ceiling-other", "plaster"),
     )
 
 

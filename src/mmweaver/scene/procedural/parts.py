@@ -16,7 +16,7 @@ SHAPES = ("box", "rounded", "cylinder", "cone")
 
 
 @dataclass(frozen=True)
-class Look:
+class Appearance:
     """Colour in linear light, pattern, what it is made of and what COCO-Stuff calls it."""
 
     colour: Colour
@@ -33,7 +33,7 @@ class Part:
 
     low_m: Point
     high_m: Point
-    look: Look
+    look: Appearance
     shape: str = "box"  # one of SHAPES
 
 
@@ -185,14 +185,19 @@ def outlines_of(placed: Sequence[Placed]) -> Boxes:
 
 # Shorthands of the furniture files -----------------------------------------------------------------------------------
 def block(
-    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], look: Look, shape: str = "box"
+    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], look: Appearance, shape: str = "box"
 ) -> Part:
     """A part from its three extents."""
     return Part((x[0], y[0], z[0]), (x[1], y[1], z[1]), look, shape)
 
 
 def legs(
-    x: tuple[float, float], y: tuple[float, float], height_m: float, thick_m: float, look: Look, shape: str = "box"
+    x: tuple[float, float],
+    y: tuple[float, float],
+    height_m: float,
+    thick_m: float,
+    look: Appearance,
+    shape: str = "box",
 ) -> tuple[Part, ...]:
     """Four legs at the corners of a rectangle, inside it."""
     return tuple(

@@ -19,7 +19,7 @@ _SENSOR_NOISE = 0.008
 
 
 @dataclass(frozen=True, kw_only=True)
-class View:
+class CameraView:
     """What each pixel sees, in the room's frame."""
 
     face: Int[Array, "row column"]
@@ -28,7 +28,9 @@ class View:
     normals: Float[Array, "row column 3"]  # towards the camera
 
 
-def look_at(mesh: Mesh, caster: RayCaster, camera: CameraIntrinsics, room_from_camera: Rotation, eye_m: Vec3) -> View:
+def look_at(
+    mesh: Mesh, caster: RayCaster, camera: CameraIntrinsics, room_from_camera: Rotation, eye_m: Vec3
+) -> CameraView:
     """Casts a ray through the middle of every pixel."""
     rays = unproject(np.ones((camera.height, camera.width)), camera).reshape(-1, 3) @ room_from_camera.T
     length = np.linalg.norm(rays, axis=1)
@@ -43,7 +45,7 @@ def look_at(mesh: Mesh, caster: RayCaster, camera: CameraIntrinsics, room_from_c
     normals = np.where((normals * rays).sum(axis=1)[:, None] > 0, -normals, normals)
     depth = distance / length
     shape = (camera.height, camera.width)
-    return View(
+    return CameraView(
         face=face.reshape(shape),
         depth_m=depth.reshape(shape),
         points_m=(eye_m + depth[:, None] * rays).reshape(*shape, 3),
@@ -52,7 +54,7 @@ def look_at(mesh: Mesh, caster: RayCaster, camera: CameraIntrinsics, room_from_c
 
 
 def developed(
-    mesh: Mesh, caster: RayCaster, view: View, placed: tuple[Placed, ...], lighting: str, seed: int
+    mesh: Mesh, caster: RayCaster, view: CameraView, placed: tuple[Placed, ...], lighting: str, seed: int
 ) -> RgbPixels:
     """The colour picture under a named lighting."""
     light = LIGHTINGS[lighting]
@@ -73,7 +75,7 @@ def developed(
     return np.round(255 * value).astype(np.uint8)
 
 
-def class_mask(mesh: Mesh, view: View) -> ClassMask:
+def class_mask(mesh: Mesh, view: CameraView) -> ClassMask:
     """The COCO-Stuff class of every pixel; all classes of the room's looks are named, in alphabetical order."""
     names = ("unlabeled", *sorted({look.coco for look in mesh.looks}))
     index = np.array([names.index(look.coco) for look in mesh.looks], np.uint8)
@@ -86,7 +88,7 @@ def _normals(mesh: Mesh) -> Float[Array, "face 3"]:
     return normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-15)[:, None]
 
 
-def _colours(mesh: Mesh, view: View, look: np.ndarray, light: Lighting) -> tuple[np.ndarray, np.ndarray]:
+def _colours(mesh: Mesh, view: CameraView, look: np.ndarray, light: Lighting) -> tuple[np.ndarray, np.ndarray]:
     """Colour and light of its own of every pixel."""
     flat_look = look.ravel()
     points, normals = view.points_m.reshape(-1, 3), view.normals.reshape(-1, 3)
@@ -120,7 +122,7 @@ def _flat(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
     return np.take_along_axis(points, kept, axis=1)
 
 
-def _widened(light: np.ndarray, view: View) -> np.ndarray:
+def _widened(light: np.ndarray, view: CameraView) -> np.ndarray:
     """Light of every second pixel -> of every pixel, from those of four neighbours that lie on the same surface."""
     rows, columns = view.depth_m.shape
     low_row, low_column = np.arange(rows) // 2, np.arange(columns) // 2

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array
-from mmweaver.scene.procedural.parts import Look
+from mmweaver.scene.procedural.parts import Appearance
 
 Plane2 = Float[Array, "point 2"]
 Shade = Float[Array, " point"]
@@ -29,7 +29,7 @@ def lattice_noise(points: Plane2, scale_m: float | tuple[float, float]) -> Shade
     return low + (high - low) * blend[:, 1]
 
 
-def albedo(look: Look, plane: Plane2) -> Rgb:
+def albedo(look: Appearance, plane: Plane2) -> Rgb:
     """Colour of points of one look in linear light; `plane` are their two coordinates along the surface, in metres."""
     colour = np.asarray(look.colour, np.float32)
     made = PATTERNS[look.pattern](plane, colour)

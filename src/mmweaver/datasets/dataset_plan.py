@@ -1,0 +1,182 @@
+"""What a data set holds: which room, person, activity and seed each sequence has, and which split it belongs to."""
+
+import json
+from dataclasses import asdict, dataclass, field, replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+
+PLAN_VERSION = 2
+# The paper's activities and three more; each in the words of several people.
+ACTIVITIES: dict[str, tuple[str, ...]] = {
+    "walking": ("a person walks towards the radar", "a person walks to the left", "a person walks to the right",
+                "someone walks away", "a person walks around"),
+    "jogging": ("a person jogs on the spot", "a person jogs"),
+    "waving": ("a person waves with the right hand", "a person waves with the left hand",
+               "someone waves with both hands"),
+    "clapping": ("a person claps", "someone claps quickly"),
+    "jumping jacks": ("a person does jumping jacks",),
+    "left-hand raise": ("a person raises the left hand",),
+    "right-hand raise": ("a person raises the right hand",),
+    "jumping": ("a person jumps", "someone jumps up and down"),
+    "drinking seated": ("a person sits and drinks", "user seated on a chair drinking water"),
+    "sitting down": ("a person sits down",),
+    "squatting": ("a person squats", "someone squats"),
+    "punching": ("a person punches", "a person punches quickly"),
+}  # fmt: skip
+# Of six people: heights from the least to the greatest; the number names the skin, too.
+PEOPLE_HEIGHT_M = (1.63, 1.70, 1.75, 1.80, 1.87, 1.96)
+SPLITS = ("train", "validation", "test_room", "test_layout", "test_person", "test_activity")
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldOut:
+    """What training never sees."""
+
+    validation_kinds: tuple[str, ...] = ("dining_room",)
+    test_kinds: tuple[str, ...] = ("living_room", "classroom", "workshop")
+    test_people: tuple[int, ...] = (3,)
+    test_activities: tuple[str, ...] = ("right-hand raise", "jumping")
+    test_layouts: int = 2  # the last ones of each kind
+
+    def split(self, *, kind: str, layouts_after: int, person: int, activity: str) -> str:
+        """The split of a sequence, or "" for one that would show two withheld things at once and is not made.
+
+        `layouts_after`: how many layouts of the room's kind come after its own.
+
+        >>> HeldOut().split(kind="office", layouts_after=9, person=0, activity="walking")
+        'train'
+        >>> HeldOut().split(kind="living_room", layouts_after=9, person=0, activity="walking")
+        'test_room'
+        >>> HeldOut().split(kind="living_room", layouts_after=9, person=3, activity="walking")
+        ''
+        """
+        is_other_kind = kind in self.validation_kinds + self.test_kinds
+        withheld = {
+            "validation": kind in self.validation_kinds,
+            "test_room": kind in self.test_kinds,
+            "test_layout": layouts_after < self.test_layouts and not is_other_kind,
+            "test_person": person in self.test_people,
+            "test_activity": activity in self.test_activities,
+        }
+        reasons = [name for name, is_so in withheld.items() if is_so]
+        return "train" if not reasons else reasons[0] if len(reasons) == 1 else ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SequenceSpec:
+    """One sequence to be made."""
+
+    index: int  # in its room
+    person: int
+    activity: str
+    text: str
+    seed: int
+    split: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoomSpec:
+    """One room to be made: a kind, a layout, a light, and what happens in it."""
+
+    kind: str
+    layout: int
+    seed: int
+    lighting: str
+    sequences: tuple[SequenceSpec, ...]
+
+    @property
+    def name(self) -> str:
+        return f"{self.kind.replace(' ', '_')}_{self.layout:03d}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class DatasetPlan:
+    """A whole data set. The same plan gives the same bits, whoever makes which part of it."""
+
+    kinds: tuple[str, ...]
+    lightings: tuple[str, ...]
+    num_layouts: int = 10
+    sequences_a_room: int = 120
+    num_frames: int = 20
+    radar: str = "awr1843"
+    seed: int = 0
+    withheld: HeldOut = field(default_factory=HeldOut)
+    geometry_only: bool = False  # signals are made while training, from prepared rooms
+
+    def __post_init__(self) -> None:
+        for name in ("num_layouts", "sequences_a_room", "num_frames"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
+        if not self.kinds:
+            raise InputError("a data set needs at least one kind of room")
+
+    def rooms(self) -> list[RoomSpec]:
+        """All rooms, kind after kind."""
+        return [self._room(kind, layout) for kind in self.kinds for layout in range(self.num_layouts)]
+
+    def _room(self, kind: str, layout: int) -> RoomSpec:
+        rng = stream(self.seed, "dataset", kind, layout)
+        lighting = str(rng.choice(self.lightings))
+        room = RoomSpec(kind=kind, layout=layout, seed=self.seed, lighting=lighting, sequences=())
+        names = list(ACTIVITIES)
+        specs: list[SequenceSpec] = []
+        turn = int(rng.integers(len(names)))
+        while len(specs) < self.sequences_a_room:
+            activity = names[turn % len(names)]
+            turn += 1
+            spec = self._sequence(room, len(specs), activity, rng)
+            if spec.split:
+                specs.append(spec)
+        return replace(room, sequences=tuple(specs))
+
+    def _sequence(self, room: RoomSpec, index: int, activity: str, rng: np.random.Generator) -> SequenceSpec:
+        person = int(rng.integers(len(PEOPLE_HEIGHT_M)))
+        return SequenceSpec(
+            index=index,
+            person=person,
+            activity=activity,
+            text=str(rng.choice(ACTIVITIES[activity])),
+            seed=int(rng.integers(2**31)),
+            split=self.withheld.split(
+                kind=room.kind, layouts_after=self._layouts_after(room.layout), person=person, activity=activity
+            ),
+        )
+
+    def _layouts_after(self, layout: int) -> int:
+        """Of a kind with fewer than six layouts, at most a third is withheld."""
+        spared = max(self.withheld.test_layouts - self.num_layouts // 3, 0)
+        return self.num_layouts - 1 - layout + spared
+
+    def to_json(self) -> str:
+        words = {"plan_version": PLAN_VERSION, **asdict(self)}
+        if not self.geometry_only:  # older sets do not name it
+            del words["geometry_only"]
+        return json.dumps(words, indent=1)
+
+
+def check_for_leaks(rooms: list[RoomSpec]) -> None:
+    """Raises InputError where something withheld from training, or a seed of a test, turns up in training."""
+    of = {split: [(room, s) for room in rooms for s in room.sequences if s.split == split] for split in SPLITS}
+    train = of["train"]
+    checks = {
+        "test_room": {room.kind for room, _ in train},
+        "validation": {room.kind for room, _ in train},
+        "test_layout": {(room.kind, room.layout) for room, _ in train},
+        "test_person": {s.person for _, s in train},
+        "test_activity": {s.activity for _, s in train},
+    }
+    for split, seen in checks.items():
+        for room, s in of[split]:
+            value = {
+                "test_room": room.kind, "validation": room.kind, "test_layout": (room.kind, room.layout),
+                "test_person": s.person, "test_activity": s.activity,
+            }[split]  # fmt: skip
+            if value in seen:
+                raise InputError(f"leak: {value!r} of split {split} is in training, too")
+    seeds = [s.seed for _, s in train]
+    tested = {s.seed for split in SPLITS[1:] for _, s in of[split]}
+    if tested & set(seeds):
+        raise InputError("leak: a sequence's seed is both in training and in a test")

@@ -1,0 +1,135 @@
+"""The part of a data set that signals are drawn from on the fly: prepared rooms and looked-at motions.
+
+    OUT/office_003/geometry/       instead of iq and iq_scale
+        node_joints_m    (sequence, frame, node, joint, axis) float32, at the nodes of simulation.FrameClock
+        visibility       (sequence, frame, byte)  bits of simulation.Visibility
+        room/, photographed/   simulation.prepared: the room as it is, and as its photo shows it
+
+No ray caster is needed to read it. Reference: decision 93.
+"""
+
+import hashlib
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.datasets.make_room import RoomGeometry, TracedSequence
+from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, REFERENCE_HEIGHT_M, ScatteringBody
+from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points
+from mmweaver.paths.static_paths import PreparedRoom
+from mmweaver.paths.static_paths_store import room_arrays, room_of, room_words
+from mmweaver.paths.visibility import Visibility
+
+GEOMETRY = "geometry"
+ROOMS = ("room", "photographed")
+
+
+def write_geometry(group: Any, geometry: RoomGeometry, sequences: tuple[TracedSequence, ...]) -> None:
+    """Puts all of it below a room's Zarr group."""
+    below = group.create_group(GEOMETRY)
+    below.attrs.update({"skin": skin_mark()})
+    if sequences:
+        axes = ("sequence", "frame", "node", "joint", "axis")
+        _put(below, "node_joints_m", np.stack([sequence.node_joints_m for sequence in sequences]), axes)
+        bits = np.stack([sequence.visibility.packed() for sequence in sequences])
+        _put(below, "visibility", bits, ("sequence", "frame", "byte"))
+    for name in ROOMS:
+        room = getattr(geometry, name)
+        inner = below.create_group(name)
+        for key, values in room_arrays(room).items():
+            _put(inner, key, values, (key, *(f"{key}_{axis}" for axis in range(1, values.ndim))))
+        inner.attrs.update({"faces": room_words(room)})
+
+
+def _put(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...]) -> None:
+    """One array in one piece; numbers that resemble their neighbours are packed bit by bit."""
+    from zarr.codecs import BloscCodec
+
+    packing = BloscCodec(cname="zstd", clevel=7, shuffle="bitshuffle" if values.dtype.kind == "f" else "noshuffle")
+    chunks = values.shape if values.size else (1,) * values.ndim
+    array = group.create_array(
+        name, shape=values.shape, dtype=values.dtype, chunks=chunks, compressors=packing, dimension_names=dimensions
+    )
+    array[...] = np.ascontiguousarray(values)
+    if name.endswith("_m"):
+        array.attrs["units"] = "m"
+
+
+@lru_cache(maxsize=1)
+def skin_mark() -> str:
+    """Names the skin points that visibility is about: another number or place of them has another mark."""
+    body = ScatteringBody(0, REFERENCE_HEIGHT_M)
+    parts = (body.part, np.round(1e6 * body.along).astype(np.int64), np.round(1e6 * body.angle_rad).astype(np.int64))
+    return hashlib.sha256(np.concatenate([*parts, ghost_points(body)]).astype("<i8").tobytes()).hexdigest()[:16]
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoredGeometry:
+    """The geometry of one room, read when it is first asked for."""
+
+    folder: Path  # the room's
+    config: RadarConfig
+    _replays: dict[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def node_joints_m(self) -> np.ndarray:
+        """(sequence, frame, node, 22, 3)."""
+        return np.asarray(self._group["node_joints_m"])
+
+    @cached_property
+    def _visibility(self) -> np.ndarray:
+        return np.asarray(self._group["visibility"])
+
+    @cached_property
+    def room(self) -> PreparedRoom:
+        """As it is: what the signal is made in."""
+        return self._read("room")
+
+    @cached_property
+    def photographed(self) -> PreparedRoom:
+        """As its photo shows it: what the network is told."""
+        return self._read("photographed")
+
+    def cube_values(self, look: Any, frames: np.ndarray, *, twin: int, device: str) -> np.ndarray:
+        """Frames of a looked-at cube in sqrt(mW), complex64 (frame, range, doppler, antenna); see `Resynthesis`."""
+        from mmweaver.dsp.cube_torch import torch_cube
+
+        return torch_cube(self.replay(device).samples(look, frames, twin=twin), self.config).cpu().numpy()
+
+    def replay(self, device: str) -> Any:
+        """The room's `Resynthesis` on a device, made once."""
+        from mmweaver.paths.resynthesis import Resynthesis
+
+        if device not in self._replays:
+            self._replays[device] = Resynthesis(self.room, device)
+        return self._replays[device]
+
+    def look(self, index: int, *, person: int, height_m: float, seed: int) -> Any:
+        """The `TracedMotion` of one sequence."""
+        from mmweaver.paths.resynthesis import TracedMotion
+
+        sizes = {"points": DEFAULT_NUM_POINTS, "faces": len(self.room.mirrors), "ghosts": GHOST_POINTS}
+        seen = Visibility.unpacked(self._visibility[index], **sizes, echoes=len(self.room.echoes))
+        joints_m = self.node_joints_m[index]
+        return TracedMotion(joints_m=joints_m, visibility=seen, subject=person, height_m=height_m, seed=seed)
+
+    @cached_property
+    def _group(self) -> Any:
+        import zarr
+
+        group = zarr.open_group(self.folder / GEOMETRY, mode="r")
+        if group.attrs.get("skin") != skin_mark():
+            raise InputError(
+                f"{self.folder} was made by another version of mmweaver, whose people have another skin; make the data"
+                " set again"
+            )
+        return group
+
+    def _read(self, name: str) -> PreparedRoom:
+        group = self._group[name]
+        return room_of({key: np.asarray(array) for key, array in group.arrays()}, group.attrs["faces"], self.config)

@@ -1,1 +1,0 @@
-"""One file for each claim; every run writes results/<experiment>/<method>.json."""

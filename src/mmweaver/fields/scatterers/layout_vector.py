@@ -1,0 +1,65 @@
+"""Scatterers as one flat row of numbers of order 1, so that a network can write them."""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from mmweaver.dsp.point_response import Axes, PointResponse, Points
+
+PER_POINT = 6  # range, velocity, two direction cosines, real and imaginary amplitude
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScattererLayout:
+    """Where in a row (..., num_points * 6) what stands: for each scatterer range, velocity, x, z, re, im.
+
+    Range and velocity run from -1 to 1 over the radar's cells, direction cosines are themselves, amplitudes are in
+    units of `peak`. All of it is differentiable; `packed` is the inverse of `points`.
+    """
+
+    num_points: int
+    first_bin: tuple[float, float]  # range, Doppler: the middle of the axis
+    half_bins: tuple[float, float]  # from the middle to the last cell
+
+    @classmethod
+    def of(cls, response: PointResponse, num_points: int) -> "ScattererLayout":
+        return cls.over(response.axes(), num_points)
+
+    @classmethod
+    def over(cls, axes: Axes, num_points: int) -> "ScattererLayout":
+        """For scatterers that lie on these axes."""
+        ends = [(float(axis[0]), float(axis[-1])) for axis in (axes.range_bin, axes.doppler_bin)]
+        middle = tuple((first + last) / 2 for first, last in ends)
+        half = tuple(max((last - first) / 2, 0.5) for first, last in ends)
+        return cls(num_points=num_points, first_bin=(middle[0], middle[1]), half_bins=(half[0], half[1]))
+
+    @property
+    def num_values(self) -> int:
+        return PER_POINT * self.num_points
+
+    def points(self, values: Tensor) -> Points:
+        """Row (..., num_values) -> scatterers (..., point)."""
+        parts = values.unflatten(-1, (self.num_points, PER_POINT))
+        return Points(
+            range_bin=self.first_bin[0] + self.half_bins[0] * parts[..., 0],
+            doppler_bin=self.first_bin[1] + self.half_bins[1] * parts[..., 1],
+            direction=parts[..., 2:4],
+            amplitude=torch.complex(parts[..., 4], parts[..., 5]),
+        )
+
+    def packed(self, points: Points) -> Tensor:
+        """Scatterers -> row; fewer than `num_points` are filled up with silent ones."""
+        missing = self.num_points - points.amplitude.shape[-1]
+        if missing < 0:
+            raise ValueError(f"{points.amplitude.shape[-1]} scatterers do not fit into {self.num_points} places")
+        columns = [
+            (points.range_bin - self.first_bin[0]) / self.half_bins[0],
+            (points.doppler_bin - self.first_bin[1]) / self.half_bins[1],
+            points.direction[..., 0],
+            points.direction[..., 1],
+            points.amplitude.real,
+            points.amplitude.imag,
+        ]
+        rows = torch.stack(columns, dim=-1)
+        return torch.nn.functional.pad(rows, (0, 0, 0, missing)).flatten(-2)

@@ -1,0 +1,155 @@
+"""preview.gif: the same over time. One figure is laid out once; only what moves is drawn again."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mmweaver.figures.figure_data import Fan, FigureData, decibels
+from mmweaver.figures.skeleton_drawing import SkeletonInPhoto
+from mmweaver.figures.theme import POWER_MAP, SPAN_DB, STYLE, label_axes, person_colour, shortened
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from PIL.Image import Image
+
+DPI = 100
+SKELETON_COLOUR = (0.99, 0.90, 0.14)
+SHORTEST_MS, LONGEST_MS = 40, 1000  # how long a picture stands
+
+
+def draw_animation(view: FigureData, path: Path) -> None:
+    """Writes a GIF in real time (as far as pictures of 0.04 to 1 s allow), 900 pixels wide, that repeats for ever."""
+    import matplotlib
+
+    with matplotlib.rc_context(STYLE):
+        pictures = _render(view)
+    step_s = (view.time_edges_s[1] - view.time_edges_s[0]) / len(pictures)
+    duration_ms = int(np.clip(round(step_s * 1000), SHORTEST_MS, LONGEST_MS))
+    first, *others = _share_palette(pictures)
+    first.save(path, format="GIF", save_all=True, append_images=others, duration=duration_ms, loop=0, optimize=False)
+
+
+def _render(view: FigureData) -> list[np.ndarray]:
+    """All frames as (height, width, 3) uint8."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 3.7), dpi=DPI, facecolor="white")
+    canvas = FigureCanvasAgg(figure)
+    movers = _lay_out(figure, view)
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+    pictures = []
+    for index in range(len(view.frames)):
+        canvas.restore_region(still)
+        for axes, update in movers:
+            for artist in update(index):
+                (axes or figure).draw_artist(artist)
+        pictures.append(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
+    return pictures
+
+
+def _lay_out(figure: "Figure", view: FigureData) -> "list[tuple[Axes | None, Callable[[int], list[Artist]]]]":
+    if view.photo is None:
+        places = figure.add_gridspec(1, 2, left=0.07, right=0.975, bottom=0.13, top=0.83, wspace=0.22)
+        doppler, azimuth = (figure.add_subplot(place) for place in places)
+        photo_movers = []
+    else:
+        places = figure.add_gridspec(
+            1, 3, left=0.012, right=0.985, bottom=0.13, top=0.83, wspace=0.2, width_ratios=(1.6, 0.8, 1.6)
+        )
+        photo, doppler, azimuth = (figure.add_subplot(place) for place in places)
+        photo_movers = [(photo, _photo_mover(photo, view))]
+    clock = figure.text(0.985, 0.955, "", ha="right", va="top", fontsize=10, animated=True)
+    figure.text(0.012, 0.965, shortened(view.heading, 105), ha="left", va="top", fontsize=10, fontweight="bold")
+
+    def tell_time(index: int) -> "list[Artist]":
+        clock.set_text(f"{view.time_s[index]:.1f} s")
+        return [clock]
+
+    return [
+        *photo_movers,
+        (doppler, _doppler_mover(doppler, view)),
+        (azimuth, _azimuth_mover(azimuth, view)),
+        (None, tell_time),
+    ]
+
+
+def _photo_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Artist]]":
+    assert view.photo is not None
+    assert view.radar_from_camera is not None
+    from matplotlib.colors import to_rgb
+
+    height, width = view.photo.rgb.shape[:2]
+    axes.imshow(view.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
+    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
+    people = view.shown_poses
+    skeletons = [SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=2.2) for _ in people]
+    count = len(people)
+    colours = [SKELETON_COLOUR] if count == 1 else [to_rgb(person_colour(index, count)) for index in range(count)]
+    artists: list[Artist] = [artist for skeleton in skeletons for artist in skeleton.artists]
+    for artist in artists:
+        artist.set_animated(True)
+
+    def update(index: int) -> "list[Artist]":
+        for skeleton, person, colour in zip(skeletons, people, colours, strict=True):
+            skeleton.show(person.joints_m[index], colour)
+        return artists
+
+    return update
+
+
+def _doppler_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Artist]]":
+    values_db = decibels(view.range_doppler)
+    image = axes.imshow(
+        np.full(values_db.shape[1:], np.nan), origin="lower", aspect="auto", cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0.0,
+        extent=(*view.velocity_edges_mps, *view.range_edges_m), interpolation="nearest",
+    )  # fmt: skip
+    image.set_animated(True)
+    label_axes(axes, "Range-Doppler", "radial velocity (m/s)", "range (m)")
+
+    def update(index: int) -> "list[Artist]":
+        image.set_data(values_db[index])
+        return [image]
+
+    return update
+
+
+def _azimuth_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Artist]]":
+    values_db = decibels(view.range_azimuth_moving)
+    fan = Fan.over(view.cube.grid.range_m, view.azimuth_rad)
+    image = axes.imshow(
+        np.full(fan.inside.shape, np.nan), origin="lower", cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0.0,
+        extent=fan.extent, interpolation="nearest",
+    )  # fmt: skip
+    image.set_animated(True)
+    axes.set(xlim=fan.extent[:2], ylim=fan.extent[2:])
+    label_axes(axes, "From above, what moves", "right (m)", "ahead (m)")
+    people = view.shown_poses
+    dots = [
+        axes.plot([], [], ".", color=person_colour(index, len(people)), markersize=2.5, animated=True)[0]
+        for index in range(len(people))
+    ]
+
+    def update(index: int) -> "list[Artist]":
+        image.set_data(fan.lay(values_db[index]))
+        for dot, person in zip(dots, people, strict=True):
+            dot.set_data(person.joints_m[index, :, 0], person.joints_m[index, :, 1])
+        return [image, *dots]
+
+    return update
+
+
+def _share_palette(pictures: list[np.ndarray]) -> "list[Image]":
+    """All frames in the 256 colours that suit a few of them, so that nothing flickers."""
+    from PIL import Image
+
+    chosen = sorted({0, len(pictures) // 2, len(pictures) - 1})
+    montage = Image.fromarray(np.concatenate([pictures[index][::2, ::2] for index in chosen]))
+    palette = montage.quantize(256, method=Image.Quantize.MEDIANCUT)
+    return [Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]

@@ -1,0 +1,198 @@
+"""FigureData: all that the pictures show, and the power maps that are made of it once."""
+
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, RgbdPhoto
+from mmweaver.core.shapes import Array, PerFrame, Rotation
+from mmweaver.core.virtual_array import has_elevation
+from mmweaver.dsp.cube import remove_static
+from mmweaver.dsp.spectra import (
+    azimuth_axis_rad,
+    elevation_axis_rad,
+    range_azimuth_power,
+    range_doppler_power,
+    range_elevation_power,
+)
+from mmweaver.figures.theme import SPAN_DB
+
+MAX_FRAMES = 100  # more are thinned out: no picture shows more
+Power = Float[Array, "frame range column"]
+RangeAngle = Float[Array, "range column"]
+Raster = Float[Array, "ahead aside"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FigureData:
+    """A cube and its points; with a photo and poses where the signal was made, without them for a recording.
+
+    `poses` hold each person's joints at the cube's frames, `motions` the same people densely in time.
+    """
+
+    title: str
+    cube: RadarCube
+    points: PointCloud
+    photo: RgbdPhoto | None = None
+    radar_from_camera: Rotation | None = None
+    poses: tuple[PoseSequence, ...] = ()
+    motions: tuple[PoseSequence, ...] = ()
+
+    @cached_property
+    def frames(self) -> Int[Array, " shown"]:
+        """The frames that the pictures show: all, or so many evenly spaced."""
+        count = len(self.cube.grid.frame_time_s)
+        return np.unique(np.linspace(0, count - 1, min(count, MAX_FRAMES)).round().astype(int))
+
+    @cached_property
+    def time_s(self) -> PerFrame:
+        return self.cube.grid.frame_time_s[self.frames]
+
+    @property
+    def heading(self) -> str:
+        """The title, and how many of the frames are shown where it is not all."""
+        count = len(self.cube.grid.frame_time_s)
+        return self.title if count == len(self.frames) else f"{self.title}   {len(self.frames)} of {count} frames shown"
+
+    @cached_property
+    def shown_points(self) -> PointCloud:
+        """The points of the frames that are shown."""
+        kept = np.isin(self.points.frame, self.frames)
+        columns = {field.name: getattr(self.points, field.name)[kept] for field in fields(PointCloud)}
+        return PointCloud(**columns)
+
+    @cached_property
+    def shown_poses(self) -> tuple[PoseSequence, ...]:
+        """The poses at the frames that are shown."""
+        return tuple(
+            replace(pose, time_s=pose.time_s[self.frames], joints_m=pose.joints_m[self.frames]) for pose in self.poses
+        )
+
+    @cached_property
+    def _shown(self) -> RadarCube:
+        grid = replace(self.cube.grid, frame_time_s=self.time_s)
+        return replace(self.cube, values=self.cube.values[self.frames], grid=grid)
+
+    @cached_property
+    def _moving(self) -> RadarCube:
+        return remove_static(self._shown)
+
+    @property
+    def has_elevation(self) -> bool:
+        """Whether the array can tell up from down."""
+        return has_elevation(self.cube.config)
+
+    @cached_property
+    def range_doppler(self) -> Power:
+        """Power (frame, range, doppler), the standing room included."""
+        return range_doppler_power(self._shown)
+
+    @cached_property
+    def range_doppler_moving(self) -> Power:
+        """Power (frame, range, doppler) less the mean chirp of each frame."""
+        return range_doppler_power(self._moving)
+
+    @cached_property
+    def azimuth_rad(self) -> Float[Array, " column"]:
+        return azimuth_axis_rad()
+
+    @cached_property
+    def elevation_rad(self) -> Float[Array, " column"]:
+        return elevation_axis_rad()
+
+    @cached_property
+    def range_azimuth(self) -> Power:
+        """Power (frame, range, azimuth), the standing room included."""
+        return range_azimuth_power(self._shown, self.azimuth_rad)
+
+    @cached_property
+    def range_azimuth_moving(self) -> Power:
+        """Power (frame, range, azimuth) less the mean chirp of each frame."""
+        return range_azimuth_power(self._moving, self.azimuth_rad)
+
+    @cached_property
+    def range_elevation_moving(self) -> Power:
+        """Power (frame, range, elevation) less the mean chirp of each frame."""
+        return range_elevation_power(self._moving, self.elevation_rad)
+
+    @cached_property
+    def liveliest(self) -> int:
+        """Index into `frames` of the one with the most moving power."""
+        return int(np.argmax(self.range_doppler_moving.sum(axis=(1, 2))))
+
+    @property
+    def range_edges_m(self) -> tuple[float, float]:
+        """Outer edges of the first and the last range bin."""
+        range_m = self.cube.grid.range_m
+        half = self.cube.config.range_resolution_m / 2
+        return float(range_m[0]) - half, float(range_m[-1]) + half
+
+    @property
+    def velocity_edges_mps(self) -> tuple[float, float]:
+        """Outer edges of the first and the last Doppler bin."""
+        velocity_mps = self.cube.grid.radial_velocity_mps
+        half = self.cube.config.velocity_resolution_mps / 2
+        return float(velocity_mps[0]) - half, float(velocity_mps[-1]) + half
+
+    @property
+    def frame_step_s(self) -> float:
+        """Time from one shown frame to the next."""
+        return float(self.time_s[1] - self.time_s[0]) if len(self.time_s) > 1 else self.cube.config.frame_period_s
+
+    @property
+    def time_edges_s(self) -> tuple[float, float]:
+        """First frame's start and the last one's end."""
+        return float(self.time_s[0]), float(self.time_s[-1]) + self.frame_step_s
+
+
+def decibels(power: Array) -> Array:
+    """Power relative to its own peak, from -SPAN_DB to 0 dB; all at the floor where there is no power at all."""
+    peak = float(np.max(power, initial=0.0))
+    if not peak > 0:
+        return np.full(power.shape, -SPAN_DB)
+    floor = 10 ** (-SPAN_DB / 10)
+    return 10 * np.log10(np.maximum(np.asarray(power, np.float64) / peak, floor))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fan:
+    """A raster in metres onto which (range, angle) maps are laid; nan outside the fan.
+
+    Angle 0 looks along the raster's first axis given as `ahead`, positive angles towards `aside`. `extent` is
+    (aside from, aside to, ahead from, ahead to) in metres.
+    """
+
+    range_index: Int[Array, "ahead aside"]
+    angle_index: Int[Array, "ahead aside"]
+    inside: Bool[Array, "ahead aside"]
+    extent: tuple[float, float, float, float]
+
+    @classmethod
+    def over(cls, range_m: Array, angle_rad: Array, size: int = 260) -> "Fan":
+        """The raster that just holds the fan of these ranges and rising angles."""
+        step_m = float(range_m[1] - range_m[0]) if len(range_m) > 1 else 1.0
+        reach_m = float(range_m[-1]) + step_m / 2
+        ahead_m = np.linspace(0.0, reach_m, size)[:, None]
+        width_m = reach_m * float(np.sin(min(np.max(np.abs(angle_rad)), np.pi / 2)))
+        aside_m = np.linspace(-width_m, width_m, round(2 * size * width_m / reach_m))[None, :]
+        distance_m, angle = np.hypot(ahead_m, aside_m), np.arctan2(aside_m, ahead_m)
+        range_index = np.round((distance_m - range_m[0]) / step_m).astype(int)
+        nearest = np.clip(np.searchsorted(angle_rad, angle), 1, len(angle_rad) - 1)
+        closer_below = angle - angle_rad[nearest - 1] < angle_rad[nearest] - angle
+        half_rad = (angle_rad[1] - angle_rad[0]) / 2
+        inside = (
+            (range_index >= 0) & (range_index < len(range_m))
+            & (angle >= angle_rad[0] - half_rad) & (angle <= angle_rad[-1] + half_rad)
+        )  # fmt: skip
+        return cls(
+            range_index=np.clip(range_index, 0, len(range_m) - 1),
+            angle_index=nearest - closer_below,
+            inside=inside,
+            extent=(-width_m, width_m, 0.0, reach_m),
+        )
+
+    def lay(self, values: RangeAngle) -> Raster:
+        """(range, angle) -> (ahead, aside)."""
+        return np.where(self.inside, values[self.range_index, self.angle_index], np.nan)

@@ -1,0 +1,168 @@
+"""What the networks see of a room: a small picture, the echoes of what it shows, and the flat faces."""
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.paths.antenna import scatterer_gain
+from mmweaver.paths.apparent_paths import between
+from mmweaver.paths.image_method import SpecularReflector
+from mmweaver.paths.radar_equation import pattern_db
+from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
+from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
+
+IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
+IMAGE_CHANNELS = 5  # red, green, blue, depth, class (paper: RGB + depth + mask)
+NUM_POINTS, POINT_FEATURES = 5000, 11
+NUM_PLANES, PLANE_FEATURES = 8, 13
+FARTHEST_M = 8.0
+NUM_CLASSES = 182.0  # of COCO-Stuff
+REFLECTION_COS = np.linspace(0.0, 1.0, 17)  # cosines of the angle of incidence
+PLANE_KINDS = ("floor", "ceiling", "wall", "top", "panel")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneTensors:
+    """Tensors of one room, or of several with a leading axis; frame of reference is the radar's."""
+
+    image: Tensor  # (channel, row, column), 0 where nothing is known
+    depth_m: Tensor  # (row, column) along the optical axis; 0 = no measurement
+    point_m: Tensor  # (point, 3)
+    point_cross_section_m2: Tensor  # (point,) what physics says of the photographed room; 0 = no point
+    point_features: Tensor  # (point, POINT_FEATURES)
+    camera_from_radar: Tensor  # (3, 3)
+    camera: Tensor  # (4,) fx, fy, cx, cy in cells of the picture
+    plane_centre_m: Tensor  # (plane, 3)
+    plane_axes: Tensor  # (plane, 3, 3): u, v, normal
+    plane_half_m: Tensor  # (plane, 2); 0 = no plane
+    plane_features: Tensor  # (plane, PLANE_FEATURES)
+    plane_reflection: Tensor  # (plane, angle) share of a wave's power that a face throws back, at REFLECTION_COS
+
+    @classmethod
+    def of(cls, scene: Scene, config: RadarConfig, room: PreparedRoom | None = None) -> "SceneTensors":
+        """The view of a scene's photo, with the scene's faces and the echoes that this radar would have of them.
+
+        `room` is the scene made ready before, where no rays are to be cast.
+        """
+        grid = make_grid(scene.photo)
+        rows = _nearest(IMAGE_ROWS, grid.depth_m.shape[0])
+        columns = _nearest(IMAGE_COLUMNS, grid.depth_m.shape[1])
+        camera = grid.intrinsics
+        scale_x, scale_y = IMAGE_COLUMNS / camera.width, IMAGE_ROWS / camera.height
+        view = np.ix_(rows, columns)
+        points = _points(room or RayTracedRoom(scene, config), scene)
+        planes = _planes(scene, config)
+        return cls(
+            image=_tensor(_image(grid, scene, view)),
+            depth_m=_tensor(np.nan_to_num(grid.depth_m[view])),
+            **points,
+            camera_from_radar=_tensor(scene.radar_from_camera.T),
+            camera=_tensor(
+                np.array(
+                    [
+                        camera.fx * scale_x, camera.fy * scale_y,
+                        (camera.cx + 0.5) * scale_x - 0.5, (camera.cy + 0.5) * scale_y - 0.5,
+                    ]
+                )
+            ),
+            **planes,
+        )  # fmt: skip
+
+    @classmethod
+    def stacked(cls, views: list["SceneTensors"]) -> "SceneTensors":
+        """Several rooms as one batch."""
+        return cls(**{f.name: torch.stack([getattr(view, f.name) for view in views]) for f in fields(cls)})
+
+
+def _nearest(wanted: int, given: int) -> np.ndarray:
+    return np.minimum(((np.arange(wanted) + 0.5) * given / wanted).astype(int), given - 1)
+
+
+def _image(grid: DepthGrid, scene: Scene, view: tuple[np.ndarray, ...]) -> np.ndarray:
+    depth = np.nan_to_num(grid.depth_m[view]) / FARTHEST_M
+    colour = grid.rgb[view].transpose(2, 0, 1)
+    return np.concatenate([colour, depth[None], _mask(scene.photo.classes, view, grid)[None]])
+
+
+def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGrid) -> np.ndarray:
+    """Class of the middle pixel of every cell, as a number from 0 to 1."""
+    if classes is None:
+        return np.zeros((IMAGE_ROWS, IMAGE_COLUMNS))
+    rows, columns = classes.index.shape
+    row = ((view[0] + 0.5) * rows / grid.depth_m.shape[0]).astype(int)
+    column = ((view[1] + 0.5) * columns / grid.depth_m.shape[1]).astype(int)
+    return classes.index[row, column] / NUM_CLASSES
+
+
+def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
+    """The strongest resting echoes that physics finds in the photographed room, each where it seems to stand.
+
+    The network turns their strength; what the photo does not show it adds.
+    """
+    echoes, config = room.echoes, room.config
+    order = np.argsort(-np.abs(echoes.amplitude))[:NUM_POINTS]
+    distance = np.maximum(echoes.way_m[order].mean(axis=(1, 2)) / 2, 0.1)
+    towards = between(echoes.first_m[order], echoes.last_m[order])
+    loss_db = pattern_db(_tensor(towards[:, [0, 2]]), config).numpy()
+    gain = scatterer_gain(config) * 10 ** (-loss_db / 10)  # as `radar_view.points_of` will apply it
+    cross_section = (np.abs(echoes.amplitude[order]) * distance**2 / gain) ** 2
+    place = towards * distance[:, None]
+    kind = np.searchsorted(np.cumsum(list(room.counts.values())), order, side="right")
+    features = np.column_stack(
+        [
+            distance / 4, place / 4, (place[:, 2] - scene.floor_z_m) / 2, towards[:, 0], towards[:, 2],
+            np.log10(np.maximum(cross_section, 1e-12)) / 4, *(kind == index for index in range(len(room.counts))),
+        ]
+    )  # fmt: skip
+    count = len(order)
+    return {
+        "point_m": _tensor(_padded(place, count)),
+        "point_cross_section_m2": _tensor(_padded(cross_section, count)),
+        "point_features": _tensor(_padded(features, count)),
+    }
+
+
+def _padded(values: np.ndarray, count: int) -> np.ndarray:
+    """Rows of zeros where there are fewer than NUM_POINTS; such a point stands at the radar and returns nothing."""
+    return np.concatenate([values, np.zeros((NUM_POINTS - count, *values.shape[1:]))])
+
+
+def _planes(scene: Scene, config: RadarConfig) -> dict[str, Tensor]:
+    """The floor and the largest faces, the largest first; rows of zeros where there are fewer."""
+    faces = sorted(scene.planes, key=lambda plane: (plane.kind != "floor", -math.prod(plane.half_size_m)))[:NUM_PLANES]
+    centre, axes = np.zeros((NUM_PLANES, 3)), np.tile(np.eye(3), (NUM_PLANES, 1, 1))
+    half, features = np.zeros((NUM_PLANES, 2)), np.zeros((NUM_PLANES, PLANE_FEATURES))
+    reflection = np.zeros((NUM_PLANES, len(REFLECTION_COS)))
+    for index, plane in enumerate(faces):
+        centre[index], half[index] = plane.centre_m, plane.half_size_m
+        axes[index] = np.stack([plane.axis_u, plane.axis_v, plane.normal])
+        features[index] = _plane_features(plane)
+        mirror = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
+        reflection[index] = np.abs(mirror.coefficient(REFLECTION_COS, config.centre_frequency_hz)) ** 2
+    return {
+        "plane_centre_m": _tensor(centre),
+        "plane_axes": _tensor(axes),
+        "plane_half_m": _tensor(half),
+        "plane_features": _tensor(features),
+        "plane_reflection": _tensor(reflection),
+    }
+
+
+def _plane_features(plane: Plane) -> np.ndarray:
+    """Which kind, how far, which way, and how far the foot of the radar's perpendicular lies inside."""
+    distance = float(plane.normal @ -plane.centre_m)
+    foot = -distance * plane.normal - plane.centre_m
+    inside = [
+        plane.half_size_m[0] - abs(float(foot @ plane.axis_u)), plane.half_size_m[1] - abs(float(foot @ plane.axis_v)),
+    ]  # fmt: skip
+    kind = [float(plane.kind == name) for name in PLANE_KINDS]
+    return np.array([*kind, distance / 4, *plane.normal, *np.tanh(inside), *(np.array(plane.half_size_m) / 3)])
+
+
+def _tensor(values: np.ndarray) -> Tensor:
+    return torch.from_numpy(np.ascontiguousarray(values, dtype=np.float32))

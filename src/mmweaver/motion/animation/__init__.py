@@ -1,0 +1,1 @@
+"""Steps along a path become joints: the activity library and the kinematics."""

@@ -1,0 +1,80 @@
+"""Controls: the few numbers from which a pose is solved, and how two of them are blended.
+
+Motions of different activities are blended here, not in joints: feet stay where they stand and bones keep their length.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from jaxtyping import Float
+
+Array = np.ndarray
+LEFT, RIGHT = 0, 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Controls:
+    """A pose at each of n times. Floor frame: x right, y away from the radar, z up from the floor; angles in radians.
+
+    The body's own frame has x forward and y to its left. Arms: flexion (forward and up), abduction (outward), twist
+    (outward about the upper arm), elbow flexion; feet: the point of the floor under the ankle of the flat foot, its z
+    being how far the sole is lifted, then yaw and pitch (heel up positive).
+    """
+
+    pelvis_m: Float[Array, "n 3"]
+    heading_rad: Float[Array, " n"]  # from +x towards +y
+    pelvis_rad: Float[Array, "n 3"]  # roll (right side down), pitch (forward), yaw (to the left)
+    spine_rad: Float[Array, "n 3"]  # roll, pitch, yaw, shared by three joints
+    head_rad: Float[Array, "n 2"]  # pitch (chin down), yaw
+    arm_rad: Float[Array, "n 2 4"]
+    foot_m: Float[Array, "n 2 3"]
+    foot_rad: Float[Array, "n 2 2"]
+    knee_out_rad: Float[Array, "n 2"]  # how far the knees point outward of the feet
+    knee_up_rad: Float[Array, " n"]  # where knees point: 0 ahead, pi/2 up (on the back), -pi/2 down (on the belly)
+    knee_room: Float[Array, " n"]  # 0: legs may be straight as in standing, 1: knees stay soft as in stepping
+    contact: Float[Array, "n 2"]  # 1: the foot carries weight, 0: it is in the air
+
+    def copy(self) -> "Controls":
+        return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
+
+
+def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[Float[Array, "n 2"]]) -> Controls:
+    """Weighted sum of Controls over the same times; weights of each time sum to 1, feet have weights of their own."""
+    values: dict[str, Array] = {}
+    for field in fields(Controls):
+        of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
+        total = 0.0
+        for part, weight, foot in zip(parts, weights, feet, strict=True):
+            value = getattr(part, field.name)
+            share = foot if of_feet else weight
+            total = total + value * share.reshape(share.shape + (1,) * (value.ndim - share.ndim))
+        values[field.name] = np.asarray(total)
+    return Controls(**values)
+
+
+def blended(
+    parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
+) -> Controls:
+    """Parts one after the other: part k takes over around starts_s[k] within blends_s[k].
+
+    Where the two stand at different places, the feet step over one after the other, lifted.
+    """
+    from mmweaver.motion.animation.profiles import bump, rise
+
+    ups, foot_ups, lift = [np.ones_like(time_s)], [np.ones((len(time_s), 2))], np.zeros((len(time_s), 2))
+    for k in range(1, len(parts)):
+        u = (time_s - starts_s[k]) / blends_s[k] + 0.5
+        each = np.stack([u / 0.6, (u - 0.4) / 0.6], axis=1)
+        gap = np.linalg.norm(parts[k].foot_m[..., :2] - parts[k - 1].foot_m[..., :2], axis=-1)
+        lift += bump(each) * 0.05 * np.tanh(gap**2 / 0.01)
+        ups.append(rise(u))
+        foot_ups.append(rise(each))
+    ups.append(np.zeros_like(time_s))
+    foot_ups.append(np.zeros((len(time_s), 2)))
+    # A blend that has ended stays ended: part k weighs what has begun with k and not yet with k + 1.
+    weights = [ups[k] * (1 - ups[k + 1]) for k in range(len(parts))]
+    foot_weights = [foot_ups[k] * (1 - foot_ups[k + 1]) for k in range(len(parts))]
+    total, foot_total = np.sum(weights, axis=0), np.sum(foot_weights, axis=0)
+    result = blend(parts, [w / total for w in weights], [w / foot_total for w in foot_weights])
+    result.foot_m[..., 2] += lift
+    return result

@@ -1,0 +1,174 @@
+"""Controls -> joints: forward kinematics of trunk and arms, two-bone inverse kinematics of the legs.
+
+Bones keep their lengths whatever the controls ask for: a foot out of reach stays short of its place.
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.shapes import Joints
+from mmweaver.core.skeleton import NUM_JOINTS, joint
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.animation.profiles import cap, rise, softmin
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+
+Array = np.ndarray
+Angles = Float[Array, " n"]
+Frames = Float[Array, "n 3 3"]
+Vectors = Float[Array, "n 3"]
+
+LONGEST_STANCE = 0.998  # of the leg's length: a knee never locks
+LONGEST_LEG = 0.9995
+SIDES = ("left", "right")
+
+
+def about_x(angle: Angles) -> Frames:
+    return _about(angle, 1, 2)
+
+
+def about_y(angle: Angles) -> Frames:
+    return _about(angle, 2, 0)
+
+
+def about_z(angle: Angles) -> Frames:
+    return _about(angle, 0, 1)
+
+
+def _about(angle: Angles, first: int, second: int) -> Frames:
+    frame = np.zeros((len(angle), 3, 3))
+    frame[:] = np.eye(3)
+    frame[:, first, first] = frame[:, second, second] = np.cos(angle)
+    frame[:, second, first] = np.sin(angle)
+    frame[:, first, second] = -np.sin(angle)
+    return frame
+
+
+def turned(frame: Frames, vector: Array) -> Vectors:
+    """Rotates one vector (3,) or one a frame (n, 3)."""
+    if vector.ndim == 1:
+        return frame @ vector
+    return np.einsum("nij,nj->ni", frame, vector)
+
+
+def roll_pitch_yaw(angles: Vectors) -> Frames:
+    """Roll (right side down), pitch (forward), yaw (to the left), applied in this order from the inside."""
+    return about_z(angles[:, 2]) @ about_y(angles[:, 1]) @ about_x(angles[:, 0])
+
+
+def solve(body: SkeletonProportions, controls: Controls) -> Joints:
+    """Joints (n, 22, 3) in the floor frame (z up from the floor)."""
+    joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
+    pelvis_frame = about_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
+    ankles = [_ankle(body, controls, side) for side in (LEFT, RIGHT)]
+    joints[:, 0] = _pelvis(body, controls, pelvis_frame, ankles)
+    for side in (LEFT, RIGHT):
+        _place_leg(joints, body, controls, pelvis_frame, side, ankles[side])
+    chest_frame = _place_trunk(joints, body, controls, pelvis_frame)
+    for side in (LEFT, RIGHT):
+        _place_arm(joints, body, controls, chest_frame, side)
+    return joints
+
+
+def arm_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
+    """Upper arm in the chest's frame."""
+    sign = 1.0 if side == LEFT else -1.0
+    flexion, abduction, twist = arm_rad[:, 0], sign * arm_rad[:, 1], sign * arm_rad[:, 2]
+    return about_y(-flexion) @ about_x(abduction) @ about_z(twist)
+
+
+def collar_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
+    """The collar bone goes up with the arm."""
+    sign = 1.0 if side == LEFT else -1.0
+    share = 0.5 - 0.5 * np.cos(arm_rad[:, 0]) * np.cos(arm_rad[:, 1])  # 0 hanging, 1 overhead
+    return about_x(sign * 0.45 * share)
+
+
+def _ankle(body: SkeletonProportions, controls: Controls, side: int) -> Vectors:
+    """Where the foot's place and pitch put the ankle."""
+    yaw, pitch = controls.foot_rad[:, side, 0], controls.foot_rad[:, side, 1]
+    return controls.foot_m[:, side] + ankle_from_foot(body, yaw, pitch)
+
+
+def ankle_from_foot(body: SkeletonProportions, yaw: Angles, pitch: Angles) -> Vectors:
+    """The ankle over the place of the flat foot: it turns about the ball or, toes up, about the heel."""
+    height, ball, heel = body.ankle_height_m, body.ball_m, body.heel_m
+    on_ball = rise((pitch + 0.2) / 0.4)
+    forward = on_ball * ball * (1 - np.cos(pitch)) - (1 - on_ball) * heel * (1 - np.cos(pitch)) + height * np.sin(pitch)
+    up = on_ball * ball * np.sin(pitch) - (1 - on_ball) * heel * np.sin(pitch) + height * np.cos(pitch)
+    return np.stack([forward * np.cos(yaw), forward * np.sin(yaw), up], axis=1)
+
+
+def _pelvis(body: SkeletonProportions, controls: Controls, frame: Frames, ankles: list[Vectors]) -> Vectors:
+    """The pelvis as asked, lowered where a foot that carries weight would be out of reach."""
+    pelvis = controls.pelvis_m.copy()
+    limits = [pelvis[:, 2]]
+    longest = (LONGEST_STANCE - 0.012 * controls.knee_room) * body.leg_m
+    for side in (LEFT, RIGHT):
+        hip = turned(frame, body.offset_m[joint(f"{SIDES[side]}_hip")])
+        across = np.sum((pelvis[:, :2] + hip[:, :2] - ankles[side][:, :2]) ** 2, axis=1)
+        height = np.sqrt(np.maximum(longest**2 - across, (0.3 * longest) ** 2))
+        limits.append(ankles[side][:, 2] + height - hip[:, 2] + 0.2 * (1 - controls.contact[:, side]))
+    pelvis[:, 2] = softmin(limits, 0.003 + 0.01 * controls.knee_room)
+    return pelvis
+
+
+def _place_leg(
+    joints: Joints, body: SkeletonProportions, controls: Controls, frame: Frames, side: int, ankle: Vectors
+) -> None:
+    name = SIDES[side]
+    hip = joints[:, 0] + turned(frame, body.offset_m[joint(f"{name}_hip")])
+    away = ankle - hip
+    distance = np.linalg.norm(away, axis=1)
+    direction = away / distance[:, None]
+    # A leg in the air or stepping is not stretched fully, so that the knee does not snap.
+    loose = 1 - controls.contact[:, side] * (1 - controls.knee_room)
+    reach = cap(distance, (LONGEST_LEG - 0.0015 * loose) * body.leg_m, (0.0012 + 0.034 * loose) * body.leg_m)
+    along = (body.thigh_m**2 - body.shank_m**2 + reach**2) / (2 * reach)
+    aside = np.sqrt(body.thigh_m**2 - along**2)
+    knee = hip + along[:, None] * direction + aside[:, None] * _knee_direction(controls, side, direction)
+    ankle = hip + reach[:, None] * direction
+    yaw, pitch = controls.foot_rad[:, side, 0], controls.foot_rad[:, side, 1]
+    foot_frame = about_z(yaw) @ about_y(pitch)
+    joints[:, joint(f"{name}_hip")] = hip
+    joints[:, joint(f"{name}_knee")] = knee
+    joints[:, joint(f"{name}_ankle")] = ankle
+    joints[:, joint(f"{name}_foot")] = ankle + turned(foot_frame, body.offset_m[joint(f"{name}_foot")])
+
+
+def _knee_direction(controls: Controls, side: int, leg: Vectors) -> Vectors:
+    """Unit vectors square to the leg: between where the foot and where the pelvis point, turned outward."""
+    outward = controls.knee_out_rad[:, side] * (1.0 if side == LEFT else -1.0)
+    foot, pelvis = controls.foot_rad[:, side, 0], controls.heading_rad + controls.pelvis_rad[:, 2]
+    yaw = 0.5 * (foot + pelvis) + outward
+    level, up = np.cos(controls.knee_up_rad), np.sin(controls.knee_up_rad)
+    ahead = np.stack([level * np.cos(yaw), level * np.sin(yaw), up], axis=1)
+    square = ahead - np.sum(ahead * leg, axis=1, keepdims=True) * leg
+    return square / np.linalg.norm(square, axis=1, keepdims=True)
+
+
+def _place_trunk(joints: Joints, body: SkeletonProportions, controls: Controls, frame: Frames) -> Frames:
+    """Spine, neck and head; returns the chest's frame (that of spine3)."""
+    third = roll_pitch_yaw(controls.spine_rad / 3)
+    place = joints[:, 0]
+    for name in ("spine1", "spine2", "spine3"):
+        place = place + turned(frame, body.offset_m[joint(name)])
+        joints[:, joint(name)] = place
+        frame = frame @ third
+    half = about_z(controls.head_rad[:, 1] / 2) @ about_y(controls.head_rad[:, 0] / 2)
+    neck = place + turned(frame, body.offset_m[joint("neck")])
+    joints[:, joint("neck")] = neck
+    joints[:, joint("head")] = neck + turned(frame @ half, body.offset_m[joint("head")])
+    return frame
+
+
+def _place_arm(joints: Joints, body: SkeletonProportions, controls: Controls, chest: Frames, side: int) -> None:
+    name, arm = SIDES[side], controls.arm_rad[:, side]
+    collar = joints[:, joint("spine3")] + turned(chest, body.offset_m[joint(f"{name}_collar")])
+    shoulder = collar + turned(chest @ collar_frame(arm, side), body.offset_m[joint(f"{name}_shoulder")])
+    upper = chest @ arm_frame(arm, side)
+    elbow = shoulder + turned(upper, body.offset_m[joint(f"{name}_elbow")])
+    lower = upper @ about_y(-arm[:, 3])
+    joints[:, joint(f"{name}_collar")] = collar
+    joints[:, joint(f"{name}_shoulder")] = shoulder
+    joints[:, joint(f"{name}_elbow")] = elbow
+    joints[:, joint(f"{name}_wrist")] = elbow + turned(lower, body.offset_m[joint(f"{name}_wrist")])

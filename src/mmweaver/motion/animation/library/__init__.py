@@ -1,0 +1,1 @@
+"""The activities, one kind a file: each writes Controls over the times of its StepContext."""

@@ -1,0 +1,115 @@
+"""Which function acts out which step."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mmweaver.core.registry import Registry
+from mmweaver.motion.animation.controls import Controls
+from mmweaver.motion.animation.library import (
+    bending,
+    dancing,
+    gait,
+    gestures,
+    hand_work,
+    jumping,
+    legs,
+    on_the_floor,
+    pointing_and_nodding,
+    sitting,
+    standing,
+    throwing_and_carrying,
+    uneven_gait,
+)  # fmt: skip
+from mmweaver.motion.animation.step_context import StepContext
+
+POSTURES: Registry[Callable[[StepContext], Controls]] = Registry(
+    "movement",
+    [
+        ("stand", standing.standing),
+        ("walk", gait.walking),
+        ("jog", gait.jogging),
+        ("sidestep", uneven_gait.sidestepping),
+        ("limp", uneven_gait.limping),
+        ("stagger", uneven_gait.staggering),
+        ("march", legs.marching),
+        ("turn", gait.turning),
+        ("stumble", uneven_gait.stumbling),
+        ("sit", sitting.sitting),
+        ("sit_down", sitting.sitting_down),
+        ("stand_up", sitting.standing_up),
+        ("squat", jumping.squatting),
+        ("crouch", legs.crouching),
+        ("lunge", legs.lunging),
+        ("jump", jumping.jumping),
+        ("leap", jumping.leaping),
+        ("hop", jumping.hopping),
+        ("hop_one_leg", legs.hopping_on_one_leg),
+        ("jumping_jacks", jumping.jumping_jacks),
+        ("one_leg", legs.on_one_leg),
+        ("kick", legs.kicking),
+        ("stomp", legs.stamping),
+        ("raise_leg", legs.raising_leg),
+        ("bow", bending.bowing),
+        ("bend", bending.bending),
+        ("pick_up", bending.picking_up),
+        ("put_down", bending.putting_down),
+        ("dance", dancing.dancing),
+        ("kneel_down", on_the_floor.kneeling_down),
+        ("kneel", on_the_floor.kneeling),
+        ("kneel_up", on_the_floor.rising_from_knees),
+        ("lie_down", on_the_floor.lying_down),
+        ("fall", on_the_floor.falling),
+        ("lie", on_the_floor.lying),
+        ("get_up", on_the_floor.getting_up),
+    ],
+)
+GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
+    "gesture",
+    [
+        ("wave", gestures.waving),
+        ("clap", gestures.clapping),
+        ("raise", gestures.raising),
+        ("arms_out", pointing_and_nodding.arms_out),
+        ("drink", gestures.drinking),
+        ("eat", hand_work.eating),
+        ("type", hand_work.typing),
+        ("read", hand_work.reading),
+        ("phone", hand_work.phoning),
+        ("text", hand_work.texting),
+        ("brush_teeth", hand_work.brushing_teeth),
+        ("comb", hand_work.combing),
+        ("wipe", hand_work.wiping),
+        ("write", hand_work.writing),
+        ("stir", hand_work.stirring),
+        ("knock", hand_work.knocking),
+        ("open_door", hand_work.opening_door),
+        ("guitar", hand_work.playing_guitar),
+        ("violin", hand_work.playing_violin),
+        ("point", pointing_and_nodding.pointing),
+        ("nod", pointing_and_nodding.nodding),
+        ("shake_head", pointing_and_nodding.shaking_head),
+        ("look_around", pointing_and_nodding.looking_around),
+        ("cross_arms", pointing_and_nodding.crossing_arms),
+        ("hips", pointing_and_nodding.hands_on_hips),
+        ("shrug", pointing_and_nodding.shrugging),
+        ("stretch", pointing_and_nodding.stretching),
+        ("arm_circles", pointing_and_nodding.circling_arms),
+        ("punch", gestures.punching),
+        ("throw", throwing_and_carrying.throwing),
+        ("push", throwing_and_carrying.pushing),
+        ("pull", throwing_and_carrying.pulling),
+        ("carry", throwing_and_carrying.carrying),
+        ("reach", throwing_and_carrying.reaching),
+        ("golf", throwing_and_carrying.golf_swing),
+    ],
+)
+
+
+def perform(stage: StepContext) -> Controls:
+    """The Controls of one step over the times of its stage."""
+    with np.errstate(all="raise", under="ignore"):
+        controls = POSTURES[stage.step.lower](stage)
+        if stage.step.upper:
+            controls = GESTURES[stage.step.upper](stage, controls)
+    return controls

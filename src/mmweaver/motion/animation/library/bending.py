@@ -1,0 +1,99 @@
+"""Down with the trunk: bowing, bending, picking up from the floor and putting down."""
+
+import numpy as np
+
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.animation.library.limbs import crouched, mix_arm, repeats, shift_pelvis, sides
+from mmweaver.motion.animation.library.standing import upright
+from mmweaver.motion.animation.profiles import plateau
+from mmweaver.motion.animation.step_context import StepContext
+
+PerTime = np.ndarray
+
+
+def bowing(stage: StepContext) -> Controls:
+    """The trunk leans forward from the hips, straight, the hips going back a little; stays, and comes up."""
+    controls, time_s, h = upright(stage), stage.time_s, stage.body.height_m
+    deep = float(stage.rng.uniform(0.55, 0.95))
+    way = int(stage.rng.integers(3))  # arms at the sides, hands on the thighs, one hand before the belly
+    for begin, lasts in repeats(stage, 2.1, 1.25, 3.2):
+        down = plateau(time_s, begin, begin + lasts, 0.38 * lasts, 0.4 * lasts)
+        _hinge(controls, h, down, deep)
+        if way == 1:
+            controls.arm_rad[:, :, 0] += (0.55 * deep * down)[:, None]
+        elif way == 2:
+            arm = np.tile([0.35, 0.25, -0.9, 1.5], (len(time_s), 1))
+            mix_arm(controls, RIGHT, arm, down)
+        else:
+            controls.arm_rad[:, :, 0] += (0.2 * deep * down)[:, None]
+    return controls
+
+
+def _hinge(controls: Controls, height_m: float, down: PerTime, angle_rad: float) -> None:
+    """Bends at the hips by an angle; the pelvis goes back so that the weight stays over the feet."""
+    shift_pelvis(controls, -0.085 * height_m * np.sin(angle_rad) * down, 0.0, -0.01 * height_m * down)
+    controls.pelvis_rad[:, 1] += 0.62 * angle_rad * down
+    controls.spine_rad[:, 1] += 0.38 * angle_rad * down
+    controls.head_rad[:, 0] += 0.1 * down
+    controls.knee_room[:] = np.maximum(controls.knee_room, 0.5 * down)
+
+
+def bending(stage: StepContext) -> Controls:
+    """Far down with nearly straight legs, the hands towards the feet, and up again."""
+    controls, time_s, h = upright(stage), stage.time_s, stage.body.height_m
+    deep = float(stage.rng.uniform(1.35, 1.75))
+    for begin, lasts in repeats(stage, 2.3, 1.5, 3.4):
+        down = plateau(time_s, begin, begin + lasts, 0.42 * lasts, 0.42 * lasts)
+        _hinge(controls, h, down, deep)
+        shift_pelvis(controls, 0.0, 0.0, -0.025 * h * down)
+        controls.arm_rad[:, :, 0] += (0.95 * deep * down)[:, None]
+    return controls
+
+
+def picking_up(stage: StepContext) -> Controls:
+    """Knees and hips bend, the hand goes to the floor before the feet, and brings something up before the body."""
+    controls, time_s = upright(stage), stage.time_s
+    arms = sides(stage)
+    hold_s = 0.0
+    for begin, lasts in repeats(stage, 2.3, 1.6, 3.4):
+        down = plateau(time_s, begin, begin + 0.92 * lasts, 0.44 * lasts, 0.44 * lasts)
+        _to_the_floor(controls, stage, down, arms)
+        hold_s = begin + 0.5 * lasts
+    carried = plateau(time_s, hold_s, stage.end_s + 0.2, 0.7, 0.5)
+    _hold(controls, stage, carried, arms)
+    return controls
+
+
+def putting_down(stage: StepContext) -> Controls:
+    """Something is held before the body, goes to the floor, and the body comes up without it."""
+    controls, time_s = upright(stage), stage.time_s
+    arms = sides(stage)
+    hold_s = stage.end_s
+    for begin, lasts in repeats(stage, 2.3, 1.6, 3.4):
+        _to_the_floor(controls, stage, plateau(time_s, begin, begin + lasts, 0.44 * lasts, 0.44 * lasts), arms)
+        hold_s = begin + 0.5 * lasts
+    _hold(controls, stage, plateau(time_s, stage.start_s - 0.4, hold_s, 0.5, 0.7), arms)
+    return controls
+
+
+def _to_the_floor(controls: Controls, stage: StepContext, down: PerTime, arms: tuple[int, ...]) -> None:
+    """Deep enough that the hands come near the floor: by the knees or by the back, as the seed has it."""
+    depth = float(stage.rng.uniform(0.72, 0.95))
+    crouched(controls, stage.body, depth * down, lean_rad=1.5 / depth)
+    for side in (LEFT, RIGHT):
+        if side in arms:
+            controls.arm_rad[:, side, 0] += 1.5 * down
+            controls.arm_rad[:, side, 1] -= 0.1 * down
+        else:
+            controls.arm_rad[:, side, 0] += 0.5 * down
+            controls.arm_rad[:, side, 3] += 0.6 * down
+    if len(arms) == 1:
+        controls.spine_rad[:, 0] += (0.12 if arms[0] == RIGHT else -0.12) * down
+
+
+def _hold(controls: Controls, stage: StepContext, share: PerTime, arms: tuple[int, ...]) -> None:
+    """Forearms level before the belly, once the trunk is upright."""
+    up = share * np.clip(1 - 0.8 * controls.pelvis_rad[:, 1], 0, 1)
+    for side in arms:
+        controls.arm_rad[:, side, 3] += 1.25 * up
+        controls.arm_rad[:, side, 0] += 0.12 * up

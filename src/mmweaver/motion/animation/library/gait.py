@@ -1,0 +1,299 @@
+"""Walking, jogging and turning: feet planted along the root's path, the rest following the phase of the steps."""
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, HALF_STANCE, SIDE_SIGN, TOES_OUT_RAD, upright
+from mmweaver.motion.animation.profiles import bump, plateau, rise, travel
+from mmweaver.motion.animation.root_path import RootPath
+from mmweaver.motion.animation.step_context import StepContext
+
+Array = np.ndarray
+GRAVITY_MPS2 = 9.81
+ELBOW_LAG = 0.15  # of a step, behind the shoulder
+NOD = 0.4  # share of the pelvis's surge that the neck does not make
+
+
+@dataclass(frozen=True)
+class Style:
+    """How one person moves: lengths in metres, angles in radians, times in steps (half a gait cycle)."""
+
+    steps_hz: float
+    # Share of a step between a foot's strike and the other's lift-off on the clock of steps. The swing begins and ends
+    # slowly: for a tenth of a step more both feet are down, or the fewer are in the air.
+    double_support: float
+    half_stance_m: float
+    toes_out_rad: float
+    ahead_m: float  # how much further back a foot is planted than the middle of its stance would have it
+    heel_strike_rad: float
+    toe_off_rad: float
+    heel_rises: float  # this share of the stance is over when the heel leaves the floor
+    folded: float  # share of the swing after which the foot points down most
+    swing_ramps: tuple[float, float]  # shares of the swing in which the foot gets, and loses, its speed
+    toe_lift_m: float  # of the ball of the foot, early in the swing, whole steps
+    lift_m: float  # of the swinging sole, whole steps
+    spot_lift_m: float  # of the sole when the step leads nowhere (jogging on the spot)
+    arm_swing_rad: float
+    arm_back_rad: float  # where it swings about
+    elbow_rad: float
+    elbow_swing_rad: float
+    lean_rad: float
+    bob_m: float
+    sink: float  # stretch of the legs that the pelvis is carried at
+    pelvis_yaw_rad: float
+    twist_rad: float  # of the shoulders against the pelvis
+    sway_m: float
+    surge_mps: float  # how much faster than its mean the pelvis goes once a step
+    surge_sharp: float  # its second harmonic: short and fast, long and slow
+    fastest: float  # share of a step, from the strike, at which it does
+    highest: float  # and at which the pelvis is highest
+    uneven: float = 0.0  # share of a step that the right foot's strike is late (early where negative): a limp
+    lopsided: float = 0.0  # how much higher the left foot swings than the right one, as a share
+    weave_m: float = 0.0  # how far the whole body sways to the sides of its way
+
+
+def walking_style(stage: StepContext, speed_mps: float) -> Style:
+    """Step rate from speed (walk ratio about 0.42 m s, longer legs step slower), the rest from the rate."""
+    rng, height_m = stage.rng, stage.body.height_m
+    share = min(speed_mps / 1.3, 1.4)
+    steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (1.75 / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
+    vigour = share**1.5 * np.exp(rng.normal(0, 0.3))
+    leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
+    drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
+    return Style(
+        steps_hz=float(steps_hz), double_support=-0.045, half_stance_m=0.034 * height_m,
+        toes_out_rad=0.09 + rng.normal(0, 0.02), ahead_m=-0.005 * share,
+        heel_strike_rad=0.32 * share**0.5, toe_off_rad=0.85 * share**0.6, heel_rises=0.88, folded=0.27,
+        swing_ramps=(0.52, 0.28), toe_lift_m=0.057, lift_m=0.03, spot_lift_m=0.0,
+        arm_swing_rad=0.19 * vigour, arm_back_rad=0.0, elbow_rad=0.42 + rng.normal(0, 0.1),
+        elbow_swing_rad=0.18 * vigour, lean_rad=0.035 + rng.normal(0, 0.015), bob_m=0.27 * drop_m, highest=0.51,
+        surge_mps=0.19 * share**0.5, surge_sharp=0.3, fastest=0.04, sink=0.972, pelvis_yaw_rad=0.09 * share,
+        twist_rad=0.16 * share, sway_m=0.018, lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
+    )  # fmt: skip
+
+
+def jogging_style(stage: StepContext, speed_mps: float) -> Style:
+    """Short contacts with flight between them; the pelvis bobs so that in flight it falls freely."""
+    rng, height_m = stage.rng, stage.body.height_m
+    steps_hz = stage.tempo(2.35, 2.6, 2.9, 0.08)
+    share = min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
+    vigour = np.exp(rng.normal(0, 0.12))
+    return Style(
+        steps_hz=steps_hz, double_support=-0.57 - 0.2 * max(share - 0.8, 0.0),
+        half_stance_m=0.036 * height_m, toes_out_rad=0.08, ahead_m=0.055 * share,
+        heel_strike_rad=0.12 * share, toe_off_rad=0.85 + 0.27 * share, heel_rises=0.49, folded=0.24,
+        swing_ramps=(0.56, 0.34), toe_lift_m=0.08 * share, lift_m=0.03 + 0.03 * share, spot_lift_m=0.13 * vigour,
+        arm_swing_rad=(0.19 + 0.05 * share) * vigour, arm_back_rad=0.3, elbow_rad=1.8 + rng.normal(0, 0.15),
+        elbow_swing_rad=0.1, lean_rad=0.07 + 0.07 * share,
+        bob_m=(1.0 + 0.28 * min(share, 1.4)) * GRAVITY_MPS2 / (2 * np.pi * steps_hz) ** 2, highest=0.62,
+        surge_mps=0.22 * share, surge_sharp=0.0, fastest=0.47, sink=0.965, pelvis_yaw_rad=0.03, twist_rad=0.3,
+        sway_m=0.005, lopsided=float(np.clip(rng.normal(0, 0.06), -0.12, 0.12)),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Footfall:
+    """One foot's stay on the floor."""
+
+    strike_s: float
+    off_s: float
+    place_m: Float[Array, "2"]
+    yaw_rad: float
+
+
+def walking(stage: StepContext) -> Controls:
+    return stepping(stage, walking_style(stage, max(cruise_mps(stage), 0.7)), jog=False)
+
+
+def jogging(stage: StepContext) -> Controls:
+    return stepping(stage, jogging_style(stage, cruise_mps(stage)), jog=True)
+
+
+def turning(stage: StepContext) -> Controls:
+    """Small steps on the spot; as in a slow walk."""
+    return stepping(stage, walking_style(stage, 0.9), jog=False)
+
+
+def cruise_mps(stage: StepContext) -> float:
+    """The fastest that the step's way is gone, between its ramps."""
+    return max((move.speed_mps for move in stage.moves), default=0.0)
+
+
+def stepping(stage: StepContext, style: Style, *, jog: bool) -> Controls:
+    """Steps along the root's path. A foot whose next place is its old one stays where it is, unless jogging."""
+    controls = upright(stage)
+    time_s = stage.time_s
+    first_side = int(stage.rng.integers(2))
+    strikes = _clock(stage, style, first_side)
+    aside = _weave(controls, stage, style)
+    moving = _moving(stage, time_s, jog)
+    for side in (LEFT, RIGHT):
+        own = [k for k in range(len(strikes) - 2) if (k + first_side) % 2 == side]
+        falls = [_footfall(stage, style, strikes, k, side, aside) for k in own]
+        _write_foot(controls, time_s, falls, side, style, jog)
+    from scipy.interpolate import CubicSpline
+
+    phase = np.asarray(CubicSpline(strikes, np.arange(len(strikes)) + first_side)(time_s))
+    _write_trunk_and_arms(controls, stage, style, phase, moving)
+    return controls
+
+
+def _clock(stage: StepContext, style: Style, first_side: int) -> Float[Array, " k"]:
+    """Times of the foot strikes, alternating feet, from well before the stage to well after it."""
+    period = 1 / style.steps_hz
+    # After standing, the first foot leaves the floor at once; under way already, any phase will do.
+    lead = stage.rng.uniform(0, period) if stage.first else period * (1 - style.double_support) - 0.02
+    begin, end = float(stage.time_s[0]), float(stage.time_s[-1])
+    anchor = stage.start_s + lead
+    low = int(np.floor((begin - anchor) / period)) - 4
+    high = int(np.ceil((end - anchor) / period)) + 5
+    strikes = anchor + np.arange(low, high) * period
+    right = (np.arange(len(strikes)) + first_side) % 2 == RIGHT
+    return strikes + style.uneven * period * right
+
+
+def _weave(controls: Controls, stage: StepContext, style: Style) -> Callable[[Float[Array, " k"]], Float[Array, " k"]]:
+    """Sways the pelvis to the sides; returns how far, to the left, so that the feet come along."""
+    phase, rate = stage.rng.uniform(0, 2 * np.pi, 2), stage.rng.uniform(0.35, 0.6)
+
+    def aside(time_s: Float[Array, " k"]) -> Float[Array, " k"]:
+        slow = np.sin(2 * np.pi * rate * time_s + phase[0]) + 0.5 * np.sin(4.4 * np.pi * rate * time_s + phase[1])
+        return style.weave_m * slow
+
+    if style.weave_m:
+        left = aside(stage.time_s)
+        controls.pelvis_m[:, 0] -= left * np.sin(controls.heading_rad)
+        controls.pelvis_m[:, 1] += left * np.cos(controls.heading_rad)
+    return aside
+
+
+def _footfall(
+    stage: StepContext, style: Style, strikes: Float[Array, " k"], k: int, side: int,
+    weave: Callable[[Float[Array, " k"]], Float[Array, " k"]],
+) -> Footfall:  # fmt: skip
+    period = float(strikes[k + 1] - strikes[k])
+    stance = (1 + style.double_support) * period
+    middle = np.array([strikes[k] + stance / 2])
+    path: RootPath = stage.path
+    root, heading = path.position_m(middle)[0], float(path.facing_rad(middle)[0])
+    share = float(rise(path.speed_mps(middle) / 0.6)[0])
+    height_m = stage.body.height_m
+    aside = SIDE_SIGN[side] * (HALF_STANCE * height_m * (1 - share) + style.half_stance_m * share)
+    aside = aside + float(weave(middle)[0])
+    velocity = path.position_m(middle + 0.01)[0] - path.position_m(middle - 0.01)[0]
+    back = np.sign(velocity @ np.array([np.cos(heading), np.sin(heading)])) if share > 0 else 1.0
+    behind = -ANKLE_BEHIND * height_m - style.ahead_m * share * back
+    cos, sin = np.cos(heading), np.sin(heading)
+    place = root + np.array([behind * cos - aside * sin, behind * sin + aside * cos])
+    yaw = heading + SIDE_SIGN[side] * (TOES_OUT_RAD * (1 - share) + style.toes_out_rad * share)
+    return Footfall(strike_s=float(strikes[k]), off_s=float(strikes[k]) + stance, place_m=place, yaw_rad=yaw)
+
+
+def _moving(stage: StepContext, time_s: Float[Array, " n"], jog: bool) -> Float[Array, " n"]:
+    """1 while the root goes or turns, 0 while it stands, before and after and where the room ends early; C2."""
+    if jog and stage.step.direction == "spot":
+        start = np.ones_like(time_s) if stage.first else rise((time_s - stage.start_s) / 0.35)
+        end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
+        return np.asarray(start * end)
+    turning = np.abs(stage.path.facing_rad(time_s + 1e-3) - stage.path.facing_rad(time_s - 1e-3)) / 2e-3
+    going = stage.path.speed_mps(time_s) / max(0.8 * cruise_mps(stage), 0.7)
+    return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
+
+
+def _write_foot(
+    controls: Controls, time_s: Float[Array, " n"], falls: list[Footfall], side: int, style: Style, jog: bool
+) -> None:
+    """Stance, then swing to the next place, for every footfall of one foot."""
+    before = 0.0
+    for fall, after in itertools.pairwise(falls):
+        gap = after.place_m - fall.place_m
+        ahead = float(gap @ np.array([np.cos(fall.yaw_rad), np.sin(fall.yaw_rad)]))
+        came, before = before, ahead
+        inside = (time_s >= fall.strike_s) & (time_s < after.strike_s)
+        t = time_s[inside]
+        long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
+        effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
+        u = (t - fall.off_s) / (after.strike_s - fall.off_s)
+        across = travel(np.clip(u, 0, 1), *style.swing_ramps)
+        controls.foot_m[inside, side, :2] = fall.place_m + across[:, None] * gap
+        own = 1 + SIDE_SIGN[side] * style.lopsided
+        high = own * style.lift_m * effort + (style.spot_lift_m * (1 - 0.5 * effort) if jog else 0.0)
+        controls.foot_m[inside, side, 2] = high * bump(u) + own * style.toe_lift_m * min(abs(ahead) / 1.2, 1.15) * bump(
+            u / 0.7
+        )
+        controls.foot_rad[inside, side, 0] = fall.yaw_rad + rise(u) * (after.yaw_rad - fall.yaw_rad)
+        pitch = own * _pitch(t, fall, after, style, came, ahead)
+        if jog:
+            pitch = pitch + 0.2 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
+        controls.foot_rad[inside, side, 1] = pitch
+        # Weight leaves the foot before its toes do, and comes fully onto it only after the heel has struck: so the
+        # knee is never stretched at speed, and the pelvis comes down in time for the foot that is about to land.
+        swing = after.strike_s - fall.off_s
+        air = plateau(time_s, fall.off_s - 0.3 * swing, after.strike_s + 0.15 * swing, 0.55 * swing, 0.75 * swing)
+        controls.contact[:, side] -= air * min(effort + float(jog), 1.0)
+
+
+def _pitch(
+    t: Float[Array, " n"], fall: Footfall, after: Footfall, style: Style, came_m: float, ahead_m: float
+) -> Float[Array, " n"]:
+    """Heel strike, flat, heel rise, toe off, back in the swing; scaled by how far the foot came and goes."""
+    came, goes = np.clip(np.array([came_m, ahead_m]) / 1.2, -0.35, 1.15)
+    stance, swing = fall.off_s - fall.strike_s, after.strike_s - fall.off_s
+    down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / (0.22 * stance)))
+    rises, folded = fall.strike_s + style.heel_rises * stance, fall.off_s + style.folded * swing
+    up = style.toe_off_rad * abs(goes) * rise((t - rises) / (folded - rises))
+    back = rise((t - folded) / (after.strike_s - folded))
+    return down + up * (1 - back) - back * style.heel_strike_rad * max(goes, 0.0)
+
+
+def _write_trunk_and_arms(
+    controls: Controls, stage: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
+) -> None:
+    """Phase counts steps: even at the left foot's strike, odd at the right one's."""
+    body, heading = stage.body, controls.heading_rad
+    left_ahead = np.cos(np.pi * phase) * moving  # the left leg is in front at its strike
+    right_stance = -np.sin(np.pi * (phase - 0.1)) * moving  # +1 over the right foot, -1 over the left one
+    high = np.cos(2 * np.pi * (phase - style.highest)) * moving
+    stand = body.pelvis_height_m(style.sink) - style.bob_m
+    controls.knee_room[:] = moving
+    controls.pelvis_m[:, 2] += moving * (stand - controls.pelvis_m[:, 2]) + style.bob_m * high
+    sway = -style.sway_m * right_stance
+    controls.pelvis_m[:, 0] -= sway * np.sin(heading)
+    controls.pelvis_m[:, 1] += sway * np.cos(heading)
+    _surge(controls, stage, style, phase, moving)
+    controls.pelvis_rad[:, 0] -= 0.05 * right_stance
+    controls.pelvis_rad[:, 1] += 0.4 * style.lean_rad * moving
+    controls.pelvis_rad[:, 2] -= style.pelvis_yaw_rad * left_ahead
+    lame = 0.7 * style.uneven * np.maximum(np.sign(style.uneven) * right_stance, 0) ** 3  # over the bad leg
+    controls.spine_rad[:, 0] += 0.05 * right_stance + lame
+    controls.pelvis_m[:, 2] -= 0.12 * np.abs(lame)
+    controls.spine_rad[:, 1] += 0.6 * style.lean_rad * moving
+    controls.spine_rad[:, 2] += style.twist_rad * left_ahead
+    controls.head_rad[:, 1] -= (style.twist_rad - style.pelvis_yaw_rad) * left_ahead
+    controls.head_rad[:, 0] -= 0.8 * style.lean_rad * moving
+    lagging = np.cos(np.pi * (phase - ELBOW_LAG)) * moving
+    for side in (LEFT, RIGHT):
+        arm, sign = controls.arm_rad[:, side], -SIDE_SIGN[side]  # the arm goes with the other leg
+        arm[:, 0] += style.arm_swing_rad * (sign * left_ahead + 0.12 * moving) - style.arm_back_rad * moving
+        arm[:, 3] += moving * (style.elbow_rad - 0.22) + style.elbow_swing_rad * sign * lagging
+        arm[:, 2] -= 0.35 * moving * np.clip(style.elbow_rad, 0, 1)
+
+
+def _surge(
+    controls: Controls, stage: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
+) -> None:
+    """The pelvis is ahead of its even way and behind it once a step; the trunk gives half of that back."""
+    surge_m = style.surge_mps / (2 * np.pi * style.steps_hz)
+    turn = 2 * np.pi * (phase - style.fastest)
+    ahead = surge_m * (np.sin(turn) + 0.5 * style.surge_sharp * np.sin(2 * turn)) * moving
+    way = stage.path.position_m(stage.time_s + 0.01) - stage.path.position_m(stage.time_s - 0.01)
+    gone = np.linalg.norm(way, axis=1)
+    along = way / np.maximum(gone, 1e-6)[:, None] * np.tanh(gone / 0.005)[:, None]
+    controls.pelvis_m[:, :2] += ahead[:, None] * along
+    forward = along[:, 0] * np.cos(controls.heading_rad) + along[:, 1] * np.sin(controls.heading_rad)
+    controls.spine_rad[:, 1] -= NOD * ahead * forward / (0.2 * stage.body.height_m)

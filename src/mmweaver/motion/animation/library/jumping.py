@@ -1,0 +1,269 @@
+"""Jumping, jumping jacks and squats: the legs drive the pelvis up and down, in flight it falls freely."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.animation.library.limbs import shift_pelvis
+from mmweaver.motion.animation.library.standing import STAND_STRETCH, home_feet, upright
+from mmweaver.motion.animation.profiles import plateau, rise, through, travel
+from mmweaver.motion.animation.root_path import RootPath
+from mmweaver.motion.animation.step_context import StepContext
+
+Array = np.ndarray
+GRAVITY_MPS2 = 9.81
+LAUNCH_S, CATCH_S = 0.26, 0.3
+Knot = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hop:
+    """One flight: takes off and lands with the pelvis at the same height, rising by `rise_m` between."""
+
+    off_s: float
+    rise_m: float
+
+    @property
+    def speed_mps(self) -> float:
+        return float(np.sqrt(2 * GRAVITY_MPS2 * self.rise_m))
+
+    @property
+    def flight_s(self) -> float:
+        return 2 * self.speed_mps / GRAVITY_MPS2
+
+    @property
+    def land_s(self) -> float:
+        return self.off_s + self.flight_s
+
+    def knots(self, height_m: float) -> list[Knot]:
+        """Take-off and landing of the pelvis; the quintic between them is the parabola of free fall."""
+        return [
+            (self.off_s, height_m, self.speed_mps, -GRAVITY_MPS2),
+            (self.land_s, height_m, -self.speed_mps, -GRAVITY_MPS2),
+        ]
+
+    def sole_m(self, time_s: Float[Array, " n"]) -> Float[Array, " n"]:
+        """How high the soles are: they follow the pelvis, taking up and giving back its speed within `ramp`."""
+        ramp = min(0.07, 0.3 * self.flight_s)
+        fine = np.linspace(self.off_s, self.land_s, 400)
+        speed = -GRAVITY_MPS2 * (fine - (self.off_s + self.land_s) / 2)
+        speed = speed * rise((fine - self.off_s) / ramp) * rise((self.land_s - fine) / ramp)
+        from scipy.interpolate import CubicSpline
+
+        height = CubicSpline(fine, speed).antiderivative()
+        return np.where((time_s > self.off_s) & (time_s < self.land_s), height(np.clip(time_s, fine[0], fine[-1])), 0.0)
+
+    def air(self, time_s: Float[Array, " n"]) -> Float[Array, " n"]:
+        """1 in flight, 0 on the floor."""
+        return plateau(time_s, self.off_s, self.land_s, 0.3 * self.flight_s, 0.3 * self.flight_s)
+
+    def toes_down(self, time_s: Float[Array, " n"], before_s: float, after_s: float) -> Float[Array, " n"]:
+        """Heels rise before take-off, come down after landing; greatest early in the flight."""
+        up = rise((time_s - self.off_s + before_s) / (before_s + 0.35 * self.flight_s))
+        half = 0.5 * rise((time_s - self.off_s - 0.35 * self.flight_s) / (0.6 * self.flight_s))
+        down = 0.5 * rise((time_s - self.land_s + 0.03) / (after_s + 0.03))
+        return up - half - down
+
+
+def hop_all(
+    controls: Controls,
+    stage: StepContext,
+    hops: list[Hop],
+    dips_m: list[tuple[float, float, float]],
+    ready_m: float = -0.02,
+    heels: float = 0.95,
+) -> None:
+    """Writes pelvis height, soles, heels and contact for hops with dips (time, depth, upward acceleration) between.
+
+    Take-off and landing are `ready_m` above the standing height: heels up, knees not quite straight, so that the
+    soles can pick up the pelvis's speed within some hundredths of a second.
+    """
+    time_s, body = stage.time_s, stage.body
+    stand = body.pelvis_height_m(STAND_STRETCH)
+    knots: list[Knot] = [(time, stand - depth, 0.0, push) for time, depth, push in dips_m]
+    for hop in hops:
+        knots += hop.knots(stand + ready_m)
+    knots.sort()
+    controls.pelvis_m[:, 2] = through(time_s, knots)
+    controls.knee_room[:] = plateau(time_s, hops[0].off_s - 0.4, hops[-1].land_s + 0.5, 0.35, 0.4)
+    for hop in hops:
+        pitch = heels * hop.toes_down(time_s, 0.13, 0.12)
+        controls.foot_rad[:, :, 1] += pitch[:, None]
+        controls.foot_m[:, :, 2] += hop.sole_m(time_s)[:, None]
+        controls.contact[:] -= hop.air(time_s)[:, None]
+
+
+def jumping(stage: StepContext) -> Controls:
+    """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
+    # Whoever jumps on and on mostly hops from the ankles, two a second, with quiet arms.
+    if not stage.step.count and stage.duration_s > 1.8 and stage.rng.random() < 0.5:
+        return hopping(stage)
+    return _jumps(stage)[0]
+
+
+def hopping(stage: StepContext) -> Controls:
+    """Small quick jumps from the ankles, about two a second, the arms bent and almost still."""
+    controls = upright(stage)
+    bounce(controls, stage, one_leg=False)
+    controls.arm_rad[:, :, 3] += float(stage.rng.uniform(0.0, 1.1))
+    controls.arm_rad[:, :, 0] += 0.1
+    return controls
+
+
+def bounce(controls: Controls, stage: StepContext, *, one_leg: bool) -> None:
+    """A row of hops at an even rate over the stage's time."""
+    rate = stage.tempo(1.7, 2.05, 2.35)
+    count = stage.step.count or max(1, round((stage.duration_s - 0.45) * rate))
+    period = float(np.clip((stage.duration_s - 0.45) / count, 0.4, 0.62)) if stage.step.count else 1 / rate
+    high = float(stage.rng.uniform(0.025, 0.085)) * (0.8 if one_leg else 1.0)
+    ground = period - Hop(off_s=0.0, rise_m=high).flight_s
+    first = stage.start_s + 0.3
+    hops = [Hop(off_s=first + k * period, rise_m=high) for k in range(count)]
+    dips = [(first - 0.3, 0.0, 0.0)]
+    dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
+    dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
+    hop_all(controls, stage, hops, dips, ready_m=-0.04, heels=0.8)
+    # nobody hops quite straight: the trunk swings to and fro with each
+    turn = 2 * np.pi * (stage.time_s - first) / period + stage.rng.uniform(0, 2 * np.pi)
+    shift_pelvis(controls, float(stage.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
+
+
+def leaping(stage: StepContext) -> Controls:
+    """Jumps that lead somewhere: the way of the step is gone in the air, in equal parts."""
+    time_s, path = stage.time_s, stage.path
+    ends = np.array([stage.start_s - 0.001, stage.end_s])
+    start, heading = path.position_m(ends)[0], float(path.facing_rad(ends)[0])
+    here = RootPath(start_m=(float(start[0]), float(start[1])), heading_rad=heading)
+    controls, hops = _jumps(replace(stage, path=here))
+    feet = sum(rise((time_s - hop.off_s) / hop.flight_s) for hop in hops) / len(hops)
+    body = sum(_carried(time_s, hop) for hop in hops) / len(hops)
+    way = path.position_m(ends)[1] - start
+    controls.pelvis_m[:, :2] += np.asarray(body)[:, None] * way
+    controls.foot_m[:, :, :2] += np.asarray(feet)[:, None, None] * way
+    return controls
+
+
+def _carried(time_s: Float[Array, " n"], hop: Hop) -> Float[Array, " n"]:
+    """Share of the way that the pelvis has gone: speed is gained from the floor, kept in flight, lost on it."""
+    whole_s = LAUNCH_S + hop.flight_s + CATCH_S
+    return travel(np.clip((time_s - hop.off_s + LAUNCH_S) / whole_s, 0, 1), LAUNCH_S / whole_s, CATCH_S / whole_s)
+
+
+def _jumps(stage: StepContext) -> tuple[Controls, list[Hop]]:
+    controls, time_s, rng = upright(stage), stage.time_s, stage.rng
+    height_m = float(rng.uniform(0.2, 0.42)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
+    flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
+    crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
+    edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
+    count = stage.step.count or max(1, int((stage.duration_s - edge_s - flight_s) / between_s + 1.25))
+    spare = max(stage.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
+    slower = min(0.5 * spare, 0.4)  # who has time goes down and comes up without haste
+    crouch_s, recover_s, spare = crouch_s + slower, recover_s + slower, spare - 2 * slower
+    period = between_s + (min(spare / (count - 1), 0.35) if count > 1 else 0.0)
+    depth = float(rng.uniform(0.19, 0.25))
+    first = stage.start_s + crouch_s + push_s
+    hops = [Hop(off_s=first + k * period, rise_m=height_m) for k in range(count)]
+    rest = hops[-1].land_s + absorb_s + recover_s
+    dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
+    dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
+    dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
+    hop_all(controls, stage, hops, dips, ready_m=-0.02 - 0.15 * max(height_m - 0.16, 0.0))
+    pitch_rad, nod = float(rng.uniform(0.4, 0.75)), float(rng.uniform(0.1, 0.45))
+    trunk = plateau(time_s, stage.start_s, first + 0.08, crouch_s, push_s + 0.2)
+    forth = np.zeros_like(time_s)
+    back = plateau(time_s, stage.start_s, first + 0.06, crouch_s, push_s + 0.25)
+    for hop in hops:
+        gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
+        after = recover_s if hop is hops[-1] else gap
+        trunk = trunk + nod * plateau(time_s, hop.land_s - 0.1, hop.land_s + gap + after, gap + 0.1, after)
+        forth = forth + plateau(time_s, hop.off_s - 0.4, hop.land_s + 0.2, 0.5, flight_s + 0.1)
+    _bend(controls, trunk, pitch_rad)
+    controls.arm_rad[:, :, 0] += (1.0 * forth - 0.5 * back)[:, None]
+    controls.arm_rad[:, :, 3] += (0.75 * forth + 0.15 * back)[:, None]
+    return controls, hops
+
+
+def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> None:
+    """Hips go back and the trunk leans forward over them."""
+    heading = controls.heading_rad
+    for axis, part in ((0, np.cos(heading)), (1, np.sin(heading))):
+        controls.pelvis_m[:, axis] -= 0.34 * pitch_rad * amount * part
+    controls.pelvis_rad[:, 1] += 0.6 * pitch_rad * amount
+    controls.spine_rad[:, 1] += 0.5 * pitch_rad * amount
+    controls.head_rad[:, 0] -= 0.7 * pitch_rad * amount
+
+
+def jumping_jacks(stage: StepContext) -> Controls:
+    """Legs apart with the arms overhead, and back, a small hop for each."""
+    controls, time_s, rng = upright(stage), stage.time_s, stage.rng
+    half_s = 0.5 / stage.tempo(0.78, 0.92, 1.05)
+    count = stage.step.count
+    if count:
+        lead = 0.0 if stage.first else 0.35
+        half_s = float(np.clip((stage.duration_s - lead) / (2 * count), 0.46, 0.7))
+    height_m = float(rng.uniform(0.03, 0.045))
+    flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
+    hops_wanted = 2 * count if count else 2 * max(1, int(np.ceil(stage.duration_s / (2 * half_s) - 0.35)))
+    ground_s = half_s - flight_s
+    begin = stage.start_s + ground_s * 0.5 + (0.0 if stage.first else 0.35)  # arms of what was before come down first
+    hops = [Hop(off_s=begin + k * half_s, rise_m=height_m) for k in range(hops_wanted)]
+    dips = [(stage.start_s - 0.2, 0.0, 0.0)]
+    dips += [(hop.off_s - ground_s / 2, 0.08, 5.0) for hop in hops]
+    dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
+    hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
+    spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
+    for k, hop in enumerate(hops):
+        sign = 1.0 if k % 2 == 0 else -1.0
+        spread += sign * rise((time_s - hop.off_s) / hop.flight_s)
+        centre, wide = (hop.off_s + hop.land_s) / 2, half_s
+        lift += sign * rise((time_s - centre) / wide + 0.5)
+    _spread_feet(controls, stage, spread, float(rng.uniform(0.115, 0.145)))
+    top = float(rng.uniform(2.55, 2.85))
+    controls.arm_rad[:, :, 1] += (top * lift)[:, None]
+    controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
+    controls.arm_rad[:, :, 0] += float(rng.uniform(0.0, 0.35)) + (float(rng.uniform(-0.1, 0.3)) * lift)[:, None]
+    return controls
+
+
+def _spread_feet(controls: Controls, stage: StepContext, spread: Float[Array, " n"], half: float) -> None:
+    """Half the distance between the feet grows by `half` (a share of the height) as `spread` goes to 1."""
+    position, heading = stage.path.position_m(stage.time_s), stage.path.facing_rad(stage.time_s)
+    near = home_feet(stage.body, position, heading)
+    wide = home_feet(stage.body, position, heading, 0.056 + half)
+    controls.foot_m[:, :, :2] += (spread[:, None, None] * (wide - near))[:, :, :2]
+    for side, sign in ((LEFT, 1.0), (RIGHT, -1.0)):
+        controls.foot_rad[:, side, 0] += sign * 0.25 * spread
+    controls.knee_out_rad[:] += 0.2 * spread[:, None]
+
+
+def squatting(stage: StepContext) -> Controls:
+    """Down until the knees are bent about 100 degrees, the arms forward for balance, and up again."""
+    controls, time_s, rng, body = upright(stage), stage.time_s, stage.rng, stage.body
+    period = 1 / stage.tempo(0.36, 0.5, 0.65)
+    count = stage.step.count or max(1, round(stage.duration_s / period))
+    period = float(np.clip(stage.duration_s / count, 1.05, 3.2))
+    down = np.zeros_like(time_s)
+    for k in range(count):
+        begin = stage.start_s + k * period
+        down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
+    knee = np.radians(rng.uniform(94, 112))
+    back = float(rng.uniform(0.085, 0.125)) * body.height_m
+    lean = float(rng.uniform(0.4, 1.3))
+    leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
+    low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + body.hip_below_pelvis_m * 0.95
+    stand = body.pelvis_height_m(STAND_STRETCH)
+    controls.pelvis_m[:, 2] -= down * (stand - low)
+    heading = controls.heading_rad
+    shift = (back + 0.022 * body.height_m) * down
+    controls.pelvis_m[:, 0] -= shift * np.cos(heading)
+    controls.pelvis_m[:, 1] -= shift * np.sin(heading)
+    controls.pelvis_rad[:, 1] += 0.42 * lean * down
+    controls.spine_rad[:, 1] += 0.3 * lean * down
+    controls.head_rad[:, 0] -= 0.45 * down
+    controls.knee_out_rad[:] += (0.2 * down)[:, None]
+    lift_rad = float(rng.choice([rng.uniform(0.0, 0.5), rng.uniform(1.2, 1.9)]))  # arms left hanging, or for balance
+    controls.arm_rad[:, :, 0] += (lift_rad * down)[:, None]
+    controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]
+    return controls

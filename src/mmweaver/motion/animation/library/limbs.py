@@ -1,0 +1,139 @@
+"""What the movements of the library are put together from: moving a pelvis, a foot, a hand; repeating; smooth keys."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.animation.arm_reach import reach
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.animation.kinematics import ankle_from_foot
+from mmweaver.motion.animation.library.standing import STAND_STRETCH
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import StepContext
+
+Array = np.ndarray
+PerTime = Float[Array, " n"]
+OUTWARD = (1.0, -1.0)  # the sign of the body's y for what is outward on the left, on the right
+
+
+def flowing(time_s: PerTime, times: Sequence[float], values: Sequence[float]) -> PerTime:
+    """A curve through (times, values) that starts and ends at rest and stays there; C2 everywhere, smoother inside."""
+    from scipy.interpolate import make_interp_spline
+
+    rest = [(1, 0.0), (2, 0.0)]
+    curve = make_interp_spline(np.asarray(times), np.asarray(values, dtype=float), k=5, bc_type=(rest, rest))
+    return np.asarray(curve(np.clip(time_s, times[0], times[-1])))
+
+
+def sides(stage: StepContext) -> tuple[int, ...]:
+    """Which arms act: as the sentence says, else as the seed has it (five of six people are right-handed)."""
+    chosen = stage.step.hand or ("right" if stage.rng.random() < 5 / 6 else "left")
+    return {"left": (LEFT,), "right": (RIGHT,), "both": (LEFT, RIGHT)}[chosen]
+
+
+def one_side(stage: StepContext) -> int:
+    """The one arm that acts; of both, the right."""
+    return sides(stage)[-1]
+
+
+def leg_side(stage: StepContext) -> int:
+    """The leg that acts: as said, else the right of five out of six."""
+    chosen = stage.step.foot or ("right" if stage.rng.random() < 5 / 6 else "left")
+    return LEFT if chosen == "left" else RIGHT
+
+
+def repeats(stage: StepContext, natural_s: float, least_s: float, most_s: float) -> list[tuple[float, float]]:
+    """(start, seconds) of each repetition: as many as asked for, else one, in its natural time."""
+    count = max(stage.step.count, 1)
+    slower = (1.35, 1.0, 0.8)[stage.step.speed + 1]
+    wanted = natural_s * slower * float(np.exp(stage.rng.normal(0, 0.07)))
+    each = float(np.clip(min(wanted, stage.duration_s / count), least_s, most_s))
+    spare = 0.0 if count > 1 else max(stage.duration_s - each, 0.0)
+    begin = stage.start_s + min(0.1, 0.3 * spare)
+    return [(begin + k * each, each) for k in range(count)]
+
+
+def cycles(stage: StepContext, rate_hz: float, low_hz: float, high_hz: float) -> tuple[float, float]:
+    """Rate and end of a repeated movement: a count asked for fixes the rate as far as nature allows."""
+    if not stage.step.count:
+        return rate_hz, stage.end_s
+    rate = float(np.clip(stage.step.count / max(stage.duration_s - 0.2, 0.1), low_hz, high_hz))
+    return rate, stage.start_s + stage.step.count / rate
+
+
+def vary(stage: StepContext, value: float, spread: float = 0.12) -> float:
+    """A value with the natural variation between people and moments, never beyond twice the spread."""
+    return value * float(np.exp(np.clip(stage.rng.normal(0, spread), -2 * spread, 2 * spread)))
+
+
+def shift_pelvis(controls: Controls, ahead: PerTime | float, left: PerTime | float, up: PerTime | float) -> None:
+    """Moves the pelvis in the direction the body faces, to its left, and up; metres."""
+    cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
+    controls.pelvis_m[:, 0] += ahead * cos - left * sin
+    controls.pelvis_m[:, 1] += ahead * sin + left * cos
+    controls.pelvis_m[:, 2] += up
+
+
+def shift_foot(
+    controls: Controls, side: int, ahead: PerTime | float, out: PerTime | float, up: PerTime | float
+) -> None:
+    """Moves a foot ahead, outward and up; metres."""
+    cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
+    left = OUTWARD[side] * out
+    controls.foot_m[:, side, 0] += ahead * cos - left * sin
+    controls.foot_m[:, side, 1] += ahead * sin + left * cos
+    controls.foot_m[:, side, 2] += up
+
+
+def lift_weight(controls: Controls, side: int, air: PerTime) -> None:
+    """Takes weight from a foot as `air` goes to 1; both knees go soft."""
+    controls.contact[:, side] -= air
+    controls.knee_room[:] = np.maximum(controls.knee_room, 0.8 * air)
+
+
+def lean_over(controls: Controls, body: SkeletonProportions, side: int, share: PerTime) -> None:
+    """Brings the body over one foot as `share` goes to 1, the trunk staying upright."""
+    left = OUTWARD[side] * 0.043 * body.height_m * share
+    shift_pelvis(controls, 0.0, left, 0.0)
+    controls.spine_rad[:, 0] += -OUTWARD[side] * 0.05 * share
+
+
+def set_ankle(
+    controls: Controls, body: SkeletonProportions, side: int, ankle_m: Float[Array, "n 3"], yaw: PerTime, pitch: PerTime
+) -> None:
+    """Puts an ankle at a place (z from the floor) with the foot's yaw and pitch, whatever touches the floor."""
+    controls.foot_rad[:, side, 0] = yaw
+    controls.foot_rad[:, side, 1] = pitch
+    controls.foot_m[:, side] = ankle_m - ankle_from_foot(body, yaw, pitch)
+
+
+def mix_arm(controls: Controls, side: int, arm: Float[Array, "n 4"], weight: PerTime) -> None:
+    """Brings an arm from where it is to `arm` as weight goes to 1."""
+    controls.arm_rad[:, side] += weight[:, None] * (arm - controls.arm_rad[:, side])
+
+
+def hand_to(
+    controls: Controls, body: SkeletonProportions, side: int, target: Float[Array, "n 3"], weight: PerTime,
+    elbow: tuple[float, float, float] = (-0.3, 0.5, -1.0),
+) -> None:  # fmt: skip
+    """Brings a wrist to a place: ahead, outward and up of spine3 in the chest's frame, in shares of the height."""
+    mix_arm(controls, side, reach(body, target * body.height_m, elbow=elbow), weight)
+
+
+def place(ahead: PerTime | float, out: PerTime | float, up: PerTime | float, n: int) -> Float[Array, "n 3"]:
+    """A target for `hand_to` from three curves or numbers."""
+    return np.stack([np.broadcast_to(np.asarray(part, dtype=float), (n,)) for part in (ahead, out, up)], axis=1)
+
+
+def crouched(controls: Controls, body: SkeletonProportions, depth: PerTime, *, lean_rad: float) -> None:
+    """Sinks by a share of the deepest squat: hips back, trunk forward, knees over the feet."""
+    knee = np.radians(118.0)
+    leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
+    back = 0.12 * body.height_m
+    low = body.ankle_height_m + np.sqrt(leg**2 - back**2) + 0.95 * body.hip_below_pelvis_m
+    shift_pelvis(controls, -back * depth, 0.0, -depth * (body.pelvis_height_m(STAND_STRETCH) - low))
+    controls.pelvis_rad[:, 1] += 0.6 * lean_rad * depth
+    controls.spine_rad[:, 1] += 0.7 * lean_rad * depth
+    controls.head_rad[:, 0] -= 0.5 * lean_rad * depth
+    controls.knee_out_rad[:] += (0.2 * depth)[:, None]

@@ -1,0 +1,68 @@
+"""Sitting, sitting down and standing up. The root is where the feet stand, in front of the seat."""
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.animation.arm_reach import reach
+from mmweaver.motion.animation.controls import Controls
+from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, ARM_HANGING, upright
+from mmweaver.motion.animation.profiles import bump, rise
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import StepContext
+
+Array = np.ndarray
+PELVIS_OVER_SEAT = 0.068  # of the height: from the seat's surface to the pelvis joint
+
+
+def pelvis_behind_feet_m(body: SkeletonProportions, seat_height_m: float) -> float:
+    """How far the seated pelvis is behind the root: shins about upright, on a high seat stretched."""
+    hip = seat_height_m + PELVIS_OVER_SEAT * body.height_m - body.hip_below_pelvis_m
+    drop = hip - body.ankle_height_m - body.shank_m * 0.985  # hip over knee
+    return float(np.sqrt(body.thigh_m**2 - min(drop, 0.7 * body.thigh_m) ** 2) + ANKLE_BEHIND * body.height_m - 0.03)
+
+
+def sitting(stage: StepContext) -> Controls:
+    return _seated(stage, np.ones_like(stage.time_s))
+
+
+def sitting_down(stage: StepContext) -> Controls:
+    """Hips back over the seat while the trunk leans forward, then down."""
+    begin = _settled_s(stage)
+    lasts = float(np.clip(stage.end_s - begin - 0.1, 0.75, 1.3 if stage.step.speed >= 0 else 2.0))
+    return _seated(stage, (stage.time_s - begin) / lasts)
+
+
+def standing_up(stage: StepContext) -> Controls:
+    lasts = float(np.clip(stage.duration_s - 0.1, 0.75, 1.2 if stage.step.speed >= 0 else 1.9))
+    return _seated(stage, 1 - (stage.time_s - stage.start_s) / lasts)
+
+
+def _seated(stage: StepContext, u: Float[Array, " n"]) -> Controls:
+    """u = 0 standing, 1 seated; between, the way of the pelvis from one to the other."""
+    controls, body = upright(stage), stage.body
+    heading = controls.heading_rad
+    back = rise(u / 0.85) * pelvis_behind_feet_m(body, stage.seat_height_m)
+    seat = stage.seat_height_m + PELVIS_OVER_SEAT * body.height_m
+    down = rise((u - 0.08) / 0.92)
+    controls.pelvis_m[:, 2] += down * (seat - controls.pelvis_m[:, 2])
+    controls.pelvis_m[:, 0] -= back * np.cos(heading)
+    controls.pelvis_m[:, 1] -= back * np.sin(heading)
+    lean = bump(np.clip(u, 0, 1) * 0.88 + 0.06) - bump(np.array(0.06))
+    slouch = float(stage.rng.uniform(0.05, 0.18))
+    controls.pelvis_rad[:, 1] += 0.5 * lean - slouch * down
+    controls.spine_rad[:, 1] += 0.35 * lean + 1.3 * slouch * down
+    controls.head_rad[:, 0] -= 0.5 * lean
+    controls.knee_out_rad[:] += (0.12 * down)[:, None]
+    target = np.array([0.145, 0.066, -0.13]) * body.height_m  # hands on the thighs, seen from spine3
+    lap = reach(body, np.tile(target, (len(heading), 1)), elbow=(-0.6, 0.45, -1.0))
+    controls.arm_rad[:] += down[:, None, None] * (lap[:, None] - np.array(ARM_HANGING))
+    controls.arm_rad[:, :, 0] += (0.35 * lean)[:, None]
+    return controls
+
+
+def _settled_s(stage: StepContext) -> float:
+    """When the root has all but stopped turning, in seconds; a seat is taken only then."""
+    late = stage.start_s + np.linspace(0, max(stage.duration_s, 0.1), 60)
+    left = np.abs(stage.path.facing_rad(late) - stage.path.facing_rad(late[-1:])[0])
+    turning = np.flatnonzero(left > 0.6)
+    return float(late[turning[-1]]) if len(turning) else stage.start_s

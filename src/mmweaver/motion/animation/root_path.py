@@ -1,0 +1,87 @@
+"""Where the person is and which way they face over time: straight or curved moves and turns, all C2."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.animation.profiles import rise, travel
+
+Array = np.ndarray
+Times = Float[Array, "*shape"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Move:
+    """A way along an arc (a line where curvature is 0), at constant speed but for its ramps.
+
+    With `ramp_in_s` 0 the person was already moving before the start, with `ramp_out_s` 0 goes on after the end.
+    """
+
+    start_s: float
+    end_s: float
+    length_m: float
+    direction_rad: float
+    ramp_in_s: float
+    ramp_out_s: float
+    curvature_per_m: float = 0.0
+
+    def gone_m(self, time_s: Times) -> Times:
+        span_s = self.end_s - self.start_s
+        u = np.asarray((time_s - self.start_s) / span_s)
+        return np.asarray(self.length_m * travel(u, self.ramp_in_s / span_s, self.ramp_out_s / span_s))
+
+    @property
+    def speed_mps(self) -> float:
+        """Speed between the ramps."""
+        return self.length_m / (self.end_s - self.start_s - self.ramp_in_s / 2 - self.ramp_out_s / 2)
+
+    def shift_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
+        gone = self.gone_m(time_s)
+        bend = self.curvature_per_m
+        ahead = np.sin(bend * gone) / bend if bend else gone
+        left = (1 - np.cos(bend * gone)) / bend if bend else np.zeros_like(gone)
+        cos, sin = np.cos(self.direction_rad), np.sin(self.direction_rad)
+        return np.stack([ahead * cos - left * sin, ahead * sin + left * cos], axis=-1)
+
+    @property
+    def end_shift_m(self) -> Float[Array, "2"]:
+        return self.shift_m(np.array([self.end_s]))[0]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turn:
+    """A change of heading, to the person's left where positive."""
+
+    start_s: float
+    end_s: float
+    angle_rad: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootPath:
+    """The ground point under a person: start, moves and turns. Frame: x right, y away from the radar."""
+
+    start_m: tuple[float, float]
+    heading_rad: float
+    moves: tuple[Move, ...] = ()
+    turns: tuple[Turn, ...] = ()
+
+    def position_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
+        place = np.zeros((*np.shape(time_s), 2)) + np.array(self.start_m)
+        for move in self.moves:
+            place = place + move.shift_m(time_s)
+        return place
+
+    def facing_rad(self, time_s: Times) -> Times:
+        heading = np.full(np.shape(time_s), self.heading_rad)
+        for turn in self.turns:
+            heading = heading + turn.angle_rad * rise((time_s - turn.start_s) / (turn.end_s - turn.start_s))
+        for move in self.moves:
+            heading = heading + move.curvature_per_m * move.gone_m(time_s)
+        return heading
+
+    def speed_mps(self, time_s: Times) -> Times:
+        step = 1e-3
+        gap = self.position_m(time_s + step) - self.position_m(time_s - step)
+        return np.hypot(gap[..., 0], gap[..., 1]) / (2 * step)

@@ -1,0 +1,1 @@
+"""A sentence becomes a plan: steps with activities, directions, counts and times."""

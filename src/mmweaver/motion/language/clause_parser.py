@@ -1,0 +1,390 @@
+"""One clause -> the steps it names: its verbs, and around them direction, hand, speed, count and seat."""
+
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.clauses import Clause
+from mmweaver.motion.language.lexicon import (
+    ARMS,
+    BOTH,
+    DIRECTIONS,
+    FILLERS,
+    GOING,
+    MANY,
+    NEGATIONS,
+    NOT_HUMAN,
+    NUMBERS,
+    OTHER_MOVEMENT,
+    OWN,
+    RADAR,
+    SEATS,
+    SPEEDS,
+    TARGETS,
+)
+from mmweaver.motion.language.modifiers import modifiers
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.suggestions import not_known
+from mmweaver.motion.language.verb_steps import LEGS, step_of
+from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
+from mmweaver.motion.language.words import Word
+
+STEPPING = GOING | {
+    "walk",
+    "jog",
+    "run",
+    "jump",
+    "hop",
+    "turn",
+    "advance",
+    "march",
+    "retreat",
+    "sidestep",
+    "stumble",
+    "pushed",
+    "dance",
+    "tumble",
+    "stagger",
+    "limp",
+}
+DISTANCES = {"meters", "metres", "meter", "metre", "m", "cm", "centimeters", "feet", "yards"}
+LEG_VERBS = {
+    "kick",
+    "raise",
+    "lift",
+    "stomp",
+    "stamp",
+    "one_leg_stand",
+    "hop",
+    "jump",
+    "leap",
+    "turn",
+    "pivot",
+    "rotate",
+    "spin",
+    "kneel_down",
+    "kneel",
+    "lunge",
+    "limp",
+    "hobble",
+    "step",
+    "walk",
+}
+FLOOR_VERBS = {
+    "lie",
+    "lay",
+    "lie_down",
+    "fall",
+    "collapse",
+    "topple",
+    "pick_up",
+    "put_down",
+    "get_up",
+    "stand_up",
+    "kneel",
+    "kneel_down",
+    "kneel_up",
+    "stomp",
+    "stamp",
+    "look_around",
+    "bend",
+    "faint",
+    "wipe",
+    "clean",
+    "point",
+}
+
+
+@dataclass
+class Reading:
+    """What one clause says."""
+
+    link: str
+    text: str
+    steps: list[Step] = field(default_factory=list)
+    form: str = ""  # of the first verb: ing, s, ...
+    forms: list[str] = field(default_factory=list)  # of each step's verb
+    about: Step = field(default_factory=Step)  # direction, hand, speed, ... of a clause without a verb
+    notes: list[str] = field(default_factory=list)
+    unknown: list[str] = field(default_factory=list)
+
+    @property
+    def adds_nothing(self) -> bool:
+        """It names no activity, only how: "and slowly", "and arm"."""
+        return not self.steps and not self.unknown
+
+    @property
+    def is_empty(self) -> bool:
+        return self.adds_nothing and replace(self.about, clause="") == Step()
+
+    def absorb(self, more: "Reading") -> None:
+        """Takes over what a clause without an activity says about the last step."""
+        last, about = self.steps[-1], more.about
+        if last.direction and about.direction and last.direction != about.direction:
+            if last.moves and self._leads_back(last, about):
+                return
+            raise InputError(
+                f"{self.text!r} and {more.text!r} name two directions; say which movement goes where, with 'then'"
+            )
+        self.steps[-1] = replace(
+            last,
+            hand="both" if {last.hand, about.hand} == {"left", "right"} else last.hand or about.hand,
+            direction=last.direction or about.direction,
+            speed=last.speed or about.speed,
+            count=last.count or about.count,
+            seat=last.seat or about.seat,
+            seconds=last.seconds or about.seconds,
+        )
+
+    def _leads_back(self, last: Step, about: Step) -> bool:
+        """'Walks forwards and backwards', 'steps aside and then back': the other direction is a way of its own."""
+        if last.lower == "sidestep":
+            other = {"left": "right", "right": "left"}.get(last.direction, "")
+            if about.direction not in ("back", "backwards", other) or not other:
+                return False
+            self.steps.append(replace(last, direction=other, count=about.count or last.count))
+        elif (
+            about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg
+        ):
+            self.steps.append(replace(last, direction=about.direction, count=about.count or last.count))
+        else:
+            return False
+        self.forms.append("s")
+        return True
+
+
+def read_clause(clause: Clause) -> Reading:
+    """Reads verbs and modifiers; raises InputError for what must not be acted out as if it were something known."""
+    words = clause.words
+    reading = Reading(clause.link, clause.text)
+    _refuse(clause)
+    verbs = _verbs(words)
+    if not verbs:
+        reading.about = modifiers(words, clause.text, reading.notes)
+        _note_unknown(words, clause, reading, has_verb=False)
+        return reading
+    for one, other in pairwise(verbs):  # "a hopping walk"
+        if other == one + 1 and words[one].form == "ing" and words[other].form in ("base", "s"):
+            raise InputError(not_known(clause.text, f"{words[one].text} {words[other].text}"))
+    for at in verbs:  # "a chachacha basic step"
+        noun = words[at].lemma in ("step", "turn", "jump") and words[at].form in ("base", "s") and at
+        if noun and not _is_known(words[at - 1]) and words[at - 1].text[:1].isalpha():
+            subject = words[at].form == "s" and words[at].text not in ("steps", "turns", "jumps")
+            if not subject and any(word.is_verb and not word.is_activity for word in words[:at]):
+                raise InputError(not_known(clause.text, words[at - 1].text))
+    _note_unknown(words, clause, reading, has_verb=True)
+    reading.form = _form(words, verbs[0])
+    # what stands before the first verb belongs to it
+    starts = [0, *(_start_of(words, before, at) for before, at in pairwise(verbs))]
+    ends = [*starts[1:], len(words)]
+    for k, (at, end) in enumerate(zip(verbs, ends, strict=True)):
+        begin = starts[k]
+        own = words[begin:end]
+        about = modifiers(own, clause.text, reading.notes)
+        reading.steps.append(step_of(own, at - begin, about, clause.text))
+        reading.forms.append(_form(words[starts[k] :], at - starts[k]) if k else reading.form)
+    return reading
+
+
+def _start_of(words: list[Word], before: int, at: int) -> int:
+    """Where a later verb's own words begin: at its light verb ("takes a turn"), else at its adjectives."""
+    if words[at].form == "past":  # "walks with the left hand raised"
+        noun = [i for i in range(before + 1, at) if words[i].text == "with"]
+        if noun:
+            return noun[-1]
+    light = [i for i in range(before + 1, at) if words[i].is_verb and not words[i].is_activity]
+    if light:
+        return light[0]
+    while at - 1 > before and (words[at - 1].text in _BEFORE_NOUNS or words[at - 1].text.startswith("deg")):
+        at -= 1
+    return at
+
+
+_THINGS = {"object", "objects", "something", "thing", "things", "box", "it", "them"}
+_BEFORE_NOUNS = {
+    "a",
+    "an",
+    "one",
+    "small",
+    "big",
+    "quick",
+    "fast",
+    "slow",
+    "sharp",
+    "short",
+    "full",
+    "is",
+    "gets",
+    "sideways",
+    "little",
+    "slight",
+    "further",
+}
+
+
+def _refuse(clause: Clause) -> None:
+    texts = {word.text for word in clause.words}
+    still = texts & {"moving", "movement", "motion"} and texts & {"without", "not", "no"}
+    if texts & NEGATIONS and not still:
+        raise InputError(f"{clause.text!r} says what is not done; say what the person does instead")
+    if texts & MANY or {"of", "them"} <= texts or "guys" in texts:
+        raise InputError(f"{clause.text!r} speaks of several people; say it of one and give --text once for each")
+    if texts & NOT_HUMAN:
+        raise InputError(f"{clause.text!r} is not about a person alone; only one person can be shown")
+    lemmas = {word.lemma for word in clause.words if word.is_activity}
+    other = [word.text for word in clause.words if word.text in OTHER_MOVEMENT and not _harmless(word, texts, lemmas)]
+    if other:
+        raise InputError(not_known(clause.text, other[0]))
+
+
+def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
+    """Words that mean another movement only beside some verbs."""
+    if word.text in LEGS and lemmas & LEG_VERBS:
+        return True
+    if word.text in ("over", "legs", "leg", "foot", "knees", "knee", "head", "shoulder", "shoulders"):
+        lifted = texts & {"raise", "raises", "raising", "raised", "lift", "lifts", "lifting", "lifted"}
+        jumped = texts & {"jump", "jumps", "jumping", "hop", "hops", "leaps"}
+        if word.text in ("head", "shoulder", "shoulders"):
+            return not lifted or "above" in texts or "over" in texts or bool(texts & ARMS)
+        if word.text == "over":
+            return not jumped and "chair" not in texts
+        return not lifted and word.text not in ("leg", "foot", "knee") and "on" not in texts
+    if word.text in ("floor", "ground"):
+        return bool(lemmas & FLOOR_VERBS) or not texts & {"sit", "sits", "sitting", "seated", "sit_down", "sat"}
+    if word.text == "ball":
+        return bool(lemmas & {"throw", "toss", "hurl", "lob", "kick", "pick_up", "put_down", "carry"})
+    return word.text == "against" and "pushed" in lemmas
+
+
+def _verbs(words: list[Word]) -> list[int]:
+    """Places of the words that name an activity; light verbs and nouns that only repeat a verb are left out."""
+    found: list[int] = []
+    texts = {word.text for word in words}
+    for i, word in enumerate(words):
+        if word.lemma == "head" and i and (words[i - 1].text in OWN or words[i - 1].text in ("the", "with")):
+            continue
+        if (
+            word.lemma == "reach"
+            and words[i + 1 : i + 2]
+            and words[i + 1].text in ("the", "his", "her", "its", "their")
+        ):
+            continue  # "reaches the end"
+        after = words[i + 1].text if i + 1 < len(words) else ""
+        if word.lemma == "move" and (texts & ARMS or after in ("them", "it", "him", "her")):
+            continue  # it is the arm that moves, and how is not known
+        goes_somewhere = bool(texts & set(DIRECTIONS) or texts & RADAR or texts & SEATS or texts & set(TARGETS))
+        if (word.is_going and goes_somewhere) or (word.is_activity and not _is_noun(words, i, found)):
+            found.append(i)
+    if len(found) > 1 and words[found[0]].lemma in ("stop", "halt") and words[found[1]].form == "ing":
+        return found[:1]  # "stops walking" is standing still
+    return found
+
+
+def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
+    """'drinks a drink', 'box' as a thing, 'the hand wave': a noun after another verb of the clause."""
+    word, before = words[i], words[i - 1].text if i else ""
+    if word.lemma == "face":
+        return bool(found) or before in OWN or before in ("the", "a")
+    if word.form == "ing" or word.lemma in ("sit_down", "stand_up", "jumping_jack", "seated"):
+        return False
+    if word.lemma == "box" and word.form == "base":
+        return before in ("a", "the", "this", "that")
+    if word.lemma == "seat" and word.form != "past":
+        return True
+    if word.lemma in ("phone", "text", "comb", "box") and before in ("a", "the", "his", "her", "their", "my"):
+        return True
+    if (
+        word.lemma == "point"
+        and word.form == "base"
+        and (found or before in ("a", "the", "starting", "same", "specific"))
+    ):
+        return True
+    if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
+        return bool(found)
+    if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
+        return not any(other.is_verb and not other.is_activity for other in words[found[-1] + 1 : i])
+    same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)
+    return same
+
+
+def _form(words: list[Word], at: int) -> str:
+    light = next((word for word in words[:at] if word.is_verb and not word.is_activity), None)
+    return light.form if light else words[at].form
+
+
+def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_verb: bool) -> None:
+    """Unknown words after a verb are told of, unless they look like another activity, which is an error."""
+    unknown = [word.text for word in words if not _is_known(word)]
+    if not has_verb:
+        reading.unknown = unknown + [word.text for word in words if word.is_verb]
+        return
+    moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
+    if moved is not None and any(not _is_known(word) or word.text in _THINGS for word in words[moved + 1 : moved + 3]):
+        raise InputError(not_known(clause.text, "move"))
+    odd = _odd_way(words)
+    if odd:
+        raise InputError(not_known(clause.text, odd))
+    for text in unknown:
+        doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
+        if doing and text not in (
+            "ceiling",
+            "evening",
+            "morning",
+            "bed",
+            "red",
+            "building",
+            "wing",
+            "king",
+            "tired",
+            "something",
+            "anything",
+            "everything",
+            "during",
+        ):
+            raise InputError(not_known(clause.text, text))
+    if {word.text for word in words} & DISTANCES:
+        reading.notes.append(f"the distance in {clause.text!r} is not kept: time and speed give it")
+    if unknown:
+        listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
+        reading.notes.append(f"of the text, {listed} says nothing that can be acted out and was left aside")
+
+
+def _odd_way(words: list[Word]) -> str:
+    """An unknown word that says which way or what is done: 'in a pentagon', 'performs capoeira'."""
+    for i, word in enumerate(words):
+        if _is_known(word) or not word.text[:1].isalpha():
+            continue
+        before = [other.text for other in words[max(i - 3, 0) : i]]
+        if before[-2:] in (["in", "a"], ["in", "an"], ["of", "a"], ["of", "an"], ["like", "a"]):
+            return word.text
+        lead = i - 1
+        while lead >= 0 and words[lead].text in ("a", "an", "the", "some", "his", "her", "with"):
+            lead -= 1
+        if lead >= 0 and words[lead].lemma in ("do", "perform", "make", "practice", "practise", "execute"):
+            following = words[i + 1] if i + 1 < len(words) else None
+            if following is None or not following.is_verb:
+                return word.text
+    return ""
+
+
+def _is_known(word: Word) -> bool:
+    text = word.text
+    return (
+        word.is_verb
+        or text in FILLERS
+        or text in DIRECTIONS
+        or text in SPEEDS
+        or text in NUMBERS
+        or text in SEATS
+        or text in ARMS
+        or text in RADAR
+        or text in OWN
+        or text in BOTH
+        or text in ("left", "right", "not", "without", "moving", "sideways", "on_spot", "lookdown")
+        or text in TARGETS
+        or text in LEGS
+        or text.startswith(("arc", "deg", "from_", "on_", "fraction_"))
+        or text in ("onback", "onbelly", "highkick")
+        or text.replace(".", "").isdigit()
+        or len(text) == 1
+    )

@@ -1,0 +1,139 @@
+"""How something is done: the words of a clause beside its verbs, as fields of a Step."""
+
+from dataclasses import replace
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.lexicon import ARMS, BOTH, DIRECTIONS, NUMBERS, OWN, SEATS, SPEEDS, TIMES
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.words import Word
+
+OPPOSITE = {"left": "right", "right": "left"}
+MOST_TIMES = 60
+
+
+def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
+    """Everything of a clause that says how, as a Step without a verb; assumptions go to `notes`."""
+    about = Step(clause=clause_text)
+    texts = {word.text for word in words}
+    for i, word in enumerate(words):
+        text, after = word.text, words[i + 1].text if i + 1 < len(words) else ""
+        before = words[i - 1].text if i else ""
+        if text in SPEEDS:
+            about = replace(about, speed=SPEEDS[text])
+        elif text in ("left", "right"):
+            about = _left_or_right(about, text, before, after, words, i, notes)
+        elif text in BOTH or (text == "two" and after in ARMS):
+            about = replace(about, hand=about.hand or "both")
+        elif text in SEATS:
+            about = replace(about, seat=text)
+        elif text == "back" and before in (*OWN, "hollow", "straight", "bent", "hurting", "aching"):
+            continue  # a part of the body
+        elif text in DIRECTIONS:
+            about = _direction(about, text, words, i)
+        elif "_" in text or text.startswith(("arc", "deg")) or text in ("onback", "onbelly", "lookdown", "highkick"):
+            about = _token(about, text, texts)
+        elif text in TIMES or text in NUMBERS or text.replace(".", "").isdigit():
+            about = _number(about, text, words, i)
+    return about
+
+
+def _left_or_right(
+    about: Step, text: str, before: str, after: str, words: list[Word], i: int, notes: list[str]
+) -> Step:
+    """Before an arm it names the arm; else it is a direction, the viewer's unless said to be the person's own."""
+    if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
+        return replace(about, hand="both" if about.hand and about.hand != text else text)
+    if about.direction == "circle":
+        return replace(about, arc_deg=360.0 if text == "left" else -360.0)
+    bends = ("turn", "rotate", "pivot", "spin")
+    if before in OWN and not any(
+        word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words
+    ):
+        notes.append(
+            f"'{before} {text}' is taken as the {text} of a person who faces the radar, {OPPOSITE[text]} in the photo"
+        )
+        text = OPPOSITE[text]
+    return replace(about, direction=text)
+
+
+def _arm_soon(words: list[Word], i: int) -> bool:
+    """'his left hand', 'the left or ... arm', 'arm on the left': an arm within two words after."""
+    return any(word.text in ARMS for word in words[i + 1 : i + 3]) and not any(
+        word.text in ("with", "and", "using") for word in words[i + 1 : i + 2]
+    )
+
+
+def _direction(about: Step, text: str, words: list[Word], i: int) -> Step:
+    direction = DIRECTIONS[text]
+    if direction == "circle" and about.direction in OPPOSITE:
+        return replace(about, direction="circle", arc_deg=360.0 if about.direction == "left" else -360.0)
+    following = {word.text for word in words[i + 1 : i + 4]}
+    going = any(word.is_verb and word.lemma in ("walk", "go", "run", "return", "jog", "head", "come") for word in words)
+    if text == "back" and (going or not any(word.lemma in ("step", "lean") for word in words)):
+        direction = "back"
+    if text == "straight" and any(word.lemma in ("stand", "sit", "raise", "jump", "punch") for word in words):
+        return about
+    if text == "towards" or text == "toward":
+        if following & SEATS:
+            return replace(about, direction=about.direction or "seat")
+        if following & {"left", "right"}:
+            return about
+    if text == "away" and following & {"left", "right"}:
+        return about
+    if direction == "forwards" and about.direction:
+        return about
+    if about.direction in ("left", "right") and direction == "spot":
+        return about
+    if about.direction in ("left", "right") and direction in ("around", "backwards"):
+        return replace(about, direction=about.direction if direction == "around" else direction)
+    return replace(about, direction=direction)
+
+
+def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
+    """'three times', 'two steps', 'five squats' count; 'two seconds' is a duration; 'one hand' is neither."""
+    value = float(NUMBERS[text]) if text in NUMBERS else float(text)
+    following = [word.text for word in words[i + 1 : i + 4]]
+    if text in TIMES:
+        return replace(about, count=int(value))
+    if any(word in ("second", "seconds", "sec", "secs", "s") for word in following[:2]):
+        return replace(about, seconds=value)
+    if (following[:1] and following[0] in ARMS) or following[:1] == ["of"]:
+        return about
+    counted = any(word == "times" or word == "time" for word in following[:2]) or any(
+        (word.is_activity and word.lemma != "point") or word.text in ("steps", "repetitions", "reps")
+        for word in words[i + 1 : i + 4]
+    )
+    if not counted or text == "another":
+        return about
+    if value != int(value) or not 1 <= value <= MOST_TIMES:
+        raise InputError(f"{text} times is not possible; say a whole number from 1 to {MOST_TIMES}")
+    return replace(about, count=int(value))
+
+
+def _token(about: Step, text: str, texts: set[str]) -> Step:
+    """What phrases.ACTIVITY_PHRASES folded into one word: angles, legs, where a push comes from, lying on what."""
+    if text in ("left_leg", "right_leg"):
+        return replace(about, foot=text.removesuffix("_leg"))
+    if text.startswith("arc") and text[3:].isdigit():
+        return replace(about, arc_deg=float(text[3:]))
+    if text.startswith("deg") and text[3:].isdigit():
+        return replace(about, turn_deg=float(text[3:]))
+    if text.startswith("fraction_"):
+        _, part, whole = text.split("_")
+        return replace(about, arc_deg=360.0 * int(part) / max(int(whole), 1))
+    if text == "from_side":
+        return replace(about, style="side")
+    if text.startswith(("from_", "on_")) and "pushed" in texts and not about.direction:
+        return replace(about, direction=_PUSHED_FROM.get(text.removeprefix("from_"), about.direction))
+    if text in ("onback", "onbelly"):
+        return replace(about, style="back" if text == "onback" else "front")
+    if text == "lookdown":
+        return replace(about, facing="down")
+    return replace(about, style="high") if text == "highkick" else about
+
+
+_PUSHED_FROM = {
+    "own_left": "left", "own_right": "right",  # of somebody who faces the viewer
+    "behind": "forwards", "back": "forwards", "rear": "forwards", "front": "backwards", "left": "right",
+    "right": "left", "on_left_side": "right", "on_right_side": "left",
+}  # fmt: skip

@@ -1,0 +1,111 @@
+"""Postures last: who sat down, knelt or lies stays so until a step gets them up; what is needed for it is put in."""
+
+from dataclasses import replace
+
+from mmweaver.motion.language.plan import Step
+
+RISING = {"seat": "stand_up", "knees": "kneel_up", "floor": "get_up"}
+STILL = {"seat": "sit", "knees": "kneel", "floor": "lie"}
+ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down"}
+
+
+def with_postures(steps: list[Step]) -> list[Step]:
+    """The steps with sitting down, kneeling, lying down and getting up put in where the next step needs them."""
+    result: list[Step] = []
+    posture = ""  # not known yet
+    for step in steps:
+        for one in _led_up_to(step, posture, result):
+            result.append(one)
+            posture = one.posture
+    return merged(_styled(result))
+
+
+def _led_up_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
+    """The step as it is from this posture, after what must come first."""
+    if step.lower in ("stand_up", "kneel_up", "get_up"):
+        return _rising(step, posture, before)
+    if posture in STILL and step.lower == "stand" and step.upper and not step.on_feet:
+        return [replace(step, lower=STILL[posture])]
+    if step.posture == "feet":
+        return [*_up_from(posture, step), step] if step.lower != "fall" else [step]
+    return _going_down(step, posture, bool(before))
+
+
+def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
+    if posture in RISING:
+        return [replace(step, lower=RISING[posture])]
+    if not before:
+        return [step]
+    if before[-1].lower in ("squat", "pick_up", "put_down", "bow", "bend", "lunge"):
+        return []  # they end upright
+    return [replace(step, lower="stand")]
+
+
+def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
+    """Sitting, kneeling, lying: stays, or goes down first, from the feet."""
+    if posture == step.posture:
+        if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
+            step = replace(step, lower=STILL[posture])
+        return [step]
+    first = _up_from(posture, step)
+    down = ENTERING.get(step.lower, step.lower)
+    if not anything_before and step.lower == down and step.upper and step.lower != "fall":
+        return [replace(step, upper="", count=0, seconds=0.0), replace(step, lower=STILL[step.posture])]
+    if not anything_before:
+        return [step]
+    if step.upper:  # goes down, then does it there
+        return [
+            *first,
+            replace(step, lower=down, upper="", count=0, seconds=0.0),
+            replace(step, lower=STILL[step.posture]),
+        ]
+    return [*first, replace(step, lower=down)]
+
+
+def _up_from(posture: str, step: Step) -> list[Step]:
+    return [Step(lower=RISING[posture], clause=step.clause)] if posture in RISING else []
+
+
+def _styled(steps: list[Step]) -> list[Step]:
+    """On the back or on the belly: as whoever went down there; on the one knee or foot that was said."""
+    style, foot = "", ""
+    for k, step in enumerate(steps):
+        if step.lower in ("lie_down", "fall") or (step.lower in ("lie", "get_up") and not style):
+            style = step.style or "back"
+        if step.posture == "knees":
+            foot = step.foot or foot
+        if step.lower in ("lie", "get_up", "lie_down", "fall"):
+            steps[k] = replace(step, style=style)
+        if step.lower in ("kneel", "kneel_up"):
+            steps[k] = replace(step, foot=foot)
+        if step.lower in ("stand_up", "get_up", "kneel_up"):
+            style, foot = "", ""
+    return steps
+
+
+def carried_over(steps: list[Step]) -> list[Step]:
+    """'Walks back' is the way back where there was a way, else backwards; who raised a hand waves with that one."""
+    gone = False
+    for k, step in enumerate(steps):
+        if step.direction == "back" and not gone:
+            steps[k] = replace(step, direction="backwards")
+        gone = gone or step.moves
+        before = steps[k - 1]
+        if k and step.upper == "wave" and not step.hand and before.upper == "raise":
+            steps[k] = replace(step, hand=before.hand)
+    return steps
+
+
+def merged(steps: list[Step]) -> list[Step]:
+    """Two equal still postures in a row are one."""
+    result: list[Step] = []
+    for step in steps:
+        plain = (
+            step.lower in ("sit", "stand", "kneel", "lie") and not step.upper and not step.seconds and not step.facing
+        )
+        same = {"sit": ("sit", "sit_down"), "kneel": ("kneel", "kneel_down"), "lie": ("lie", "lie_down", "fall")}.get(
+            step.lower, (step.lower,)
+        )
+        if not (plain and result and result[-1].lower in same and not result[-1].upper):
+            result.append(step)
+    return result

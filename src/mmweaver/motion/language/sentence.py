@@ -1,0 +1,182 @@
+"""A sentence -> MotionPlan: every clause becomes a step or an overlay, or the error says which clause could not."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.clause_parser import Reading, read_clause
+from mmweaver.motion.language.clauses import clauses_of
+from mmweaver.motion.language.modifiers import OPPOSITE
+from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.postures import carried_over, with_postures
+from mmweaver.motion.language.spelling import corrected
+from mmweaver.motion.language.suggestions import not_known
+from mmweaver.motion.language.verbs import RECOVERING
+from mmweaver.motion.language.words import Word, words_of
+
+LONGEST_TEXT = 1000
+MOST_STEPS = 24
+ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
+LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
+
+
+def parse(text: str) -> MotionPlan:
+    """Reads what a person does, in the order of time, without times yet.
+
+    Left and right of a direction are the viewer's (as in the photo), of a hand the person's own, of a turn the
+    person's own. Raises InputError for an empty or overlong text, a negation, several people, or a clause that names
+    no activity that is known: nothing is left out silently. See docs/decisions on language.
+    """
+    asked = text
+    if not text.strip():
+        raise InputError(f"the text is empty; say what the person does, for example {EXAMPLE!r}")
+    if len(text) > LONGEST_TEXT:
+        raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
+    text, notes = corrected(text)
+    words = words_of(text)
+    _check_turning_jumps(text, words)
+    readings: list[Reading] = []
+    for clause in clauses_of(words):
+        reading = read_clause(clause)
+        notes += reading.notes
+        if reading.adds_nothing and readings and reading.link in ("and", "comma", "then", "while"):
+            readings[-1].absorb(reading)
+        elif reading.steps and not _is_its_end(readings, reading):
+            readings.append(reading)
+        elif reading.steps or (readings and _needs_no_step(readings[-1].steps[-1], reading)):
+            continue
+        elif not reading.is_empty:
+            raise InputError(not_known(clause.text))
+    if not readings:
+        raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
+    sequence = _in_sequence(readings)
+    for before, step in pairwise(sequence):
+        if step.lower in ("lie", "lie_down") and before.seat:
+            raise InputError(f"{step.clause!r}: lying is known on the floor only; leave out the {before.seat}")
+    steps = carried_over(with_postures(sequence))
+    if len(steps) > MOST_STEPS:
+        raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
+    return MotionPlan(text=asked, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
+
+
+def _is_its_end(readings: list[Reading], reading: Reading) -> bool:
+    """'Lifts a foot and puts it down again', 'is pushed and stumbles': one movement."""
+    if not readings:
+        return False
+    before, now = readings[-1].steps[-1], reading.steps[0]
+    if len(reading.steps) > 1 or before.upper:
+        return before.upper == "raise" and now.lower == "put_down" and len(reading.steps) == 1
+    return (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
+
+
+def _check_turning_jumps(text: str, words: list[Word]) -> None:
+    lemmas = {word.lemma for word in words}
+    if {"jump", "turn"} <= lemmas and {word.text for word in words} & {"air", "during"}:
+        raise InputError(f"{text.strip()!r}: jumping with a turn is not known; say 'jumps, then turns'")
+
+
+def _needs_no_step(before: Step, reading: Reading) -> bool:
+    """A raised hand comes down by itself; who was pushed catches the fall; a lowered leg is part of raising it."""
+    words = set(reading.unknown) | set(reading.text.split())
+    if before.upper in ("raise", "arms_out") or before.lower == "raise_leg":
+        return bool(LOWERING & words)
+    return before.lower == "stumble" and bool(RECOVERING & words)
+
+
+EXAMPLE = "a person walks towards the radar, then waves"
+
+
+def _in_sequence(readings: list[Reading]) -> list[Step]:
+    """Overlays joined, everything else one after the other."""
+    steps: list[Step] = []
+    for i, reading in enumerate(readings):
+        first, rest = reading.steps[0], reading.steps[1:]
+        if steps and _goes_together(readings[i - 1], reading):
+            steps[-1:] = _joined(steps[-1], first)
+        else:
+            steps.append(first)
+        for step, form in zip(rest, reading.forms[1:], strict=True):
+            if form == "ing" or _can_overlay(steps[-1], step):  # "sits drinking water"
+                steps[-1:] = _joined(steps[-1], step)
+            else:  # "walks forward turns around"
+                steps.append(step)
+    return steps
+
+
+def _same_way(one: Step, other: Step) -> list[Step]:
+    """'Walks to the left, taking five steps' is one walk."""
+    if one.direction and other.direction and one.direction != other.direction:
+        raise InputError(
+            f"{one.clause!r} and {other.clause!r} name two directions; say which movement goes where, with 'then'"
+        )
+    more = one if one.direction or one.arc_deg else other
+    return [
+        replace(
+            more, count=one.count or other.count, speed=one.speed or other.speed, upper=one.upper or other.upper,
+            hand=one.hand or other.hand, target=one.target or other.target,
+        )
+    ]  # fmt: skip
+
+
+def _joined(one: Step, other: Step) -> list[Step]:
+    """Two at once as one step; where a push or a turn meets a walk, as what that looks like."""
+    if one.lower == other.lower and one.moves and not (one.upper and other.upper):
+        return _same_way(one, other)
+    pair = {one.lower, other.lower}
+    walk, more = (one, other) if one.moves and one.lower != "stumble" else (other, one)
+    if "stumble" in pair and walk.moves and walk.lower != "stumble" and not (one.upper or other.upper):
+        onward = replace(walk, direction="forwards" if walk.direction == "forwards" else walk.direction, count=0)
+        return [walk, more, onward]
+    if walk.lower in ("walk", "jog") and more.lower == "turn" and not (one.upper or other.upper or more.facing):
+        angle = {"left": 90.0, "right": -90.0, "around": 180.0}.get(more.direction, more.turn_deg)
+        if more.direction == "around" and walk.direction:
+            return [one, other]
+        bend = replace(walk, arc_deg=angle, turn_deg=0.0, style="" if more.direction in OPPOSITE else "either")
+        return [replace(bend, direction="backwards" if walk.direction == "backwards" else "")]
+    if {one.lower, other.lower} == {"turn", "stumble"}:
+        return [one, other]
+    return [overlay(one, other)]
+
+
+def _goes_together(before: Reading, reading: Reading) -> bool:
+    one, other = before.steps[-1], reading.steps[0]
+    if reading.link == "comma" and reading.form == "ing" and one.lower == other.lower == "walk" and not other.direction:
+        return True
+    if reading.link == "while":
+        return True
+    compatible = _can_overlay(one, other)
+    if reading.link == "and":
+        if one.upper == "raise" and other.upper and {one.hand, other.hand} == {"left", "right"}:
+            return True  # one hand stays up: overlay says that it cannot
+        if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
+            return one.lower == "sit" or before.form == reading.form
+        return compatible and before.form == reading.form == "ing"
+    return reading.link == "comma" and compatible and reading.form == "ing" and before.form != "ing"
+
+
+def _can_overlay(one: Step, other: Step) -> bool:
+    lowers = [step.lower for step in (one, other) if step.lower != "stand"]
+    uppers = [step.upper for step in (one, other) if step.upper]
+    return len(uppers) == 1 and len(lowers) <= 1 and not set(lowers) & ARMS_TAKEN
+
+
+def overlay(one: Step, other: Step) -> Step:
+    """Both at once: the legs of one, the arms of the other. Raises InputError where both need the same limbs."""
+    if {one.lower, other.lower} <= {"stand"} and not (one.upper and other.upper):
+        pass
+    elif not _can_overlay(one, other):
+        raise InputError(
+            f"{one.name} and {other.name} cannot be shown at the same time; say 'then' to have one after the other"
+        )
+    lower = one if one.lower != "stand" or other.lower == "stand" else other
+    upper = one if one.upper else other
+    return replace(
+        lower,
+        upper=upper.upper,
+        hand=upper.hand,
+        count=upper.count if upper.upper else lower.count,
+        speed=lower.speed or upper.speed,
+        seconds=lower.seconds or upper.seconds,
+        facing=lower.facing or upper.facing,
+        clause=f"{one.clause}, {other.clause}",
+    )

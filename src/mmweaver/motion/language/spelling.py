@@ -1,0 +1,141 @@
+"""Slips of the keyboard: a long unknown word that is one letter away from a single known one is read as that."""
+
+import re
+from collections.abc import Iterable
+from functools import lru_cache
+
+from mmweaver.motion.language.lexicon import (
+    ARMS,
+    BOTH,
+    DIRECTIONS,
+    FILLERS,
+    GOING,
+    IRREGULAR,
+    LIGHT,
+    MANY,
+    NEGATIONS,
+    NOT_HUMAN,
+    NUMBERS,
+    OTHER_MOVEMENT,
+    RADAR,
+    SEATS,
+    SPEEDS,
+    TARGETS,
+)  # fmt: skip
+from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
+from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
+
+SHORTEST = 6  # letters; shorter words have too many neighbours
+# Words of the language that are one letter away from ours and mean something else.
+OTHER_WORDS = words_in(
+    """
+    singing clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
+    stares staring planks waving weaving jumper walker runner turner stepper sitting setting hitting spitting
+    falling calling filling standing landing lifting sifting rolling pulling polling pushing rushing wiping piping
+    tipping ripping texting testing resting reading heading leading kicking licking picking packing pointing
+    painting printing bending sending lending mending
+    """
+)
+# Other verbs of the language: their forms are not slips of ours.
+OTHER_VERBS = words_in(
+    """
+    talk cook wash watch wish work warn warm weep whip shout shine shave shoot shop show sing sink slip slap sleep
+    slide smell smile smoke sneeze sniff snore spit split spread squeeze steal sting strike string strip study
+    swear sweep swim swing switch teach tear tell think tickle tie tighten tremble twist unpack vacuum visit wake
+    want wear win wind wink worry yawn yell hide hit hug hurt hum hunt iron join juggle knit laugh lead learn
+    leave lick light listen live load lock look lose love melt mend mix mop mow nail open order pack paint park
+    pass paste pay peel pet pick plan plant play pour pray press print pump punish race rake reply rest ride ring
+    roll row rub sail sew shake sharpen bake bathe beat beg bite blow brake break breathe build burn bury buy call
+    camp care carve catch change charge chase chat check chew chop climb close coach collect cough count cover
+    crash crawl creep cry curl cut dig dive draw dream dress drill drive drop drum dry escape exercise explode
+    fail fan fasten feed fight fill film find fix flap float fly follow fry gather gaze glue grin grip groan guess
+    handle hang wave wag speak stare store stir star strain train trim tap tape taste trade
+    """
+)
+_MORE = "quarter quarters degrees degree circle circles clockwise counterclockwise anticlockwise forward backward"
+_WORD = re.compile(r"[a-z]+")
+
+
+def corrected(text: str) -> tuple[str, list[str]]:
+    """The text with slips mended, and a note for each."""
+    notes: list[str] = []
+
+    def mend(match: re.Match[str]) -> str:
+        word = match.group()
+        better = mended(word.lower())
+        if not better:
+            return word
+        notes.append(f"{word!r} is read as {better!r}")
+        return better
+
+    return re.sub(r"[A-Za-z]+", mend, text), notes
+
+
+@lru_cache(maxsize=4096)
+def mended(word: str) -> str:
+    """The known word that an unknown one is a slip of, or "".
+
+    >>> mended("forwads"), mended("walks"), mended("sings")
+    ('forwards', '', '')
+    """
+    known = _known()
+    if len(word) < SHORTEST or word in known or word in OTHER_WORDS or word in _other_forms():
+        return ""
+    near = [other for other in known if other[0] == word[0] and len(other) >= 5 and _one_slip(word, other)]
+    return near[0] if len(near) == 1 else ""
+
+
+def _one_slip(one: str, other: str) -> bool:
+    """One letter more, less, other, or two neighbours swapped."""
+    if abs(len(one) - len(other)) > 1 or one == other:
+        return False
+    start = 0
+    while start < min(len(one), len(other)) and one[start] == other[start]:
+        start += 1
+    a, b = one[start:], other[start:]
+    return a[1:] == b or a == b[1:] or a[1:] == b[1:] or (a[:2] == b[1::-1] and a[2:] == b[2:])
+
+
+@lru_cache(maxsize=1)
+def _known() -> frozenset[str]:
+    """Every word that the reading knows in some form."""
+    verbs = set(ACTIVITY_OF_LEMMA) | set(GOING) | set(LIGHT)
+    known = set(IRREGULAR) | set(RECOVERING)
+    known |= _forms(verbs)
+    for words in (
+        ARMS,
+        BOTH,
+        DIRECTIONS,
+        FILLERS,
+        MANY,
+        NEGATIONS,
+        NOT_HUMAN,
+        NUMBERS,
+        OTHER_MOVEMENT,
+        RADAR,
+        SEATS,
+        SPEEDS,
+        TARGETS,
+    ):
+        known |= set(words)
+    for pattern, _ in ACTIVITY_PHRASES:
+        known |= set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", pattern)))
+    known |= words_in(_MORE)
+    return frozenset(word for word in known if word.isalpha() and word.islower())
+
+
+def _forms(verbs: Iterable[str]) -> frozenset[str]:
+    """Verbs with their usual endings."""
+    forms: set[str] = set()
+    for verb in verbs:
+        if verb.isalpha():
+            stem, double = verb.removesuffix("e"), verb + verb[-1]
+            if verb.endswith("y") and verb[-2] not in "aeou":
+                forms |= {f"{verb[:-1]}ies", f"{verb[:-1]}ied"}
+            forms |= {verb, f"{verb}s", f"{verb}es", f"{stem}ing", f"{stem}ed", f"{double}ing", f"{double}ed"}
+    return frozenset(forms)
+
+
+@lru_cache(maxsize=1)
+def _other_forms() -> frozenset[str]:
+    return _forms(OTHER_VERBS)

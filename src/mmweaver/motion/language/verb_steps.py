@@ -1,0 +1,214 @@
+"""One verb with the modifiers of its clause -> a Step, or the reason why it cannot be shown."""
+
+from dataclasses import replace
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
+from mmweaver.motion.language.words import Word
+
+LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "right_leg"])
+ON_ONE_LEG = frozenset(["leg", "left_leg", "right_leg"])
+SIDES = {"left": 1.0, "right": -1.0}
+AIMED = ("point", "look_around")
+
+
+def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
+    """The step of the verb at `at`. Raises InputError for what would be acted out as something else."""
+    word = words[at]
+    lower, upper = ("walk", "") if word.is_going else ACTIVITY_OF_LEMMA[word.lemma]
+    texts = {other.text for other in words}
+    step = replace(about, lower=lower or "stand", upper=upper, clause=clause_text)
+    if word.lemma in BASE_VERB_SPEED:
+        step = replace(step, speed=step.speed or BASE_VERB_SPEED[word.lemma])
+    step = _arms_step(step, texts)
+    if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
+        step = replace(step, lower="sit")  # "reads a book on the sofa"
+    if step.lower in ("walk", "jog") and texts & {"drunken", "drunk"}:
+        step = replace(step, lower="stagger")
+    if step.lower in _BY_LOWER:
+        step = _BY_LOWER[step.lower](step, words, at)
+    elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
+        step = _in_place(step, words)
+    else:
+        step = replace(step, direction="", arc_deg=0.0, turn_deg=0.0, facing=_facing(words))
+    return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
+
+
+def _arms_step(step: Step, texts: set[str]) -> Step:
+    """Which hand acts; a leg that is raised is another movement."""
+    if step.upper == "raise" and not texts & ARMS:
+        if texts & LEGS:
+            return replace(step, lower="raise_leg", upper="", hand="")
+        raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
+    if step.upper in ("", "clap"):
+        step = replace(step, hand="")
+    if step.upper in ("drink", "eat", "phone") and step.hand == "both":
+        step = replace(step, hand="")
+    return step
+
+
+def _in_place(step: Step, words: list[Word]) -> Step:
+    facing = _facing(words)
+    if step.upper in AIMED:
+        facing = step.facing or (step.direction if step.direction in SIDES else "")
+        if step.upper == "point" and {"up", "upwards", "down", "behind", "backwards"} & {w.text for w in words}:
+            raise InputError(f"{step.clause!r}: pointing is known to the left, to the right and ahead only")
+    ahead = step.upper == "arms_out" and step.direction in ("forwards",)
+    sit_down = step.lower == "sit" and any(word.lemma == "sit_down" for word in words)
+    return replace(
+        step, direction="forwards" if ahead else "", facing=facing, arc_deg=0.0, turn_deg=0.0,
+        lower="sit_down" if sit_down else step.lower,
+    )  # fmt: skip
+
+
+def _going_step(step: Step, words: list[Word], at: int) -> Step:
+    lemmas, texts = {word.lemma for word in words}, {word.text for word in words}
+    direction = step.direction
+    for verb, way in (("approach", "towards"), ("retreat", "away"), ("advance", "forwards")):
+        if not direction and verb in lemmas:
+            direction = way
+    if not direction and texts & RADAR and "to" in texts:
+        direction = "towards"
+    if direction == "around":
+        direction = "pacing"
+    if step.seat and direction in ("", "backwards", "forwards", "towards"):
+        direction = "seat"
+    target = _target(words)
+    if target and direction in ("towards", "forwards") and not texts & RADAR:
+        direction = "" if not step.seat else "seat"
+    step = replace(step, direction=direction, hand="", target=target, facing=_facing(words))
+    if ("sideways" in texts and step.lower == "walk") or _is_step_aside(step, words, at):
+        return _sideways_step(replace(step, lower="sidestep"), words, at)
+    if direction == "spot":
+        return replace(step, lower="march" if step.lower == "walk" else step.lower, arc_deg=0.0, turn_deg=0.0)
+    return _bent(step)
+
+
+def _bent(step: Step) -> Step:
+    """Angles of a walk are angles of its way; left and right are then the person's own, as of a turn."""
+    angle = step.arc_deg or step.turn_deg
+    if not angle or step.direction == "circle":
+        return replace(step, turn_deg=0.0)
+    side = SIDES.get(step.direction, 0.0)
+    direction = "backwards" if step.direction in ("backwards", "back") else ""
+    style = step.style if side else "either"
+    return replace(step, arc_deg=abs(angle) * (side or 1.0), turn_deg=0.0, direction=direction, style=style)
+
+
+def _is_step_aside(step: Step, words: list[Word], at: int) -> bool:
+    """'Takes one step to the left' is done sideways; 'walks to the left' is not."""
+    noun = words[at].lemma == "step"
+    few = step.count in (0, 1, 2) if words[at].text in ("step", "steps") else step.count in (1, 2)
+    return noun and few and step.direction in SIDES and step.lower == "walk" and not step.arc_deg
+
+
+def _target(words: list[Word]) -> str:
+    """The thing that the way leads to: 'to the door', 'towards the open window', 'reaches the table'."""
+    for i, word in enumerate(words):
+        if word.text in ("to", "towards", "toward", "reaches", "reach", "at", "for", "approaches", "approaching"):
+            for after in words[i + 1 : i + 5]:
+                if after.text in TARGETS:
+                    return TARGETS[after.text]
+                if after.text in ("the", "a", "an") or after.text in OWN or not after.is_verb:
+                    continue
+                break
+    return ""
+
+
+def _turning_step(step: Step, words: list[Word], at: int) -> Step:
+    word, texts = words[at], {other.text for other in words}
+    facing = "towards" if texts & RADAR and step.direction != "away" else ""
+    if step.direction == "away" or word.lemma == "face":
+        facing = facing or step.direction or "towards"
+        return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)
+    if facing:
+        return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)
+    angle = step.turn_deg or step.arc_deg or (360.0 if step.direction == "circle" or word.lemma == "spin" else 0.0)
+    side = SIDES.get(step.direction, 0.0)
+    step = replace(step, count=0, arc_deg=0.0, turn_deg=0.0)
+    if angle in (0.0, 180.0):
+        about = "around" in texts or angle == 180.0 or not side
+        return replace(step, direction="around" if about else step.direction)
+    if angle == 90.0 and side:
+        return step
+    return replace(step, direction="", turn_deg=angle * (side or 1.0), style="" if side else "either")
+
+
+def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
+    """On the spot, somewhere, or on one leg."""
+    texts = {word.text for word in words}
+    if step.turn_deg or step.arc_deg or step.direction in ("circle", "around", "pacing"):
+        raise InputError(f"{step.clause!r}: jumping with a turn is not known; say 'jumps, then turns'")
+    if texts & ON_ONE_LEG:
+        if step.direction not in ("", "spot"):
+            raise InputError(f"{step.clause!r}: hopping on one leg is done on the spot only; leave the direction out")
+        return replace(step, lower="hop_one_leg", direction="", facing=_facing(words))
+    if step.direction in ("left", "right", "forwards", "backwards", "back", "towards", "away"):
+        way = "backwards" if step.direction == "back" else step.direction
+        return replace(step, lower="leap", direction=way)
+    return replace(step, direction="", facing=_facing(words))
+
+
+def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
+    way = {"back": "backwards", "towards": "forwards", "away": "backwards"}.get(step.direction, step.direction)
+    known = ("left", "right", "forwards", "backwards")
+    side = step.style == "side" or "sideways" in {word.text for word in words}
+    style = "side" if side and way not in known else ""
+    way = way if way in known else ""
+    return replace(step, direction=way, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
+
+
+def _floor_step(step: Step, words: list[Word], at: int) -> Step:
+    """Lying and falling: on the back unless forwards or the belly is said; on the floor, not on furniture."""
+    if step.seat:
+        raise InputError(f"{step.clause!r}: lying and falling are known on the floor only; leave out the {step.seat}")
+    if step.lower == "fall" and step.direction in SIDES:
+        raise InputError(f"{step.clause!r}: falling is known forwards and backwards only; leave the side out")
+    style = step.style or ("front" if step.direction in ("forwards", "towards") else "back")
+    return replace(step, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+
+
+def _kneeling_step(step: Step, words: list[Word], at: int) -> Step:
+    word = words[at]
+    still = word.lemma == "kneel" and word.form == "ing"
+    lower = "kneel_up" if word.lemma == "kneel_up" else "kneel" if still else "kneel_down"
+    return replace(step, lower=lower, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+
+
+def _leg_step(step: Step, words: list[Word], at: int) -> Step:
+    if step.lower == "march" and step.direction not in ("", "spot", "around"):
+        return _going_step(replace(step, lower="walk"), words, at)
+    if step.lower == "lunge" and step.direction in SIDES and not step.foot:
+        raise InputError(f"{step.clause!r}: lunging is known ahead only; leave the side out")
+    return replace(step, direction="", hand="", arc_deg=0.0, turn_deg=0.0, facing=_facing(words))
+
+
+def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
+    if step.direction == "back":
+        raise InputError(f"{step.clause!r}: say to which side, left or right, the way back goes")
+    return replace(step, hand="", arc_deg=0.0, turn_deg=0.0)
+
+
+def _facing(words: list[Word]) -> str:
+    """'facing the radar', 'facing left' beside another verb."""
+    for i, word in enumerate(words):
+        if word.text in ("facing", "faces"):
+            texts = {other.text for other in words[i + 1 : i + 4]}
+            if texts & RADAR:
+                return "towards"
+            return next((side for side in ("left", "right", "away") if side in texts), "")
+    return ""
+
+
+_BY_LOWER = {
+    **dict.fromkeys(("walk", "jog", "limp", "stagger"), _going_step),
+    "turn": _turning_step,
+    **dict.fromkeys(("jump", "hop"), _jumping_step),
+    "stumble": _stumbling_step,
+    **dict.fromkeys(("lie", "lie_down", "fall", "get_up"), _floor_step),
+    **dict.fromkeys(("kneel", "kneel_up"), _kneeling_step),
+    **dict.fromkeys(("kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
+    "sidestep": _sideways_step,
+}

@@ -1,1 +1,0 @@
-"""The activities, one kind a file: each writes Controls over the times of its Stage."""

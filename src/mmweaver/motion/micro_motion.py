@@ -1,0 +1,118 @@
+"""What a body does while it holds still: it sways over its feet, its limbs waver and tremble, its chest breathes.
+
+Millimetres, and yet what a radar sees of somebody who stands: clutter removal takes away only what truly rests.
+Amplitudes are those of posturography (centre of mass 3 to 5 mm rms to and fro, 2 to 3 mm sideways, 4 to 6 mm/s), of
+physiological tremor (8 to 12 Hz, some 0.1 mm at the hand) and of the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
+breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS, joint
+
+CENTRE_OF_MASS = 0.55  # of the height; sway is given there
+SEATED, STANDING = 0.36, 0.48  # height of the pelvis over the feet, of the body's: who sits sways over the pelvis
+# How far each joint wavers against the one before it, relative to the hand. What stands on the floor does not.
+WAVER = {"knee": 0.4, "spine1": 0.2, "spine3": 0.2, "head": 0.5, "shoulder": 0.3, "elbow": 0.6, "wrist": 0.8}
+WEIGHT = np.array([WAVER.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
+
+
+@dataclass(frozen=True, kw_only=True)
+class MicroMotionSettings:
+    """How strong each is, for a typical person; each person and each take draws its own about these.
+
+    `sway_m` and `waver_m` are rms over minutes, `tremor_m` rms at the hand, `breath_m` and `heart_m` from the innermost
+    to the outermost place of the chest's front.
+    """
+
+    sway_m: float = 4.0e-3
+    waver_m: float = 2.0e-3
+    tremor_m: float = 0.08e-3
+    breath_m: float = 7.0e-3
+    heart_m: float = 0.35e-3
+
+
+STILL = MicroMotionSettings(sway_m=0.0, waver_m=0.0, tremor_m=0.0, breath_m=0.0, heart_m=0.0)
+
+
+class Waves:
+    """Smooth random functions of time, (function,): sums of sines, spread evenly over octaves from `low` to `high` Hz.
+
+    Each has the rms 1. `steepness` 1 lets amplitude fall as 1/f, so that every octave is as fast.
+    """
+
+    def __init__(self, rng: np.random.Generator, shape: tuple[int, ...], low: float, high: float, steepness: float):
+        count = 8
+        edges = np.geomspace(low, high, count + 1)
+        share = rng.random((*shape, count))
+        self.frequency_hz = edges[:-1] ** (1 - share) * edges[1:] ** share
+        amplitude = self.frequency_hz**-steepness
+        self.amplitude = amplitude * np.sqrt(2 / (amplitude**2).sum(axis=-1, keepdims=True))
+        self.turns = rng.random((*shape, count))
+
+    def at(self, time_s: np.ndarray) -> np.ndarray:
+        """(time, *shape)."""
+        time = time_s.reshape(-1, *(1,) * self.turns.ndim)
+        return (self.amplitude * np.sin(2 * np.pi * (self.frequency_hz * time + self.turns))).sum(axis=-1)
+
+
+class MicroMotion:
+    """One person's small motions in one take: rates and sizes belong to the person, the moment to the take's seed."""
+
+    def __init__(self, subject: int, seed: int, motions: MicroMotionSettings):
+        self.motions = motions
+        person = stream(subject, "small motions")
+        self.size = np.exp(0.25 * person.standard_normal(4))  # sway, waver and tremor, breath, heart
+        self.breath_hz, self.heart_hz = person.uniform(0.2, 0.33), person.uniform(0.95, 1.35)
+        moment = stream(seed, "small motions", subject)
+        self.breath_turns, self.heart_turns = moment.random(2)
+        self.sway = Waves(moment, (2,), 0.08, 1.2, 1.0)
+        self.waver = Waves(moment, (NUM_JOINTS, 3), 0.15, 3.0, 1.0)
+        self.tremor = Waves(moment, (NUM_JOINTS, 3), 8.0, 12.0, 0.0)
+
+    def moved(self, joints_m: np.ndarray, time_s: np.ndarray, height_m: float) -> np.ndarray:
+        """Joints (time, 22, 3) with sway, wavering and tremor; times (time,) in seconds."""
+        if not (self.motions.sway_m or self.motions.waver_m or self.motions.tremor_m):
+            return joints_m
+        lever = _height_over_support(joints_m, height_m) / (CENTRE_OF_MASS * height_m)
+        right = joints_m[:, joint("right_hip")] - joints_m[:, joint("left_hip")]
+        right = right[:, :2] / np.maximum(np.linalg.norm(right[:, :2], axis=1, keepdims=True), 1e-6)
+        front = np.stack([-right[:, 1], right[:, 0]], axis=1)
+        sway = self.motions.sway_m * self.size[0] * self.sway.at(time_s)
+        level = sway[:, :1] * front + 0.6 * sway[:, 1:] * right
+        moved = joints_m.astype(float)
+        moved[..., :2] += lever[..., None] * level[:, None]
+        own = self.motions.waver_m * self.waver.at(time_s) + self.motions.tremor_m * self.tremor.at(time_s)
+        return moved + self.size[1] * _along_limbs(own)
+
+    def chest_m(self, time_s: np.ndarray) -> np.ndarray:
+        """How far the chest's front stands out at each time, metres, (time,). Breathing in is quicker than out."""
+        breath = 2 * np.pi * (self.breath_hz * time_s + self.breath_turns)
+        heart = 2 * np.pi * (self.heart_hz * time_s + self.heart_turns)
+        out = self.motions.breath_m * self.size[2] / 2 * (np.sin(breath) + 0.2 * np.sin(2 * breath))
+        return out + self.motions.heart_m * self.size[3] / 2 * (np.sin(heart) + 0.5 * np.sin(2 * heart + 1.0))
+
+
+def _height_over_support(joints_m: np.ndarray, height_m: float) -> np.ndarray:
+    """(time, 22): over the lower foot, for those who sit over the pelvis; never below 0."""
+    z = joints_m[..., 2]
+    foot = np.minimum(z[:, joint("left_foot")], z[:, joint("right_foot")])[:, None]
+    pelvis = z[:, joint("pelvis")][:, None]
+    stands = np.clip(((pelvis - foot) / height_m - SEATED) / (STANDING - SEATED), 0, 1)
+    stands = stands**2 * (3 - 2 * stands)
+    return stands * np.maximum(z - foot, 0) + (1 - stands) * np.maximum(z - pelvis, 0)
+
+
+def _along_limbs(own: np.ndarray) -> np.ndarray:
+    """Each joint's own wavering added to those before it; (time, 22, 3)."""
+    total = np.zeros_like(own)
+    for index, parent in enumerate(PARENTS):
+        if parent >= 0:
+            total[:, index] = total[:, parent] + own[:, index] * WEIGHT[index]
+    for side in ("left", "right"):  # what stands does not waver: the knee gives way, the foot stays
+        for name in ("ankle", "foot"):
+            total[:, joint(f"{side}_{name}")] = 0.0
+    return total

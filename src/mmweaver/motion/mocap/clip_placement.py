@@ -1,0 +1,212 @@
+"""A recorded motion in a scene: feet on its floor, the whole way free and in view, start and heading as asked."""
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.animation.skeleton_proportions import ANKLE_HEIGHT
+from mmweaver.motion.compose import Motion
+from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.clip_resampling import densely
+from mmweaver.motion.planning.floor_map import FloorMap
+
+Array = np.ndarray
+SOLE_UNDER_BALL = ANKLE_HEIGHT - 0.034  # of the height: the ball of a foot that stands is so high over the floor
+HEADINGS = 24
+MOST_STARTS = 400
+WAY_POINTS = 48
+LOW_PELVIS = 0.75  # of its height when the legs are straight
+TO_RADAR_RAD = -math.pi / 2
+
+
+@dataclass(frozen=True)
+class _Way:
+    """The pelvis over the floor from where it starts, and which way the body faces there."""
+
+    shift_m: Float[Array, "point 2"]
+    facing_rad: float
+    reach_m: float  # how far hands and feet go from the pelvis
+
+
+def place_clip(
+    clip: MotionClip,
+    scene: Scene,
+    *,
+    duration_s: float,
+    seed: int,
+    range_window_m: tuple[float, float],
+    start_m: tuple[float, float] | None = None,
+    heading_rad: float | None = None,
+    as_recorded: bool = False,
+) -> Motion:
+    """The first `duration_s` of a clip in a scene.
+
+    `start_m` (x, y) is where the pelvis starts, `heading_rad` where the body faces then (from +x towards +y); what is
+    not given is searched for: a start and a heading, towards the radar if that is possible, from which the whole way is
+    free and in view. With `as_recorded` the clip's places are the radar's own (x right, y away, z up, metres) and
+    nothing is moved or checked. Raises InputError where there is no room, saying what there is.
+    """
+    time_s, joints_m = densely(clip, duration_s)
+    height_m = clip.height_m
+    notes = list(clip.notes)
+    if as_recorded:
+        notes.append("the places of the motion file are taken as they are; nothing of the room was checked")
+    else:
+        joints_m = joints_m - np.array([0.0, 0.0, floor_under(clip.joints_m, height_m)])
+        floor = FloorMap(scene, range_window_m, height_m)
+        way = _way_of(joints_m, time_s, duration_s)
+        start, heading = _found(way, floor, clip, seed=seed, start_m=start_m, heading_rad=heading_rad)
+        joints_m = _moved(joints_m, way, time_s, start, heading)
+        joints_m[..., 2] += scene.floor_z_m
+        notes += _posture_note(clip, joints_m[..., 2] - scene.floor_z_m)
+    pose = PoseSequence(time_s=time_s, joints_m=joints_m, height_m=height_m)
+    return Motion(pose=pose, plan=MotionPlan(text=clip.label, steps=()), assumptions=tuple(dict.fromkeys(notes)))
+
+
+def floor_under(joints_m: Float[Array, "frame 22 3"], height_m: float) -> float:
+    """Height of the floor that the recording stood on: as far under its lowest joints as a sole is under the ball.
+
+    The second percentile of the lowest joint over time, so that one bad frame does not count; z up.
+    """
+    lowest = joints_m[..., 2].min(axis=1)
+    return float(np.percentile(lowest, 2)) - SOLE_UNDER_BALL * height_m
+
+
+def facing_of(joints_m: Float[Array, "22 3"]) -> float:
+    """Where a body faces, from +x towards +y, by its hips and shoulders; z up."""
+    across = joints_m[joint("left_hip")] - joints_m[joint("right_hip")]
+    across = across + joints_m[joint("left_shoulder")] - joints_m[joint("right_shoulder")]
+    return float(np.arctan2(-across[0], across[1]))
+
+
+def _way_of(joints_m: Float[Array, "frame 22 3"], time_s: Float[Array, " frame"], duration_s: float) -> _Way:
+    inside = (time_s >= -1e-9) & (time_s <= duration_s + 1e-9)
+    shown = joints_m[inside]
+    pelvis = shown[:, 0, :2]
+    points = pelvis[np.unique(np.linspace(0, len(pelvis) - 1, WAY_POINTS).astype(int))]
+    reach = np.linalg.norm(shown[..., :2] - pelvis[:, None], axis=-1).max(axis=1)
+    return _Way(shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95)))
+
+
+def _found(
+    way: _Way,
+    floor: FloorMap,
+    clip: MotionClip,
+    *,
+    seed: int,
+    start_m: tuple[float, float] | None,
+    heading_rad: float | None,
+) -> tuple[Float[Array, "2"], float]:
+    """The start and heading with the least against them."""
+    if not floor.walkable.any():
+        raise InputError(
+            "there is no free floor in the picture and the radar's window; take a radar with a longer window (--radar),"
+            " a photo with more floor, or --as-recorded"
+        )
+    if start_m is not None:
+        _check_start(floor, start_m)
+    rng = stream(seed, "motion", "placement", "clip")
+    starts = np.array([start_m], float) if start_m is not None else _starts(floor, rng)
+    headings = TO_RADAR_RAD + 2 * math.pi * np.arange(HEADINGS) / HEADINGS
+    if heading_rad is not None:
+        headings = np.array([heading_rad])
+    best: tuple[float, Float[Array, 2], float] | None = None
+    for heading in headings:
+        ways = starts[:, None] + _turned(way.shift_m, heading - way.facing_rad)
+        free = np.flatnonzero(floor.can_stand(ways).all(axis=1))
+        if not len(free):
+            continue
+        cost = _cost(ways[free], floor, way.reach_m, float(heading) if heading_rad is None else None)
+        cost = cost + rng.uniform(0, 0.3, len(free))
+        k = int(cost.argmin())
+        if best is None or cost[k] < best[0]:
+            best = float(cost[k]), starts[free[k]], float(heading)
+    if best is None:
+        raise InputError(_no_room(way, floor, clip, start_m, heading_rad))
+    return best[1], best[2]
+
+
+def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
+    spot = np.array(start_m, float)
+    if bool(floor.can_stand(spot)):
+        return
+    near = floor.nearest_place(spot)
+    hint = "" if near is None else f"; the nearest free place is {near[0]:.2f},{near[1]:.2f}"
+    raise InputError(
+        f"the start {spot[0]:g},{spot[1]:g} is not free, or out of the picture or the radar's window{hint}"
+    )
+
+
+def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"]:
+    cells = floor.places_m[floor.walkable]
+    if len(cells) > MOST_STARTS:
+        cells = cells[np.sort(rng.choice(len(cells), MOST_STARTS, replace=False))]
+    return cells
+
+
+def _cost(
+    ways: Float[Array, "start point 2"], floor: FloorMap, reach_m: float, heading: float | None
+) -> Float[Array, " start"]:
+    """Dislike of the places, limbs that would reach into things, and a back towards the radar."""
+    tight = np.clip(reach_m - floor.clearance_at(ways), 0.0, None).max(axis=1)
+    cost = floor.dislike_at(ways).mean(axis=1) + 2.0 * tight
+    if heading is not None:
+        to_radar = np.arctan2(-ways[:, 0, 1], -ways[:, 0, 0])
+        cost = cost + 0.5 * (1 - np.cos(heading - to_radar))
+    return cost
+
+
+def _turned(shift_m: Float[Array, "*shape 2"], angle_rad: float) -> Float[Array, "*shape 2"]:
+    cos, sin = math.cos(angle_rad), math.sin(angle_rad)
+    return shift_m @ np.array([[cos, sin], [-sin, cos]])
+
+
+def _moved(
+    joints_m: Float[Array, "frame 22 3"],
+    way: _Way,
+    time_s: Float[Array, " frame"],
+    start_m: Float[Array, "2"],
+    heading_rad: float,
+) -> Float[Array, "frame 22 3"]:
+    first = int(np.argmin(np.abs(time_s)))
+    moved = joints_m.copy()
+    moved[..., :2] = start_m + _turned(joints_m[..., :2] - joints_m[first, 0, :2], heading_rad - way.facing_rad)
+    return moved
+
+
+def _posture_note(clip: MotionClip, height_over_floor: Float[Array, "frame 22"]) -> list[str]:
+    """Who sits or lies in a recording has nothing of this room underneath."""
+    names = ("hip", "knee", "ankle")
+    places = [clip.joints_m[:, joint(f"left_{name}")] for name in names]
+    leg = float(np.median(sum(np.linalg.norm(a - b, axis=-1) for a, b in itertools.pairwise(places))))
+    low = height_over_floor[:, 0] < LOW_PELVIS * leg
+    if low.mean() < 0.3:
+        return []
+    return ["the recorded body is low for a while (it sits, crouches or lies); no furniture is put under it"]
+
+
+def _no_room(
+    way: _Way,
+    floor: FloorMap,
+    clip: MotionClip,
+    start_m: tuple[float, float] | None,
+    heading_rad: float | None,
+) -> str:
+    spread = way.shift_m[:, None] - way.shift_m[None]
+    longest = float(np.linalg.norm(spread, axis=-1).max())
+    free: Bool[Array, "y x"] = floor.walkable
+    asked = "" if start_m is None else f" from {start_m[0]:g},{start_m[1]:g}"
+    asked += "" if heading_rad is None else " in the heading asked for"
+    size = f"{free.sum() * floor.cell_m**2:.1f} m2 of floor are free in the picture and the radar's window"
+    return (
+        f"there is no room for {clip.label}{asked}: its way is {longest:.1f} m across, {size}; try fewer --frames,"
+        " another --motion-start, --at or --heading, a smaller --height, or --as-recorded"
+    )

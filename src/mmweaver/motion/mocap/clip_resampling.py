@@ -1,0 +1,60 @@
+"""A clip of any frame rate -> 120 Hz, smooth, for the slow time of the radar.
+
+Between two frames the joints follow a cubic spline: velocity and acceleration are continuous, and no frame is held. A
+recording of 50 frames a second or more carries jitter of its markers, tenths of a millimetre at rates where no limb
+moves; the radar would see it (1 mm is half a turn of its phase), so it is taken out above 12 Hz.
+
+Reference: Winter, Biomechanics and Motor Control of Human Movement, 2009, 3.4.4 (cut-off of recorded motion).
+"""
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.shapes import Joints, PerFrame
+from mmweaver.motion.animation.assemble import dense_times
+from mmweaver.motion.mocap.clip import MotionClip
+
+CUT_OFF_HZ = 12.0
+JITTERS_FROM_FPS = 50.0
+
+
+def check_lasts(clip: MotionClip, duration_s: float) -> None:
+    """Raises InputError where a clip is shorter than what is asked for."""
+    if clip.duration_s < duration_s - 1e-6:
+        raise InputError(
+            f"{clip.label} lasts {clip.duration_s:.2f} s, {duration_s:.2f} s were asked for; ask for fewer --frames or"
+            " give a longer motion"
+        )
+
+
+def densely(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joints]:
+    """Times from just before 0 to just after `duration_s` at 120 Hz, and the joints there."""
+    from scipy.interpolate import CubicSpline
+
+    check_lasts(clip, duration_s)
+    joints = steadied(clip)
+    margin = max(2, int(np.ceil(0.1 * clip.fps)))
+    joints = _continued(joints, margin)
+    frame_s = (np.arange(len(joints)) - min(margin, len(clip.joints_m) - 1)) / clip.fps
+    time_s = dense_times(duration_s)
+    return time_s, np.asarray(CubicSpline(frame_s, joints, axis=0)(time_s))
+
+
+def steadied(clip: MotionClip) -> Joints:
+    """The joints without jitter above 12 Hz (a Butterworth filter run both ways, so nothing is late)."""
+    from scipy.signal import butter, sosfiltfilt
+
+    if not clip.steady or clip.fps < JITTERS_FROM_FPS:
+        return clip.joints_m
+    sections = butter(2, CUT_OFF_HZ / 0.802, fs=clip.fps, output="sos")  # twice run, it is down 3 dB at 12 Hz
+    pad = min(len(clip.joints_m) - 1, int(clip.fps / 2))
+    return np.asarray(sosfiltfilt(sections, clip.joints_m, axis=0, padtype="odd", padlen=pad))
+
+
+def _continued(joints: Float[np.ndarray, "frame 22 3"], frames: int) -> Float[np.ndarray, "more 22 3"]:
+    """A few frames more at both ends, mirrored through the end point: place and velocity go on."""
+    frames = min(frames, len(joints) - 1)
+    before = 2 * joints[0] - joints[frames:0:-1]
+    after = 2 * joints[-1] - joints[-2 : -frames - 2 : -1]
+    return np.concatenate([before, joints, after])

@@ -1,0 +1,108 @@
+"""The door: a motion file of any kind that is known -> MotionClip. Read this file first.
+
+BVH, .npy, .npz --bvh, arrays, smpl--> RawMotion (own names, unit, axes)
+    --joint_names--> 22 joints --cleaning--> no gaps --axes--> metres, z up --cleaning--> MotionClip
+"""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.mocap.axes import is_reflected, turned_up, unit_of, up_of
+from mmweaver.motion.mocap.bvh import read_bvh
+from mmweaver.motion.mocap.cleaning import check_bones, without_gaps, without_t_pose
+from mmweaver.motion.mocap.clip import MotionClip, RawMotion
+from mmweaver.motion.mocap.joint_arrays import read_npy, read_npz
+from mmweaver.motion.mocap.joint_names import to_22
+
+FPS_LIMITS = (1.0, 2000.0)
+MOST_FRAMES = 1_000_000
+KINDS = ".bvh, .npy (22 joints or HumanML3D features) or .npz (AMASS, SMPL, CMU, joints)"
+
+
+def read_motion(
+    path: str | Path,
+    *,
+    fps: float | None = None,
+    unit: str | float | None = None,
+    up: str | None = None,
+    clip: str | None = None,
+    body_model: str | Path | None = None,
+) -> MotionClip:
+    """Reads a recorded motion.
+
+    `fps` is needed where the file names none, and wins where it does. `unit` (m, cm, mm, inch or the metres in one
+    unit) and `up` (y, z, ...) are read off the body where they are not said, and the notes say so. `clip` names one
+    motion of a file of several; `body_model` is an SMPL model (.npz) of the user's own. Raises InputError, one line,
+    for whatever is no human motion.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError(f"there is no motion file {path}; give {KINDS}")
+    kind = path.suffix.lower()
+    if clip is not None and kind != ".npz":
+        raise InputError(f"{path} holds a single motion, so there is no clip {clip!r}; leave out --clip")
+    if kind == ".bvh":
+        raw = read_bvh(path)
+    elif kind == ".npy":
+        raw = read_npy(path)
+    elif kind == ".npz":
+        raw = read_npz(path, clip, Path(body_model) if body_model is not None else None)
+    else:
+        raise InputError(f"{path}: motion is read from {KINDS}, not from {kind or 'a file without an ending'}")
+    label = path.name if clip is None else f"{path.name} {clip}"
+    return replace(clear(raw, label, fps=fps, unit=unit, up=up), file=path)
+
+
+def clear(
+    raw: RawMotion,
+    label: str,
+    *,
+    fps: float | None = None,
+    unit: str | float | None = None,
+    up: str | None = None,
+) -> MotionClip:
+    """A RawMotion in our joints, metres and axes, without gaps; see `read_motion`."""
+    if not 2 <= len(raw.places) <= MOST_FRAMES:
+        raise InputError(f"{label} has {len(raw.places)} frames; a motion has 2 to {MOST_FRAMES}")
+    rate = _rate(fps if fps is not None else raw.fps, label)
+    notes = [*raw.notes]
+    joints = to_22(raw, label)
+    joints, gaps = without_gaps(joints, rate, label)
+    check_bones(joints, label)
+    metres, note = unit_of(joints, unit if unit is not None else raw.unit_m, label)
+    notes.append(note)
+    axis, note = up_of(joints, up if up is not None else raw.up, label)
+    notes.append(note)
+    joints_m = turned_up(joints * metres, axis)
+    joints_m, mirrored = _as_right_handed(joints_m, label)
+    shown, t_pose = without_t_pose(joints_m, rate, label)
+    notes += [*gaps, *mirrored, *t_pose]
+    return MotionClip(
+        joints_m=shown, fps=rate, label=label, notes=tuple(note for note in notes if note),
+        first_frame=len(joints_m) - len(shown),
+    )  # fmt: skip
+
+
+def _rate(fps: float | None, label: str) -> float:
+    low, high = FPS_LIMITS
+    if fps is None:
+        raise InputError(
+            f"{label} does not say how many frames a second it has; give --motion-fps (HumanML3D and MotionGPT: 20)"
+        )
+    if not (math.isfinite(fps) and low <= fps <= high):
+        raise InputError(f"a motion has {low:g} to {high:g} frames a second, not {fps:g}; give --motion-fps")
+    return float(fps)
+
+
+def _as_right_handed(
+    joints_m: Float[np.ndarray, "frame 22 3"], label: str
+) -> tuple[Float[np.ndarray, "frame 22 3"], tuple[str, ...]]:
+    if not is_reflected(joints_m):
+        return joints_m, ()
+    note = f"left and right are exchanged in {label} (left-handed axes): it was mirrored, so that the feet point ahead"
+    return joints_m * np.array([-1.0, 1.0, 1.0]), (note,)

@@ -1,0 +1,215 @@
+"""The room's door: a MotionGPT checkpoint and a sentence -> MotionClip. Read this file first.
+
+text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import torch
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.motion.mocap.humanml3d import CONTACTS, FPS, NUM_FEATURES, joints_from_features
+from mmweaver.motion.motiongpt.bones import with_steady_bones
+from mmweaver.motion.motiongpt.checkpoint import (
+    LANGUAGE,
+    MEAN,
+    STD,
+    VAE,
+    VOCABULARY,
+    check_state,
+    parts_of,
+    read_checkpoint,
+    t5_sizes,
+    tokenizer_config,
+)
+from mmweaver.motion.motiongpt.hub import looks_like_hub, published_checkpoint
+from mmweaver.motion.motiongpt.language_model import LONGEST_TEXT_TOKENS, add_motion_tokens, build_t5, sample_codes
+from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
+from mmweaver.motion.motiongpt.tokens_to_motion import WORD_FILES, load_words, unknown_words, wrapped
+
+if TYPE_CHECKING:
+    from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
+
+Array = np.ndarray
+SMALL_NAME, SMALL_FILE = "small", Path(__file__).with_name("motiongpt_small.safetensors")
+ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
+FEWEST_FRAMES, MOST_FRAMES = 40, 196  # what MotionGPT was trained on
+RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's is some 25 times off
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionGPT:
+    """A motion tokenizer, a language model, its words and the mean and spread of its features."""
+
+    tokenizer: MotionTokenizer
+    language: "T5ForConditionalGeneration"
+    words: "PreTrainedTokenizerBase"
+    mean: Float[Array, " feature"]
+    std: Float[Array, " feature"]
+    first_motion_id: int
+    name: str
+
+    @classmethod
+    def load(
+        cls,
+        path: str | Path,
+        *,
+        mean: str | Path | None = None,
+        std: str | Path | None = None,
+        words: str | Path | None = None,
+    ) -> "MotionGPT":
+        """From a checkpoint file, a folder that holds one, a name on the Hub (owner/name), or "small", our own.
+
+        The published checkpoint needs MotionGPT's own `mean.npy` and `std.npy` (its assets/meta), not HumanML3D's, and
+        the words of flan-t5-base; all are looked for beside it. A file of this project (.safetensors) holds everything.
+        Raises InputError, one line, for whatever is no such model.
+        """
+        place = _place_of(path)
+        state, notes = read_checkpoint(place)
+        vae, spoken = parts_of(state, place)
+        tokenizer = MotionTokenizer(tokenizer_config(vae, place))
+        check_state(vae, tokenizer.state_dict(), VAE, place)
+        language = _language(spoken, place)
+        own = {name: state[name].float().numpy() for name in (MEAN, STD) if name in state}
+        mean_values = own[MEAN] if MEAN in own else _statistic(mean, place, "mean", tokenizer.config.features)
+        std_values = own[STD] if STD in own else _statistic(std, place, "std", tokenizer.config.features)
+        if STD not in own:
+            check_std(std_values, place)
+        vocabulary = notes.get(VOCABULARY)
+        plain = wrapped(vocabulary) if vocabulary else load_words(_words_beside(place, words))
+        first = add_motion_tokens(plain, tokenizer.config.codes)
+        if first + tokenizer.config.codes + 3 > language.config.vocab_size:
+            raise InputError(
+                f"{place} knows {language.config.vocab_size} tokens, its words and {tokenizer.config.codes + 3} motion"
+                f" tokens are {first + tokenizer.config.codes + 3}; the words are of another model"
+            )
+        tokenizer.load_state_dict(
+            {name: value.float() for name, value in vae.items() if name in tokenizer.state_dict()}
+        )
+        return cls(
+            tokenizer=tokenizer.eval(), language=language, words=plain, mean=mean_values.astype(float),
+            std=std_values.astype(float), first_motion_id=first, name=place.name,
+        )  # fmt: skip
+
+    def generate(
+        self, text: str, *, seconds: float | None = None, seed: int = 0, temperature: float = 1.0, top_k: int = 50
+    ) -> MotionClip:
+        """The motion of a sentence at 20 frames a second.
+
+        With `seconds` (up to 9.8, as trained) exactly so many frames; else as many as the model says. The same seed
+        gives the same motion. Raises InputError for an empty text or a length that the model was not trained on.
+        """
+        if not text.strip():
+            raise InputError("the text is empty; say what the person does")
+        per_token = self.tokenizer.config.frames_per_token
+        frames = None if seconds is None else int(np.ceil(seconds * FPS - 1e-9))
+        if frames is not None and not 1 <= frames <= MOST_FRAMES:
+            raise InputError(
+                f"the motion model makes up to {MOST_FRAMES / FPS:g} s at a time, {seconds:g} s were asked for; ask for"
+                " fewer --frames"
+            )
+        tokens = None if frames is None else -(-max(frames, FEWEST_FRAMES) // per_token)
+        codes = sample_codes(
+            self.language, torch.tensor([self._ids(text)]), first_motion_id=self.first_motion_id,
+            codes=self.tokenizer.config.codes, tokens=tokens, most_tokens=MOST_FRAMES // per_token, seed=seed,
+            temperature=temperature, top_k=top_k,
+        )  # fmt: skip
+        if not codes:
+            raise InputError(f"the motion model {self.name} says nothing to {text!r}; try another text or --seed")
+        joints = joints_from_features(self.features_of(codes)[:frames])
+        notes = [f"the motion was made by {self.name} and is one of many (seed {seed})"]
+        odd = unknown_words(self.words, text)
+        if odd:
+            notes.append(f"the motion model has never seen: {', '.join(odd)}")
+        z_up = np.stack([joints[..., 0], -joints[..., 2], joints[..., 1]], axis=-1)
+        return MotionClip(joints_m=with_steady_bones(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes))
+
+    def features_of(self, codes: list[int]) -> Float[Array, "frame 263"]:
+        """HumanML3D features of motion codes, four frames each."""
+        with torch.inference_mode():
+            made = self.tokenizer.decode(torch.tensor([codes]))[0].double().numpy()
+        return made * self.std + self.mean
+
+    def codes_of(self, features: Float[Array, "frame 263"]) -> list[int]:
+        """Motion codes of HumanML3D features."""
+        normal = torch.from_numpy(((features - self.mean) / self.std)[None]).float()
+        with torch.inference_mode():
+            return self.tokenizer.encode(normal)[0].tolist()
+
+    def _ids(self, text: str) -> list[int]:
+        ids: Any = self.words(text.strip()).input_ids
+        if len(ids) > LONGEST_TEXT_TOKENS:
+            raise InputError(
+                f"the text has {len(ids)} pieces, the motion model reads {LONGEST_TEXT_TOKENS}; say it shorter"
+            )
+        return list(ids)
+
+
+def check_std(std: Float[Array, " feature"], place: Path) -> None:
+    """Raises InputError for HumanML3D's own Std.npy, with which MotionGPT's tokenizer gives broken motion."""
+    low, high = RAW_CONTACT_STD
+    if low < float(np.mean(std[CONTACTS])) < high:
+        raise InputError(
+            f"the std beside {place.name} is HumanML3D's own (foot contacts vary by {np.mean(std[CONTACTS]):.2f});"
+            " MotionGPT needs the std.npy of its own assets/meta, which differs some 25 times in channels 0:4 and"
+            " 259:263"
+        )
+
+
+def _place_of(path: str | Path) -> Path:
+    if str(path) == SMALL_NAME:
+        return SMALL_FILE
+    return published_checkpoint(str(path)) if looks_like_hub(str(path)) else _checkpoint_in(Path(path))
+
+
+def _checkpoint_in(path: Path) -> Path:
+    if not path.is_dir():
+        return path
+    found = sorted(file for file in path.iterdir() if file.suffix in ENDINGS)
+    if len(found) != 1:
+        what = "no checkpoint" if not found else f"{len(found)} checkpoints ({', '.join(f.name for f in found[:3])})"
+        raise InputError(f"{path} holds {what}; give the file of one ({', '.join(ENDINGS)})")
+    return found[0]
+
+
+def _language(spoken: dict[str, torch.Tensor], place: Path) -> "T5ForConditionalGeneration":
+    sizes = t5_sizes(spoken, place)
+    language = build_t5(sizes)
+    full = dict(spoken)
+    for name in ("encoder.embed_tokens.weight", "decoder.embed_tokens.weight"):
+        full.setdefault(name, spoken["shared.weight"])
+    if sizes["tie_word_embeddings"]:
+        full.setdefault("lm_head.weight", spoken["shared.weight"])
+    check_state(full, language.state_dict(), LANGUAGE, place)
+    wanted = set(language.state_dict())
+    language.load_state_dict({name: value.float() for name, value in full.items() if name in wanted})
+    return language.eval()
+
+
+def _statistic(given: str | Path | None, place: Path, name: str, features: int) -> Array:
+    """mean.npy or std.npy, as given or beside the checkpoint."""
+    path = Path(given) if given is not None else place.with_name(f"{name}.npy")
+    try:
+        values = np.load(path, allow_pickle=False)
+    except OSError:
+        raise InputError(
+            f"{path} is missing: the checkpoint needs MotionGPT's own {name}.npy (assets/meta of its repository) beside"
+            " it"
+        ) from None
+    except ValueError:
+        raise InputError(f"{path} is no .npy array of numbers") from None
+    if values.shape != (features,) or not np.isfinite(values).all() or features != NUM_FEATURES:
+        raise InputError(f"{path} has shape {values.shape}, ({features},) features are needed")
+    return values
+
+
+def _words_beside(place: Path, given: str | Path | None) -> Path | None:
+    if given is not None:
+        return Path(given)
+    beside = any((place.parent / name).is_file() for name in WORD_FILES)
+    return place.parent if beside else None

@@ -1,0 +1,67 @@
+"""How a text becomes the word ids of the language model."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.motiongpt.language_model import EXTRA
+
+if TYPE_CHECKING:
+    from transformers import PreTrainedTokenizerBase
+
+HUB_WORDS = "google/flan-t5-base"
+WORD_FILES = ("tokenizer.json", "spiece.model")
+
+
+def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
+    """The text tokenizer of flan-t5-base: from a folder with tokenizer.json or spiece.model, else from the Hub's cache
+    or the Hub. Raises InputError where it is in neither."""
+    try:
+        from transformers import AutoTokenizer
+    except ImportError:
+        raise InputError(EXTRA) from None
+    try:
+        return AutoTokenizer.from_pretrained(str(folder) if folder is not None else HUB_WORDS)
+    except Exception:
+        where = folder if folder is not None else f"the Hub ({HUB_WORDS})"
+        raise InputError(
+            f"the text tokenizer cannot be read from {where}; put the tokenizer.json of {HUB_WORDS} beside the"
+            " checkpoint"
+        ) from None
+
+
+def train_words(sentences: list[str]) -> "PreTrainedTokenizerBase":
+    """A tokenizer of whole words, for a small model."""
+    from tokenizers import Tokenizer, models, normalizers, pre_tokenizers
+
+    normal = normalizers.Lowercase()
+    split = pre_tokenizers.Whitespace()
+    known = {word for sentence in sentences for word, _ in split.pre_tokenize_str(normal.normalize_str(sentence))}
+    names = ["<pad>", "</s>", "<unk>", *sorted(known)]
+    model = Tokenizer(models.WordLevel({name: k for k, name in enumerate(names)}, unk_token="<unk>"))
+    model.normalizer, model.pre_tokenizer = normal, split
+    return wrapped(model.to_str())
+
+
+def wrapped(description: str) -> "PreTrainedTokenizerBase":
+    """A tokenizer from its JSON; a text ends with </s>, as T5's do."""
+    from tokenizers import Tokenizer, processors
+    from transformers import PreTrainedTokenizerFast
+
+    model: Any = Tokenizer.from_str(description)
+    model.post_processor = processors.TemplateProcessing(single="$A </s>", special_tokens=[("</s>", 1)])
+    return PreTrainedTokenizerFast(tokenizer_object=model, pad_token="<pad>", eos_token="</s>", unk_token="<unk>")
+
+
+def plain_words(words: "PreTrainedTokenizerBase") -> str:
+    """The tokenizer as JSON, for keeping beside the weights."""
+    backend: Any = words
+    return backend.backend_tokenizer.to_str()
+
+
+def unknown_words(words: "PreTrainedTokenizerBase", text: str) -> tuple[str, ...]:
+    """Words of a text that the model has never seen (a word tokenizer's; one of pieces knows all)."""
+    if words.unk_token_id is None:
+        return ()
+    found = [word for word in text.split() if words.unk_token_id in words(word).input_ids]
+    return tuple(dict.fromkeys(found))

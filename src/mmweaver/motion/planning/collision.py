@@ -1,0 +1,216 @@
+"""Whether a moving body meets what the photo shows: its limbs against the measured points and the walls."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.planning.occluded_geometry import (
+    feet_of,
+    legs_of,
+    occluded_share,
+    pillars_of,
+    tops_of,
+    under,
+    unseen_share,
+)
+
+Array = np.ndarray
+# Radii of a person of 1.75 m about the bones, and what may be pressed by them.
+_LIMBS = (
+    ("pelvis", "spine3", 0.12), ("spine3", "neck", 0.11), ("neck", "head", 0.08), ("left_hip", "right_hip", 0.105),
+    ("left_collar", "left_shoulder", 0.07), ("right_collar", "right_shoulder", 0.07),
+    ("left_hip", "left_knee", 0.075), ("right_hip", "right_knee", 0.075),
+    ("left_knee", "left_ankle", 0.05), ("right_knee", "right_ankle", 0.05),
+    ("left_ankle", "left_foot", 0.04), ("right_ankle", "right_foot", 0.04),
+    ("left_shoulder", "left_elbow", 0.05), ("right_shoulder", "right_elbow", 0.05),
+    ("left_elbow", "left_wrist", 0.04), ("right_elbow", "right_wrist", 0.04),
+)  # fmt: skip
+_HAND_M = 0.15  # beyond the wrist
+_SEATED = ("pelvis", "spine3", "left_hip", "right_hip", "left_collar", "right_collar")
+_REFERENCE_HEIGHT_M = 1.75
+_SHARES = np.array([0.0, 0.33, 0.67, 1.0])
+_STEP_S = 0.1
+_ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
+_SEAT_AHEAD_M, _SEAT_UNDER_M = 0.12, 0.05  # before the pelvis, and no lower below it: not the seat itself
+_BEHIND_M = 0.03  # who sits with a table behind may have taken its edge for a back
+_OVER_ARMRESTS_M = 0.2  # over the pelvis: what is beside the trunk there is not the seat's either
+_FARTHEST_M = 0.3
+_FOOT_M, _WITHIN_M = 0.24, 0.01
+_LOWEST_M = 0.09  # above the floor: soles meet the floor
+_MOST_POINTS = 34_000
+_GRAIN_M, _GRAINS = 0.015, np.array([1, 10_000, 100_000_000])  # one point in each
+_LOW_M, _LOW_DOWN_M = 0.64, (0.1, 0.17, 0.24)  # beds and low tables: nobody's knees are inside or under them
+_THICK_M = 0.04  # at least, of anything: a table's top below the points seen on it, a cupboard's front behind them
+
+
+_latest: list["CollisionMap"] = []
+
+
+@dataclass(frozen=True)
+class CollisionMap:
+    """The measured points of a scene above its floor, and its walls."""
+
+    scene: Scene
+
+    @classmethod
+    def of(cls, scene: Scene) -> "CollisionMap":
+        """Those of a scene; the last scene's are kept, for what it holds is gathered once for many motions."""
+        if not _latest or _latest[0].scene is not scene:
+            _latest[:] = [cls(scene)]
+        return _latest[0]
+
+    @cached_property
+    def _measured_m(self) -> Float[Array, "point 3"]:
+        """What was measured above the floor."""
+        photo = self.scene.photo
+        step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
+        # Every row, for a bed seen at a flat angle has few.
+        rows, columns = np.mgrid[0 : photo.depth_m.shape[0], 0 : photo.depth_m.shape[1] : step]
+        depth, lens = photo.depth_m[rows, columns], photo.intrinsics
+        camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
+        points = camera[np.isfinite(depth) & (depth > 0.3)] @ self.scene.radar_from_camera.T
+        return points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+
+    @cached_property
+    def _tops_m(self) -> Float[Array, "point 3"]:
+        """Of tables, also where a top hides itself: nobody's trunk leans into them as into the back of a seat."""
+        return tops_of(self.scene, self._measured_m)
+
+    @cached_property
+    def _legs_m(self) -> Float[Array, "point 3"]:
+        """Upright things, tables' legs among them: no thigh sinks into those as into a seat."""
+        return np.concatenate([pillars_of(self.scene, self._measured_m), legs_of(self.scene)])
+
+    @cached_property
+    def _solid_m(self) -> Float[Array, "point 3"]:
+        """What was measured above the floor, and what must be just behind and under it."""
+        points = self._measured_m
+        behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
+        low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
+        below = [points - np.array([0.0, 0.0, _THICK_M])]
+        below += [low - np.array([0.0, 0.0, down]) for down in _LOW_DOWN_M]
+        solid = np.concatenate([points, behind, self._tops_m, *below])
+        solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
+        solid = np.concatenate(
+            [solid, feet_of(np.concatenate([points, behind]), self.scene.floor_z_m), legs_of(self.scene)]
+        )
+        _, one_each = np.unique(np.rint(solid / _GRAIN_M).astype(int) @ _GRAINS, return_index=True)
+        return solid[one_each]
+
+    @cached_property
+    def _tree(self) -> Any:
+        """For the nearest point."""
+        from scipy.spatial import KDTree
+
+        return KDTree(self._solid_m)
+
+    @cached_property
+    def _under(self) -> Any:
+        """For the nearest point that may be something under a table's top, for whoever does not sit there."""
+        from scipy.spatial import KDTree
+
+        return KDTree(under(self.scene, self._tops_m))
+
+    def _not_of_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> tuple[tuple[Any, float], ...]:
+        """For the nearest point about a seat that is not the seat's own: what is before it, above its surface, and
+        tables behind it. With each how far the body must keep from it besides.
+        """
+        from scipy.spatial import KDTree
+
+        lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
+        knees = lowest[joint("left_knee")] + lowest[joint("right_knee")]
+        ahead = (knees - lowest[joint("left_hip")] - lowest[joint("right_hip")])[:2]
+        ahead = ahead / max(float(np.hypot(*ahead)), 1e-6)
+        solid, tops, legs = (_about(points, seat) for points in (self._solid_m, self._tops_m, self._legs_m))
+        along, height = (solid[:, :2] - np.array(seat)) @ ahead, solid[:, 2] - lowest[joint("pelvis"), 2]
+        before = (along > _SEAT_AHEAD_M) & (height > -_SEAT_UNDER_M)
+        beside = (along > 0.0) & (height > _OVER_ARMRESTS_M)
+        tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
+        behind = (tops[:, :2] - np.array(seat)) @ ahead <= _SEAT_AHEAD_M
+        legs = legs[(legs[:, :2] - np.array(seat)) @ ahead > _SEAT_AHEAD_M]
+        hard = np.concatenate([solid[before | beside], tops[~behind], legs])
+        quick = {"balanced_tree": False, "compact_nodes": False}  # each is asked but once
+        return (KDTree(hard, **quick), 0.0), (KDTree(tops[behind], **quick), _BEHIND_M)
+
+    def hidden(self, pose: PoseSequence) -> tuple[float, float]:
+        """Where the pelvis is lowest: how much of the trunk is hidden, and of the legs hidden or outside the photo."""
+        lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
+        trunk = _along(lowest, "pelvis", "spine3", "neck")
+        legs = [_along(lowest, f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("left", "right")]
+        return occluded_share(self.scene, trunk), unseen_share(self.scene, np.concatenate(legs))
+
+    def deepest_m(
+        self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
+    ) -> float:
+        """How far the body, thicker by a margin, gets into anything, at worst; 0 where it stays clear.
+
+        About the places of `seats_m` trunk and thighs may sink in, for they sit there, but not into a table before it.
+        """
+        rows = np.unique(np.searchsorted(pose.time_s, np.arange(max(pose.time_s[0], 0.0), pose.time_s[-1], _STEP_S)))
+        joints = pose.joints_m[np.minimum(rows, len(pose.time_s) - 1)].astype(float)
+        scale = pose.height_m / _REFERENCE_HEIGHT_M
+        points, radius, soft = [], [], []
+        for start, end, thick in _LIMBS:
+            first, last = joints[:, joint(start)], joints[:, joint(end)]
+            if end.endswith("wrist"):
+                along = last - first
+                last = last + _HAND_M * along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-6)
+            limb = first[None] * (1 - _SHARES[:, None, None]) + last[None] * _SHARES[:, None, None]
+            points.append(limb.reshape(-1, 3))
+            radius.append(np.full(limb.shape[0] * limb.shape[1], thick * scale))
+            soft.append(np.full(limb.shape[0] * limb.shape[1], start in _SEATED))
+        limbs = np.concatenate(points), np.concatenate(radius), np.concatenate(soft)
+        tables = [(seat, *near) for seat in dict.fromkeys(seats_m) for near in self._not_of_seat(pose, seat)]
+        return self._worst(*limbs, tables, margin_m)
+
+    def _worst(
+        self,
+        points: Float[Array, "point 3"],
+        radius: Float[Array, " point"],
+        soft: np.ndarray,
+        tables: Sequence[tuple[tuple[float, float], Any, float]],
+        margin_m: float,
+    ) -> float:
+        allowed, worst = np.full(len(points), _ALLOWED_M - margin_m), 0.0
+        sits = np.zeros(len(points), bool)
+        for seat, tree, besides_m in tables:
+            at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
+            before, _ = tree.query(points[at_seat], distance_upper_bound=_FARTHEST_M)
+            worst = max(worst, float((radius[at_seat] + besides_m - before - allowed[at_seat]).max(initial=0.0)))
+            sits |= at_seat
+        unknown, _ = self._under.query(points[~sits], distance_upper_bound=_FARTHEST_M)
+        worst = max(worst, float((radius[~sits] - unknown - allowed[~sits]).max(initial=0.0)))
+        for seat, *_ in tables:
+            at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
+            allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M - margin_m)
+        distance, _ = self._tree.query(points, distance_upper_bound=_FARTHEST_M)
+        worst = max(worst, float((radius - distance - allowed).max()))
+        # Points lie in low things as thickly as on them: a foot within one would be no deeper in than it is thick.
+        within = (points[:, 2] < self.scene.floor_z_m + _FOOT_M) & (distance < _WITHIN_M)
+        worst = max(worst, float((radius - allowed)[within].max(initial=0.0)) + _WITHIN_M if within.any() else 0.0)
+        for plane in self.scene.planes:
+            if plane.kind == "wall":
+                away = points - plane.centre_m
+                inside = np.abs(away @ plane.axis_u) < plane.half_size_m[0] + 0.3
+                into = np.where(inside, radius - away @ plane.normal - allowed, 0.0)
+                # Far behind a wall is another room seen through a door.
+                worst = max(worst, float(into[into < 0.6].max(initial=0.0)))
+        return worst
+
+
+def _about(points: Float[Array, "point 3"], seat: tuple[float, float]) -> Float[Array, "near 3"]:
+    """Those that can matter to who sits there."""
+    points = points[np.abs(points[:, 0] - seat[0]) < _SEAT_REACH_M + _FARTHEST_M]
+    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + _FARTHEST_M]
+
+
+def _along(joints: Float[Array, "joint 3"], *names: str) -> Float[Array, "place 3"]:
+    """Places along the bones from joint to joint."""
+    ends = np.stack([joints[joint(name)] for name in names])
+    return np.concatenate([ends[:-1] + share * (ends[1:] - ends[:-1]) for share in _SHARES])

@@ -1,0 +1,143 @@
+"""Where a person sits: a seat of the scene, or a stool that is assumed and said so."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.records import Scene, Seat
+from mmweaver.motion.animation.library.sitting import pelvis_behind_feet_m
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.planning.floor_map import FloorMap
+
+Array = np.ndarray
+STOOL_HEIGHT_M = 0.45
+LOWEST_M, HIGHEST_M = 0.3, 0.65
+_COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
+_COUCH_M, _BED_REACH_M = 0.8, 1.2
+_TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter at a table may look past it
+_WIDEST_TURN_RAD, _BODY_ON_SEAT_M, _LEFT_OUT = 1.4, 0.4, 0.4
+_BACK_M, _ROOM_BEHIND_M = 0.05, 0.4  # and sit back, where the seat is deep enough
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sitting:
+    """A place to sit: where the feet stand before it, the way the sitter looks, the height of the surface."""
+
+    feet_m: Float[Array, "2"]
+    facing_rad: float
+    height_m: float
+    seat_m: Float[Array, "2"]
+    width_m: float = 0.4
+    depth_m: float = 0.4
+    cost: float = 0.0  # against sitting like that
+
+
+def preferred(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
+    """Those that fit the word for them, all where none does."""
+    return fitting(seats, word, scene) or seats
+
+
+def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
+    """Those that fit the word for them: couches are wide, chairs are not, beds are beds."""
+    if word in _COUCHES:
+        return [seat for seat in seats if seat.width_m >= _COUCH_M and not _on_bed(seat, scene)]
+    if word == "bed":
+        return [seat for seat in seats if _on_bed(seat, scene)]
+    if word in _CHAIRS:
+        return [seat for seat in seats if seat.width_m < _COUCH_M and not _on_bed(seat, scene)]
+    return [seat for seat in seats if not _on_bed(seat, scene)]
+
+
+def _on_bed(seat: Sitting, scene: Scene) -> bool:
+    beds = [mark for mark in scene.landmarks if mark.kind == "bed"]
+    return any(float(np.hypot(*(seat.seat_m - mark.position_m[:2]))) < _BED_REACH_M for mark in beds)
+
+
+def seats_of(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
+    """The scene's seats that a person can use inside the radar's window."""
+    found = []
+    for seat in floor.scene.seats:
+        sitting = _sitting(seat, floor, body)
+        usable = LOWEST_M <= sitting.height_m <= HIGHEST_M
+        if usable and bool(floor.sees(sitting.seat_m)):
+            found.append(sitting)
+    return found
+
+
+def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
+    height = float(seat.position_m[2]) - floor.scene.floor_z_m
+    ahead = np.array([np.cos(seat.facing_rad), np.sin(seat.facing_rad)])
+    place = np.asarray(seat.position_m[:2], dtype=float)
+    return Sitting(
+        feet_m=place + pelvis_behind_feet_m(body, height) * ahead,
+        facing_rad=float(seat.facing_rad),
+        height_m=height,
+        seat_m=place,
+        width_m=float(seat.size_m[0]),
+        depth_m=float(seat.size_m[1]),
+    )
+
+
+def as_it_may_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
+    """The same seat sat on as it is made for, as often as not; else turned aside or sat on further back."""
+    kind = int(rng.integers(4))
+    if kind < 2 or (kind == 3 and sitting.depth_m < _ROOM_BEHIND_M):
+        return sitting
+    reach = sitting.feet_m - sitting.seat_m
+    if kind == 3:
+        back = rng.uniform(0.3, 1.0) * _BACK_M * reach / max(float(np.hypot(*reach)), 1e-6)
+        return replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
+    return _turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
+
+
+def as_it_can_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
+    """The same seat sat on in any way that one can: turned, and forward or back, left or right of its middle."""
+    ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
+    aside = np.array([-ahead[1], ahead[0]])
+    spare = np.clip((np.array([sitting.depth_m, sitting.width_m]) - _BODY_ON_SEAT_M) / 2, 0.03, 0.3)
+    shift = rng.uniform(-1, 1, 2) * spare
+    moved = shift[0] * ahead + shift[1] * aside
+    sitting = replace(sitting, feet_m=sitting.feet_m + moved, seat_m=sitting.seat_m + moved)
+    return _turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
+
+
+def some_of(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
+    """The seats without some, at random; at least one stays."""
+    kept = [seat for seat in seats if rng.random() > _LEFT_OUT]
+    return kept or seats
+
+
+def _turned(sitting: Sitting, turn: float) -> Sitting:
+    """Turned about the seat; the feet go with it."""
+    reach = sitting.feet_m - sitting.seat_m
+    across = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    return replace(
+        sitting,
+        feet_m=sitting.seat_m + across @ reach,
+        facing_rad=sitting.facing_rad + turn,
+        cost=0.3 + _TURN_COST * abs(turn),
+    )
+
+
+def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProportions) -> Sitting:
+    """A stool behind somebody who stands at a place."""
+    behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * np.array([np.cos(facing_rad), np.sin(facing_rad)])
+    return Sitting(feet_m=feet_m, facing_rad=facing_rad, height_m=STOOL_HEIGHT_M, seat_m=feet_m - behind)
+
+
+def stool_fits(stool: Sitting, floor: FloorMap) -> bool:
+    return bool(floor.clearance_at(stool.seat_m) >= 0.2) and bool(floor.sees(stool.seat_m))
+
+
+def stool_note(stool: Sitting, *, none_at_all: bool) -> str:
+    why = "no seat was found in the photo" if none_at_all else "no seat of the photo can be reached"
+    x, y = stool.seat_m
+    return f"{why}, a stool {stool.height_m:.2f} m high is assumed at x {x:.2f} m, y {y:.2f} m"
+
+
+def reachable(floor: FloorMap, place: Float[Array, "2"], sitting: Sitting) -> bool:
+    """Whether one can go straight to a seat; close to it, being free is enough: its own edge is near."""
+    way = place + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - place)
+    near = np.hypot(*(way - sitting.feet_m).T) < 0.6
+    return bool((floor.can_stand(way) | (near & (floor.clearance_at(way) > 0.0))).all())

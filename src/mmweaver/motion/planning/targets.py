@@ -1,0 +1,160 @@
+"""Going to a thing of the room: the way to a landmark, straight or round one corner, and what to say without it."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import Landmark, Scene
+from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.trajectory import (
+    RAMP_S,
+    TURN_RATE,
+    NoTrajectory,
+    Trajectory,
+    angle_between,
+    face_along,
+    wished_speed,
+)
+
+Array = np.ndarray
+# A person says table to all of them.
+SEATS = ("couch", "chair", "bench", "stool", "seat")  # these are seats, and seating knows the way to them
+ALIKE = {"table": ("table", "counter"), "desk": ("table",), "counter": ("counter", "table")}
+_SLOWEST_MPS, _FASTEST_MPS = 0.35, {"jog": 2.4}
+_SHORTEST_M, _NEAR_M = 0.35, 0.45
+_CORNERS = 24
+
+
+def kinds_for(target: str) -> tuple[str, ...]:
+    """The Landmark.kinds that a word means."""
+    return ALIKE.get(target, (target,))
+
+
+def goes_to_thing(step: Step) -> bool:
+    """Whether a step names a thing that is no seat."""
+    return bool(step.target) and step.target not in SEATS
+
+
+def check_targets(plan: MotionPlan, scene: Scene) -> None:
+    """Raises InputError where a step goes to something that the room does not show, naming what it has."""
+    for step in plan.steps:
+        if step.moves and goes_to_thing(step) and not _marks(scene, step):
+            told = f"--landmark {kinds_for(step.target)[0]}=X,Y (metres right of and ahead of the radar)"
+            raise InputError(
+                f"for {step.clause or step.target!r}: no {step.target} was found in the photo; {_what_there_is(scene)};"
+                f" where one is can be told by {told} or a class mask (--classes)"
+            )
+
+
+def without_things(plan: MotionPlan) -> MotionPlan:
+    """For where no photo is: each way to a thing leads anywhere instead, and a note says so."""
+    lost = [step for step in plan.steps if step.moves and goes_to_thing(step)]
+    notes = tuple(
+        f"for {step.clause or step.target!r}: without a photo there is no {step.target}; the way leads where room is"
+        for step in lost
+    )
+    steps = tuple(replace(step, target="") if step in lost else step for step in plan.steps)
+    return replace(plan, steps=steps, notes=plan.notes + notes)
+
+
+def start_for(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:
+    """A place from which a walk of the step's time ends at its target; None where it has none."""
+    marks = _marks(floor.scene, step)
+    if not marks:
+        return None
+    mark = marks[int(rng.integers(len(marks)))]
+    length, angle = (step.end_s - step.start_s) * rng.uniform(0.5, 1.2), rng.uniform(0, 2 * np.pi)
+    return np.array(mark.approach_m) + length * np.array([np.cos(angle), np.sin(angle)])
+
+
+def walk_to_target(way: Trajectory, step: Step, *, first: bool) -> None:
+    """Lays the way to the nearest landmark that can be reached in time, and turns to face it.
+
+    Raises NoTrajectory where there is none from here.
+    """
+    marks = sorted(_marks(way.floor.scene, step), key=lambda mark: float(np.hypot(*(mark.approach_m - way.place))))
+    for mark in marks:
+        goal = _standing_place(way.floor, mark)
+        corners = None if goal is None else _corners(way, goal)
+        if corners is not None and _lay(way, step, corners, mark, first=first):
+            return
+    raise NoTrajectory(f"no way to the {step.target}")
+
+
+def _marks(scene: Scene, step: Step) -> list[Landmark]:
+    kinds = kinds_for(step.target)
+    return [mark for mark in scene.landmarks if mark.kind in kinds] if step.target else []
+
+
+def _standing_place(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] | None:
+    """The approach, or the walkable place nearest to it that is still at the thing."""
+    approach = np.array(mark.approach_m, dtype=float)
+    if bool(floor.can_stand(approach)):
+        return approach
+    near = floor.nearest_place(approach)
+    return near if near is not None and float(np.hypot(*(near - approach))) < _NEAR_M else None
+
+
+def _corners(way: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
+    """The goal, with one corner before it where things stand between; None where that is not enough."""
+    if _is_free(way.floor, way.place, goal):
+        return [goal]
+    places = way.floor.places_m[way.floor.walkable]
+    if not len(places):
+        return None
+    some = places[way.rng.integers(len(places), size=_CORNERS)]
+    order = np.argsort(np.hypot(*(some - way.place).T) + np.hypot(*(some - goal).T))
+    for corner in some[order]:
+        if _is_free(way.floor, way.place, corner) and _is_free(way.floor, corner, goal):
+            return [corner, goal]
+    return None
+
+
+def _is_free(floor: FloorMap, start: Float[Array, "2"], end: Float[Array, "2"]) -> bool:
+    gap = end - start
+    length = float(np.hypot(*gap))
+    return floor.free_length_m(start, float(np.arctan2(gap[1], gap[0])), length) >= length - 1e-6
+
+
+def _lay(way: Trajectory, step: Step, corners: list[Float[Array, "2"]], mark: Landmark, *, first: bool) -> bool:
+    """The legs one after the other, shared out by length; False where the time does not fit."""
+    gaps = np.diff(np.stack([way.place, *corners]), axis=0)
+    lengths = np.hypot(*gaps.T)
+    directions = np.arctan2(gaps[:, 1], gaps[:, 0])
+    turned = abs(angle_between(float(directions[-1]), mark.facing_rad))
+    at_end = 0.25 + turned / TURN_RATE if turned > 0.15 else 0.1
+    spare = step.end_s - step.start_s - at_end - 0.5 * (len(corners) - 1) - (0.0 if first else 0.3)
+    total = float(lengths.sum())
+    if spare < 0.6 or total < _SHORTEST_M:
+        return False
+    speed = min(wished_speed(step, way.rng), _FASTEST_MPS.get(step.lower, 1.6))
+    needed = total / max(spare - 0.5 * RAMP_S * (2 * len(corners) - first), 0.2)
+    if needed > _FASTEST_MPS.get(step.lower, 1.6):
+        return False
+    speed = max(speed, needed)
+    way.cost += 0.6 * max(0.0, speed - needed) + 0.4 * (len(corners) - 1)
+    time = step.start_s
+    for leg, (length, direction) in enumerate(zip(lengths, directions, strict=True)):
+        begin = face_along(way, step, float(direction), time, first=first and leg == 0)
+        ramps = (0.0 if first and leg == 0 else RAMP_S, RAMP_S)
+        lasts = float(length) / speed + sum(ramps) / 2
+        if begin + lasts > step.end_s + 0.05:
+            return False
+        way.go(step, float(direction), float(length), (begin, begin + lasts), ramps)
+        time = begin + lasts
+    way.turn_to(mark.facing_rad, time - 0.1)
+    return True
+
+
+def _what_there_is(scene: Scene) -> str:
+    counts = Counter(mark.kind for mark in scene.landmarks)
+    if scene.seats:
+        counts["seat"] = len(scene.seats)
+    if not counts:
+        return "no door, table, window or seat was found in it; say a direction instead"
+    words = [f"a {kind}" if number == 1 else f"{number} {kind}s" for kind, number in sorted(counts.items())]
+    return f"it has {', '.join(words)}"

@@ -1,0 +1,227 @@
+"""One candidate way through a room: moves and turns laid out step by step, as far as the floor allows."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.animation.root_path import Move, RootPath, Turn
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.planning.floor_map import FloorMap
+
+Array = np.ndarray
+SLOWEST_MPS = {"walk": 0.5, "jog": 1.2, "limp": 0.4, "stagger": 0.4}
+RAMP_S = 0.45
+TURN_RATE = 3.6  # rad/s
+SHORTEST_LEG_M = 0.5
+SHORTEST_WALK_M = 0.6  # a step
+PACING_LEG_M = 0.8
+
+
+class NoTrajectory(Exception):  # noqa: N818 - a candidate that does not work out, not an error
+    """This candidate leads nowhere; the message says why."""
+
+
+def angle_between(one: float, other: float) -> float:
+    """The turn from one direction to another, in (-pi, pi]."""
+    return float((other - one + np.pi) % (2 * np.pi) - np.pi)
+
+
+def wished_speed(step: Step, rng: np.random.Generator) -> float:
+    if step.lower == "jog":
+        low, high = ((1.3, 1.5), (1.5, 1.9), (1.9, 2.2))[step.speed + 1]
+    elif step.lower in ("limp", "stagger"):
+        low, high = ((0.45, 0.6), (0.6, 0.9), (0.9, 1.1))[step.speed + 1]
+    else:
+        low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
+    return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0)
+
+
+@dataclass
+class Trajectory:
+    """Grows as steps are laid out; `cost` gathers reasons against it."""
+
+    floor: FloorMap
+    rng: np.random.Generator
+    place: Float[Array, "2"]
+    heading_rad: float
+    start_m: tuple[float, float] = (0.0, 0.0)
+    start_heading_rad: float = 0.0
+    moves: list[list[Move]] = field(default_factory=list)  # by step
+    turns: list[Turn] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    seat_height_m: list[float] = field(default_factory=list)  # by step
+    seats_m: list[tuple[float, float]] = field(default_factory=list)  # where the person sits
+    cost: float = 0.0
+    last_direction_rad: float | None = None
+    from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
+
+    def __post_init__(self) -> None:
+        self.start_m = (float(self.place[0]), float(self.place[1]))
+        self.start_heading_rad = self.heading_rad
+
+    def path(self) -> RootPath:
+        return RootPath(
+            start_m=self.start_m,
+            heading_rad=self.start_heading_rad,
+            moves=tuple(move for moves in self.moves for move in moves),
+            turns=tuple(self.turns),
+        )
+
+    def free_length_m(self, direction_rad: float, wanted_m: float) -> float:
+        return self.floor.free_length_m(self.place, direction_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0)
+
+    def turn_to(self, heading_rad: float, start_s: float) -> float:
+        """Turns on the spot the shorter way, returns how long it takes."""
+        angle = angle_between(self.heading_rad, heading_rad)
+        if abs(angle) < 0.02:
+            self.heading_rad = self.heading_rad + angle
+            if angle:
+                self.turns.append(Turn(start_s=start_s, end_s=start_s + 0.3, angle_rad=angle))
+            return 0.0
+        lasts = 0.25 + abs(angle) / TURN_RATE
+        self.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle))
+        self.heading_rad += angle
+        self.cost += 0.25 * abs(angle)
+        return lasts
+
+    def go(
+        self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]
+    ):
+        """A straight move over a time span; the caller has made sure that it is free."""
+        move = Move(
+            start_s=span[0], end_s=span[1], length_m=length_m, direction_rad=direction_rad,
+            ramp_in_s=ramps[0], ramp_out_s=ramps[1],
+        )  # fmt: skip
+        self.moves[-1].append(move)
+        samples = self.place + np.linspace(0, length_m, 8)[:, None] * np.array(
+            [np.cos(direction_rad), np.sin(direction_rad)]
+        )
+        self.cost += float(self.floor.dislike_at(samples).mean())
+        self.place = self.place + move.end_shift_m
+        self.last_direction_rad = direction_rad
+        self.from_seat = False
+
+
+def face_along(way: Trajectory, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
+    """Turns into (or, going backwards, against) the direction; returns when the first stride can begin."""
+    heading = direction_rad + np.pi if step.direction == "backwards" else direction_rad
+    if first:
+        way.start_heading_rad = way.heading_rad = heading
+        return start_s
+    return start_s + 0.5 * way.turn_to(heading, start_s - 0.1)
+
+
+def walk_straight(way: Trajectory, step: Step, direction_rad: float, *, first: bool, last: bool) -> None:
+    """Goes in a given direction for the step's time, slower where the room is short; then stands still.
+
+    Raises NoTrajectory where even half a metre per second is too fast and there is hardly a step to go.
+    """
+    begin = face_along(way, step, direction_rad, step.start_s, first=first)
+    end = _stop_s(step, begin)
+    ramps = ramps_of(end - begin, first=first, last=last and end >= step.end_s - 1e-9)
+    effective = end - begin - sum(ramps) / 2
+    speed = wished_speed(step, way.rng)
+    wanted = speed * effective
+    free = way.free_length_m(direction_rad, wanted)
+    if free >= max(SLOWEST_MPS[step.lower], 0.6 * speed) * effective:
+        way.cost += 2.0 * (1 - free / wanted)
+        way.go(step, direction_rad, free, (begin, end), ramps)
+        return
+    if free < SHORTEST_WALK_M * SLOWEST_MPS[step.lower] / SLOWEST_MPS["walk"]:
+        raise NoTrajectory(f"only {free:.1f} m")
+    stop_ramps = (ramps[0], RAMP_S)
+    speed = max(0.85 * speed, SLOWEST_MPS[step.lower])
+    lasts = free / speed + sum(stop_ramps) / 2
+    way.cost += 1.5 + 2.0 * (1 - free / wanted)
+    way.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
+    way.notes.append(
+        f"there is room to go {free:.1f} m for {step.clause!r}; after that the person stands still until"
+        f" {step.end_s:.1f} s"
+    )
+
+
+def _stop_s(step: Step, begin: float) -> float:
+    """When the last of a counted number of steps is done, else the end of the step."""
+    if not step.count or step.upper:
+        return step.end_s
+    each = 0.4 if step.lower == "jog" else (0.72, 0.58, 0.5)[step.speed + 1]
+    return min(step.end_s, begin + each * step.count + 0.3)
+
+
+def ramps_of(span_s: float, *, first: bool, last: bool) -> tuple[float, float]:
+    if span_s < 0.45:
+        raise NoTrajectory("no time left to walk after turning")
+    ramp = min(RAMP_S, 0.42 * span_s)
+    return (0.0 if first else ramp), (0.0 if last else ramp)
+
+
+def walk_anywhere(way: Trajectory, step: Step, *, first: bool, last: bool) -> None:
+    """No direction was said: goes straight as long as there is room, then turns and goes on, to and fro."""
+    speed = wished_speed(step, way.rng)
+    time, begun = step.start_s, first
+    for _ in range(40):
+        left = step.end_s - time
+        direction, free = _open_direction(way, speed * left, keep_heading=not first and time == step.start_s)
+        begin = face_along(way, step, direction, time, first=begun)
+        left = step.end_s - begin
+        final = free >= 0.75 * speed * (left - RAMP_S / 2)
+        if final:
+            ramps = ramps_of(left, first=begun, last=last)
+            length = min(free, speed * (left - sum(ramps) / 2))
+            if length < SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2):
+                raise NoTrajectory(f"only {free:.1f} m")
+            way.go(step, direction, length, (begin, step.end_s), ramps)
+            return
+        if free < PACING_LEG_M:
+            raise NoTrajectory(f"only {free:.1f} m")
+        ramps = (0.0 if begun else RAMP_S, RAMP_S)
+        lasts = free / speed + sum(ramps) / 2
+        if left - lasts < 1.3:  # leave time enough to turn and go back, or take the whole time for this one
+            lasts = left if free >= SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2) else left - 1.3
+        length = min(free, speed * (lasts - sum(ramps) / 2))
+        if lasts < 0.8 or length < SHORTEST_LEG_M:
+            raise NoTrajectory(f"only {free:.1f} m")
+        way.go(step, direction, length, (begin, begin + lasts), ramps)
+        way.cost += 0.15
+        time, begun = begin + lasts - 0.15, False
+        if step.end_s - time < 0.3:
+            return
+    raise NoTrajectory("too many turns")
+
+
+def _open_direction(way: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:
+    """A direction with room, at random among the better ones; after another step rather straight on."""
+    wanted_m = min(wanted_m, 5.0)
+    if keep_heading:
+        free = way.free_length_m(way.heading_rad, wanted_m)
+        if free >= 0.8 * wanted_m:
+            return way.heading_rad, free
+    directions = way.rng.uniform(0, 2 * np.pi) + np.arange(12) * np.pi / 6
+    free = np.array([way.free_length_m(float(angle), wanted_m) for angle in directions])
+    pick = int(np.argmax(free * way.rng.uniform(0.6, 1.0, len(free))))
+    return float(directions[pick]), float(free[pick])
+
+
+def walk_circle(way: Trajectory, step: Step, *, first: bool, last: bool) -> None:
+    """Round and round, as wide as the room allows."""
+    rng = way.rng
+    side = float(np.sign(step.arc_deg)) or (1.0 if rng.random() < 0.5 else -1.0)
+    direction = way.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
+    begin = face_along(way, step, direction, step.start_s, first=first)
+    ramps = ramps_of(step.end_s - begin, first=first, last=last)
+    speed = min(wished_speed(step, rng), 1.1 if step.lower == "walk" else 1.6)
+    for radius in (0.9, 0.75, 0.6, 0.5, 0.4):
+        move = Move(
+            start_s=begin, end_s=step.end_s, length_m=speed * (step.end_s - begin - sum(ramps) / 2),
+            direction_rad=direction, ramp_in_s=ramps[0], ramp_out_s=ramps[1], curvature_per_m=side / radius,
+        )  # fmt: skip
+        round_ = way.place + move.shift_m(np.linspace(begin, step.end_s, 60))
+        if way.floor.can_stand(round_).all():
+            way.moves[-1].append(move)
+            way.place = way.place + move.end_shift_m
+            way.heading_rad = direction + move.curvature_per_m * move.length_m
+            way.last_direction_rad = None
+            way.cost += float(way.floor.dislike_at(round_).mean()) + 0.3 * (0.9 - radius)
+            return
+    raise NoTrajectory("no room for a circle of 0.4 m")

@@ -1,0 +1,90 @@
+"""The power maps that echoes of unknown phase leave on average: what can be predicted of a radar signal.
+
+Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman), decision 91.
+"""
+
+import math
+from dataclasses import dataclass, fields
+
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.virtual_array import azimuth_row, elevation_rows
+from mmweaver.dsp.point_response import Axes, PointResponse, Points
+from mmweaver.dsp.spectra import azimuth_axis_rad, elevation_axis_rad
+from mmweaver.dsp.windows import hann
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerMaps:
+    """Power in mW, as `dsp.spectra` gives it: (frame, range, doppler), (frame, range, azimuth), ..."""
+
+    range_doppler: Tensor
+    range_azimuth: Tensor
+    range_elevation: Tensor  # no elevation cells where the array cannot tell elevation
+
+
+class MeanPower:
+    """Mean power maps of points for one radar; differentiable in everything the points hold."""
+
+    def __init__(self, config: RadarConfig):
+        self.config = config
+        self.response = PointResponse(config)
+        self.axes: Axes = self.response.axes()
+        place = config.antenna_position_m
+        row = azimuth_row(place, config.wavelength_m)
+        wave = 2 * math.pi / config.wavelength_m
+        self._row_x = torch.tensor(wave * place[row, 0], dtype=torch.float32)
+        self._sin_azimuth = torch.tensor(azimuth_axis_rad(), dtype=torch.float32).sin()
+        rows = elevation_rows(place, config.wavelength_m)
+        self._row_gap = None if rows is None else wave * float(place[rows.upper[0], 2] - place[rows.lower[0], 2])
+        self._sin_elevation = torch.tensor(elevation_axis_rad(), dtype=torch.float32).sin()
+        self.noise = config.noise_power_mw * _noise_share(config.num_samples) * _noise_share(config.num_loops)
+        self._row_length = len(row)
+
+    def to(self, device: torch.device) -> "MeanPower":
+        """Itself, on a device."""
+        self.axes = Axes(**{field.name: getattr(self.axes, field.name).to(device) for field in fields(Axes)})
+        for name in ("_row_x", "_sin_azimuth", "_sin_elevation"):
+            setattr(self, name, getattr(self, name).to(device))
+        return self
+
+    def maps(self, points: Points) -> PowerMaps:
+        """Points (..., point) in bins of the response; their amplitudes' absolute square is the mean power."""
+        power = points.amplitude.abs().square()
+        at_range = self.response.range_kernel(self.axes.range_bin - points.range_bin[..., None])[0].square()
+        weighted = (at_range * power[..., None]).transpose(-1, -2)
+        at_doppler = self.response.doppler_kernel(self.axes.doppler_bin - points.doppler_bin[..., None])[0].square()
+        along_doppler = at_doppler.sum(dim=-1, keepdim=True)
+        return PowerMaps(
+            range_doppler=weighted @ at_doppler,
+            range_azimuth=weighted @ (along_doppler * self._azimuth_beam(points.direction[..., 0])),
+            range_elevation=weighted @ (along_doppler * self._elevation_beam(points.direction[..., 1])),
+        )
+
+    def noise_maps(self) -> tuple[float, float, float]:
+        """Mean power of the receiver's noise in a cell of each map."""
+        beam = self.noise * len(self.axes.doppler_bin)
+        return self.noise, beam / self._row_length, beam / 2
+
+    def _azimuth_beam(self, cosine_x: Tensor) -> Tensor:
+        """Power pattern (..., point, azimuth) of the horizontal row steered to each azimuth."""
+        own = cosine_x[..., None] * self._row_x
+        steered = self._row_x[:, None] * self._sin_azimuth
+        # the row's sum of exp(j steered - j own), by two products of matrices
+        both = torch.cat([own.cos(), own.sin()], dim=-1)
+        real = both @ torch.cat([steered.cos(), steered.sin()])
+        imaginary = both @ torch.cat([steered.sin(), -steered.cos()])
+        return (real.square() + imaginary.square()) / self._row_length**2
+
+    def _elevation_beam(self, cosine_z: Tensor) -> Tensor:
+        if self._row_gap is None:
+            return cosine_z.new_zeros((*cosine_z.shape, 0))
+        return 0.5 + 0.5 * ((self._sin_elevation - cosine_z[..., None]) * self._row_gap).cos()
+
+
+def _noise_share(num: int) -> float:
+    """Power of white noise after a normalised Hann window and its transform."""
+    window = hann(num)
+    return float((window**2).sum() / window.sum() ** 2)

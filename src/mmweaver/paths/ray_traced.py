@@ -1,0 +1,189 @@
+"""Scene + poses -> ADC samples. Three steps: the room once, the people's echoes, the receiver."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, PoseSequence, Scene
+from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
+from mmweaver.paths.adc_synthesis import FrameClock, synthesise
+from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
+from mmweaver.paths.body_paths import BodyEchoes
+from mmweaver.paths.multi_person_paths import PeopleEchoes
+from mmweaver.paths.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
+from mmweaver.paths.skin_scattering import SkinEcho
+from mmweaver.paths.static_paths import RayTracedRoom, StaticEchoes, static_adc
+from mmweaver.paths.visibility import Visibility
+
+CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
+
+ASSUMPTIONS = (
+    "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
+    " makers' documents; they are not calibrated against a recording",
+    "the body is made of capsules with a wrinkled skin that glints where it faces the radar (reflectivity 0.14, slope"
+    " 0.10); clothes are in that figure and not modelled",
+    "who stands or sits still sways, trembles and breathes by typical amounts",
+    "nothing passes through furniture, and waves do not bend around edges",
+)
+SEVERAL_PEOPLE = (
+    "people hide each other, but no wave goes from one person over another to the radar (see docs/several_people.md)"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Simulation:
+    """What the receivers recorded, and what was assumed to get there."""
+
+    adc: AdcCube
+    assumptions: tuple[str, ...]
+
+
+class Simulator:
+    """One radar in one room. Making it loads the room; `run` may then be called for many motions.
+
+    The room's and the body's micro-phases belong to the room and the person; the seed draws the receiver's noise.
+    """
+
+    def __init__(
+        self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0
+    ):
+        self.config = config
+        self.impairments = impairments or Impairments()
+        self.clock = FrameClock(config)
+        self.room = RayTracedRoom(scene, config, micro_seed)
+        self.room_adc = self.room.adc + leakage_adc(config, self.impairments)
+
+    def run(
+        self,
+        pose: PoseSequence | Sequence[PoseSequence],
+        *,
+        num_frames: int,
+        seed: int,
+        num_points: int = DEFAULT_NUM_POINTS,
+        echo: SkinEcho | None = None,
+        motions: MicroMotionSettings | None = None,
+        mutual_shadows: bool = True,
+    ) -> Simulation:
+        """ADC samples of the posed people, all frames at once: mind the memory, or take `chunks`.
+
+        They sway, waver and breathe as `motions` says, by default as people do; STILL only holds the joints.
+        """
+        chunks = self.chunks(
+            pose,
+            num_frames=num_frames,
+            seed=seed,
+            num_points=num_points,
+            echo=echo,
+            motions=motions,
+            mutual_shadows=mutual_shadows,
+        )
+        samples = np.concatenate([chunk.samples for chunk in chunks])
+        return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
+
+    def chunks(
+        self,
+        pose: PoseSequence | Sequence[PoseSequence],
+        *,
+        num_frames: int,
+        seed: int,
+        num_points: int = DEFAULT_NUM_POINTS,
+        echo: SkinEcho | None = None,
+        motions: MicroMotionSettings | None = None,
+        mutual_shadows: bool = True,
+    ) -> Iterator[AdcCube]:
+        """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
+
+        `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_shadows` the signal is the
+        plain sum of people who do not hide each other. Raises InputError where a pose does not cover the frames or
+        holds numbers that are none.
+        """
+        poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
+        for one in poses:
+            self._check(one, num_frames)
+        bodies = [body_of(one, num_points, echo) for one in poses]
+        receiver = Receiver(self.config, self.impairments, seed)
+        restless = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
+        for first in range(0, num_frames, CHUNK_FRAMES):
+            frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
+            echoes = self._echoes(poses, bodies, restless, frames, mutual_shadows)
+            samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
+            yield AdcCube(samples=samples, config=self.config, scale=1.0)
+
+    def _frame(self, echoes: PeopleEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
+        room = self.room_adc
+        for shadow in echoes.shadowed(index):
+            room = room - static_adc(shadow, self.config)
+        people = synthesise(echoes.rows(index), self.clock)
+        return receiver.receive(people, room, self.room.adc_rate, frame)
+
+    def _echoes(
+        self,
+        poses: tuple[PoseSequence, ...],
+        bodies: list[ScatteringBody],
+        restless: list[MicroMotion],
+        frames: np.ndarray,
+        mutual: bool,
+    ) -> PeopleEchoes:
+        joints_m, chests_m = [], []
+        for pose, unrest in zip(poses, restless, strict=True):
+            joints, chest = with_micro_motion(
+                unrest, self._joints_at_nodes(pose, frames), frames, self.clock, pose.height_m
+            )
+            joints_m.append(joints)
+            chests_m.append(chest)
+        return PeopleEchoes(self.room, bodies, joints_m, chests_m, mutual=mutual)
+
+    def look(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
+        """What `replay` needs of a motion: joints at the clock's nodes, float32 (frame, node, 22, 3), and visibility.
+
+        Raises InputError as `chunks` does.
+        """
+        self._check(pose, num_frames)
+        frames = np.arange(num_frames)
+        joints_m = self._joints_at_nodes(pose, frames).astype(np.float32)
+        unrest = MicroMotion(pose.subject, seed, MicroMotionSettings())
+        moved, chest = with_micro_motion(unrest, joints_m.astype(float), frames, self.clock, pose.height_m)
+        return joints_m, BodyEchoes(self.room, body_of(pose), moved, chest).visibility()
+
+    def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
+        """(frame, node, 22, 3): slow time is interpolated, never held.
+
+        A frame that begins with the last pose goes on as fast as that pose was: held, it would be a person who freezes.
+        """
+        times = frames[:, None] * self.config.frame_period_s + self.clock.node_s[None, :]
+        spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)
+        last_s = pose.time_s[-1]
+        joints = spline(np.clip(times, pose.time_s[0], last_s))
+        beyond_s = np.maximum(times - last_s, 0.0)
+        return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
+
+    def _check(self, pose: PoseSequence, num_frames: int) -> None:
+        needed_s = (num_frames - 1) * self.config.frame_period_s
+        if pose.time_s[-1] < needed_s - 1e-9 or pose.time_s[0] > 1e-9:
+            raise InputError(
+                f"the motion covers {pose.time_s[0]:.2f} to {pose.time_s[-1]:.2f} s, but {num_frames} frames need 0 to"
+                f" {needed_s:.2f} s; give a longer motion or fewer frames"
+            )
+        if not np.isfinite(pose.joints_m).all():
+            raise InputError("the motion has joints that are not numbers; mend the pose file")
+
+
+def with_micro_motion(
+    unrest: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Joints at the nodes of frames (frame, node, 22, 3) with their small motions, and the chest (frame, node)."""
+    time_s = (frames[:, None] * clock.config.frame_period_s + clock.node_s[None, :]).ravel()
+    moved = unrest.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
+    return moved.reshape(joints_m.shape), unrest.chest_m(time_s).reshape(joints_m.shape[:2])
+
+
+def leakage_adc(config: RadarConfig, impairments: Impairments) -> np.ndarray:
+    """Samples (tx, rx, sample) of the transmitters' direct way into the receivers."""
+    way_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_PATH_LENGTH_M)
+    amplitude = np.array([leakage(config, impairments)])
+    nowhere = np.zeros((1, 3))
+    return static_adc(StaticEchoes(way_m=way_m, amplitude=amplitude, first_m=nowhere, last_m=nowhere), config)

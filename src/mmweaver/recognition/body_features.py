@@ -1,0 +1,129 @@
+"""Numbers about a body that hardly moves: points at rest that come and go, and where the body is as time passes.
+
+Slow motion has no velocity for a coarse radar: who squats is mostly a spot at rest that wanders 20 cm and back, who
+hops one that flickers twice a second. Cells of range that are full nearly always are taken for the room.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.records import PointCloud
+from mmweaver.recognition.point_recording import PointRecording
+
+CELL_M = 0.05
+FARTHEST_M = 6.0
+FIXED = 0.9  # share of a window's frames from which a cell belongs to the room
+SELDOM = 0.03
+REACH_M = 0.7  # of a body about its middle
+SEGMENTS = 8
+FEWEST = 3  # points for a place
+BANDS_HZ = ((0.3, 0.8), (0.8, 1.3), (1.3, 1.8), (1.8, 2.3), (2.3, 3.3), (3.3, 5.3), (5.3, 10.0))
+
+Row = dict[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyPoints:
+    """Points of a window's body: those that move, and those at rest that are not the room's."""
+
+    window: PointRecording
+    range_m: Float[np.ndarray, " point"]
+    moves: Bool[np.ndarray, " point"]
+    rests: Bool[np.ndarray, " point"]
+    cells: Float[np.ndarray, "frame cell"]  # 1 where a cell of the body holds a point at rest
+
+    @property
+    def cloud(self) -> PointCloud:
+        return self.window.cloud
+
+
+def body_points(window: PointRecording, still_mps: float) -> BodyPoints:
+    """Takes the room away, then what is farther than a body reaches from the middle of all that changes."""
+    cloud, frames = window.cloud, window.num_frames
+    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    moves = np.abs(cloud.radial_velocity_mps) > still_mps
+    cell = np.minimum((range_m / CELL_M).astype(int), int(FARTHEST_M / CELL_M) - 1)
+    full = np.zeros((frames, int(FARTHEST_M / CELL_M)), bool)
+    full[cloud.frame[~moves], cell[~moves]] = True
+    share = full.mean(axis=0)
+    changes = share * (1 - share) * frames * (share <= FIXED) + np.bincount(cell[moves], minlength=len(share))
+    near = np.zeros(len(share), bool)
+    if changes.sum() > 0:
+        running = np.cumsum(changes)
+        middle = int(np.searchsorted(running, running[-1] / 2))
+        near = np.abs(np.arange(len(share)) - middle) <= REACH_M / CELL_M
+    own = near & (share <= FIXED)
+    kept = own & (share > SELDOM)
+    return BodyPoints(
+        window=window, range_m=range_m, moves=moves & near[cell], rests=~moves & own[cell],
+        cells=full[:, kept].astype(float),
+    )  # fmt: skip
+
+
+def body_features(window: PointRecording, still_mps: float) -> Row:
+    """Named features of one window; nan says that too few points are there."""
+    points = body_points(window, still_mps)
+    row = _flicker(points)
+    row.update(_whereabouts(points, points.moves | points.rests, "body"))
+    row.update(_whereabouts(points, points.rests, "rest"))
+    row["moving_share"] = float(points.moves.sum() / max((points.moves | points.rests).sum(), 1))
+    return row
+
+
+def band_shares(power: np.ndarray, frequency_hz: np.ndarray, word: str) -> Row:
+    """Shares of the power in bands of frequency; nan where there is none."""
+    inside = (frequency_hz >= BANDS_HZ[0][0]) & (frequency_hz < BANDS_HZ[-1][1])
+    total = power[inside].sum()
+    row: Row = {}
+    for low, high in BANDS_HZ:
+        band = (frequency_hz >= low) & (frequency_hz < high)
+        row[f"{word}_{low:g}_hz"] = float(power[band].sum() / total) if total > 0 else np.nan
+    return row
+
+
+def _flicker(points: BodyPoints) -> Row:
+    """In what rhythm cells at rest fill and empty, one by one and all together."""
+    cells, frames = points.cells, points.window.num_frames
+    frequency_hz = np.fft.rfftfreq(4 * frames, 1 / points.window.frame_rate_hz)
+    centred = cells - cells.mean(axis=0)
+    together = centred.sum(axis=1)
+
+    def power(signal: np.ndarray) -> np.ndarray:
+        return np.abs(np.fft.rfft(signal * np.hanning(frames)[:, None], 4 * frames, axis=0)) ** 2
+
+    variance = float(centred.var(axis=0).sum()) if cells.size else 0.0
+    return {
+        "rest_cells": float(cells.shape[1]),
+        "rest_rate": float(np.log1p(points.rests.sum() / frames)),
+        "rest_together": float(together.var() / variance) if variance > 0 else np.nan,
+        **band_shares(power(centred).sum(axis=1), frequency_hz, "flicker"),
+        **band_shares(power(together[:, None])[:, 0], frequency_hz, "flicker_together"),
+    }
+
+
+def _whereabouts(points: BodyPoints, which: np.ndarray, word: str) -> Row:
+    """How the body's middle, nearest and farthest range and its height change from segment to segment."""
+    frames = points.window.num_frames
+    frame = points.cloud.frame.astype(int)
+    segment = np.minimum(frame * SEGMENTS // frames, SEGMENTS - 1)
+    count = np.bincount(segment[which], minlength=SEGMENTS)
+    places = np.full((4, SEGMENTS), np.nan)
+    for one in np.flatnonzero(count >= FEWEST):
+        own = which & (segment == one)
+        low, middle, high = np.quantile(points.range_m[own], [0.1, 0.5, 0.9])
+        places[:, one] = middle, low, high, np.median(points.cloud.z_m[own])
+    known = places[:, count >= FEWEST]
+    several = known.shape[1] > 1
+    row: Row = {
+        f"{word}_segments": float(known.shape[1]),
+        f"{word}_uneven": float(count.std() / max(count.mean(), 1e-9)),
+        f"{word}_width": float(np.median(known[2] - known[1])) if known.size else np.nan,
+        f"{word}_width_std": float((known[2] - known[1]).std()) if several else np.nan,
+        f"{word}_way": float(abs(known[0, -1] - known[0, 0])) if several else np.nan,
+    }
+    for name, value in zip(("middle", "near", "far", "up"), known, strict=True):
+        row[f"{word}_{name}_span"] = float(np.ptp(value)) if several else np.nan
+        row[f"{word}_{name}_std"] = float(value.std()) if several else np.nan
+    return row

@@ -1,0 +1,102 @@
+"""Copies of a generated window as a worse board in a worse room would report it: points lost, points of the room added.
+
+What decides which weak points a real board reports (its threshold, its antennas, cables, furniture) cannot be known
+beforehand, so a recogniser should not depend on it. Copies cost hundredths of what a new window costs.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.records import PointCloud
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.window_features import SPEED_EDGES_MPS, STILL_MPS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disturbance:
+    """How much is lost and added at most; each copy draws its own.
+
+    Moving points and those at rest are kept with a chance between the lowest given and 1, frames as a whole are lost,
+    and some points of the slowest velocity are reported at rest. `most_things` things that rest add up to three
+    neighbouring cells of range each, full always or now and then; `false_points` is the highest mean number of moving
+    points that belong to nobody. Half of the copies run backwards in time (which turns velocities round),
+    half are mirrored.
+    """
+
+    least_moving: float = 0.35
+    least_resting: float = 0.2
+    frames_lost: float = 0.15
+    slow_at_rest: float = 0.3
+    most_things: int = 4
+    false_points: float = 1.0
+    tilt_rad: float = 0.05
+    cell_m: float = 0.0436
+
+
+Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
+
+
+def disturbed(window: PointRecording, rng: np.random.Generator, how: Disturbance | None = None) -> PointRecording:
+    """One copy. The levels of its points (`snr_db`) are not kept."""
+    how = how or Disturbance()
+    cloud, frames = window.cloud, window.num_frames
+    columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
+    body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
+    body = _turned_round(body, frames, rng)
+    parts = [body, *_things(frames, how, rng), _false_points(frames, how, rng)]
+    frame, columns = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
+    order = np.argsort(frame, kind="stable")
+    frame, (x, y, z, velocity) = frame[order], columns[order].T
+    tilt = rng.normal(0, how.tilt_rad)
+    return replace(
+        window,
+        cloud=PointCloud(
+            frame=frame, x_m=x, y_m=y * np.cos(tilt) - z * np.sin(tilt), z_m=z * np.cos(tilt) + y * np.sin(tilt),
+            radial_velocity_mps=velocity, snr_db=np.full(len(frame), np.nan),
+        ),
+    )  # fmt: skip
+
+
+def _thinned(frame: np.ndarray, columns: np.ndarray, frames: int, how: Disturbance, rng: np.random.Generator) -> Points:
+    """Loses points, frames, and the velocity of slow points; three copies in ten lose no single points."""
+    speed = np.abs(columns[:, 3])
+    spared = rng.random() < 0.3
+    moving, resting = (1.0 if spared else rng.uniform(least, 1.0) for least in (how.least_moving, how.least_resting))
+    kept = rng.random(len(frame)) < np.where(speed > STILL_MPS, moving, resting)
+    kept &= (rng.random(frames) >= rng.uniform(0, how.frames_lost))[frame]
+    columns = columns.copy()
+    stops = (speed < SPEED_EDGES_MPS[1]) & (rng.random(len(frame)) < rng.uniform(0, how.slow_at_rest))
+    columns[stops, 3] = 0.0
+    return frame[kept], columns[kept]
+
+
+def _turned_round(points: Points, frames: int, rng: np.random.Generator) -> Points:
+    """Backwards in time, and mirrored, each by a coin."""
+    frame, columns = points
+    backwards, mirrored = rng.random(2) < 0.5
+    columns = columns * np.array([-1.0 if mirrored else 1.0, 1.0, 1.0, -1.0 if backwards else 1.0])
+    return (frames - 1 - frame if backwards else frame), columns
+
+
+def _things(frames: int, how: Disturbance, rng: np.random.Generator) -> list[Points]:
+    """Things that rest, at any distance, full always or now and then."""
+    found = []
+    for _ in range(int(rng.integers(how.most_things + 1))):
+        nearest_m, aside = rng.uniform(0.9, 5.5), rng.normal(0, 0.3)
+        share = float(rng.choice([1.0, 0.98, 0.9, 0.6, 0.3, 0.1]))
+        for cell in range(int(rng.integers(1, 4))):
+            frame = np.flatnonzero(rng.random(frames) < share)
+            range_m = nearest_m + cell * how.cell_m
+            place = [range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.3), 0.0]
+            found.append((frame, np.tile(place, (len(frame), 1))))
+    return found
+
+
+def _false_points(frames: int, how: Disturbance, rng: np.random.Generator) -> Points:
+    """Moving points that belong to nobody."""
+    number = int(rng.poisson(float(rng.choice([0.0, 0.0, how.false_points / 4, how.false_points]))))
+    range_m, aside = rng.uniform(1, 5, number), rng.normal(0, 0.4, number)
+    velocity = rng.choice([-1.0, 1.0], number) * rng.choice([0.615, 1.23], number)
+    columns = np.stack([range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.4, number), velocity], axis=1)
+    return rng.integers(frames, size=number), columns

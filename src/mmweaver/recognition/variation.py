@@ -1,0 +1,130 @@
+"""What differs from one recording to the next: people, rooms, radars. Each generated recording draws all of it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.recognition.open_room import Panel
+
+Span = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variation:
+    """Spans that a recording draws from, evenly (`tempo` evenly in its logarithm).
+
+    `tempo` speeds a motion up, times `way_tempo` where the person goes somewhere (slowly, in a small room); `vigour`
+    scales how far joints leave their mean place. Of a way through the room: `near_m` and `far_m` say between which
+    distances it goes to and fro, `way_s` how long it lasts in the motion's own time (a window is any part of it),
+    `hurry` how much the tempo wanders (rms of its logarithm). `turn_deg` is the standard deviation of how far someone
+    who stays in place is turned away from the radar. `tilt_deg` turns the reported points about the radar, up where
+    positive. What ends in `_db` changes the radar's own noise figure, its CFAR's threshold, its receiver's gain, the
+    skin's albedo, and how bright arms and legs are beside the trunk.
+    """
+
+    tempo: Span = (0.75, 1.6)
+    way_tempo: float = 0.85
+    near_m: Span = (0.6, 1.1)
+    far_m: Span = (2.2, 3.1)
+    way_s: Span = (5.0, 13.0)
+    hurry: Span = (0.0, 0.4)
+    vigour: Span = (0.6, 1.15)
+    turn_deg: float = 25.0
+    roam_mps: Span = (0.0, 0.06)
+    distance_m: Span = (1.1, 2.6)
+    azimuth_deg: Span = (-22.0, 22.0)
+    height_m: Span = (1.5, 1.95)
+    radar_height_m: Span = (1.0, 1.5)
+    tilt_deg: Span = (-10.0, 10.0)
+    elevation_beamwidth_deg: Span = (20.0, 40.0)
+    noise_db: Span = (10.0, 22.0)
+    clutter_db: Span = (-15.0, 5.0)
+    threshold_db: Span = (-4.0, 3.0)
+    gain_db: Span = (-16.0, 0.0)
+    albedo_db: Span = (-6.0, 4.0)
+    skin_exponents: tuple[float, ...] = (40.0, 100.0, 200.0)
+    arms_db: Span = (-8.0, 4.0)
+    legs_db: Span = (-14.0, 0.0)
+    skin_points: int = 4000
+    wall_m: Span = (2.9, 5.4)
+    wall_share: float = 0.3
+    most_panels: int = 5
+
+
+@dataclass(frozen=True, kw_only=True)
+class VariationSample:
+    """One recording's circumstances, in the units of Variation."""
+
+    tempo: float
+    reach_m: Span
+    way_s: float
+    hurry: float
+    vigour: float
+    turn_deg: float
+    roam_mps: float
+    distance_m: float
+    azimuth_deg: float
+    height_m: float
+    radar_height_m: float
+    tilt_deg: float
+    elevation_beamwidth_deg: float
+    noise_db: float
+    clutter_db: float
+    threshold_db: float
+    gain_db: float
+    albedo_db: float
+    skin_exponent: float
+    arms_db: float
+    legs_db: float
+    wall_m: float | None
+    panels: tuple[Panel, ...]
+
+    @property
+    def start_m(self) -> tuple[float, float]:
+        """Where the person starts, (x right, y away)."""
+        turn = np.radians(self.azimuth_deg)
+        return float(self.distance_m * np.sin(turn)), float(self.distance_m * np.cos(turn))
+
+
+def draw(variation: Variation, rng: np.random.Generator) -> VariationSample:
+    """Circumstances by chance."""
+
+    def of(span: Span) -> float:
+        return float(rng.uniform(*span))
+
+    return VariationSample(
+        tempo=float(np.exp(rng.uniform(*np.log(variation.tempo)))),
+        vigour=of(variation.vigour),
+        turn_deg=float(rng.normal(0, variation.turn_deg)),
+        roam_mps=of(variation.roam_mps),
+        distance_m=of(variation.distance_m),
+        azimuth_deg=of(variation.azimuth_deg),
+        height_m=of(variation.height_m),
+        radar_height_m=of(variation.radar_height_m),
+        tilt_deg=of(variation.tilt_deg),
+        elevation_beamwidth_deg=of(variation.elevation_beamwidth_deg),
+        noise_db=of(variation.noise_db),
+        clutter_db=of(variation.clutter_db),
+        threshold_db=of(variation.threshold_db),
+        gain_db=of(variation.gain_db),
+        albedo_db=of(variation.albedo_db),
+        skin_exponent=float(rng.choice(variation.skin_exponents)),
+        arms_db=of(variation.arms_db),
+        legs_db=of(variation.legs_db),
+        wall_m=of(variation.wall_m) if rng.random() < variation.wall_share else None,
+        panels=tuple(_panel(rng) for _ in range(int(rng.integers(variation.most_panels + 1)))),
+        reach_m=(of(variation.near_m), of(variation.far_m)),
+        way_s=of(variation.way_s),
+        hurry=of(variation.hurry),
+    )
+
+
+def _panel(rng: np.random.Generator) -> Panel:
+    """Something flat beside the person's place, or behind it."""
+    aside = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.9, 2.5))
+    return Panel(
+        centre_m=(aside, float(rng.uniform(0.5, 5.0)), float(rng.uniform(-0.8, 0.5))),
+        half_size_m=(float(rng.uniform(0.05, 0.5)), float(rng.uniform(0.05, 0.6))),
+        turn_rad=float(rng.normal(np.arctan2(-aside, 3.0), 0.4)),
+        material=str(rng.choice(["metal", "wood", "chipboard", "plasterboard"])),
+    )

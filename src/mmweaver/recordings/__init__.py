@@ -1,0 +1,1 @@
+"""Recordings by real radars: read, processed, and used as examples."""

@@ -1,0 +1,196 @@
+"""A user's own recordings as examples to train on: radar, a photo of the room, and joints where they are known.
+
+A folder is one of
+
+    a folder of mmweaver generate or process     radar.npz, radar.json
+    a capture folder of mmwave-capture-std       radar.cfg, dca.pcap
+
+and may hold `pose.npz` (22 joints of the one person at any times, in the radar's frame). Its photo is rgb.png beside
+depth.png or depth.npy and camera.json, in it or in the folder above; or what meta.json names; or the RealSense's.
+"""
+
+import hashlib
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
+from mmweaver.core.skeleton import NUM_JOINTS
+from mmweaver.datasets.dataset_store import StoredRoom
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.spectra import noise_power
+from mmweaver.formats.capture_std import is_capture, read_radar_capture
+from mmweaver.formats.npz_files import read_pose_npz, read_radar_npz
+from mmweaver.motion.animation.resample import joints_and_velocities
+from mmweaver.scene.photo.capture_photo import photo_folder, read_capture_photo
+from mmweaver.scene.read_photo import read_photo
+from mmweaver.scene.sample_photo import sample_photo
+
+CUBE, POSE, META = "radar.npz", "pose.npz", "meta.json"
+FRAMES = 20  # of a sequence, where a capture is longer
+LATE_S = 0.25  # that joints may be missing at either end
+SPLIT = "captured"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Capture:
+    """One recording: a cube, the photo of its room, and the person's joints if they are known."""
+
+    folder: Path
+    cube: RadarCube
+    photo: RgbdPhoto
+    pose: PoseSequence | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordedRoom(StoredRoom):
+    """A capture cut into sequences; joints that nobody knows are nan."""
+
+    values: np.ndarray  # (frame, range, doppler, antenna) in sqrt(mW), or in counts where the scale is not known
+    is_calibrated: bool
+    sha256: str
+
+    @property
+    def has_joints(self) -> bool:
+        return bool(np.isfinite(self.joints_m).all())
+
+    @property
+    def noise_power(self) -> float:
+        """Of a cell; 0 where a radar of one loop cannot tell it."""
+        return noise_power(self._cube(self.values)) or 0.0
+
+    def cube(self, index: int, frames: np.ndarray | None = None, *, twin: int = 0) -> RadarCube:
+        """A sequence, or some of its frames; a recording has no twin."""
+        length = self.joints_m.shape[1]
+        values = self.values[index * length : (index + 1) * length]
+        return self._cube(values if frames is None else values[frames])
+
+    def times(self, gain: float) -> "RecordedRoom":
+        """The same with all amplitudes times `gain`."""
+        factor = np.float32(gain)
+        return replace(self, values=self.values * factor, empty=self.empty * factor, is_calibrated=True)
+
+    def _cube(self, values: np.ndarray) -> RadarCube:
+        return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
+
+
+def read_capture(
+    folder: Path, *, rgb: Path | None = None, depth: Path | None = None, camera: Path | None = None
+) -> Capture:
+    """Reads one folder; `rgb`, `depth` and `camera` take the place of its own photo.
+
+    Raises InputError for a folder that is none, has no photo, or joints that do not belong to its frames.
+    """
+    cube = recorded_cube(folder)
+    photo = _own_photo(folder) if rgb is None else read_photo(rgb, depth, camera)[0]
+    pose = read_pose_npz(folder / POSE) if (folder / POSE).is_file() else None
+    if pose is not None:
+        _check_times(folder, pose, cube)
+    return Capture(folder=folder, cube=cube, photo=photo, pose=pose)
+
+
+def recorded_cube(source: Path) -> RadarCube:
+    """The cube of a recording: a radar.npz, a folder that holds one, or a capture folder. Raises InputError."""
+    if source.is_file():
+        return read_radar_npz(source)
+    if (source / CUBE).is_file():
+        return read_radar_npz(source / CUBE)
+    if is_capture(source):
+        return radar_cube(read_radar_capture(source).packets.adc)
+    raise InputError(f"{source} holds no {CUBE} and is no capture folder; make one with: mmweaver process")
+
+
+def rooms_of(captures: Sequence[Capture]) -> list[RecordedRoom]:
+    """The captures as rooms to draw batches from, all in sequences of one length.
+
+    What rests is the mean over a capture's frames. Raises InputError for recordings of different radars.
+    """
+    config = captures[0].cube.config
+    for one in captures:
+        if replace(one.cube.config, name=config.name) != config:
+            raise InputError(f"{one.folder} was recorded with another radar or other settings; tune for one at a time")
+    frames = min(FRAMES, *(len(one.cube.values) for one in captures))
+    return [_room(one, config, frames) for one in captures]
+
+
+def _room(capture: Capture, config: RadarConfig, frames: int) -> RecordedRoom:
+    cube = capture.cube
+    is_calibrated = math.isfinite(cube.scale)
+    values = cube.values * np.float32(cube.scale) if is_calibrated else cube.values
+    count = len(values) // frames
+    shape = (count, frames, NUM_JOINTS, 3)
+    joints = velocity = np.full(shape, np.nan, np.float32)
+    if capture.pose is not None:
+        times_s = cube.grid.frame_time_s[: count * frames] + config.active_time_s / 2
+        joints, velocity = (part.reshape(shape) for part in joints_and_velocities(capture.pose, times_s))
+    return RecordedRoom(
+        folder=capture.folder, kind=SPLIT, layout=0, lighting="", photo=capture.photo,
+        empty=values[:, :, config.num_loops // 2].mean(axis=0, dtype=np.complex128).astype(np.complex64),
+        joints_m=joints, joint_velocity_mps=velocity, person=np.zeros(count, int), activity=("",) * count,
+        text=("",) * count, split=(SPLIT,) * count, seed=np.zeros(count, int), config=config, values=values,
+        is_calibrated=is_calibrated, sha256=hashlib.sha256(np.ascontiguousarray(cube.values).tobytes()).hexdigest(),
+    )  # fmt: skip
+
+
+def _check_times(folder: Path, pose: PoseSequence, cube: RadarCube) -> None:
+    own, wanted = pose.time_s, cube.grid.frame_time_s
+    if len(own) < 2 or own[0] > wanted[0] + LATE_S or own[-1] < wanted[-1] - LATE_S:
+        raise InputError(
+            f"{folder / POSE} has joints from {own[0]:.2f} to {own[-1]:.2f} s, the radar's frames go from"
+            f" {wanted[0]:.2f} to {wanted[-1]:.2f} s; cut both to the same time, or leave {POSE} out"
+        )
+
+
+# photos -------------------------------------------------------------------------------------------------------------
+def _own_photo(folder: Path) -> RgbdPhoto:
+    for place in (folder, folder.parent):
+        found = _beside(place)
+        if found is not None:
+            return found
+    named = _named(folder / META)
+    if named is not None:
+        return named
+    if photo_folder(folder) is not None:
+        return read_capture_photo(folder).photo
+    raise InputError(
+        f"{folder} has no photo of its room: put rgb.png, depth.png (or depth.npy) and camera.json into it or into the"
+        " folder above, or give --rgb and --depth"
+    )
+
+
+def _beside(place: Path) -> RgbdPhoto | None:
+    rgb, camera = place / "rgb.png", place / "camera.json"
+    depths = [place / name for name in ("depth.png", "depth.npy") if (place / name).is_file()]
+    if not rgb.is_file() or not depths:
+        return None
+    return read_photo(rgb, depths[0], camera if camera.is_file() else None)[0]
+
+
+def _named(meta: Path) -> RgbdPhoto | None:
+    """The photo that `mmweaver generate` says it used. Raises InputError where that has changed since."""
+    try:
+        inputs: dict[str, Any] = json.loads(meta.read_text())["inputs"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    if "sample" in inputs:
+        return sample_photo()[0]
+    files: dict[str, Path] = {}
+    for name in ("rgb", "depth", "camera"):
+        if isinstance(inputs.get(name), dict):
+            files[name] = Path(inputs[name]["path"])
+            if not files[name].is_file():
+                return None
+            if hashlib.sha256(files[name].read_bytes()).hexdigest() != inputs[name]["sha256"]:
+                raise InputError(
+                    f"{files[name]} is not what it was when {meta.parent} was made; give --rgb and --depth"
+                )
+    return (
+        read_photo(files["rgb"], files["depth"], files.get("camera"))[0] if {"rgb", "depth"} <= files.keys() else None
+    )

@@ -1,0 +1,1 @@
+"""What a person can do where: seats, landmarks, free floor."""

@@ -1,0 +1,145 @@
+"""What surfaces are made of: by what is seen where somebody said it, else guessed from geometry and colour.
+
+Metal and glass are never guessed.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from mmweaver.core.records import Plane, Seat
+from mmweaver.core.shapes import Array
+from mmweaver.scene.coco_stuff import material_of
+from mmweaver.scene.layout.surfaces import LevelGrid, Surface
+from mmweaver.scene.photo.depth_grid import GridVectors
+
+# ITU-R P.2040-3, table 3, and upholstery, which it does not list.
+MATERIAL_NAMES = (
+    "concrete", "brick", "plasterboard", "wood", "glass", "ceiling_board", "chipboard", "plywood", "marble",
+    "floorboard", "metal", "fabric",
+)  # fmt: skip
+
+ASSUMPTION = (
+    "Materials were guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any"
+    " other concrete, seats fabric if wide or of no wooden colour, the rest wood or chipboard by colour."
+)
+
+ASSUMPTION_OF_CLASSES = (
+    "Materials follow from the class of each pixel (COCO-Stuff to ITU-R P.2040) where it says one; elsewhere they were"
+    " guessed from geometry and colour: walls plasterboard, a warm and saturated floor floorboard and any other"
+    " concrete, seats fabric if wide or of no wooden colour, the rest wood or chipboard by colour."
+)
+
+_SEAT_REACH_M = 0.55
+_SOFA_M = 0.8  # a seat as wide as this is upholstered, whatever its colour
+
+
+def floor_material(colours: Float[Array, "cell 3"]) -> str:
+    """Boards where the floor is warm and saturated, else concrete."""
+    return "floorboard" if _is_wooden(colours) else "concrete"
+
+
+def surface_material(surface: Surface, rgb: GridVectors) -> str:
+    """The material of a flat surface by its kind, then by its colour."""
+    by_kind = {"wall": "plasterboard", "ceiling": "ceiling_board"}
+    return by_kind.get(surface.plane.kind) or _furniture(rgb[surface.cells])
+
+
+def with_material(plane: Plane, name: str) -> Plane:
+    return replace(plane, material=name)
+
+
+def cell_materials(
+    grid: LevelGrid,
+    rgb: GridVectors,
+    surfaces: Sequence[Surface],
+    is_floor: Bool[Array, "row column"],
+    seats: Sequence[Seat],
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Index into MATERIAL_NAMES of every cell, and the name of each surface's material."""
+    wooden = _wooden_cells(rgb)
+    material = np.where(wooden, MATERIAL_NAMES.index("wood"), MATERIAL_NAMES.index("chipboard"))
+    names = [surface_material(surface, rgb) for surface in surfaces]
+    for surface, name in zip(surfaces, names, strict=True):
+        material[surface.cells] = MATERIAL_NAMES.index(name)
+    fixed = is_floor.copy()
+    highest_seat_m = max((float(seat.position_m[2]) for seat in seats), default=0.0)
+    for surface in surfaces:
+        is_table = surface.plane.kind == "top" and surface.plane.centre_m[2] > highest_seat_m + 0.1
+        if is_table or surface.plane.kind in ("wall", "ceiling"):
+            fixed |= surface.cells
+    for cells in _upholstered(grid, rgb, ~fixed, seats):
+        material[cells] = MATERIAL_NAMES.index("fabric")
+        for index, surface in enumerate(surfaces):
+            if (cells & surface.cells).sum() > 0.3 * min(cells.sum(), surface.cells.sum()):
+                names[index] = "fabric"
+                material[surface.cells] = MATERIAL_NAMES.index("fabric")
+    material[is_floor] = MATERIAL_NAMES.index(floor_material(rgb[is_floor]))
+    return material, tuple(names)
+
+
+def by_class(
+    material: np.ndarray,
+    names: tuple[str, ...],
+    class_index: Int[Array, "row column"],
+    class_names: tuple[str, ...],
+    surfaces: Sequence[Surface],
+    is_floor: Bool[Array, "row column"],
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """The same with what is known in place of what was guessed: the class of a cell decides where it says a material.
+
+    A surface, and the floor, takes what most of its cells are where the class of half of them says it.
+    """
+    told = np.array([MATERIAL_NAMES.index(m) if (m := material_of(name)) else -1 for name in class_names])
+    known = told[np.clip(class_index, 0, len(told) - 1)]
+    guessed, material = material, np.where(known >= 0, known, material)
+    new = list(names)
+    for index, surface in enumerate(surfaces):
+        told_here = _majority(known[surface.cells])
+        if told_here is not None:
+            new[index] = MATERIAL_NAMES[told_here]
+            material[surface.cells] = np.where(known[surface.cells] >= 0, known[surface.cells], told_here)
+    told_floor = _majority(known[is_floor])
+    material[is_floor] = guessed[is_floor] if told_floor is None else told_floor
+    return material, tuple(new)
+
+
+def _majority(known: Int[Array, " cell"]) -> int | None:
+    told = known[known >= 0]
+    return int(np.bincount(told).argmax()) if len(told) > 0.5 * len(known) else None
+
+
+def _upholstered(
+    grid: LevelGrid, rgb: GridVectors, open_cells: Bool[Array, "row column"], seats: Sequence[Seat]
+) -> list[Bool[Array, "row column"]]:
+    """The cells around each seat that is as wide as a sofa, or of no wooden colour."""
+    found = []
+    above_floor = grid.points_m[..., 2] - grid.floor_z_m
+    for seat in seats:
+        offset = grid.points_m - seat.position_m
+        cells = open_cells & (np.hypot(offset[..., 0], offset[..., 1]) < _SEAT_REACH_M)
+        cells &= (above_floor > 0.12) & (above_floor < 1.2)
+        if cells.sum() < 20:
+            continue
+        if max(seat.size_m) >= _SOFA_M or not _is_wooden(rgb[cells]):
+            found.append(cells)
+    return found
+
+
+def _furniture(colours: Float[Array, "cell 3"]) -> str:
+    return "wood" if _is_wooden(colours) else "chipboard"
+
+
+def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:
+    return bool(len(colours)) and bool(_wooden_cells(np.median(colours, axis=0)))
+
+
+def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"] | np.bool_:
+    """Red over green over blue, in the proportions of yellow to red-brown, and not pale."""
+    red, green, blue = rgb[..., 0], rgb[..., 1], rgb[..., 2]
+    span = np.maximum(red - blue, 1e-6)
+    hue_deg = 60 * (green - blue) / span
+    saturation = (red - blue) / np.maximum(red, 1e-6)
+    return (red >= green) & (green >= blue) & (hue_deg > 8) & (hue_deg < 52) & (saturation > 0.3) & (red > 0.12)

@@ -1,0 +1,183 @@
+"""The true Scene of a procedural room: the whole mesh with its materials, planes, free floor, seats and landmarks."""
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
+from mmweaver.core.shapes import Array, PerFace, Vec3
+from mmweaver.scene.layout.height_map import CELL_M, HALF_WIDTH_M, LENGTH_M
+from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
+from mmweaver.scene.procedural.arrangement import Shell, covered
+from mmweaver.scene.procedural.meshing import Mesh
+from mmweaver.scene.procedural.palette import Palette
+from mmweaver.scene.procedural.parts import Boxes, Placed
+
+_MIN_FACE_M2 = 0.15  # of furniture, to count as a flat rectangle of the room
+_NEAREST_M = 0.5
+_ARM_M = 0.45  # how far from a thing one stands to use it
+
+
+class RadarFrame:
+    """Between the room's frame (z = 0 on the floor) and the radar's."""
+
+    def __init__(self, shell: Shell):
+        cosine, sine = np.cos(shell.radar_yaw_rad), np.sin(shell.radar_yaw_rad)
+        self.room_from_radar = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        self.origin_m = np.array(shell.radar_m, float)
+        self.yaw_rad = shell.radar_yaw_rad
+
+    def points(self, room_m: Float[Array, "*n 3"]) -> Float[Array, "*n 3"]:
+        """Points of the room's frame in the radar's."""
+        return (room_m - self.origin_m) @ self.room_from_radar
+
+    def vectors(self, room: Float[Array, "*n 3"]) -> Float[Array, "*n 3"]:
+        """Directions of the room's frame in the radar's."""
+        return room @ self.room_from_radar
+
+    def angle(self, room_rad: float) -> float:
+        """A direction from +x towards +y."""
+        return float(np.angle(np.exp(1j * (room_rad - self.yaw_rad))))
+
+    def boxes(self, boxes: Boxes) -> Boxes:
+        """Boxes of the room's frame in the radar's."""
+        return Boxes(
+            centre_m=self.points(boxes.centre_m),
+            half_m=boxes.half_m,
+            yaw_rad=boxes.yaw_rad - self.yaw_rad,
+            names=boxes.names,
+            piece=boxes.piece,
+        )
+
+
+def face_materials(mesh: Mesh) -> PerFace:
+    """Index into MATERIAL_NAMES of every face."""
+    index = np.array([MATERIAL_NAMES.index(look.material) for look in mesh.looks])
+    return index[mesh.look]
+
+
+def planes_of(shell: Shell, placed: tuple[Placed, ...], palette: Palette, frame: RadarFrame) -> tuple[Plane, ...]:
+    """Floor, ceiling, walls, and the large faces of box-shaped furniture: tops and panels."""
+    w, d, h = shell.size_m
+    x, y, z = np.eye(3)
+    found = [
+        _plane("floor", (w / 2, d / 2, 0.0), z, x, (w / 2, d / 2), palette.floor.material, frame),
+        _plane("ceiling", (w / 2, d / 2, h), -z, x, (w / 2, d / 2), palette.ceiling.material, frame),
+        _plane("wall", (w / 2, d, h / 2), -y, x, (w / 2, h / 2), palette.wall.material, frame),
+        _plane("wall", (0.0, d / 2, h / 2), x, y, (d / 2, h / 2), palette.wall.material, frame),
+        _plane("wall", (w, d / 2, h / 2), -x, y, (d / 2, h / 2), palette.wall.material, frame),
+        _plane("wall", (w / 2, 0.0, h / 2), y, x, (w / 2, h / 2), palette.wall.material, frame),
+    ]
+    for item in placed:
+        for part in item.piece.parts:
+            if part.shape == "box":
+                found += _faces(item, np.array(part.low_m), np.array(part.high_m), part.look.material, frame)
+    return tuple(found)
+
+
+def _faces(
+    item: Placed, low: Float[Array, "3"], high: Float[Array, "3"], material: str, frame: RadarFrame
+) -> list[Plane]:
+    half, middle = (high - low) / 2, (low + high) / 2
+    found = []
+    for axis, sign, run in ((2, 1.0, 0), (0, 1.0, 1), (0, -1.0, 1), (1, 1.0, 0), (1, -1.0, 0)):
+        other = 3 - axis - run
+        if 4 * half[run] * half[other] < _MIN_FACE_M2:
+            continue
+        normal, along = np.zeros(3), np.zeros(3)
+        normal[axis], along[run] = sign, 1.0
+        ends = item.points(np.stack([middle + sign * half[axis] * np.eye(3)[axis], normal, along, np.zeros(3)]))
+        kind = "top" if axis == 2 else "panel"
+        size = (float(half[run]), float(half[other]))
+        found.append(_plane(kind, ends[0], ends[1] - ends[3], ends[2] - ends[3], size, material, frame))
+    return found
+
+
+def _plane(
+    kind: str,
+    centre: tuple | np.ndarray,
+    normal: Vec3,
+    axis_u: Vec3,
+    half: tuple[float, float],
+    material: str,
+    frame: RadarFrame,
+) -> Plane:
+    normal, axis_u = frame.vectors(normal), frame.vectors(axis_u)
+    return Plane(
+        kind=kind,
+        centre_m=frame.points(np.array(centre, float)),
+        normal=normal,
+        axis_u=axis_u,
+        axis_v=np.cross(normal, axis_u),
+        half_size_m=half,
+        material=material,
+    )
+
+
+def seats_of(placed: tuple[Placed, ...], frame: RadarFrame) -> tuple[Seat, ...]:
+    """Every place to sit of the room's furniture."""
+    seats = []
+    for item in placed:
+        for seat in item.piece.seats:
+            place = item.points(np.array([[seat.x_m, seat.y_m, seat.height_m]]))[0]
+            seats.append(
+                Seat(
+                    position_m=frame.points(place),
+                    facing_rad=frame.angle(item.yaw_rad - np.pi / 2),
+                    size_m=(seat.width_m, seat.depth_m),
+                )
+            )
+    return tuple(seats)
+
+
+def landmarks_of(placed: tuple[Placed, ...], free: FreeSpace, frame: RadarFrame) -> tuple[Landmark, ...]:
+    """Doors, windows, tables, beds and counters; one stands before their front, or where there is room beside them."""
+    found = []
+    for item in placed:
+        if not item.piece.landmark:
+            continue
+        low, high = item.piece.low_m, item.piece.high_m
+        middle = (low + high) / 2
+        best = None
+        for side, (u, v) in enumerate(((0, -1), (0, 1), (1, 0), (-1, 0))):
+            if item.piece.on_wall and side:
+                break
+            stand = middle.copy()
+            stand[0] += u * ((high[0] - low[0]) / 2 + _ARM_M)
+            stand[1] = middle[1] + v * ((high[1] - low[1]) / 2 + _ARM_M)
+            stand[2] = 0.0
+            there, ahead = frame.points(item.points(np.stack([stand, stand - np.array([u, v, 0.0])])))
+            room = _clearance(free, there[:2])
+            if best is None or room > best[0] + 0.1 * side:
+                best = (room, there, ahead - there)
+        assert best is not None
+        found.append(
+            Landmark(
+                kind=item.piece.landmark,
+                position_m=frame.points(item.points(middle[None]))[0],
+                approach_m=(float(best[1][0]), float(best[1][1])),
+                facing_rad=float(np.arctan2(best[2][1], best[2][0])),
+            )
+        )
+    return tuple(found)
+
+
+def _clearance(free: FreeSpace, place: Float[Array, "2"]) -> float:
+    """Share of the squares within a body's reach of a place that are free."""
+    x, y = np.meshgrid(free.x_m - place[0], free.y_m - place[1])
+    near = np.hypot(x, y) < 0.28
+    return float(free.is_free[near].mean()) if near.any() else 0.0
+
+
+def free_space_of(shell: Shell, boxes: Boxes, frame: RadarFrame) -> FreeSpace:
+    """On the grid that reconstructed scenes have; all of the free floor counts as seen. Boxes in the radar's frame."""
+    x_m = np.arange(-HALF_WIDTH_M, HALF_WIDTH_M - 1e-9, CELL_M) + CELL_M / 2
+    y_m = np.arange(0, LENGTH_M - 1e-9, CELL_M) + CELL_M / 2
+    above = Boxes(
+        centre_m=boxes.centre_m + np.array([0.0, 0.0, shell.radar_m[2]]), half_m=boxes.half_m, yaw_rad=boxes.yaw_rad
+    )
+    x, y = np.meshgrid(x_m, y_m)
+    in_room = np.stack([x, y, np.zeros_like(x)], axis=-1) @ frame.room_from_radar.T + frame.origin_m
+    inside = (in_room[..., 0] > 0) & (in_room[..., 0] < shell.size_m[0])
+    inside &= (in_room[..., 1] > 0) & (in_room[..., 1] < shell.size_m[1])
+    is_free = inside & ~covered(above, x_m, y_m) & (np.hypot(x, y) > _NEAREST_M)
+    return FreeSpace(x_m=x_m, y_m=y_m, is_free=is_free, is_seen=is_free.copy())

@@ -1,0 +1,13 @@
+"""The bundled sample room: a photo to begin with, made by tools/make_sample_room.py."""
+
+from pathlib import Path
+
+from mmweaver.core.records import RgbdPhoto
+from mmweaver.scene.read_photo import read_photo
+
+SAMPLE_FOLDER = Path(__file__).resolve().parents[1] / "sample"
+
+
+def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:
+    """The sample room's photo, and what `read_photo` assumed of it."""
+    return read_photo(SAMPLE_FOLDER / "rgb.png", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")

@@ -1,0 +1,1 @@
+"""What each pixel shows: class masks from files, our own segmenter and pretrained ones."""

@@ -1,0 +1,120 @@
+"""A small segmenter of our own: mostly the geometry of the depth grid in, a class for each cell out.
+
+    13 channels a cell (about 80 x 60)                      class scores a cell
+      see `segmenter_features`                                   |
+         |                                                       |
+        32 --/2-- 48 --/2-- 80 --/2-- 128 -x2-- 80 --x2-- 48 --x2-- 32
+                   \\________________\\____________/______________/
+
+It works offline and knows thirteen groups of COCO-Stuff's classes. Trained on procedural rooms alone, see
+`training.segmenter_training` and model_cards/segmenter.md.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import ClassMask, RgbdPhoto
+from mmweaver.core.shapes import Array
+from mmweaver.scene.coco_stuff import NAMES
+from mmweaver.scene.photo.depth_grid import make_grid
+from mmweaver.scene.segmentation.segmenter_features import CHANNELS, EVERY, grid_features
+
+WEIGHTS = Path(__file__).parents[2] / "weights" / "segmenter.safetensors"
+WIDTHS = (32, 48, 80, 128)
+# Each group is told by its first class; what is in none of them is "unlabeled".
+GROUPS: tuple[tuple[str, ...], ...] = (
+    ("unlabeled",),
+    ("wall-other", "wall-brick", "wall-concrete", "wall-panel", "wall-stone", "wall-tile", "wall-wood"),
+    ("floor-other", "floor-marble", "floor-stone", "floor-tile", "floor-wood", "carpet", "rug", "mat"),
+    ("ceiling-other", "ceiling-tile"),
+    ("window-other", "window"),
+    ("mirror-stuff", "mirror"),
+    ("door-stuff", "door"),
+    ("couch", "bed", "pillow", "blanket"),
+    ("curtain", "cloth", "towel", "textile-other"),
+    ("chair", "bench"),
+    ("table", "desk-stuff", "desk", "dining table"),
+    ("cabinet", "cupboard", "shelf", "furniture-other", "counter"),
+    ("tv", "laptop"),
+    ("refrigerator", "oven", "microwave", "sink", "metal"),
+)
+GROUP_NAMES = tuple(group[0] for group in GROUPS)
+
+
+def group_of_classes(names: tuple[str, ...]) -> Int[Array, " name"]:
+    """The group of each class name; 0 for what is in none."""
+    group = {name: index for index, members in enumerate(GROUPS) for name in members}
+    return np.array([group.get(name, 0) for name in names])
+
+
+def make_network() -> Any:
+    """The network, with random weights; call it with (batch, 13, row, column)."""
+    import torch
+    from torch import nn
+
+    def block(inside: int, outside: int, stride: int = 1) -> nn.Module:
+        return nn.Sequential(
+            nn.Conv2d(inside, outside, 3, stride, 1, bias=False), nn.BatchNorm2d(outside), nn.ReLU(),
+            nn.Conv2d(outside, outside, 3, 1, 1, bias=False), nn.BatchNorm2d(outside), nn.ReLU(),
+        )  # fmt: skip
+
+    class Network(nn.Module):
+        def __init__(self) -> None:
+            super().__init__()
+            a, b, c, d = WIDTHS
+            self.stem = block(CHANNELS, a)
+            self.down = nn.ModuleList([block(a, b, 2), block(b, c, 2), block(c, d, 2)])
+            self.up = nn.ModuleList([block(d + c, c), block(c + b, b), block(b + a, a)])
+            self.head = nn.Conv2d(a, len(GROUPS), 1)
+
+        def forward(self, cells: torch.Tensor) -> torch.Tensor:
+            levels = [self.stem(cells)]
+            for step in self.down:
+                levels.append(step(levels[-1]))
+            out = levels.pop()
+            for step in self.up:
+                skip = levels.pop()
+                out = nn.functional.interpolate(out, size=skip.shape[-2:], mode="bilinear", align_corners=False)
+                out = step(torch.cat([out, skip], dim=1))
+            return self.head(out)
+
+    return Network()
+
+
+def load_network(path: Path = WEIGHTS) -> Any:
+    """The trained network, ready to run. Raises InputError where its file is missing or holds something else."""
+    from safetensors.torch import load_file
+
+    network = make_network()
+    try:
+        network.load_state_dict({name: value.float() for name, value in load_file(path).items()}, strict=False)
+    except Exception as error:
+        reason = str(error).splitlines()[0][:120]
+        raise InputError(
+            f"{path} holds no weights of the built-in segmenter ({reason}); install mmweaver anew"
+        ) from None
+    return network.eval()
+
+
+def groups_of_cells(features: Float[Array, "13 row column"], network: Any) -> Int[Array, "row column"]:
+    """The group of each cell."""
+    import torch
+
+    with torch.inference_mode():
+        return network(torch.from_numpy(features)[None])[0].argmax(dim=0).numpy()
+
+
+def segment_builtin(photo: RgbdPhoto) -> ClassMask:
+    """The classes of a photo by the network that comes with the project."""
+    grid = make_grid(photo)
+    groups = groups_of_cells(grid_features(grid), load_network())
+    size = EVERY * (photo.intrinsics.width // grid.intrinsics.width)
+    numbers = np.array([NAMES.index(name) for name in GROUP_NAMES], np.uint8)
+    cells = np.repeat(np.repeat(numbers[groups], size, axis=0), size, axis=1)
+    height, width = photo.intrinsics.height, photo.intrinsics.width
+    index = np.pad(cells, ((0, max(0, height - len(cells))), (0, max(0, width - cells.shape[1]))))[:height, :width]
+    return ClassMask(index=index, names=NAMES)

@@ -1,0 +1,108 @@
+"""Where training runs: which device, which precision, and which of how many processes this is."""
+
+import os
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from mmweaver.core.errors import InputError
+
+PRECISIONS = ("auto", "float32", "bf16")
+CPU = torch.device("cpu")
+Share = tuple[int, int]  # (this process, all processes)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComputeDevice:
+    """One process of a training. Alone by default; `ComputeDevice.chosen` joins the processes that torchrun started."""
+
+    device: torch.device = CPU
+    precision: str = "float32"
+    share: Share = (0, 1)
+    accelerator: Any = None  # of accelerate, where there are several processes
+
+    @classmethod
+    def chosen(cls, device: str = "auto", precision: str = "auto") -> "ComputeDevice":
+        """The workplace asked for.
+
+        "auto" takes a GPU where there is one, and bf16 there; a CPU computes in float32. Under `torchrun` the
+        processes find each other, each on its own GPU or all on CPUs. Raises InputError for a device that is not there.
+        """
+        if precision not in PRECISIONS:
+            raise InputError(f"precision must be one of {', '.join(PRECISIONS)}, not {precision!r}")
+        place = _device(device)
+        accelerator, share = None, (0, 1)
+        if int(os.environ.get("WORLD_SIZE", "1")) > 1:
+            accelerator = _accelerator(place)
+            place, share = accelerator.device, (accelerator.process_index, accelerator.num_processes)
+        if precision == "auto":
+            precision = "bf16" if place.type == "cuda" else "float32"
+        return cls(device=place, precision=precision, share=share, accelerator=accelerator)
+
+    @property
+    def is_first(self) -> bool:
+        """Whether this process writes files and speaks."""
+        return self.share[0] == 0
+
+    def joined(self, module: nn.Module) -> nn.Module:
+        """The module with gradients that are averaged over all processes."""
+        return module if self.accelerator is None else self.accelerator.prepare_model(module)
+
+    def mean(self, values: Tensor) -> Tensor:
+        """The mean over all processes, the same in each."""
+        return values if self.accelerator is None else self.accelerator.reduce(values, reduction="mean")
+
+    def wait(self) -> None:
+        """Until all processes are here."""
+        if self.accelerator is not None:
+            self.accelerator.wait_for_everyone()
+
+    def arithmetic(self) -> AbstractContextManager[Any]:
+        """Products of matrices in the precision that was chosen; all else stays in float32."""
+        return torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision == "bf16")
+
+    def moved(self, batch: Any) -> Any:
+        """Tensors, and dataclasses, lists, tuples and dicts of them, on this process's device."""
+        return moved(batch, self.device)
+
+
+def moved(batch: Any, device: torch.device) -> Any:
+    """The same batch on a device.
+
+    >>> moved({"a": [torch.zeros(2)], "b": "name"}, torch.device("meta"))["a"][0].device.type
+    'meta'
+    """
+    if isinstance(batch, Tensor):
+        return batch.to(device)
+    if is_dataclass(batch) and not isinstance(batch, type):
+        return type(batch)(**{field.name: moved(getattr(batch, field.name), device) for field in fields(batch)})
+    if isinstance(batch, dict):
+        return {name: moved(value, device) for name, value in batch.items()}
+    if isinstance(batch, list | tuple):
+        return type(batch)(moved(value, device) for value in batch)
+    return batch
+
+
+def _device(name: str) -> torch.device:
+    if name == "auto":
+        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    try:
+        device = torch.device(name)
+        torch.zeros(1, device=device)
+    except Exception as error:
+        reason = str(error).splitlines()[0][:120]
+        raise InputError(f"device {name!r} cannot be used here ({reason}); take auto or cpu") from None
+    return device
+
+
+def _accelerator(device: torch.device) -> Any:
+    try:
+        from accelerate import Accelerator
+    except ImportError:
+        raise InputError(
+            "several processes need accelerate; install it with: pip install 'mmweaver[training]'"
+        ) from None
+    return Accelerator(cpu=device.type == "cpu")

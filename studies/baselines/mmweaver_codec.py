@@ -1,0 +1,30 @@
+"""Our own codec as one of them: whole .mmw files, header and checksums included."""
+
+import tempfile
+from pathlib import Path
+
+from mmweaver.compression.mmw_codec import compressed, read_cube
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import RadarCube
+from mmweaver.core.shapes import CubeValues
+from studies.baselines.codec_interface import Codec
+
+
+class Mmw(Codec):
+    """Scatterers, static layer and residual in a .mmw file; with `keep_noise` cells of noise count as much as any."""
+
+    def __init__(self, *, keep_noise: bool = False):
+        self.keep_noise = keep_noise
+        self.name = "mmw_keep_noise" if keep_noise else "mmw"
+
+    def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
+        try:
+            return compressed(cube, num_bytes=num_bytes, keep_noise=self.keep_noise)
+        except InputError:
+            return None
+
+    def decoded(self, data: bytes, like: RadarCube) -> CubeValues:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "cube.mmw"
+            path.write_bytes(data)
+            return read_cube(path).values

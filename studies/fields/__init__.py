@@ -1,0 +1,1 @@
+"""How well continuous fields and codecs hold radar cubes."""

@@ -1,0 +1,154 @@
+"""What codecs keep of a radar cube in 2.5 to 40 KB: ours, the classical ones, tensors and the paper's INR.
+
+python -m studies.fields.codecs --out results --data <recordings>        (needs the extra `codecs`)
+"""
+
+import argparse
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.records import RadarCube
+from mmweaver.core.registry import Registry
+from mmweaver.metrics.baselines import FLOORS
+from mmweaver.metrics.cells import cells_of
+from mmweaver.metrics.cube_errors import nmse_db
+from mmweaver.metrics.scorecard import METRICS
+from studies.baselines.codec_interface import Codec
+from studies.baselines.coefficient_codecs import KltContext, TopCells, TopCoefficients, Wavelets
+from studies.baselines.float_compressors import Blosc2, Sperr, Sz3, Zfp
+from studies.baselines.mmweaver_codec import Mmw
+from studies.baselines.network_codecs import InrInBytes
+from studies.baselines.picture_codecs import Jpeg2000, JpegXl
+from studies.baselines.tensor_codecs import Cp, TensorTrain, TruncatedSvd, Tucker
+from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
+from studies.report.result_files import write_result
+
+EXPERIMENT = "codecs"
+SIZES = (2504, 5009, 10018, 20036, 40072)
+SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db")
+
+CODECS: Registry[Callable[[], Codec]] = Registry(
+    "codec",
+    [
+        ("mmw", Mmw), ("mmw_keep_noise", lambda: Mmw(keep_noise=True)),
+        ("klt_context", KltContext), ("top_klt", TopCoefficients), ("top_cells", TopCells),
+        ("wavelets", Wavelets), ("sz3", Sz3), ("sperr", Sperr), ("zfp", Zfp), ("blosc2", Blosc2),
+        ("jpeg2000", Jpeg2000), ("jpegxl", JpegXl), ("svd", TruncatedSvd), ("tucker", Tucker), ("cp", Cp),
+        ("tensor_train", TensorTrain), ("inr_paper", lambda: InrInBytes("paper")),
+        ("inr_smooth_short", lambda: InrInBytes("smooth_short")),
+    ],
+)  # fmt: skip
+
+
+def codec_row(codec: Codec, signal: ExperimentSignal, num_bytes: int) -> dict[str, Any]:
+    """One codec at one size on one cube; scores are None where it cannot be so small."""
+    cube = signal.cube
+    start, start_cpu = time.perf_counter(), time.process_time()
+    data = codec.encoded(cube, num_bytes)
+    encode_s, encode_cpu_s = time.perf_counter() - start, time.process_time() - start_cpu
+    decode_s: float | None = None
+    scores: dict[str, float | None] = dict.fromkeys(SCORES)
+    if data is not None:
+        if len(data) > num_bytes:
+            raise RuntimeError(f"{codec.name} wrote {len(data)} bytes where {num_bytes} were allowed")
+        start = time.perf_counter()
+        values = codec.decoded(data, replace(cube, values=np.zeros_like(cube.values)))
+        decode_s = round(time.perf_counter() - start, 3)
+        scores = errors_db(values, cube)
+    return {
+        "dataset": {
+            "name": signal.name,
+            "origin": signal.origin,
+            "split": "one sequence, coded and scored on all its cells",
+            "sha256": signal.digest,
+            "shape": list(cube.grid.shape),
+        },
+        "n": 1,
+        "seeds": [0],
+        "interval": None,
+        "seconds": {"encode": round(encode_s, 2), "encode_cpu": round(encode_cpu_s, 2), "decode": decode_s},
+        "size": {"bytes_allowed": num_bytes, "bytes": None if data is None else len(data)},
+        "metrics": _metrics(scores, cube),
+    }
+
+
+def errors_db(values: np.ndarray, truth: RadarCube) -> dict[str, float | None]:
+    """NMSE over all, active and moving cells; None where there are none."""
+    cells = cells_of(truth)
+    where = (None, cells.is_active, cells.is_moving)
+    found = [nmse_db(values, truth.values, chosen) for chosen in where]
+    return {name: round(value, 2) if math.isfinite(value) else None for name, value in zip(SCORES, found, strict=True)}
+
+
+def _metrics(scores: dict[str, Any], truth: RadarCube) -> dict[str, Any]:
+    floors = {name: errors_db(make(truth).values, truth) for name, make in FLOORS.items()}
+    return {
+        name: {
+            "value": scores[name],
+            "unit": METRICS[name].unit,
+            "definition": METRICS[name].definition,
+            "version": METRICS[name].version,
+            "floor": {floor: values[name] for floor, values in floors.items()},
+        }
+        for name in SCORES
+    }
+
+
+def run(
+    out: Path,
+    codec_names: list[str],
+    signal_names: list[str],
+    data: Path | None,
+    sizes: tuple[int, ...],
+    *,
+    keep: bool = False,
+) -> None:
+    """Every codec on every signal at every size; one file a codec, written when the codec is done.
+
+    With `keep`, rows of other signals stay as they are in files of an earlier run, each with its own commit.
+    """
+    signals = [SIGNALS[name](data) for name in signal_names]
+    for name in codec_names:
+        codec = CODECS[name]()
+        rows = [codec_row(codec, signal, size) for signal in signals for size in sizes]
+        rows = in_order(rows + (kept_rows(out / EXPERIMENT / f"{name}.json", signal_names) if keep else []))
+        path = write_result(out, experiment=EXPERIMENT, method=name, config={"sizes": list(sizes)}, rows=rows)
+        print(json.dumps({"codec": name, "written": str(path)}), flush=True)  # noqa: T201
+
+
+def kept_rows(path: Path, measured: list[str]) -> list[dict[str, Any]]:
+    """Rows of an earlier run of signals that were not measured again."""
+    if not path.is_file():
+        return []
+    record = json.loads(path.read_text(encoding="utf-8"))
+    return [{"commit": record["commit"], **row} for row in record["rows"] if row["dataset"]["name"] not in measured]
+
+
+def in_order(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows by signal, as SIGNALS has them."""
+    return sorted(rows, key=lambda row: list(SIGNALS).index(row["dataset"]["name"]))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
+    parser.add_argument("--codecs", nargs="*", default=list(CODECS))
+    parser.add_argument("--signals", nargs="*", default=None)
+    parser.add_argument("--sizes", nargs="*", type=int, default=SIZES)
+    parser.add_argument("--keep", action="store_true", help="keep the rows of signals that are not measured now")
+    arguments = parser.parse_args()
+    every = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]
+    signals = arguments.signals or every
+    run(arguments.out, arguments.codecs, signals, arguments.data, tuple(arguments.sizes), keep=arguments.keep)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,127 @@
+"""How well fields hold a radar sequence, recipe by recipe, every row beside its floors.
+
+python -m studies.fields.field_fidelity --out results --data <recordings>
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.records import RadarCube
+from mmweaver.fields.field import SignalField
+from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
+from mmweaver.fields.scatterers.scatterer_field import ScattererField
+from mmweaver.metrics.scorecard import scorecard
+from mmweaver.training.single_signal import RECIPES, fit
+from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
+from studies.report.result_files import write_result
+
+EXPERIMENT = "field_fidelity"
+BYTES_PER_VALUE = 4  # float32
+BYTES_PER_CELL = 8  # complex64
+PAPER_VALUES = 10_018  # of the paper's INR over 20 frames
+Fitter = Callable[[RadarCube], tuple[SignalField, float]]
+
+
+def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
+    """Fits a field to one signal and scores it: what it stores, in which type, against the same frames in theirs."""
+    field, seconds = make(signal.cube)
+    metrics = scorecard(field.cube(), signal.cube, twin=signal.twin).as_json()
+    if signal.noise_free is not None:
+        for name, entry in scorecard(signal.noise_free, signal.cube).as_json().items():
+            metrics[name]["noise_free"] = entry["value"]
+    return {
+        "dataset": {
+            "name": signal.name,
+            "origin": signal.origin,
+            "split": "one sequence, fitted and scored on all its cells",
+            "sha256": signal.digest,
+            "shape": list(signal.cube.grid.shape),
+        },
+        "n": 1,
+        "seeds": [seed],
+        "interval": None,
+        "seconds": {"fit": round(seconds, 2)},
+        "size": size_of(field),
+        "metrics": metrics,
+    }
+
+
+def size_of(field: SignalField) -> dict[str, Any]:
+    """Bytes of the field and of the frames it stands for, with the type of each."""
+    frames, *cell = field.grid.shape
+    cells = frames * cell[0] * cell[1] * cell[2]
+    return {
+        "values": field.num_values,
+        "bytes": BYTES_PER_VALUE * field.num_values,
+        "dtype": "float32",
+        "frames": frames,
+        "cube_bytes": BYTES_PER_CELL * cells,
+        "cube_dtype": "complex64",
+        "ratio": round(BYTES_PER_CELL * cells / (BYTES_PER_VALUE * field.num_values), 3),
+    }
+
+
+def recipe_fitter(name: str, seed: int = 0) -> Fitter:
+    """The paper's INR by one of the recipes."""
+
+    def make(cube: RadarCube) -> tuple[SignalField, float]:
+        result = fit(cube, RECIPES[name], seed=seed)
+        return result.field, result.seconds
+
+    return make
+
+
+def scatterer_recipe(cube: RadarCube) -> ScattererRecipe:
+    """Scatterers, static layer and gains in no more numbers than the paper's INR of 20 frames."""
+    return ScattererRecipe(
+        num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_static=len(cube.values) > 1, with_calibration=True
+    )
+
+
+def fit_scatterers(cube: RadarCube) -> tuple[ScattererField, float]:
+    """Scatterers over a static layer, in no more values than the paper's INR; and the seconds of CPU it took."""
+    start = time.process_time()
+    field = ScattererField.fit(cube, scatterer_recipe(cube))
+    return field, time.process_time() - start
+
+
+def run_scatterers(out: Path, signal_names: tuple[str, ...], data: Path | None) -> Path:
+    """The scatterer field on every signal."""
+    rows = [fidelity_row(SIGNALS[name](data), fit_scatterers) for name in signal_names]
+    config = asdict(ScattererRecipe(num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_calibration=True))
+    return write_result(out, experiment=EXPERIMENT, method="scatterers", config=config, rows=rows)
+
+
+def run(out: Path, recipe_names: tuple[str, ...], signal_names: tuple[str, ...], data: Path | None) -> list[Path]:
+    """Every recipe on every signal; one file a recipe."""
+    signals = [SIGNALS[name](data) for name in signal_names]
+    paths = []
+    for name in recipe_names:
+        rows = [fidelity_row(signal, recipe_fitter(name)) for signal in signals]
+        config = asdict(RECIPES[name])
+        paths.append(write_result(out, experiment=EXPERIMENT, method=f"inr_{name}", config=config, rows=rows))
+    return paths
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
+    parser.add_argument("--recipes", nargs="*", default=["paper", "smooth_short"])
+    parser.add_argument("--without-scatterers", action="store_true")
+    parser.add_argument("--signals", nargs="*", default=None)
+    arguments = parser.parse_args()
+    every = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]
+    names = tuple(arguments.signals or every)
+    if arguments.recipes:
+        run(arguments.out, tuple(arguments.recipes), names, arguments.data)
+    if not arguments.without_scatterers:
+        run_scatterers(arguments.out, names, arguments.data)
+
+
+if __name__ == "__main__":
+    main()

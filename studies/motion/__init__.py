@@ -1,0 +1,1 @@
+"""Sentences and motions against text corpora and motion capture."""

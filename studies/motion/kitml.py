@@ -1,0 +1,191 @@
+"""How many real sentences are understood, and how many of those rightly? 6,082 sentences of KIT-ML.
+
+python -m studies.motion.kitml --sentences <folder of kitml_text> --out results
+python -m studies.motion.kitml --sentences <folder> --list        # the sentences to judge, with their readings
+
+The sentences are split by motion into a half that the lexicon was made on and a half for checking. 200 understood
+sentences of the checking half, drawn by a fixed seed, were judged by hand: right if every movement that the sentence
+names is shown in its order, with its side, direction, hand or foot where one is said. The verdicts are kept beside the
+result (results/kitml/judgements.json) with the reading they were given for; a reading that has changed since makes its
+verdict void, and the result says how many are. Three earlier draws (judgements_first.json and so on) are
+kept as they were judged: their faults were mended, so they are no longer a check.
+"""
+
+import argparse
+import hashlib
+import json
+import sys
+from collections import Counter
+from collections.abc import Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.language.sentence import parse
+from studies.report.result_files import write_result
+
+JUDGED = 200
+Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | wrong), why
+SEED = 2026
+EARLIER = ("first", "second", "third")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sentence:
+    """One annotation: its id, the motion it belongs to, its words."""
+
+    name: str
+    motion: str
+    text: str
+
+    @property
+    def is_for_checking(self) -> bool:
+        """Half of the motions, by a hash of their number; the lexicon never saw their sentences."""
+        return hashlib.sha256(self.motion.encode()).digest()[0] % 2 == 1
+
+
+def sentences_of(path: Path) -> list[Sentence]:
+    """All sentences but those of the mirrored motions, which are the same ones with sides swapped."""
+    annotations = json.loads(path.read_text(encoding="utf-8"))
+    return [
+        Sentence(name=note["seg_id"], motion=motion, text=note["text"])
+        for motion, record in annotations.items()
+        if not motion.startswith("M")
+        for note in record["annotations"]
+    ]
+
+
+def reading_of(plan: MotionPlan) -> str:
+    """A plan in a row: 'walk forwards x4 | turn left'."""
+    parts = []
+    for step in plan.steps:
+        doing = step.upper if step.lower == "stand" and step.upper else "+".join(filter(None, (step.lower, step.upper)))
+        said = [
+            doing,
+            step.direction,
+            f"{step.hand} hand" if step.hand else "",
+            f"{step.foot} foot" if step.foot else "",
+        ]
+        said += [f"bend {step.arc_deg:g}" if step.arc_deg else "", f"angle {step.turn_deg:g}" if step.turn_deg else ""]
+        said += [step.style, f"to {step.target}" if step.target else "", f"facing {step.facing}" if step.facing else ""]
+        said += [{-1: "slowly", 0: "", 1: "fast"}[step.speed], f"x{step.count}" if step.count else ""]
+        parts.append(" ".join(word for word in said if word))
+    return " | ".join(parts)
+
+
+def understood(sentences: list[Sentence]) -> dict[str, str]:
+    """Name -> reading of the sentences that are understood."""
+    found = {}
+    for sentence in sentences:
+        try:
+            found[sentence.name] = reading_of(parse(sentence.text))
+        except InputError:
+            continue
+    return found
+
+
+def drawn(readings: dict[str, str], checking: list[Sentence], before: Collection[str]) -> list[str]:
+    """The names to judge: the first 200 understood ones of a fixed order of the checking half, none judged before."""
+    order = stream(SEED, "kitml", "judged").permutation(len(checking))
+    return [checking[k].name for k in order if checking[k].name in readings and checking[k].name not in before][:JUDGED]
+
+
+def result_row(
+    sentences: list[Sentence], judgements: Judgements, before: dict[str, Judgements], digest: str
+) -> dict[str, Any]:
+    """Shares over all sentences and each half, and what the judgements say."""
+    readings = understood(sentences)
+    checking = [sentence for sentence in sentences if sentence.is_for_checking]
+    developed = [sentence for sentence in sentences if not sentence.is_for_checking]
+    names = drawn(readings, checking, {name for earlier in before.values() for name in earlier})
+    valid = [name for name in names if judgements.get(name, {}).get("reading") == readings[name]]
+    wrong = sum(judgements[name]["verdict"] == "wrong" for name in valid)
+    seen = {_plain(sentence.text) for sentence in developed}
+    metrics = {
+        "understood": _share(len(readings), len(sentences), "sentences that give a plan, of all"),
+        "understood_checking_half": _share(
+            sum(s.name in readings for s in checking), len(checking), "the same, of the half not developed on"
+        ),
+        "understood_new_sentences": _share(
+            sum(s.name in readings for s in checking if _plain(s.text) not in seen),
+            sum(_plain(s.text) not in seen for s in checking),
+            "the same, of checking sentences whose words occur in no sentence of the other half",
+        ),
+        **{
+            f"wrong_{name}_draw": _share(
+                sum(verdict["verdict"] == "wrong" for verdict in earlier.values()),
+                len(earlier),
+                "an earlier 200 of the checking half, judged before the faults found in them were mended",
+            )
+            for name, earlier in before.items()
+        },
+        "wrong": _share(wrong, len(valid), "judged wrong by hand, of understood sentences of the checking half"),
+    }
+    activities = Counter(part.split()[0] for reading in readings.values() for part in reading.split(" | "))
+    return {
+        "dataset": {"name": "KIT-ML sentences", "sha256": digest, "split": "motions by hash, half for checking"},
+        "n": len(sentences),
+        "seeds": [SEED],
+        "judged": len(valid),
+        "judged_void": len(names) - len(valid),
+        "activities_named": dict(activities.most_common()),
+        "metrics": metrics,
+    }
+
+
+def _share(part: int, whole: int, definition: str) -> dict[str, Any]:
+    """A share with its 95 % Wilson interval."""
+    share = part / max(whole, 1)
+    z = 1.96
+    centre = (share + z * z / (2 * max(whole, 1))) / (1 + z * z / max(whole, 1))
+    half = (
+        z / (1 + z * z / max(whole, 1)) * (share * (1 - share) / max(whole, 1) + (z / (2 * max(whole, 1))) ** 2) ** 0.5
+    )
+    return {
+        "value": round(share, 4), "interval": [round(max(centre - half, 0.0), 4), round(min(centre + half, 1.0), 4)],
+        "n": whole, "unit": "share", "definition": definition, "version": 1, "floor": None,
+    }  # fmt: skip
+
+
+def _plain(text: str) -> str:
+    return " ".join("".join(letter if letter.isalnum() else " " for letter in text.lower()).split())
+
+
+def run(out: Path, folder: Path) -> Path:
+    """Writes results/kitml/reading.json; judgements are read from results/kitml/judgements.json."""
+    path = folder / "kitml_annotations.json"
+    judgements, before = _judgements(out, "judgements"), _before(out)
+    row = result_row(sentences_of(path), judgements, before, hashlib.sha256(path.read_bytes()).hexdigest())
+    return write_result(out, experiment="kitml", method="reading", config={"judged": JUDGED}, rows=[row])
+
+
+def _judgements(out: Path, name: str) -> Judgements:
+    path = out / "kitml" / f"{name}.json"
+    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+
+
+def _before(out: Path) -> dict[str, Judgements]:
+    return {name: _judgements(out, f"judgements_{name}") for name in EARLIER}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sentences", type=Path, required=True, help="folder with kitml_annotations.json")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    parser.add_argument("--list", action="store_true", help="only list the sentences to judge, as JSON")
+    arguments = parser.parse_args()
+    if arguments.list:
+        sentences = sentences_of(arguments.sentences / "kitml_annotations.json")
+        readings, texts = understood(sentences), {s.name: s.text for s in sentences}
+        before = {name for earlier in _before(arguments.out).values() for name in earlier}
+        names = drawn(readings, [s for s in sentences if s.is_for_checking], before)
+        json.dump([{"name": n, "text": texts[n], "reading": readings[n]} for n in names], sys.stdout, indent=1)
+        return
+    run(arguments.out, arguments.sentences)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,34 @@
+"""The pictures of docs/motion.md: every activity of the library as a strip of skeletons.
+
+python -m studies.motion.motion_sheet --out docs/images
+"""
+
+import argparse
+from pathlib import Path
+
+from mmweaver.core.records import PoseSequence
+from mmweaver.figures.motion_strip import draw_sheet
+from mmweaver.motion.empty_floor import act_out
+from mmweaver.motion.language.activities import BODY, HANDS, Activity
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.timing import natural_s
+
+SEED = 1
+
+
+def strip_of(activity: Activity) -> tuple[str, PoseSequence]:
+    """An activity's name and its example acted out in its natural time."""
+    seconds = max(1.3 * activity.natural_s, 1.1 * natural_s(parse(activity.example)), 1.6)
+    return activity.name, act_out(activity.example, duration_s=seconds, seed=SEED, height_m=1.75).pose
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("docs/images"))
+    arguments = parser.parse_args()
+    draw_sheet([strip_of(activity) for activity in BODY], arguments.out / "motions_body.png")
+    draw_sheet([strip_of(activity) for activity in HANDS], arguments.out / "motions_hands.png")
+
+
+if __name__ == "__main__":
+    main()

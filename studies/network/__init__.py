@@ -1,0 +1,1 @@
+"""The learned method against physics, oracles and baselines."""

@@ -1,0 +1,232 @@
+"""What each part of the network, of its loss and of its training is worth, in rooms of the validation kind.
+
+    python -m studies.network.ablation --data DATASET --runs RUNS --steps 300 --rooms 48 --most 16
+
+Every variant (`ablation_variants`) is trained for the same short while, from the same seed, in the same rooms, and goes
+on where it was stopped; each writes a file of its own. Test splits are not looked at: this table is for choosing.
+
+Scores on drawn signals, as in the deciding table, and differences of mean power maps, which no phases blur, of all that
+is there and of the person alone: ghosts lie 15 to 20 dB below the person and below most rooms, and show there only.
+`physics_in_photographed_room` and `twin` stand beside them.
+"""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
+from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.paths.mean_power import PowerMaps
+from mmweaver.paths.radar_equation import points_of
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.expected_maps import ExpectedMaps, stacked
+from mmweaver.training.network_examples import NetworkBatch, RoomExamples
+from mmweaver.training.network_loss import Targets
+from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, drawing
+from mmweaver.training.trainer import Trainer
+from mmweaver.training.validation_sheet import differences_db
+from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
+from studies.network.learned_table import TWIN, Case, Method, cases_of, interval, simulated, woven
+from studies.network.room_cache import RoomCache
+from studies.report.result_files import write_result
+
+COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db")
+MEAN_COLUMNS = ("mean_ra_db", "mean_rd_db", "person_ra_db", "person_rd_db")
+FRAMES = 6  # of a sequence, whose mean maps are compared
+BESIDE: dict[str, Method] = {
+    "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=TWIN, micro_seed=1),
+    "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),
+}
+
+
+class SampledExamples(RoomExamples):
+    """A room whose targets are the maps of one drawn signal, though its geometry would give the mean of all."""
+
+    @cached_property
+    def _expected(self) -> ExpectedMaps | None:
+        return None
+
+
+class _PartOfLoss(NetworkLearner):
+    """A learner that leaves terms of the loss out."""
+
+    def __init__(self, *arguments: Any, left_out: tuple[str, ...]):
+        super().__init__(*arguments)
+        self.left_out = left_out
+
+    def terms(self, batch: NetworkBatch) -> dict[str, torch.Tensor]:
+        terms = super().terms(batch)
+        return {name: term for name, term in terms.items() if not any(word in name for word in self.left_out)}
+
+
+@dataclass(frozen=True)
+class AblationMaterial:
+    """Rooms to train in, rooms to choose the best weights by, and what is judged."""
+
+    train: tuple[StoredRoom, ...]
+    unseen: tuple[StoredRoom, ...]
+    generic: StoredRoom
+    cases: tuple[Case, ...]
+
+    @classmethod
+    def of(cls, data: Path, rooms: int, most: int | None) -> "AblationMaterial":
+        """Of a data set: so many rooms to train in, at most so many to be judged in."""
+        stored, plan = read_rooms(data), read_plan(data)
+        train = [room for room in stored if "train" in room.split]
+        unseen = tuple(room for room in stored if "validation" in room.split)
+        if not train or not unseen:
+            raise InputError(f"{data} lacks rooms to train in or to validate in; make more with: mmweaver dataset")
+        order = stream(0, "ablation rooms").permutation(len(train))[:rooms]
+        cases = tuple(cases_of(stored, "validation", 1, plan, 0, most))
+        return cls(tuple(train[int(index)] for index in order), unseen, train[0], cases)
+
+    @cached_property
+    def mean(self) -> tuple[list[RoomExamples], list[RoomExamples]]:
+        return self._examples(RoomExamples)
+
+    @cached_property
+    def drawn(self) -> tuple[list[RoomExamples], list[RoomExamples]]:
+        return self._examples(SampledExamples)
+
+    def _examples(self, kind: type[RoomExamples]) -> tuple[list[RoomExamples], list[RoomExamples]]:
+        return [kind(room, "train") for room in self.train], [kind(room, "validation") for room in self.unseen]
+
+
+def trained(variant: AblationVariant, material: AblationMaterial, out: Path, recipe: TrainingRecipe) -> NetworkLearner:
+    """The variant, best on validation by its own loss."""
+    recipe = replace(recipe, **dict(variant.recipe))
+    rooms, unseen = material.drawn if variant.is_drawn else material.mean
+    torch.manual_seed(recipe.seed)
+    network = WeaverNetwork(without=variant.without)
+    learner = _PartOfLoss(network, rooms[0].room.config, left_out=variant.terms_without)
+    if recipe.steps > 0:
+        trainer = Trainer(
+            learner, recipe, out, train=drawing(rooms, recipe, recipe.seed, recipe.mirror),
+            validation=drawing(unseen, recipe, VALIDATION_SEED + recipe.seed),
+        )  # fmt: skip
+        trainer.run()
+    learner.eval()
+    return learner
+
+
+def photo_of(case: Case, variant: AblationVariant, generic: StoredRoom) -> StoredRoom:
+    """The room whose photo a variant is shown."""
+    return {"own": case.room, "generic": generic, "shuffled": case.other}[variant.photo]
+
+
+def scores(learner: NetworkLearner, photo: Callable[[Case], StoredRoom], case: Case) -> dict[str, float]:
+    """{column: value of one case}."""
+    drawn = drawn_scores(woven(learner.network, photo), case)
+    return drawn if case.room.geometry is None else {**drawn, **mean_scores(learner, photo(case), case)}
+
+
+def drawn_scores(method: Method, case: Case) -> dict[str, float]:
+    """Of a signal with its own draw of phases against the truth's."""
+    truth, prediction = Views(case.room.cube(case.index)), Views(method(case))
+    return {name: METRICS[name].score(prediction, truth) for name in COLUMNS}
+
+
+def mean_scores(learner: NetworkLearner, photo: StoredRoom, case: Case) -> dict[str, float]:
+    """Differences of mean power maps in dB, of everything and of the person alone in the receiver's noise."""
+    one = RoomExamples(case.room, "validation")
+    joints = torch.from_numpy(case.room.joints_m[case.index])[None]
+    velocity = torch.from_numpy(case.room.joint_velocity_mps[case.index])[None]
+    frames = np.unique(np.linspace(0, joints.shape[1] - 1, FRAMES).astype(int))
+    whole, alone = one.maps(case.index, frames)
+    assert alone is not None, "the room's geometry is stored"
+    targets = Targets(maps=stacked([whole]), empty=stacked([one.empty]), person=stacked([alone]))
+    batch = NetworkBatch(
+        view=SceneTensors.stacked([RoomExamples(photo, "validation").view]), joints_m=joints, velocity_mps=velocity,
+        frames=torch.from_numpy(frames)[None], targets=targets,
+    )  # fmt: skip
+    with torch.inference_mode():
+        both = differences_db(targets.maps, learner.predicted(batch))
+        moving = learner.moving(learner.network.encode_room(batch.view), batch)
+        own = learner.radar.maps(points_of(moving, learner.radar.response))
+        person = differences_db(_noisy(stacked([alone]), learner), _noisy(own, learner))
+    return {
+        "mean_ra_db": both["range_azimuth"], "mean_rd_db": both["range_doppler"],
+        "person_ra_db": person["range_azimuth"], "person_rd_db": person["range_doppler"],
+    }  # fmt: skip
+
+
+def _noisy(maps: PowerMaps, learner: NetworkLearner) -> PowerMaps:
+    noise = learner.radar.noise_maps()
+    return PowerMaps(**{name: part + level for (name, part), level in zip(vars(maps).items(), noise, strict=True)})
+
+
+def row_of(name: str, each: list[dict[str, float]], rooms: list[str]) -> dict[str, Any]:
+    """One variant's row: means and intervals over rooms, and each case, to be compared pair by pair."""
+    metrics = {}
+    for column in each[0]:
+        mean, low, high = interval(np.array([one[column] for one in each]), rooms)
+        unit = METRICS[column].unit if column in METRICS else "dB"
+        own = [round(one[column], 4) for one in each]
+        metrics[column] = {"value": mean, "low": low, "high": high, "unit": unit, "each": own}
+    return {"method": name, "split": "validation", "n": len(each), "rooms": rooms, "metrics": metrics}
+
+
+def slug(name: str) -> str:
+    """A variant's name as a file's."""
+    return name.replace(",", "").replace(" ", "_")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--runs", type=Path, required=True, help="folder for the variants' checkpoints")
+    parser.add_argument("--steps", type=int, default=300)
+    parser.add_argument("--rooms", type=int, default=48, help="to train in")
+    parser.add_argument("--most", type=int, default=16, help="rooms to be judged in")
+    parser.add_argument("--only", nargs="*", default=[*VARIANTS, *BESIDE], help="rows")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    unknown = [name for name in arguments.only if name not in VARIANTS and name not in BESIDE]
+    if unknown:
+        raise InputError(f"unknown rows {', '.join(unknown)}; known: {', '.join([*VARIANTS, *BESIDE])}")
+    torch.set_num_threads(1)
+    recipe = TrainingRecipe(
+        steps=arguments.steps, warm_up_steps=arguments.steps // 10, validate_every=max(arguments.steps // 3, 1)
+    )
+    material = AblationMaterial.of(arguments.data, arguments.rooms, arguments.most)
+    about = {"data_plan": read_plan(arguments.data), "recipe": asdict(recipe), "train_rooms": len(material.train)}
+    rooms = [f"{case.room.kind}_{case.room.layout}" for case in material.cases]
+    for name in arguments.only:
+        kept = RoomCache(arguments.runs / "scores", {**about, "row": name, "plan": plan_text(arguments.data)})
+        judge = _judge(name, material, arguments.runs, recipe)
+        each = [kept.figures(f"{case.room.folder.name}_{case.index}", partial(judge, case)) for case in material.cases]
+        row = row_of(name, each, rooms)
+        write_result(arguments.out, experiment="weaver_ablation", method=slug(name), config=about, rows=[row])
+        figures = (f"{column} {metric['value']:.3f}" for column, metric in row["metrics"].items())
+        print(f"{name:32}", *figures, flush=True)  # noqa: T201
+
+
+def _judge(
+    name: str, material: AblationMaterial, runs: Path, recipe: TrainingRecipe
+) -> Callable[[Case], dict[str, float]]:
+    """What gives a row's figures of one case; a variant is trained when the first is asked for."""
+    if name in BESIDE:
+        return partial(drawn_scores, BESIDE[name])
+    variant, made = VARIANTS[name], []
+
+    def judge(case: Case) -> dict[str, float]:
+        if not made:
+            folder = runs / slug(WHOLE if variant.is_trained_as_whole else name)
+            made.append(trained(variant, material, folder, recipe))
+        return scores(made[0], lambda one: photo_of(one, variant, material.generic), case)
+
+    return judge
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,52 @@
+"""What the ablation leaves out of the network, of its loss, of its training and of what it is shown."""
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class AblationVariant:
+    """Parts of the network that are left out, words in the names of terms that are, changes of the recipe, whether
+    targets are single drawn signals, and whose photo is shown when it is judged."""
+
+    without: tuple[str, ...] = ("correction",)
+    terms_without: tuple[str, ...] = ()
+    recipe: tuple[tuple[str, Any], ...] = ()
+    is_drawn: bool = False
+    photo: str = "own"  # or "generic", "shuffled"
+
+    @property
+    def is_trained_as_whole(self) -> bool:
+        """Whether it is the whole network, looked at otherwise."""
+        return self == AblationVariant(photo=self.photo)
+
+
+WHOLE = "whole"
+VARIANTS = {
+    WHOLE: AblationVariant(),
+    "before training": AblationVariant(recipe=(("steps", 0),)),
+    # of the whole, when it is judged
+    "generic photo": AblationVariant(photo="generic"),
+    "shuffled photo": AblationVariant(photo="shuffled"),
+    # anchors and what physics says
+    "no ghosts": AblationVariant(without=("ghosts", "correction")),
+    "no echoes between joints": AblationVariant(without=("between joints", "correction")),
+    "no physics of the body": AblationVariant(without=("body prior", "correction")),
+    "no physics of surfaces": AblationVariant(without=("room prior",)),
+    "no physics at all": AblationVariant(without=("room prior", "body prior")),
+    # heads
+    "no steps of echoes": AblationVariant(without=("steps", "correction")),
+    "surfaces turned up and down": AblationVariant(without=()),
+    "no learned faces": AblationVariant(without=("faces", "correction")),
+    # the encoder's picture; where surfaces stand is known in all
+    "colour alone": AblationVariant(without=("depth", "mask", "correction")),
+    "depth alone": AblationVariant(without=("colour", "mask", "correction")),
+    "mask alone": AblationVariant(without=("colour", "depth", "correction")),
+    "no picture": AblationVariant(without=("colour", "depth", "mask", "correction")),
+    # losses and targets
+    "no target of the person alone": AblationVariant(terms_without=("_person",)),
+    "no target of the empty room": AblationVariant(terms_without=("_empty",)),
+    "no pooled maps": AblationVariant(terms_without=("_4x2", "_8x8")),
+    "single draws, no expected maps": AblationVariant(is_drawn=True),
+    "no mirrored rooms": AblationVariant(recipe=(("mirror", False),)),
+}

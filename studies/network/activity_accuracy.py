@@ -1,0 +1,67 @@
+"""How well the activity network recognises in rooms, layouts and people it has not seen.
+
+    python -m studies.network.activity_accuracy --data DATASET --weights ACTIVITY --out results
+
+Twelve classes; intervals are over rooms. Floors: chance, and always saying the commonest activity of the split.
+"""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.datasets.dataset_store import read_plan, read_radar
+from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
+from mmweaver.models.weights import load_into
+from mmweaver.training.activity_examples import ActivityExamples, activity_examples
+from mmweaver.training.activity_training import scores_of
+from studies.network.learned_table import interval
+from studies.report.result_files import write_result
+
+SPLITS = ("test_room", "test_layout", "test_person")
+
+
+def row_of(network: ActivityNetwork, examples: ActivityExamples, split: str) -> dict[str, Any]:
+    """Accuracy in a split, its floors, and which activity is taken for which how often."""
+    answers, label = scores_of(network, examples).argmax(dim=1).numpy(), examples.label.numpy()
+    mean, low, high = interval((answers == label).astype(np.float64), list(examples.room))
+    counts = np.bincount(label, minlength=len(ACTIVITY_NAMES))
+    confusion = np.zeros((len(ACTIVITY_NAMES), len(ACTIVITY_NAMES)), int)
+    np.add.at(confusion, (label, answers), 1)
+    floor = {"chance": 1 / len(ACTIVITY_NAMES), "commonest": float(counts.max() / counts.sum())}
+    return {
+        "split": split, "n": len(label), "num_rooms": len(set(examples.room)), "num_people": len(set(examples.person)),
+        "num_activities": int((counts > 0).sum()), "confusion": confusion.tolist(),
+        "metrics": {"accuracy": {"value": mean, "low": low, "high": high, "unit": "1", "floor": floor}},
+    }  # fmt: skip
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--weights", type=Path, required=True, help="of recipe activity")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    torch.set_num_threads(1)
+    network = ActivityNetwork(read_radar(arguments.data))
+    card = load_into(network, arguments.weights, recipe="activity")
+    rows = []
+    for split in SPLITS:
+        try:
+            rows.append(row_of(network, activity_examples(arguments.data, (split,)), split))
+        except InputError:
+            continue
+        metric = rows[-1]["metrics"]["accuracy"]
+        print(f"{split:12} {metric['value']:.3f} ({metric['low']:.3f} to {metric['high']:.3f})")  # noqa: T201
+    write_result(
+        arguments.out, experiment="activity_accuracy", method="activity",
+        config={"weights": card.__dict__, "data_plan": read_plan(arguments.data), "activities": ACTIVITY_NAMES},
+        rows=rows,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,365 @@
+"""What generated data is worth: a recogniser of activities in a room that nobody has recorded.
+
+    python -m studies.network.activity_gain --data DATASET --weights WEAVER --judge JUDGE/weights.safetensors \\
+        --rooms 40 --runs RUNS --out results
+
+The recogniser (`mmweaver train activity`) has seen other rooms. For each room of an unseen kind its head is trained on,
+once with the other rooms' recordings alone and once with generated ones of this room beside them, and judged on the
+room's true (simulated) signals. All methods generate the same motions, placed in the room as its photo shows it; they
+differ in what surrounds the radar. `true_room` is the simulator in the true room: the ceiling. Convolutions stay as
+they are, and every head is trained on for the same number of steps, from the same seed in a room and another in the
+next.
+
+With `--recordings N` the head begins anew and has N recordings of other rooms, as somebody has who recorded a few.
+Every room that is done is kept in `--runs`, and the same command goes on. Maps of the other rooms are taken from the
+judge's folder, where training left them.
+"""
+
+import argparse
+import copy
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass, replace
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, SequenceSpec
+from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
+from mmweaver.datasets.make_room import pose_of
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
+from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.paper_method import load_paper, paper_field
+from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.activity_examples import activity_examples, maps_of
+from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS
+from studies.network.learned_table import TWIN, empty_room, interval
+from studies.network.room_cache import RoomCache, digest
+from studies.report.result_files import write_result
+
+# chosen on rooms of the validation kind
+STEPS, OTHERS, OWN, LEARNING_RATE = 200, 24, 8, 3e-4
+ANEW_RATE = 2e-3  # of a head that begins anew
+ALONE = "other_rooms"  # the head trained on without anything generated
+
+
+@dataclass(frozen=True)
+class UnseenRoom:
+    """A room that is to be recognised in, and one of another kind whose photo is the wrong one."""
+
+    room: StoredRoom
+    other: StoredRoom
+    generic: StoredRoom
+    plan_seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.room.kind}_{self.room.layout}"
+
+    @cached_property
+    def photographed(self) -> Scene:
+        return reconstruct(self.room.photo)
+
+    def true_scene(self, room: StoredRoom) -> Scene:
+        """What a stored room is like, beyond its photo."""
+        return make_room(room.kind, room.layout, self.plan_seed).scene(room.lighting)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Labelled:
+    """What the network sees of each frame of sequences, and what they show."""
+
+    frames: Tensor  # (sequence, frame, feature)
+    label: Tensor
+
+
+Maker = Callable[[PoseSequence, int], RadarCube]  # a motion and a seed
+Method = Callable[[UnseenRoom], Maker]
+
+
+def motions_in(room: UnseenRoom, each: int, seed: int) -> list[tuple[str, PoseSequence]]:
+    """`each` motions of every activity, placed in the room as its photo shows it; what has no place is left out."""
+    rng, motions = stream(seed, "activity gain", room.name), []
+    withheld = set(read_plan(room.room.folder.parent)["withheld"]["test_people"])
+    people = [person for person in range(len(PEOPLE_HEIGHT_M)) if person not in withheld]
+    for activity, sentences in ACTIVITIES.items():
+        for number in range(each):
+            spec = SequenceSpec(
+                index=number, person=int(rng.choice(people)), activity=activity, text=str(rng.choice(sentences)),
+                seed=int(rng.integers(2**31)), split="",
+            )  # fmt: skip
+            try:
+                pose = pose_of(spec, room.photographed, room.room.config, room.room.joints_m.shape[1])
+            except InputError:
+                continue
+            motions.append((activity, replace(pose, subject=TWIN + spec.person)))
+    return motions
+
+
+def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) -> Method:
+    """Our physics in some room."""
+
+    def method(room: UnseenRoom) -> Maker:
+        simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed)
+        num_frames = room.room.joints_m.shape[1]
+
+        def make(pose: PoseSequence, seed: int) -> RadarCube:
+            chunks = simulator.chunks(pose, num_frames=num_frames, seed=seed)
+            values = np.concatenate([radar_cube(chunk).values for chunk in chunks])
+            grid = CubeGrid.of(simulator.config, num_frames)
+            return RadarCube(values=values, grid=grid, config=simulator.config, scale=1.0)
+
+        return make
+
+    return method
+
+
+def with_generated(
+    network: WeaverNetwork, scene_of: Callable[[UnseenRoom], Scene], *, recorded: bool = False
+) -> Method:
+    """The network, given a photo, and `recorded` with a recording of the room with nobody in it."""
+
+    def method(room: UnseenRoom) -> Maker:
+        config, num_frames = room.room.config, room.room.joints_m.shape[1]
+        empty = empty_room(room.true_scene(room.room), config, num_frames, TWIN) if recorded else None
+        woven = LearnedRoom(network, scene_of(room), config, room_seed=1, empty=empty)
+        return lambda pose, seed: woven.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
+
+    return method
+
+
+def paper_in(weights: Path) -> Method:
+    """The paper's network."""
+    network = load_paper(weights)
+
+    def method(room: UnseenRoom) -> Maker:
+        config, num_frames = room.room.config, room.room.joints_m.shape[1]
+
+        def make(pose: PoseSequence, seed: int) -> RadarCube:
+            motion = FrameMotion.of(pose, config, num_frames)
+            return paper_field(network, room.photographed, config, motion.joints_m, motion.velocity_mps).cube()
+
+        return make
+
+    return method
+
+
+def unseen_rooms(
+    rooms: list[StoredRoom], plan: dict[str, Any], most: int, split: str = "test_room"
+) -> list[UnseenRoom]:
+    """Rooms of unseen kinds, the kinds in turn, each with a wrong photo of another of these kinds."""
+    chosen = sorted((room for room in rooms if split in room.split), key=lambda room: (room.layout, room.kind))
+    if not chosen:
+        raise InputError(f"the data set has no sequences of split {split!r}")
+    generic = next(room for room in rooms if "train" in room.split)
+    found = []
+    for room in chosen[:most]:
+        others = [other for other in chosen if other.kind != room.kind] or [generic]
+        found.append(UnseenRoom(room, others[room.layout % len(others)], generic, plan["seed"]))
+    return found
+
+
+def labelled(network: ActivityNetwork, cubes: Iterable[RadarCube], names: list[str]) -> Labelled:
+    """Cubes as the network's convolutions see them."""
+    doppler, angle = maps_of(cubes, network.config)
+    return Labelled(frames=seen(network, doppler, angle), label=torch.tensor([ACTIVITY_NAMES.index(n) for n in names]))
+
+
+def seen(network: ActivityNetwork, doppler: Tensor, angle: Tensor) -> Tensor:
+    """Features of each frame, a few sequences at a time."""
+    with torch.no_grad():
+        parts = zip(doppler.split(32), angle.split(32), strict=True)
+        return torch.cat([network.frames(one.float(), other.float()) for one, other in parts])
+
+
+@dataclass(frozen=True)
+class Study:
+    """A recogniser, recordings of other rooms as it sees them, and whether its head begins anew."""
+
+    network: ActivityNetwork
+    base: Labelled
+    begins_anew: bool = False
+
+    def head(self) -> TimeHead:
+        """The head that is trained on."""
+        head = copy.deepcopy(self.network.head)
+        if self.begins_anew:
+            for part in head.modules():
+                if isinstance(part, nn.Linear | nn.Conv1d):
+                    part.reset_parameters()
+        return head
+
+
+def judged(study: Study, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
+    """Accuracy and log loss on test sequences once the head has been trained on; a quarter of a batch is the room's."""
+    torch.manual_seed(seed)
+    head, rng = study.head(), stream(seed, "activity gain head")
+    rate = ANEW_RATE if study.begins_anew else LEARNING_RATE
+    adam = torch.optim.AdamW(head.parameters(), lr=rate, weight_decay=1e-2)
+    head.train()
+    for _ in range(STEPS):
+        parts = [_drawn(study.base, OTHERS, rng), _drawn(study.base if own is None else own, OWN, rng)]
+        frames, label = (torch.cat(each) for each in zip(*parts, strict=True))
+        loss = torch.nn.functional.cross_entropy(head(frames), label, label_smoothing=0.1)
+        adam.zero_grad()
+        loss.backward()
+        adam.step()
+    head.eval()
+    with torch.no_grad():
+        scores = head(test.frames)
+    hits = (scores.argmax(dim=1) == test.label).float().mean()
+    return float(hits), float(torch.nn.functional.cross_entropy(scores, test.label))
+
+
+def _drawn(examples: Labelled, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
+    chosen = torch.from_numpy(rng.integers(len(examples.label), size=count))
+    return examples.frames[chosen], examples.label[chosen]
+
+
+Found = dict[str, list[float]]  # {method: accuracy, log loss} in one room
+
+
+def gained(
+    study: Study, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
+) -> Found:
+    """What each method's data are worth in one room; besides, the head trained on with nothing generated."""
+    network = study.network
+    indices = [index for index, name in enumerate(room.room.split) if name == split]
+    names = [room.room.activity[index] for index in indices]
+    test = labelled(network, (room.room.cube(index) for index in indices), names)
+    motions = motions_in(room, each, seed=0)
+    found = {ALONE: list(judged(study, None, test, seed))}
+    for name, method in methods.items():
+        make = method(room)
+        cubes = (make(pose, number) for number, (_, pose) in enumerate(motions))
+        own = labelled(network, cubes, [activity for activity, _ in motions])
+        found[name] = list(judged(study, own, test, seed))
+    return found
+
+
+def gains(
+    study: Study,
+    rooms: list[UnseenRoom],
+    methods: dict[str, Method],
+    *,
+    each: int,
+    kept: RoomCache,
+    split: str = "test_room",
+    after: Callable[[dict[str, np.ndarray]], object] = lambda found: None,
+) -> dict[str, np.ndarray]:
+    """{method: accuracy and log loss in each room, (room, 2)}; `after` is given what is there after each room."""
+    found: dict[str, list[list[float]]] = {}
+    for seed, room in enumerate(rooms):
+        one: Found = kept.figures(room.name, partial(gained, study, room, methods, each=each, seed=seed, split=split))
+        for name, values in one.items():
+            found.setdefault(name, []).append(values)
+        after({name: np.array(values) for name, values in found.items()})
+    return {name: np.array(values) for name, values in found.items()}
+
+
+def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[str, Any]]:
+    """One row a method: accuracy and log loss, and how much better than trained on other rooms alone."""
+    names, rows = [room.name for room in rooms][: len(found[ALONE])], []
+    for method, values in found.items():
+        better = values - found[ALONE]
+        columns = {
+            "accuracy": (values[:, 0], "1"), "gain": (better[:, 0], "1"),
+            "log_loss": (values[:, 1], "nat"), "log_loss_gain": (-better[:, 1], "nat"),
+        }  # fmt: skip
+        metrics = {}
+        for metric, (each, unit) in columns.items():
+            mean, low, high = interval(each, names)
+            metrics[metric] = {"value": mean, "low": low, "high": high, "unit": unit}
+        metrics["accuracy"]["floor"] = 1 / len(ACTIVITY_NAMES)
+        rows.append({"method": method, "num_rooms": len(names), "metrics": metrics})
+    return rows
+
+
+def studied(judge_file: Path, data: Path, recordings: int | None) -> Study:
+    """The recogniser and what it has seen elsewhere: all that it was trained on, or so many recordings of it."""
+    if recordings is None:
+        examples = activity_examples(data, TRAIN_SPLITS, judge_file.parent / TRAIN_MAPS, keep=False)
+    else:
+        examples = activity_examples(data, TRAIN_SPLITS, pick=partial(few_of, count=recordings))
+    judge = load_activity(judge_file, examples.config)
+    base = Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label)
+    return Study(judge, base, begins_anew=recordings is not None)
+
+
+def few_of(label: np.ndarray, count: int) -> np.ndarray:
+    """Indices of `count` sequences, all activities in turn."""
+    rng = stream(0, "activity gain recordings")
+    order = rng.permutation(len(label))
+    place = np.zeros(len(label), int)  # how many of its activity come before
+    for name in np.unique(label):
+        own = order[label[order] == name]
+        place[own] = np.arange(len(own))
+    return order[np.argsort(place[order], kind="stable")][:count]
+
+
+def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
+    """Whose data is tried."""
+    methods: dict[str, Method] = {
+        "weaver": with_generated(weaver, lambda room: room.photographed),
+        "weaver_with_empty_room": with_generated(weaver, lambda room: room.photographed, recorded=True),
+        "wrong_photo": with_generated(weaver, lambda room: reconstruct(room.other.photo)),
+        "generic_room_physics": simulated_in(lambda room: room.true_scene(room.generic), micro_seed=1),
+        "physics_in_photographed_room": simulated_in(lambda room: room.photographed, micro_seed=1),
+        "true_room": simulated_in(lambda room: room.true_scene(room.room), micro_seed=0),
+    }
+    return methods if paper is None else {**methods, "paper": paper_in(paper)}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
+    parser.add_argument("--paper", type=Path, help="of recipe paper")
+    parser.add_argument("--rooms", type=int, default=40)
+    parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
+    parser.add_argument("--recordings", type=int, help="of other rooms, for a head that begins anew")
+    parser.add_argument("--only", nargs="*", help="methods (default: all)")
+    parser.add_argument("--runs", type=Path, help="folder for rooms that are done")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    torch.set_num_threads(1)
+    plan, weights = read_plan(arguments.data), arguments.weights or shipped_weights()
+    rooms = unseen_rooms(read_rooms(arguments.data), plan, arguments.rooms)
+    weaver, card = load_weights(weights)
+    study = studied(arguments.judge, arguments.data, arguments.recordings)
+    methods = methods_of(weaver, arguments.paper)
+    methods = {name: methods[name] for name in arguments.only or methods}
+    about = {
+        "weights": asdict(card), "data_plan": plan, "each": arguments.each, "steps": STEPS,
+        "recordings": arguments.recordings,
+    }  # fmt: skip
+    files = [digest(file) for file in (weights, arguments.judge, arguments.paper) if file is not None]
+    kept = RoomCache(arguments.runs, {**about, "files": files, "methods": list(methods)})
+    name = "test_room" if arguments.recordings is None else f"recordings_{arguments.recordings}"
+
+    def write(found: dict[str, np.ndarray]) -> None:
+        write_result(
+            arguments.out, experiment="activity_gain", method=name, config=about, rows=rows_of(found, rooms)
+        )  # fmt: skip
+        room = rooms[len(found[ALONE]) - 1].name
+        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)  # noqa: T201
+
+    for row in rows_of(gains(study, rooms, methods, each=arguments.each, kept=kept, after=write), rooms):
+        values = (f"{name} {m['value']:.3f} ({m['low']:.3f} to {m['high']:.3f})" for name, m in row["metrics"].items())
+        print(f"{row['method']:30}", *values)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,113 @@
+"""An activity that training withheld, after tuning on a few sequences of it.
+
+    python -m studies.network.few_shot --data DATASET --weights FILE --runs RUNS --out results
+
+Jumping is withheld. The network is tuned on 0, 5 and 20 jumps in half of the rooms and judged on jumps in the other
+half. `twin`: the simulator in the true room with other micro-phases.
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
+from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.weights import load_weights
+from mmweaver.training.network_examples import RoomExamples
+from mmweaver.training.network_training import NetworkLearner, TrainingRecipe, drawing
+from mmweaver.training.trainer import Trainer
+from studies.network.ablation import COLUMNS
+from studies.network.learned_table import TWIN, Case, Method, cases_of, interval, simulated, woven
+from studies.report.result_files import write_result
+
+ACTIVITY, SPLIT = "jumping", "test_activity"
+SHOTS = (0, 5, 20)
+RECIPE = TrainingRecipe(
+    name="few_shot", steps=120, learning_rate=1e-4, warm_up_steps=20, validate_every=120, validation_batches=1
+)
+
+
+def halves(rooms: list[StoredRoom], seed: int) -> tuple[list[StoredRoom], list[StoredRoom]]:
+    """Rooms in which somebody jumps: those to tune in and those to be judged in."""
+    there = [room for room in rooms if _jumps(room)]
+    if len(there) < 2:
+        raise InputError(f"the data set shows {ACTIVITY} in fewer than two rooms; make more with: mmweaver dataset")
+    order = stream(seed, "few shot").permutation(len(there))
+    middle = len(there) // 2
+    return [there[index] for index in order[:middle]], [there[index] for index in order[middle:]]
+
+
+def tuned(weights: Path, rooms: list[StoredRoom], shots: int, out: Path, seed: int) -> WeaverNetwork:
+    """The network after so many jumps, one or more a room; all steps are taken, for there is nothing to validate on."""
+    network = load_weights(weights)[0]
+    if shots == 0:
+        return network
+    few: list[RoomExamples] = []
+    for room in rooms:
+        if sum(len(one.indices) for one in few) >= shots:
+            break
+        example = RoomExamples(room, SPLIT)
+        example.indices = _jumps(room)[: shots - sum(len(one.indices) for one in few)]
+        few.append(example)
+    torch.manual_seed(seed)
+    learner = NetworkLearner(network.train(), few[0].room.config)
+    draw = drawing(few, RECIPE, seed, True)
+    Trainer(learner, RECIPE, out, train=draw, validation=draw).run()
+    return network.eval()
+
+
+def _jumps(room: StoredRoom) -> list[int]:
+    pairs = zip(room.activity, room.split, strict=True)
+    return [index for index, (activity, split) in enumerate(pairs) if activity == ACTIVITY and split == SPLIT]
+
+
+def judged(method: Method, cases: list[Case]) -> dict[str, dict[str, float | str]]:
+    """{column: mean and interval over rooms}."""
+    values: dict[str, list[float]] = {name: [] for name in COLUMNS}
+    for case in cases:
+        truth, prediction = Views(case.room.cube(case.index)), Views(method(case))
+        for name in COLUMNS:
+            values[name].append(METRICS[name].score(prediction, truth))
+    rooms = [f"{case.room.kind}_{case.room.layout}" for case in cases]
+    out = {}
+    for name, each in values.items():
+        mean, low, high = interval(np.array(each), rooms)
+        out[name] = {"value": mean, "low": low, "high": high, "unit": METRICS[name].unit}
+    return out
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--weights", type=Path, required=True)
+    parser.add_argument("--runs", type=Path, required=True, help="folder for the checkpoints")
+    parser.add_argument("--most", type=int, default=30, help="rooms to be judged in")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    rooms, plan = read_rooms(arguments.data), read_plan(arguments.data)
+    own, others = halves(rooms, 0)
+    known = {room.folder for room in others}
+    every = [case for case in cases_of(rooms, SPLIT, 100, plan, 0) if case.room.folder in known]
+    cases = [case for case in every if case.room.activity[case.index] == ACTIVITY][: arguments.most]
+    rows = []
+    for shots in SHOTS:
+        network = tuned(arguments.weights, own, shots, arguments.runs / f"shots_{shots}", 0)
+        metrics = judged(woven(network, lambda case: case.room), cases)
+        rows.append({"method": f"{shots} jumps", "split": SPLIT, "n": len(cases), "metrics": metrics})
+    twin = simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1)
+    rows.append({"method": "twin", "split": SPLIT, "n": len(cases), "metrics": judged(twin, cases)})
+    for row in rows:
+        print(row["method"], *(f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items()), flush=True)  # noqa: T201
+    write_result(
+        arguments.out, experiment="weaver_few_shot", method=ACTIVITY,
+        config={"data_plan": plan, "shots": list(SHOTS), "steps": RECIPE.steps}, rows=rows,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

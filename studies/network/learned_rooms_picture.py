@@ -1,0 +1,66 @@
+"""Real rooms through both methods, side by side: what physics and the network make of the same photo and sentence.
+
+    python -m studies.network.learned_rooms_picture --rooms /path/to/rooms --out docs/images/weaver_rooms.png
+
+Nobody knows what a radar in these rooms would have recorded; the picture is for looking, not for scores.
+"""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from mmweaver.figures.figure_data import FigureData
+from mmweaver.figures.preview import draw_azimuth_standing, draw_doppler_time, draw_photo
+from mmweaver.figures.theme import STYLE
+from mmweaver.generate import Weaver
+from studies.scene.room_pictures import save_small
+
+TEXT = "a person walks towards the radar, then waves with the left hand"
+METHODS = ("physics", "weaver")
+FRAMES = 40
+
+
+def views_of(folder: Path, text: str = TEXT, *, frames: int = FRAMES, seed: int = 0) -> dict[str, FigureData]:
+    """The same room, motion and seed by each method."""
+    found = {}
+    for name in METHODS:
+        weaver = Weaver(name)
+        room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
+        made = weaver.generate(room, text, frames=frames, seed=seed, keep_adc=False)
+        found[name] = FigureData(
+            title=f"{folder.name.replace('_', ' ')}: {name}", cube=made.cube, points=made.points, photo=made.photo,
+            radar_from_camera=made.scene.radar_from_camera, poses=made.poses, motions=made.motions,
+        )  # fmt: skip
+    return found
+
+
+def draw_rooms(path: Path, rooms: Sequence[dict[str, FigureData]]) -> None:
+    """A row a room: the photo, then Doppler over time and the resting room's range-azimuth by each method."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with rc_context(STYLE):
+        figure = Figure(figsize=(17, 3.1 * len(rooms)), layout="constrained")
+        FigureCanvasAgg(figure)
+        for row, views in zip(figure.subplots(len(rooms), 5, squeeze=False), rooms, strict=True):
+            draw_photo(row[0], views[METHODS[0]])
+            row[0].set_title(views[METHODS[0]].title.partition(":")[0])
+            for index, name in enumerate(METHODS):
+                draw_doppler_time(row[1 + index], views[name])
+                draw_azimuth_standing(row[3 + index], views[name])
+                row[1 + index].set_title(f"{name}: Doppler over time")
+                row[3 + index].set_title(f"{name}: the room, from above")
+        save_small(figure, path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rooms", type=Path, required=True, help="folders with rgb.png, depth.png and camera.json")
+    parser.add_argument("--out", type=Path, default=Path("docs/images/weaver_rooms.png"))
+    given = parser.parse_args()
+    draw_rooms(given.out, [views_of(folder) for folder in sorted(given.rooms.iterdir()) if folder.is_dir()])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+"""How much of a room's own echoes can be told from its photo, and which parts of them cannot.
+
+    python -m studies.network.photographed_room --out results
+
+Empty rooms of the nine kinds that training may see, in layouts that no data set holds. Truth is the simulator in the
+true room; judged are the range-azimuth pictures of one frame without noise. `twin` is the true room with other
+micro-phases of its rough surfaces: the best that anyone can do. The rows between give the photographed room one kind
+of the true room's echoes, those of mirrors with random phases. Intervals: bootstrap over rooms.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.presets import PRESETS
+from mmweaver.core.records import AdcCube, RgbdPhoto
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_plan import HeldOut
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
+from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
+from mmweaver.paths.static_paths import RayTracedRoom, static_adc
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.procedural.room_kinds import KINDS
+from mmweaver.scene.reconstruction import reconstruct
+from studies.network.learned_table import interval
+from studies.report.result_files import write_result
+
+LAYOUTS = (30, 31, 32, 33)
+METRICS = {
+    "ra_ssim": ("1", "SSIM of 50 dB range-azimuth pictures over cells that either shows"),
+    "ra_difference_db": ("dB", "absolute difference of the same pictures per cell that the truth shows"),
+}
+Scores = dict[str, dict[str, float]]
+
+
+def judged(kind: str, layout: int, seed: int = 0) -> Scores:
+    """Scores of one room by method."""
+    config = PRESETS["awr1843"]
+    made = make_room(kind, layout, seed)
+    photo = made.photo("day", noise=True)
+    truth, twin = RayTracedRoom(made.scene("day"), config), RayTracedRoom(made.scene("day"), config, 1)
+    own, true = _parts(RayTracedRoom(reconstruct(photo), config, 1)), _parts(twin)
+    mirrors = _parts(twin, turned=stream(layout, kind, "mirrors"))["specular"]
+    cubes = {
+        "zeros": 0 * truth.adc,
+        "photo without mask": RayTracedRoom(reconstruct(_without_mask(photo)), config, 1).adc,
+        "photo": sum(own.values()),
+        "photo, true mirrors": sum((own | {"specular": mirrors}).values()),
+        "photo, true edges": sum((own | {"edges": true["edges"]}).values()),
+        "photo, true surfaces": sum((own | {"diffuse": true["diffuse"]}).values()),
+        "twin": twin.adc,
+    }
+    azimuth = azimuth_axis_rad()
+
+    def picture(adc: Any) -> np.ndarray:
+        samples = np.repeat(np.asarray(adc)[None, None], config.num_loops, axis=1).astype(np.complex64)
+        return range_azimuth_power(radar_cube(AdcCube(samples=samples, config=config, scale=1.0)), azimuth)
+
+    shown = picture(truth.adc)
+    return {
+        name: {
+            "ra_ssim": log_map_ssim(picture(adc), shown), "ra_difference_db": log_map_difference_db(picture(adc), shown)
+        }
+        for name, adc in cubes.items()
+    }  # fmt: skip
+
+
+def _without_mask(photo: RgbdPhoto) -> RgbdPhoto:
+    return RgbdPhoto(rgb=photo.rgb, depth_m=photo.depth_m, intrinsics=photo.intrinsics)
+
+
+def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> dict[str, np.ndarray]:
+    """Samples of the room's echoes by kind, with other phases where `turned` draws them."""
+    ends = np.cumsum(list(room.counts.values()))
+    found = {}
+    for name, end in zip(room.counts, ends, strict=True):
+        part = room.echoes.part(np.arange(end - room.counts[name], end))
+        weight = part.amplitude
+        if turned is not None:
+            weight = np.abs(weight) * np.exp(2j * np.pi * turned.random(len(weight)))
+        found[name] = static_adc(part, room.config, weight)
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    parser.add_argument("--layouts", type=int, nargs="+", default=list(LAYOUTS))
+    given = parser.parse_args()
+    rooms = [(kind, layout) for kind in KINDS if kind not in HeldOut().test_kinds for layout in given.layouts]
+    scores = [judged(kind, layout) for kind, layout in rooms]
+    names = [f"{kind}_{layout}" for kind, layout in rooms]
+    rows = [_row(method, scores, names) for method in scores[0]]
+    settings = {"layouts": given.layouts, "kinds": sorted({kind for kind, _ in rooms}), "radar": "awr1843"}
+    path = write_result(given.out, experiment="photographed_room", method="echoes", config=settings, rows=rows)
+    sys.stdout.write(f"{path}\n")
+
+
+def _row(method: str, scores: list[Scores], rooms: list[str]) -> dict[str, Any]:
+    metrics = {}
+    for name, (unit, definition) in METRICS.items():
+        mean, low, high = interval(np.array([score[method][name] for score in scores]), rooms)
+        metrics[name] = {
+            "value": mean, "low": low, "high": high, "unit": unit,
+            "definition": definition, "version": 1,
+            "floor": {"zeros": float(np.mean([score["zeros"][name] for score in scores]))},
+        }  # fmt: skip
+    return {"method": method, "n": len(scores), "num_rooms": len(scores), "metrics": metrics}
+
+
+if __name__ == "__main__":
+    main()

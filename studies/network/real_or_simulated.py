@@ -1,0 +1,133 @@
+"""Can one tell generated cubes from true ones? A recogniser's accuracy in rooms it was not trained on; 0.5 is perfect.
+
+    python -m studies.network.real_or_simulated --data DATASET --weights WEAVER --judge ACTIVITY --out results
+
+Truth and generated share rooms and exact joints (cases of `weaver_table`, unseen kinds of rooms). For each method trees
+learn the difference from `cube_statistics` of four fifths of the rooms and are judged in the last fifth, in turn.
+`twin` is the simulator with other micro-phases, the ceiling: it should not be told apart. `generic_room_physics` is the
+floor.
+"""
+
+import argparse
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
+from mmweaver.models.activity_network import load_activity
+from mmweaver.models.paper_method import paper_method
+from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.reconstruction import reconstruct
+from studies.network.cube_statistics import cube_statistics
+from studies.network.learned_table import TWIN, Case, Method, cases_of, interval, simulated, woven
+from studies.network.room_cache import RoomCache, digest
+from studies.report.result_files import write_result
+
+FOLDS = 5
+SETTINGS = ClassifierSettings(num_trees=300, boosting_rounds=80, leaf_size=2)
+TRUE, GENERATED = "true", "generated"
+
+
+def folds_of(rooms: list[str], seed: int = 0) -> list[set[str]]:
+    """Rooms shared out into five parts."""
+    names = np.array(sorted(set(rooms)))
+    order = stream(seed, "real or generated").permutation(len(names))
+    return [set(names[order[fold::FOLDS]].tolist()) for fold in range(min(FOLDS, len(names)))]
+
+
+def real_or_simulated_scores(true: np.ndarray, made: np.ndarray, rooms: list[str]) -> np.ndarray:
+    """Share of right answers for each case, its true and its generated cube: 0, 0.5 or 1.
+
+    Statistics (case, number), both in the same order, and each case's room; no room is both learned from and judged.
+    """
+    right = np.zeros(len(rooms))
+    for held in folds_of(rooms):
+        is_held = np.array([room in held for room in rooms])
+        learned = np.concatenate([true[~is_held], made[~is_held]])
+        labels = np.repeat([TRUE, GENERATED], int((~is_held).sum()))
+        judge = ActivityClassifier(SETTINGS).fit(learned, labels)
+        hits = [judge.predict(true[is_held]) == TRUE, judge.predict(made[is_held]) == GENERATED]
+        right[is_held] = np.mean(hits, axis=0)
+    return right
+
+
+def rows_of(
+    cases: list[Case],
+    methods: dict[str, Method],
+    statistics: Callable[..., np.ndarray],
+    kept: RoomCache,
+    tell: Callable[[str], object] = lambda line: None,
+) -> list[dict[str, Any]]:
+    """One row a method: accuracy over rooms with its interval."""
+    rooms = [f"{case.room.kind}_{case.room.layout}" for case in cases]
+
+    def measured(case: Case) -> dict[str, list[float]]:
+        made = {name: statistics(method(case)).tolist() for name, method in methods.items()}
+        return {TRUE: statistics(case.room.cube(case.index)).tolist(), **made}
+
+    each = [kept.figures(f"{case.room.folder.name}_{case.index}", partial(measured, case)) for case in cases]
+    true, rows = np.array([one[TRUE] for one in each]), []
+    for name in methods:
+        made = np.array([one[name] for one in each])
+        mean, low, high = interval(real_or_simulated_scores(true, made, rooms), rooms)
+        metric = {"value": mean, "low": low, "high": high, "unit": "1", "perfect": 0.5}
+        rows.append({"method": name, "n": len(cases), "num_rooms": len(set(rooms)), "metrics": {"accuracy": metric}})
+        tell(f"{name:30} {mean:.3f} ({low:.3f} to {high:.3f})")
+    return rows
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True)
+    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
+    parser.add_argument("--paper", type=Path, help="of recipe paper")
+    parser.add_argument("--split", default="test_room")
+    parser.add_argument("--each", type=int, default=4, help="sequences of each room")
+    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    torch.set_num_threads(1)
+    rooms, plan = read_rooms(arguments.data), read_plan(arguments.data)
+    weights = arguments.weights or shipped_weights()
+    network, card = load_weights(weights)
+    judge = load_activity(arguments.judge, rooms[0].config)
+    cases = cases_of(rooms, arguments.split, arguments.each, plan, 0, arguments.most)
+    generic = next(room for room in rooms if "train" in room.split)
+    generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
+    methods: dict[str, Method] = {
+        "weaver": woven(network, _own_room),
+        "weaver_with_empty_room": woven(network, _own_room, recorded=True),
+        "generic_room_physics": simulated(lambda case: generic_scene, skin=TWIN, micro_seed=1),
+        "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=TWIN, micro_seed=1),
+        "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),
+    }
+    if arguments.paper is not None:
+        methods["paper"] = paper_method(arguments.paper)
+    files = [digest(file) for file in (weights, arguments.judge, arguments.paper) if file is not None]
+    kept = RoomCache(arguments.runs, {"data_plan": plan, "files": files, "methods": list(methods)})
+    rows = rows_of(cases, methods, lambda cube: cube_statistics(cube, judge), kept, _tell)
+    write_result(
+        arguments.out, experiment="real_or_generated", method=arguments.split,
+        config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each}, rows=rows,
+    )  # fmt: skip
+
+
+def _tell(line: str) -> None:
+    print(line, flush=True)  # noqa: T201
+
+
+def _own_room(case: Case) -> StoredRoom:
+    return case.room
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,324 @@
+"""Same pose, real radar against ours: the MARS recordings beside simulated point clouds, frame by frame.
+
+The simulator as it stands is driven by the Kinect's joints and seen through the firmware's chain. Six global numbers
+are not known and are estimated on `validate`: the radar's place in the Kinect's frame (3), the receiver's gain, the
+CFAR's threshold and the person's height. That clutter removal was on and peak grouping off is what the recordings show
+by themselves. `test` is only scored.
+
+    python -m studies.physics.mars --data shared/data/pointclouds/mars/subject1 --out results
+"""
+
+import argparse
+import hashlib
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
+from mmweaver.core.presets import IWR1443_MARS
+from mmweaver.core.records import AdcCube, PointCloud
+from mmweaver.core.seeding import stream
+from mmweaver.dsp.cube import radar_cube, remove_static
+from mmweaver.dsp.firmware import FirmwareCloud, firmware_points
+from mmweaver.dsp.points import point_cloud
+from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
+from mmweaver.paths.body_model import ScatteringBody
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.receiver import Impairments
+from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
+from studies.physics.cloud_scores import CloudScores, part_of, score
+from studies.physics.empty_room_cube import empty_room
+from studies.physics.joint_scatterers import run_joints
+from studies.physics.mars_data import MarsStretch, as_published, body_height_m, cut, read_mars
+from studies.report.result_files import write_result
+
+PIECE_FRAMES, PIECES = 20, 20
+HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estimation begins
+THRESHOLDS = (400, 2000)
+PIECES_TO_ESTIMATE = 12
+Clouds = list[tuple[PointCloud, ...]]  # one tuple a piece, one cloud a sample
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """The numbers that are estimated; all global, none of a frame."""
+
+    shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # from the Kinect's frame to the radar's
+    gain_db: float = 0.0  # against the preset's receiver
+    threshold: int = 768
+    height_m: float = 1.75
+
+
+@dataclass(frozen=True, kw_only=True)
+class MarsVariant:
+    """What is changed in the simulator; the defaults are the simulator as it stands."""
+
+    impairments: Impairments = Impairments()  # noqa: RUF009 (frozen)
+    brighter_db: float = 0.0
+    skin: SkinEcho = SkinEcho()  # noqa: RUF009 (frozen)
+    motions: MicroMotionSettings = MicroMotionSettings()  # noqa: RUF009 (frozen)
+    has_floor: bool = True
+    wall_m: float | None = None
+    has_ghosts: bool = True
+    at_joints: bool = False  # a point at each joint is all the body there is
+    smoothing_frames: float = 1.0  # of the Kinect's joints, which tremble by a centimetre from frame to frame
+    joint_noise_m: float = 0.0
+    num_points: int = 800
+    chain: str = "firmware"
+    grouped: bool = False
+
+
+VARIANTS: dict[str, MarsVariant] = {
+    "simulator": MarsVariant(),
+    "no_thermal_noise": MarsVariant(impairments=Impairments(thermal_noise=False)),
+    "no_phase_noise": MarsVariant(impairments=Impairments(phase_noise_dbc_per_hz=None, chirp_jitter_s=0.0)),
+    "body_6_db_fainter": MarsVariant(brighter_db=-6.0),
+    "body_6_db_brighter": MarsVariant(brighter_db=6.0),
+    "skin_of_lambert": MarsVariant(skin=LAMBERT),
+    "skin_slope_0_20": MarsVariant(skin=SkinEcho(slope=0.20)),
+    "joints_not_smoothed": MarsVariant(smoothing_frames=0.0),
+    "skin_without_diffuse_part": MarsVariant(skin=SkinEcho(albedo=0.0)),
+    "no_small_motions": MarsVariant(motions=STILL),
+    "skin_of_200_points": MarsVariant(num_points=200),
+    "skin_of_3200_points": MarsVariant(num_points=3200),
+    "no_floor_bounce": MarsVariant(has_floor=False),
+    "wall_at_3_m_behind": MarsVariant(wall_m=3.0),
+    "wall_at_3_m_behind_no_ghosts": MarsVariant(wall_m=3.0, has_ghosts=False),
+    "points_at_the_joints": MarsVariant(at_joints=True),
+    "arms_and_legs_like_the_trunk": MarsVariant(skin=SkinEcho(arms_db=0.0, legs_db=0.0)),
+    "joint_noise_1_cm": MarsVariant(joint_noise_m=0.01),
+    "our_cfar": MarsVariant(chain="cfar"),
+    "peak_grouping": MarsVariant(grouped=True),
+}
+
+
+def settings_of(setup: Setup) -> FirmwareSettings:
+    """The firmware's settings with the threshold estimated."""
+    base = FIRMWARE["iwr1443_mars"]
+    assert base.range_cfar is not None, "the preset has a CFAR in range"
+    return replace(base, range_cfar=replace(base.range_cfar, threshold=setup.threshold))
+
+
+def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed: int = 0) -> list[AdcCube]:
+    """ADC samples of each piece, in a room of a floor and perhaps a wall behind the person."""
+    feet_m = min(float(piece.joints_m[..., 2].min()) for piece in pieces) + setup.shift_m[2]
+    simulator = Simulator(
+        empty_room(floor_z_m=feet_m - 0.04, has_floor=variant.has_floor, wall_y_m=variant.wall_m),
+        IWR1443_MARS,
+        variant.impairments,
+    )
+    if not variant.has_ghosts:
+        simulator.room.mirrors = []
+    gain, skin = 10 ** (variant.brighter_db / 10), variant.skin
+    echo = replace(skin, reflectivity=skin.reflectivity * gain, albedo=skin.albedo * gain)
+    adcs = []
+    for index, piece in enumerate(pieces):
+        rng = stream(seed, "joint noise", index)
+        noisy = replace(
+            piece,
+            joints_m=_smoothed(piece.joints_m, variant.smoothing_frames)
+            + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape),
+        )
+        pose, num = noisy.pose(setup.shift_m, setup.height_m), int(piece.frame[-1]) + 1
+        if variant.at_joints:
+            adc = run_joints(simulator, pose, num_frames=num, seed=seed, motions=variant.motions, brighter=gain)
+        else:
+            points = variant.num_points
+            adc = simulator.run(
+                pose, num_frames=num, seed=seed, num_points=points, echo=echo, motions=variant.motions
+            ).adc  # fmt: skip
+        adcs.append(adc)
+    return adcs
+
+
+def _smoothed(joints_m: np.ndarray, frames: float) -> np.ndarray:
+    """A Gaussian of so many frames over time."""
+    return gaussian_filter1d(joints_m, frames, axis=0, mode="nearest") if frames else joints_m
+
+
+def detect(adcs: list[AdcCube], pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) -> Clouds:
+    """What the chain reports at the frames that were recorded, cut to the box that the recordings were cut to."""
+    settings = settings_of(setup)
+    if variant.grouped:
+        settings = replace(settings, group_range=True, group_doppler=True)
+    clouds: Clouds = []
+    for adc, piece in zip(adcs, pieces, strict=True):
+        louder = replace(adc, samples=adc.samples * np.float32(10 ** (setup.gain_db / 20)))
+        if variant.chain == "cfar":
+            cloud = point_cloud(remove_static(radar_cube(louder)), max_points_per_frame=64)
+        else:
+            cloud = firmware_points(louder, settings)
+        cloud = as_published(cloud)
+        clouds.append(tuple(part_of(cloud, int(frame)) for frame in piece.frame))
+    return clouds
+
+
+# estimation ---------------------------------------------------------------------------------------------------------
+def calibrate(pieces: list[MarsStretch], report: Callable[[str], object] = print) -> Setup:
+    """The global numbers, from `validate` alone.
+
+    Left and right, near and far by the median distance of the clouds' centroids; the gain by the median intensity and
+    the threshold by the mean number of points; height by the Chamfer distance, for the beam holds the centroid's height
+    where it is, wherever the body is.
+    """
+    real: Clouds = [piece.clouds for piece in pieces]
+    setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
+    setup = _levels(pieces, _centred(pieces, setup, real), real)
+    x, y, _ = setup.shift_m
+    setup = _best([replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M], pieces, real, report)
+    setup = _levels(pieces, _centred(pieces, setup, real), real)
+    report(f"estimated: {setup}")
+    return setup
+
+
+def _best(tried: list[Setup], pieces: list[MarsStretch], real: Clouds, report: Callable[[str], object]) -> Setup:
+    distance = [score(_simulated(pieces, setup, MarsVariant()), real).value("chamfer_m") for setup in tried]
+    for setup, found in zip(tried, distance, strict=True):
+        report(f"Chamfer {found:.3f} m: {setup}")
+    return tried[int(np.argmin(distance))]
+
+
+def _centred(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
+    """The radar's place moved sideways and in depth until the centroids agree."""
+    right, ahead, _ = _centroid_offset(_simulated(pieces, setup, MarsVariant()), real)
+    x, y, z = setup.shift_m
+    return replace(setup, shift_m=(round(float(x - right), 3), round(float(y - ahead), 3), z))
+
+
+def _centroid_offset(ours: Clouds, real: Clouds) -> np.ndarray:
+    both = [
+        (a, b) for one, other in zip(ours, real, strict=True) for a, b in zip(one, other, strict=True) if len(a.x_m)
+    ]
+    return np.median([_middle(a) - _middle(b) for a, b in both], axis=0)
+
+
+def _middle(cloud: PointCloud) -> np.ndarray:
+    return np.array([cloud.x_m.mean(), cloud.y_m.mean(), cloud.z_m.mean()])
+
+
+def _levels(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
+    """Gain, then threshold, twice: the threshold decides which intensities are left."""
+    wanted = np.mean([len(cloud.x_m) for piece in real for cloud in piece])
+    adcs = simulate(pieces, setup, MarsVariant())
+    for _ in range(2):
+        found = detect(adcs, pieces, setup, MarsVariant())
+        setup = replace(setup, gain_db=round(setup.gain_db + _median_db(real) - _median_db(found), 1))
+        low, high = THRESHOLDS
+        while high - low > 30:
+            middle = (low + high) // 2
+            clouds = detect(adcs, pieces, replace(setup, threshold=middle), MarsVariant())
+            many = np.mean([len(cloud.x_m) for piece in clouds for cloud in piece]) > wanted
+            low, high = (middle, high) if many else (low, middle)
+        setup = replace(setup, threshold=(low + high) // 2)
+    return setup
+
+
+def _median_db(clouds: Clouds) -> float:
+    levels = [cloud.intensity for piece in clouds for cloud in piece if isinstance(cloud, FirmwareCloud)]
+    return float(20 * np.log10(np.median(np.concatenate(levels))))
+
+
+# floors and ceiling -------------------------------------------------------------------------------------------------
+def centroid_floor(pieces: list[MarsStretch], setup: Setup) -> Clouds:
+    """One point at the middle of the joints."""
+    return [
+        tuple(_points(joints.mean(axis=0)[None] + np.asarray(setup.shift_m)) for joints in piece.joints_m)
+        for piece in pieces
+    ]
+
+
+def surface_floor(pieces: list[MarsStretch], setup: Setup, num: int) -> Clouds:
+    """As many points as an average frame has, anywhere on the body's skin."""
+    body = ScatteringBody(0, setup.height_m)
+    clouds: Clouds = []
+    for index, piece in enumerate(pieces):
+        skin = body.skin(piece.joints_m + np.asarray(setup.shift_m)).place_m
+        rng = stream(0, "surface floor", index)
+        clouds.append(tuple(_points(place[rng.choice(len(place), num, replace=False)]) for place in skin))
+    return clouds
+
+
+def random_frame_floor(pieces: list[MarsStretch], pool: list[MarsStretch]) -> Clouds:
+    """Any real frame of the other split."""
+    every = [cloud for stretch in pool for cloud in stretch.clouds]
+    rng = stream(0, "random frame floor")
+    return [tuple(every[rng.integers(len(every))] for _ in piece.clouds) for piece in pieces]
+
+
+def neighbour_ceiling(pieces: list[MarsStretch]) -> Clouds:
+    """The real frame before, for the first the one after."""
+    return [(piece.clouds[1], *piece.clouds[:-1]) for piece in pieces]
+
+
+def _points(place_m: np.ndarray) -> PointCloud:
+    none = np.full(len(place_m), np.nan)
+    return PointCloud(
+        frame=np.zeros(len(place_m), int), x_m=place_m[:, 0], y_m=place_m[:, 1], z_m=place_m[:, 2],
+        radial_velocity_mps=none, snr_db=none,
+    )  # fmt: skip
+
+
+# the experiment -----------------------------------------------------------------------------------------------------
+def run(data: Path, out: Path, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
+    """Estimates on `validate`, scores everything on `test`, and writes results/mars/*.json. Returns the scores."""
+    validate, test = read_mars(data, "validate"), read_mars(data, "test")
+    began = time.perf_counter()
+    setup = calibrate(cut(validate, PIECE_FRAMES, PIECES_TO_ESTIMATE), report)
+    pieces = cut(test, PIECE_FRAMES, PIECES)
+    real: Clouds = [piece.clouds for piece in pieces]
+    mean = round(np.mean([len(cloud.x_m) for stretch in validate for cloud in stretch.clouds]))
+    ways: dict[str, Callable[[], Clouds]] = {
+        "floor_centroid": partial(centroid_floor, pieces, setup),
+        "floor_random_on_body": partial(surface_floor, pieces, setup, mean),
+        "floor_random_real_frame": partial(random_frame_floor, pieces, validate),
+        "ceiling_neighbouring_frame": partial(neighbour_ceiling, pieces),
+    }
+    for name, variant in VARIANTS.items():
+        ways[name] = partial(_simulated, pieces, setup, variant)
+    scores: dict[str, CloudScores] = {}
+    for name, way in ways.items():
+        started = time.perf_counter() if name != "simulator" else began
+        scores[name] = score(way(), real)
+        report(f"{name:28s} {scores[name].line()}")
+        _write(out, name, setup, data, scores, seconds=time.perf_counter() - started)
+    return scores
+
+
+def _simulated(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) -> Clouds:
+    return detect(simulate(pieces, setup, variant), pieces, setup, variant)
+
+
+def _write(out: Path, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float) -> None:
+    files = sorted(data.glob("*_test.csv"))
+    row: dict[str, Any] = {
+        "dataset": {
+            "name": "MARS subject 1, test",
+            "sha256": {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files},
+        },
+        "n": scores[name].num_frames,
+        "seeds": [0],
+        "seconds": round(seconds, 1),
+        "metrics": scores[name].metrics(floor=scores["floor_centroid"]),
+    }
+    variant = asdict(VARIANTS[name]) if name in VARIANTS else None
+    config = {"estimated_on_validate": asdict(setup), "variant": variant, "frames_a_piece": PIECE_FRAMES}
+    write_result(out, experiment="mars", method=name, config=config, rows=[row])
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description="MARS recordings beside simulated point clouds")
+    parser.add_argument("--data", type=Path, required=True, help="folder of a MARS subject")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    run(arguments.data, arguments.out)
+
+
+if __name__ == "__main__":
+    main()

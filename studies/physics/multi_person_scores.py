@@ -1,0 +1,229 @@
+"""Mutual shadowing against plain superposition: what is lost by adding up people who were made one by one.
+
+python -m studies.physics.multi_person_scores --out results --picture docs/images/several_people.png
+
+Two people in the sample room, at given places; the truth is the simulator with mutual shadows, the prediction the sum
+of the two made alone, with the same receiver noise. Beside it the floor (the second person left out) and two
+ceilings: the truth with other receiver noise, and its twin (the same poses, other skins).
+"""
+
+import argparse
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import joint
+from mmweaver.dsp.cube import radar_cube, remove_static
+from mmweaver.dsp.points import point_cloud
+from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.motion.micro_motion import STILL
+from mmweaver.motion.multi_person import compose_people
+from mmweaver.paths.ray_traced import Simulator
+from studies.fields.field_signals import OTHER_SKIN, sample_scene
+from studies.report.result_files import write_result
+
+SENTENCES = (
+    "a person waves with the left hand", "someone does jumping jacks", "a man claps", "a woman squats",
+    "he boxes quickly", "she waves with both hands",
+)  # fmt: skip
+Place = tuple[float, float]
+ARRANGEMENTS: dict[str, tuple[Place, Place]] = {
+    "side by side, 1.2 m apart": ((-0.55, 2.1), (0.65, 2.1)),
+    "one behind the other, half aside": ((0.25, 1.5), (0.65, 2.5)),
+    "one behind the other": ((-0.1, 1.35), (-0.15, 2.2)),
+}
+SHOWN = ("nmse_active_db", "nmse_moving_db", "rd_ssim", "ra_ssim", "chamfer_m", "hausdorff_m")
+NUM_FRAMES = 20
+SEEDS = tuple(range(16))
+NEAR_M = 0.5  # a point so near to a pelvis, on the floor, is that person's
+RESAMPLES = 2000
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pair:
+    """Two people's signal, made in every way that is compared."""
+
+    poses: tuple[PoseSequence, PoseSequence]
+    mutual: RadarCube
+    plain: RadarCube
+    without_second: RadarCube
+    other_noise: RadarCube
+    twin: RadarCube
+    second_alone: RadarCube
+    empty: RadarCube
+
+
+def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> Pair:
+    """Draws two sentences and two bodies by the seed and simulates them. Raises InputError where they do not fit."""
+    texts = [str(text) for text in stream(seed, "several people").choice(SENTENCES, 2, replace=False)]
+    window_m = (float(AWR1843.range_m[0]), float(AWR1843.range_m[-1]))
+    people = compose_people(
+        texts, sample_scene(), duration_s=NUM_FRAMES * AWR1843.frame_period_s, seed=seed, range_window_m=window_m,
+        starts_m=places,
+    )  # fmt: skip
+    one, two = people[0].pose, people[1].pose
+
+    def cube(*people: PoseSequence, noise: int = seed, mutual: bool = True) -> RadarCube:
+        return radar_cube(
+            simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL, mutual_shadows=mutual).adc
+        )
+
+    skins = [replace(pose, subject=pose.subject + OTHER_SKIN) for pose in (one, two)]
+    return Pair(
+        poses=(one, two), mutual=cube(one, two), plain=cube(one, two, mutual=False), without_second=cube(one),
+        other_noise=cube(one, two, noise=seed + OTHER_SKIN), twin=cube(*skins), second_alone=cube(two), empty=cube(),
+    )  # fmt: skip
+
+
+def scores_of(pair: Pair) -> dict[str, dict[str, float]]:
+    """{metric: {superposition, without_second, other_noise, twin}} against mutual shadowing; then what it is about."""
+    truth = Views(pair.mutual)
+    predictions = {
+        "superposition": pair.plain, "without_second": pair.without_second, "other_noise": pair.other_noise,
+        "twin": pair.twin,
+    }  # fmt: skip
+    views = {name: Views(cube) for name, cube in predictions.items()}
+    scores = {name: {who: METRICS[name].score(seen, truth) for who, seen in views.items()} for name in SHOWN}
+    scores["second_dimmed_db"] = {"superposition": dimming_db(pair)}
+    second = pair.poses[1]
+    scores["points_of_second"] = {
+        "mutual": points_near(point_cloud(pair.mutual), second),
+        "superposition": points_near(point_cloud(pair.plain), second),
+        "without_second": points_near(point_cloud(pair.without_second), second),
+    }
+    return scores
+
+
+def dimming_db(pair: Pair) -> float:
+    """Moving energy that the second person adds to the first, over what that person has alone, in dB."""
+    cubes = (pair.without_second, pair.mutual, pair.empty, pair.second_alone)
+    first, both, empty, alone = (remove_static(cube).values for cube in cubes)
+    added, own = both - first, alone - empty  # the same receiver noise in all: it cancels
+    return 10 * float(np.log10((np.abs(added) ** 2).sum() / (np.abs(own) ** 2).sum()))
+
+
+def points_near(points: PointCloud, pose: PoseSequence) -> float:
+    """Detections within NEAR_M of a person's pelvis on the floor, a frame."""
+    at_s = np.asarray(points.frame) * AWR1843.frame_period_s
+    pelvis_m = pose.joints_m[np.clip(np.searchsorted(pose.time_s, at_s), 0, len(pose.time_s) - 1), joint("pelvis")]
+    return float((np.hypot(points.x_m - pelvis_m[:, 0], points.y_m - pelvis_m[:, 1]) < NEAR_M).sum() / NUM_FRAMES)
+
+
+def row_of(
+    name: str, places: tuple[Place, Place], every: dict[int, dict[str, dict[str, float]]], *, refused: int
+) -> dict[str, Any]:
+    """One arrangement: means over the pairs of people (by seed), with 95 % intervals."""
+    metrics: dict[str, Any] = {}
+    runs = list(every.values())
+    for metric in runs[0]:
+        columns = {who: [scores[metric][who] for scores in runs] for who in runs[0][metric]}
+        value, interval = _mean(columns.pop("superposition"))
+        metrics[metric] = {
+            "value": value, "interval": interval, **_meaning(metric),
+            "beside": {who: _mean(values)[0] for who, values in columns.items()},
+        }  # fmt: skip
+    return {
+        "dataset": {"name": name, "places_m": places, "room": "bundled sample", "sentences": list(SENTENCES)},
+        "n": len(every),
+        "seeds": list(every),
+        "refused_for_lack_of_room": refused,
+        "interval": "95 % of the mean over pairs of people, bootstrap",
+        "metrics": metrics,
+    }
+
+
+def _meaning(metric: str) -> dict[str, Any]:
+    if metric in METRICS:
+        return {"unit": METRICS[metric].unit, "definition": METRICS[metric].definition, "version": 1}
+    own = {
+        "second_dimmed_db": ("dB", "moving energy that the second adds to the first, over that of the second alone"),
+        "points_of_second": ("points a frame", f"detections within {NEAR_M} m of the second's pelvis on the floor"),
+    }
+    unit, definition = own[metric]
+    return {"unit": unit, "definition": definition, "version": 1}
+
+
+def _mean(values: list[float]) -> tuple[float, list[float]]:
+    all_values = np.array(values)
+    draws = stream(0, "bootstrap").integers(len(values), size=(RESAMPLES, len(values)))
+    low, high = np.percentile(all_values[draws].mean(axis=1), [2.5, 97.5])
+    return round(float(all_values.mean()), 4), [round(float(low), 4), round(float(high), 4)]
+
+
+def run(out: Path, picture: Path | None = None, seeds: tuple[int, ...] = SEEDS) -> Path:
+    """All arrangements; one row each."""
+    simulator = Simulator(sample_scene(), AWR1843)
+    rows, shown = [], []
+    for name, places in ARRANGEMENTS.items():
+        every: dict[int, dict[str, dict[str, float]]] = {}
+        for seed in seeds:
+            try:
+                pair = make_pair(simulator, places, seed)
+            except InputError:
+                continue  # these two do not fit there: counted as refused
+            if not every:
+                shown.append((name, pair))
+            every[seed] = scores_of(pair)
+        rows.append(row_of(name, places, every, refused=len(seeds) - len(every)))
+    if picture is not None:
+        draw(shown, picture)
+    return write_result(
+        out, experiment="several_people", method="superposition", config={"radar": AWR1843.name}, rows=rows
+    )
+
+
+def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
+    """Range-azimuth maps of what moves: mutual, the plain sum, and the one minus the other; one row an arrangement."""
+    import matplotlib
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
+    from mmweaver.figures.figure_data import Fan
+    from mmweaver.figures.theme import POWER_MAP, SPAN_DB, STYLE, person_colour
+
+    azimuth_rad = azimuth_axis_rad()
+    with matplotlib.rc_context(STYLE):
+        figure = Figure(figsize=(12.0, 3.1 * len(pairs)), dpi=100, facecolor="white", layout="constrained")
+        FigureCanvasAgg(figure)
+        grid = figure.subplots(len(pairs), 3, squeeze=False)
+        for line, (name, pair) in zip(grid, pairs, strict=True):
+            fan = Fan.over(pair.mutual.grid.range_m, azimuth_rad)
+            maps = [
+                range_azimuth_power(remove_static(cube), azimuth_rad).mean(axis=0) for cube in (pair.mutual, pair.plain)
+            ]
+            top = 10 * np.log10(maps[0].max())
+            both = [10 * np.log10(power) - top for power in maps]
+            for axes, values, title in zip(line, both, (name, "plain sum"), strict=False):
+                axes.imshow(fan.lay(values), origin="lower", cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0.0, extent=fan.extent)
+                axes.set_title(title)
+            clipped = [np.maximum(values, -SPAN_DB) for values in both]
+            image = line[2].imshow(
+                fan.lay(clipped[1] - clipped[0]), origin="lower", cmap="coolwarm", vmin=-15, vmax=15, extent=fan.extent
+            )
+            line[2].set_title("plain sum over mutual shadowing, dB")
+            figure.colorbar(image, ax=line[2], shrink=0.8)
+            for axes in line:
+                for index, pose in enumerate(pair.poses):
+                    x_m, y_m = pose.joints_m[:, joint("pelvis"), :2].mean(axis=0)
+                    colour = person_colour(index, 2, on_white=axes is line[2])
+                    axes.plot(x_m, y_m, "o", color=colour, fillstyle="none", markersize=9)
+        figure.savefig(path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    parser.add_argument("--picture", type=Path, default=None)
+    arguments = parser.parse_args()
+    run(arguments.out, arguments.picture)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,242 @@
+"""Recorded frames beside simulated ones of the same kind and radar: where the energy is, how deep the noise lies.
+
+python -m studies.physics.signal_statistics --data <recordings> --out results
+
+The person who moves is simulated where one of the recorded ones is; the resting room is the sample room, so there
+only the kind of number can agree; the breathing person stands with the chest where the recorded one is. How far real
+frames differ among themselves is measured on quarters of each recording, and on the same quarters of simulated ones.
+"""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.presets import BGT60
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.core.skeleton import joint
+from mmweaver.core.virtual_array import azimuth_row
+from mmweaver.dsp.cube import radar_cube, remove_static
+from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.formats.dca1000 import read_bin
+from mmweaver.formats.mmwave_studio import read_mmwave_studio
+from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.paths.ray_traced import Simulator
+from studies.fields.field_signals import pose_of, sample_scene, two_people_radar
+from studies.physics.empty_room_cube import empty_room
+from studies.report.result_files import write_result
+
+EXPERIMENT = "signal_statistics"
+VERSION = 2
+QUARTERS = 4
+CHEST_M, CHEST_HEIGHT, PELVIS_BEHIND_CHEST_M = 0.33, 0.72, 0.13
+STRONGEST, ANGLES = 20, 2048
+WALKER_M, WALKER_RAD, WALL_M = 2.93, float(np.radians(-15.0)), 5.2
+DEFINITIONS: dict[str, tuple[str, str]] = {
+    "static_share": ("share", "energy of the mean over a frame's loops, of all energy in the kept range bins"),
+    "top_1_percent": ("share", "energy of the strongest 1 % of range-Doppler-antenna cells"),
+    "top_5_percent": ("share", "energy of the strongest 5 % of the cells"),
+    "peak_over_median_db": ("dB", "strongest over median range-Doppler cell, mean over antennas"),
+    "moving_over_median_db": ("dB", "the same once the mean over the loops is taken away"),
+    "doppler_spread_mps": ("m/s", "width of the Doppler bins within 20 dB of the strongest, static taken away"),
+    "floor_slope_db": (
+        "dB",
+        "noise (median far from zero Doppler) of the nearest third of the range over the farthest",
+    ),
+    "antenna_phase_deg": (
+        "degrees",
+        "rms over the horizontal antennas of what is left of the phase after the best plane wave; median of the 20"
+        " strongest cells within 20 dB",
+    ),
+}
+
+
+def statistics(adc: AdcCube) -> dict[str, float]:
+    """The numbers of DEFINITIONS for one recording."""
+    cube = radar_cube(adc)
+    moving = remove_static(cube)
+    cells = np.sort(np.abs(cube.values).ravel() ** 2)[::-1]
+    total = float(cells.sum())
+    power, moving_power = range_doppler_power(cube), range_doppler_power(moving)
+    by_doppler = moving_power[:, :, moving_doppler(cube)].sum(axis=(0, 1))
+    velocity = cube.grid.radial_velocity_mps[moving_doppler(cube)]
+    strong = velocity[by_doppler > 0.01 * by_doppler.max()]
+    far = np.abs(cube.grid.radial_velocity_mps) > 0.75 * cube.config.max_velocity_mps
+    floor = np.median(power[:, :, far], axis=(0, 2))
+    third = len(floor) // 3
+    phase_deg = antenna_phase_deg(cube)
+    found = {
+        "static_share": 1 - float((np.abs(moving.values) ** 2).sum()) / total,
+        "top_1_percent": float(cells[: len(cells) // 100].sum()) / total,
+        "top_5_percent": float(cells[: len(cells) // 20].sum()) / total,
+        "peak_over_median_db": _db(power.max() / np.median(power)),
+        "moving_over_median_db": _db(moving_power.max() / np.median(moving_power)),
+        "doppler_spread_mps": float(strong.max() - strong.min()),
+        "floor_slope_db": _db(np.median(floor[:third]) / np.median(floor[-third:])),
+    }
+    return found if phase_deg is None else {**found, "antenna_phase_deg": phase_deg}
+
+
+def antenna_phase_deg(cube: RadarCube) -> float | None:
+    """How far the strongest cells are from plane waves over the horizontal row; None for a row of two or fewer."""
+    place_m, wavelength_m = cube.grid.antenna_position_m, cube.grid.wavelength_m
+    row = azimuth_row(place_m, wavelength_m)
+    if len(row) < 3:
+        return None
+    values = cube.values.reshape(-1, cube.values.shape[-1])[:, row].astype(np.complex128)
+    power = (np.abs(values) ** 2).sum(axis=1)
+    strong = np.argsort(power)[-STRONGEST:]
+    strong = values[strong[power[strong] > 0.01 * power.max()]]
+    across = np.linspace(-1, 1, ANGLES)
+    waves = np.exp(2j * np.pi / wavelength_m * across[:, None] * place_m[row, 0])  # (angle, antenna)
+    beams = strong @ waves.conj().T
+    best = np.argmax(np.abs(beams), axis=1)
+    turned = strong * waves[best].conj() * np.exp(-1j * np.angle(beams[np.arange(len(best)), best]))[:, None]
+    return float(np.median(np.degrees(np.sqrt((np.angle(turned) ** 2).mean(axis=1)))))
+
+
+def quarters(adc: AdcCube) -> list[AdcCube]:
+    """A recording of one frame cut into four shorter frames."""
+    loops = adc.config.num_loops // QUARTERS
+    config = replace(adc.config, num_loops=loops)
+    return [
+        replace(adc, samples=adc.samples[:, at * loops : (at + 1) * loops], config=config) for at in range(QUARTERS)
+    ]
+
+
+def _db(ratio: float) -> float:
+    return float(10 * np.log10(ratio))
+
+
+def recorded_people(data: Path) -> AdcCube:
+    """Two people who move, one frame of 128 loops."""
+    path = data / "radar" / "openradar_two_people" / "adc_frame_loops_vrx_samples_c64.npy"
+    return read_adc_npy(path, two_people_radar(num_loops=128), "loop,vrx,sample")
+
+
+def recorded_hall(data: Path) -> AdcCube:
+    """A hall in which nothing moves, one frame of 85 loops."""
+    folder = data / "radar" / "iwr6843_dca1000"
+    return read_bin(folder / "adc_data_example.bin", read_mmwave_studio(folder / "mmwaveDevice.mmwave.json"))
+
+
+def recorded_breath(data: Path) -> AdcCube:
+    """A person who breathes 0.33 m away, as one long frame with a loop every 77 ms."""
+    path = data / "radar" / "bgt60_breathing" / "breathing_radar_uint16_256x3x8x64.npy"
+    return slow_frame(read_adc_npy(path, BGT60, "frame,rx,loop,sample"))
+
+
+def slow_frame(adc: AdcCube) -> AdcCube:
+    """Many short frames as one: the mean chirp of each is a loop of it."""
+    period_s, num = adc.config.frame_period_s, len(adc.samples)
+    idle_s = period_s / adc.config.num_tx - adc.config.ramp_end_time_s
+    config = replace(adc.config, num_loops=num, idle_time_s=idle_s, frame_period_s=1.001 * num * period_s)
+    return replace(adc, samples=adc.samples.mean(axis=1)[None].astype(np.complex64), config=config)
+
+
+def sample_room(config: RadarConfig, seed: int) -> AdcCube:
+    """One frame of the sample room with nobody in it."""
+    return Simulator(sample_scene(), config).run((), num_frames=1, seed=seed).adc
+
+
+def walker(config: RadarConfig, seed: int) -> AdcCube:
+    """One frame of somebody who walks where one of the two recorded people is, with a wall where theirs is."""
+    pose = pose_of("walking", seconds=2.0, seed=seed)
+    middle_s = float(np.mean(pose.time_s))
+    pelvis = pose.joints_m[len(pose.time_s) // 2, 0]
+    place = WALKER_M * np.array([np.sin(WALKER_RAD), np.cos(WALKER_RAD)])
+    shifted = pose.joints_m + np.append(place - pelvis[:2], 0.0)
+    from_middle = replace(pose, time_s=pose.time_s - middle_s, joints_m=shifted)
+    room = empty_room(floor_z_m=float(shifted[..., 2].min()) - 0.04, wall_y_m=WALL_M)
+    return Simulator(room, config).run(from_middle, num_frames=1, seed=seed).adc
+
+
+def breather(config: RadarConfig, seed: int) -> AdcCube:
+    """Somebody who stands and does nothing but breathe, as `recorded_breath` has the recorded one."""
+    frames = config.num_loops
+    standing = pose_of("waving", seconds=1.0, seed=seed)  # it begins in a stance
+    joints_m = standing.joints_m[:1] - standing.joints_m[:1, :1] * np.array([1.0, 1.0, 0.0])
+    floor_m = float(joints_m[..., 2].min()) - 0.04
+    chest_m = floor_m + CHEST_HEIGHT * standing.height_m
+    towards = joints_m[0, joint("left_hip")] - joints_m[0, joint("right_hip")]
+    turn = np.arctan2(towards[1], towards[0])  # who faces the radar has the left hip to the right
+    cos, sin = np.cos(turn), np.sin(turn)
+    turned = joints_m @ np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    place = turned + np.array([0.0, CHEST_M + PELVIS_BEHIND_CHEST_M, -chest_m])
+    time_s = np.array([0.0, 0.5, 1.0]) * frames * BGT60.frame_period_s
+    pose = replace(standing, time_s=time_s, joints_m=np.repeat(place, 3, axis=0))
+    room = empty_room(floor_z_m=floor_m - chest_m, wall_y_m=None)
+    return slow_frame(Simulator(room, BGT60).run(pose, num_frames=frames, seed=seed).adc)
+
+
+def rows(
+    name: str, recording: AdcCube, simulate: Callable[[RadarConfig, int], AdcCube], seeds: tuple[int, ...]
+) -> list[dict[str, Any]]:
+    """The recording's row and that of simulated frames, with their spread over seeds and over quarters."""
+    real = statistics(recording)
+    made = [simulate(replace(recording.config, tx_power_dbm=12.0), seed) for seed in seeds]
+    each = [statistics(one) for one in made]
+    middle = {key: float(np.median([found[key] for found in each])) for key in real}
+    parts = [statistics(part) for one in made for part in quarters(one)]
+    return [
+        _row(name, "recorded", real, None, _spread([statistics(part) for part in quarters(recording)]), ()),
+        _row(name, "simulated", middle, _spread(each), _spread(parts), seeds),
+    ]
+
+
+def _spread(found: list[dict[str, float]]) -> dict[str, list[float]]:
+    return {key: [min(one[key] for one in found), max(one[key] for one in found)] for key in found[0]}
+
+
+def _row(
+    name: str, origin: str, values: dict[str, float], spread: dict[str, list[float]] | None,
+    parts: dict[str, list[float]], seeds: tuple[int, ...],
+) -> dict[str, Any]:  # fmt: skip
+    metrics = {}
+    for key, value in values.items():
+        unit, definition = DEFINITIONS[key]
+        metrics[key] = {"value": round(value, 4), "unit": unit, "definition": definition, "version": VERSION}
+        metrics[key]["quarters"] = [round(edge, 4) for edge in parts[key]]
+        if spread:
+            metrics[key]["interval"] = [round(edge, 4) for edge in spread[key]]
+    return {
+        "dataset": {"name": name, "origin": origin},
+        "n": max(len(seeds), 1),
+        "seeds": list(seeds),
+        "metrics": metrics,
+    }
+
+
+RECORDINGS: tuple[tuple[str, Callable[[Path], AdcCube], Callable[[RadarConfig, int], AdcCube]], ...] = (
+    ("people who move", recorded_people, walker),
+    ("a room in which nothing moves", recorded_hall, sample_room),
+    ("a person who breathes", recorded_breath, breather),
+)
+
+
+def run(out: Path, data: Path, seeds: tuple[int, ...] = tuple(range(10))) -> Path:
+    """All recordings, each with simulated frames of the same radar."""
+    found = [row for name, read, simulate in RECORDINGS for row in rows(name, read(data), simulate, seeds)]
+    return write_result(
+        out,
+        experiment=EXPERIMENT,
+        method="physics",
+        config={"rooms": "a floor and a wall at 5.2 m; bundled sample; a floor", "quarters": QUARTERS},
+        rows=found,
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    parser.add_argument("--data", type=Path, required=True, help="folder of recordings (with radar/ in it)")
+    arguments = parser.parse_args()
+    run(arguments.out, arguments.data)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Recognisers trained on generated data, scored on recordings."""

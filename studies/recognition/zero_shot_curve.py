@@ -1,0 +1,107 @@
+"""What generated data saves: accuracy against the number of real recordings of each activity, with and without it.
+
+    python -m studies.recognition.zero_shot_curve --recordings shared/data/pointclouds/radhar --out results
+
+Recordings are drawn anew for each seed; all others are the test. Real windows together weigh as much as generated ones.
+Trees are grown once each, not as often as in what is frozen.
+"""
+
+import argparse
+import time
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.seeding import stream
+from mmweaver.recognition.activity_classifier import ActivityClassifier
+from mmweaver.recognition.frozen_activity import Frozen, load_frozen
+from mmweaver.recognition.recording_files import read_recordings
+from mmweaver.recognition.scoring import balanced_accuracy
+from mmweaver.recognition.window_features import feature_matrix
+from studies.recognition.zero_shot_scores import digest
+from studies.report.result_files import write_result
+
+RECORDINGS = (0, 1, 5, 20)
+SEEDS = (0, 1, 2)
+
+
+def chosen_recordings(labels: np.ndarray, each: int, seed: int) -> np.ndarray:
+    """Which recordings (of these labels) train: `each` of every activity, by chance."""
+    rng = stream(seed, "real recordings", each)
+    kinds = np.unique(labels)
+    return np.concatenate([rng.permutation(np.flatnonzero(labels == kind))[:each] for kind in kinds]).astype(int)
+
+
+def accuracy(
+    frozen: Frozen, features: np.ndarray, labels: np.ndarray, is_training: np.ndarray, *, generated: bool
+) -> float:
+    """Balanced accuracy of the windows that do not train, with or without the generated ones."""
+    rows, names = [features[is_training]], [labels[is_training]]
+    weights = [np.ones(int(is_training.sum()))]
+    if generated:
+        made = frozen.made
+        rows, names = [*rows, made.features], [*names, made.labels]
+        weights = [weights[0] * len(made.labels) / max(int(is_training.sum()), 1), np.ones(len(made.labels))]
+    model = ActivityClassifier(replace(frozen.classifier, repetitions=1))
+    model.fit(np.concatenate(rows), np.concatenate(names), np.concatenate(weights))
+    guess = np.argmax(model.probabilities(features[~is_training]), axis=1)
+    return balanced_accuracy(np.searchsorted(np.array(model.classes), labels[~is_training]), guess)
+
+
+def run(name: str, recordings: Path, out: Path) -> Path:
+    """Writes results/zero_shot/curve.json."""
+    frozen = load_frozen(name)
+    people = read_recordings(recordings, frozen.labels)
+    windows = [window for one in people for window in one.windows(frozen.window_s)]
+    owner = np.repeat(np.arange(len(people)), [len(one.windows(frozen.window_s)) for one in people])
+    features, _ = feature_matrix(windows, frozen.made.names)
+    labels = np.array([window.label for window in windows])
+    kinds = np.array([one.label for one in people])
+    rows: list[dict[str, Any]] = []
+    for each in RECORDINGS:
+        for generated in (True, False):
+            if each == 0 and not generated:
+                continue
+            began = time.process_time()
+            seeds = SEEDS if each else SEEDS[:1]
+            scores = []
+            for seed in seeds:
+                is_training = np.isin(owner, chosen_recordings(kinds, each, seed))
+                scores.append(accuracy(frozen, features, labels, is_training, generated=generated))
+            rows.append(_row(scores, each, generated, recordings, seeds, time.process_time() - began))
+    config = {"frozen": name, **frozen.provenance, "classifier": asdict(frozen.classifier)}
+    return write_result(out, experiment="zero_shot", method="curve", config=config, rows=rows)
+
+
+def _row(scores: list[float], each: int, generated: bool, folder: Path, seeds: tuple[int, ...], seconds: float) -> dict:
+    return {
+        "dataset": {"name": "RadHAR, all recordings but those that train", "sha256": digest(folder)},
+        "real_recordings_each": each,
+        "generated": generated,
+        "n": len(scores),
+        "seeds": list(seeds),
+        "seconds": round(seconds, 1),
+        "metrics": {
+            "window": {
+                "value": round(float(np.mean(scores)), 4), "unit": "share", "version": 1, "floor": 0.2,
+                "definition": "balanced accuracy of windows of 2 s, mean over draws of the recordings that train",
+                "lowest": round(min(scores), 4), "highest": round(max(scores), 4),
+            }
+        },
+    }  # fmt: skip
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description="accuracy against the number of real recordings")
+    parser.add_argument("--frozen", default="development")
+    parser.add_argument("--recordings", type=Path, required=True)
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    given = parser.parse_args()
+    run(given.frozen, given.recordings, given.out)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,73 @@
+"""Real beside generated: the moving points of one window of each activity, range over time, coloured by velocity.
+
+python -m studies.recognition.zero_shot_pictures --recordings shared/data/pointclouds/radhar --out docs/images
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.recognition.generated_windows import generate_window
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radhar import radhar_recipe
+from mmweaver.recognition.recording_files import read_recordings
+from mmweaver.recognition.window_features import STILL_MPS
+
+SHOWN_MPS = 2.5
+SECONDS = 4.0
+
+
+def draw(real: dict[str, PointRecording], made: dict[str, PointRecording], path: Path) -> None:
+    """One column an activity; above the recording, below the generated window."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(3.0 * len(real), 5.4), layout="constrained", dpi=110)
+    axes = figure.subplots(2, len(real), sharex=True, sharey=True, squeeze=False)
+    shown = None
+    for column, label in enumerate(real):
+        for row, (title, one) in enumerate((("real", real[label]), ("generated", made[label]))):
+            cloud, axis = one.cloud, axes[row, column]
+            range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+            time_s = cloud.frame / one.frame_rate_hz
+            still = np.abs(cloud.radial_velocity_mps) < STILL_MPS
+            axis.scatter(time_s[still], range_m[still], s=1, color="0.8", linewidths=0)
+            shown = axis.scatter(
+                time_s[~still], range_m[~still], s=7, c=cloud.radial_velocity_mps[~still], cmap="coolwarm",
+                vmin=-SHOWN_MPS, vmax=SHOWN_MPS, linewidths=0,
+            )  # fmt: skip
+            axis.set_title(f"{label}, {title}", fontsize=10)
+            axis.set_ylim(0.8, 3.0)
+            axis.set_xlim(0.0, SECONDS)
+    for axis in axes[1]:
+        axis.set_xlabel("time, s")
+    for axis in axes[:, 0]:
+        axis.set_ylabel("range, m")
+    if shown is not None:
+        figure.colorbar(shown, ax=axes, label="radial velocity, m/s (red: away)", shrink=0.8)
+    with atomic_file(path) as temporary:
+        figure.savefig(temporary, format="png")
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description="pictures of real recordings beside generated ones")
+    parser.add_argument("--recordings", type=Path, required=True)
+    parser.add_argument("--out", type=Path, default=Path("docs/images"))
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+    from dataclasses import replace
+
+    recipe = replace(radhar_recipe(), window_s=SECONDS)
+    people = read_recordings(given.recordings, recipe.activities)
+    real = {}
+    for label in recipe.activities:
+        own = [one for one in people if one.label == label]
+        real[label] = own[0].windows(SECONDS)[1]
+    made = {label: generate_window(recipe, label, given.seed, 7) for label in recipe.activities}
+    draw(real, made, given.out / "zero_shot.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,223 @@
+"""Trained on generated data alone, tested on real people: RadHAR's five activities.
+
+python -m studies.recognition.zero_shot_scores generate --cache FOLDER --each 300 --seed 1      # resumable
+python -m studies.recognition.zero_shot_scores validate --cache FOLDER --each 300 --seed 1      # generated data alone
+python -m studies.recognition.zero_shot_scores freeze NAME --cache FOLDER --each 300 --seed 1
+python -m studies.recognition.zero_shot_scores score NAME --recordings shared/data/pointclouds/radhar --out results
+"""
+
+import argparse
+import hashlib
+import json
+import re
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.seeding import stream
+from mmweaver.recognition.activity_classifier import ClassifierSettings
+from mmweaver.recognition.frozen_activity import FOLDER, load_frozen, save_frozen
+from mmweaver.recognition.generated_windows import GenerationRecipe, generate_window, read_window, write_window
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.radhar import radhar_recipe
+from mmweaver.recognition.recording_files import read_recordings
+from mmweaver.recognition.scoring import Evaluation, balanced_accuracy, evaluate_recogniser, report
+from mmweaver.recognition.variation import VariationSample, draw
+from mmweaver.recognition.zero_shot import TrainingSet, measured, own_cache, training_set
+from studies.report.result_files import commit, write_result
+
+SETTINGS = ClassifierSettings(repetitions=3)  # of what is frozen
+METRICS = {
+    "window": "balanced accuracy of windows of 2 s, one after the other",
+    "three_windows": "balanced accuracy of the mean vote of three windows (6 s)",
+    "recording": "balanced accuracy of the mean vote of a whole recording",
+}
+
+
+def validate(made: TrainingSet, draws: list[VariationSample]) -> dict[str, float]:
+    """Balanced accuracy on generated windows whose circumstances were left out of training: what a feature is worth.
+
+    Each split trains on one side of a span and tests on the other; `every_third` is a plain split.
+    """
+    number = np.arange(len(draws))
+    of = {key: np.array([getattr(one, key) or 9.0 for one in draws], float) for key in VARIED}
+    tests = {"every_third": number // len(set(made.labels)) % 3 == 0}
+    for key, value in of.items():
+        tests[f"{key}_low"], tests[f"{key}_high"] = value <= np.quantile(value, 0.3), value >= np.quantile(value, 0.7)
+    scores: dict[str, float] = {}
+    for name, test in tests.items():
+        if test.all():
+            continue  # nothing is left to train on: this was not varied
+        model = TrainingSet(features=made.features[~test], labels=made.labels[~test], names=made.names).train()
+        truth, guess = (
+            np.unique(made.labels).searchsorted(labels)
+            for labels in (made.labels[test], model.predict(made.features[test]))
+        )
+        scores[name] = balanced_accuracy(truth, guess)
+    return scores
+
+
+VARIED = ("tempo", "distance_m", "radar_height_m", "noise_db", "threshold_db", "skin_exponent", "wall_m")
+
+
+def first_draws(recipe: GenerationRecipe, each: int, seed: int) -> list[VariationSample]:
+    """The circumstances of each window in the order of `generate_windows` (its first draw, where it drew again)."""
+    return [
+        draw(recipe.variation_of(label), stream(seed, "zero shot", label, index))
+        for index in range(each)
+        for label in recipe.activities
+    ]
+
+
+def score(name: str, recordings: Path, out: Path) -> Path:
+    """Scores a frozen recogniser on recordings of real people and writes results/zero_shot/NAME.json.
+
+    One row for all recordings, one each for the two halves by name.
+    """
+    began = time.process_time()
+    frozen = load_frozen(name)
+    judged = evaluate_recogniser(frozen.train(), read_recordings(recordings, frozen.labels), frozen.window_s)
+    seconds = time.process_time() - began
+    first = np.array([in_first_half(one) for one in judged.names])[judged.recording]
+    parts = {
+        "all recordings": np.ones_like(first),
+        "first half of the names": first,
+        "second half of the names": ~first,
+    }
+    rows = [
+        result_row(judged.part(which), recordings, words, seconds=seconds)
+        for words, which in parts.items()
+        if which.any()
+    ]
+    config = {"frozen": name, **frozen.provenance, "classifier": asdict(frozen.classifier)}
+    return write_result(out, experiment="zero_shot", method=name, config=config, rows=rows)
+
+
+def in_first_half(name: str) -> bool:
+    """Which of RadHAR's two groups of names: the activity stands before the 20 in the first.
+
+    >>> in_first_half("Train_walk____walk_20_9"), in_first_half("Train_walk____20_walk_9")
+    (True, False)
+    """
+    return re.search(r"[a-z]_20_\d+$", name) is not None
+
+
+def result_row(judged: Evaluation, recordings: Path, which: str, *, seconds: float) -> dict[str, Any]:
+    """Scores in the schema of results."""
+    found = report(judged)
+    return {
+        "dataset": {"name": f"RadHAR, {which}", "recordings": found["recordings"], "sha256": digest(recordings)},
+        "n": found["window"]["n"],
+        "seeds": [0],
+        "seconds": round(seconds, 1),
+        "classes": found["classes"],
+        "metrics": {
+            key: {
+                "value": found[key]["balanced_accuracy"], "unit": "share", "definition": words, "version": 1,
+                "interval_95": found[key]["interval_95"], "floor": found[key]["floor"], "n": found[key]["n"],
+                "confusion": found[key]["confusion"],
+            }
+            for key, words in METRICS.items()
+        },
+    }  # fmt: skip
+
+
+def digest(folder: Path) -> str:
+    """One hash of all recordings of a folder."""
+    total = hashlib.sha256()
+    for path in sorted(folder.rglob("*")):
+        if path.suffix in (".npz", ".txt"):
+            total.update(hashlib.sha256(path.read_bytes()).digest())
+    return total.hexdigest()
+
+
+def freeze(name: str, caches: list[Path], out: Path) -> Path:
+    """Pools all windows of the caches and writes the frozen files of the package, with where each came from.
+
+    results/zero_shot/frozen.json says the same, with the digest of the features.
+    """
+    read = [read_cache(cache) for cache in caches]
+    made = [measured(windows) for windows, _ in read]
+    sources = [source for _, source in read]
+    pooled = TrainingSet(
+        features=np.concatenate([one.features for one in made]),
+        labels=np.concatenate([one.labels for one in made]),
+        names=made[0].names,
+    )
+    save_frozen(name, pooled, {"classifier": asdict(SETTINGS), "sources": sources})
+    return tell_frozen(name, out)
+
+
+def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
+    """The windows of a cache, and where they come from: commit, seed, how many, core seconds, recipe."""
+    recipe = radhar_recipe()
+    files = sorted(cache.glob("*_*_*.npz"))
+    windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
+    source = {
+        "commit": (cache / "commit.txt").read_text(encoding="utf-8").strip(),
+        "seed": int(files[0].stem.split("_")[1]),
+        "windows": len(files),
+        "core_seconds": sum(float(path.read_text(encoding="utf-8")) for path in cache.glob("seconds_*.txt")),
+        "recipe": json.loads((cache / "recipe.json").read_text(encoding="utf-8")),
+    }
+    return windows, source
+
+
+def tell_frozen(name: str, out: Path) -> Path:
+    """results/zero_shot/frozen.json: settings and sources of a frozen recogniser, and the digest of its features."""
+    settings = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
+    features = hashlib.sha256((FOLDER / f"{name}.npz").read_bytes()).hexdigest()
+    config = {"frozen": name, "features_sha256": features, **settings}
+    return write_result(out, experiment="zero_shot", method="frozen", config=config, rows=[])
+
+
+def generate(recipe: GenerationRecipe, cache: Path, *, each: int, seed: int, part: int = 0, parts: int = 1) -> None:
+    """Fills a cache; several processes may share one, each with its part. Says in it what made it."""
+    own_cache(cache, recipe)
+    (cache / "commit.txt").write_text(f"{commit()}\n", encoding="utf-8")
+    note = cache / f"seconds_{part}.txt"
+    spent_s = float(note.read_text(encoding="utf-8")) if note.exists() else 0.0
+    for index in range(part, each, parts):
+        for label in recipe.activities:
+            path = cache / f"{label}_{seed}_{index}.npz"
+            if not path.exists():
+                began = time.process_time()
+                write_window(path, generate_window(recipe, label, index, seed))
+                spent_s += time.process_time() - began
+                note.write_text(f"{spent_s:.1f}\n", encoding="utf-8")
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description="activities recognised from generated data alone")
+    parser.add_argument("what", choices=("generate", "validate", "freeze", "score"))
+    parser.add_argument("name", nargs="?", default="development", help="name of the frozen recogniser")
+    parser.add_argument("--cache", type=Path, help="folder of generated windows")
+    parser.add_argument("--caches", type=Path, nargs="+", help="folders to freeze together")
+    parser.add_argument("--each", type=int, default=300, help="windows of each activity")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--part", type=int, default=0)
+    parser.add_argument("--parts", type=int, default=1)
+    parser.add_argument("--recordings", type=Path)
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    given = parser.parse_args()
+    recipe = radhar_recipe()
+    if given.what == "score":
+        score(given.name, given.recordings, given.out)
+        return
+    if given.what == "generate":
+        generate(recipe, given.cache, each=given.each, seed=given.seed, part=given.part, parts=given.parts)
+        return
+    if given.what == "freeze":
+        freeze(given.name, given.caches, given.out)
+        return
+    made = training_set(recipe, each=given.each, seed=given.seed, cache=given.cache)
+    for split, value in validate(made, first_draws(recipe, given.each, given.seed)).items():
+        print(f"{split:24s} {value:.3f}")  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Result files and the tables of the docs made from them."""

@@ -1,0 +1,137 @@
+"""The four real rooms: is the floor at its height, and does nobody get into what the photo measured?
+
+python -m studies.scene.real_placements --rooms /path/to/rooms --out results
+
+The floor against places in the photo that a person marked as floor (real_rooms_classes.json). Bodies against the
+measured points themselves, for what stands in a real room is known from them alone: no limb may be within its own
+thickness of a point, less 3 cm. A body wholly behind a surface would not be seen to be inside; the procedural rooms of
+`affordances`, whose boxes are known, tell that.
+"""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
+from mmweaver.core.shapes import Points
+from mmweaver.core.skeleton import joint
+from mmweaver.geometry.pinhole import unproject
+from mmweaver.motion.compose import Motion, compose
+from mmweaver.scene.read_photo import read_photo
+from mmweaver.scene.reconstruction import reconstruct
+from studies.report.result_files import write_result
+from studies.scene.affordances import RANGE_WINDOW_M, SECONDS, share_of
+from studies.scene.room_contact import ALLOWED_M, ON_SEAT_M, sampled
+from studies.scene.room_sentences import SENTENCES
+
+SEEDS = range(10)
+MARKS = Path(__file__).with_name("real_rooms_classes.json")
+FLOOR_MARKS = "floor-other"
+_WINDOW = 4  # pixels about a mark
+_LOWEST_M, _NEAREST_M = 0.09, 0.3  # above the floor, where its noise ends; from the camera
+_ON_SEAT_REACH_M, _FARTHEST_M = 0.65, 0.3
+_SINKS = {"pelvis", "spine1", "spine2", "spine3", "left_hip", "right_hip", "left_collar", "right_collar"}
+_ARMS = {"shoulder", "elbow", "wrist"}
+_ALONG = np.linspace(0.0, 1.0, 7)
+
+Array = np.ndarray
+
+
+def floor_error_m(scene: Scene, photo: RgbdPhoto, marks: list[list[float]]) -> tuple[float, int]:
+    """How far the found floor is from the median height of the marked places (x, y as shares of the photo), and how
+    many of them have a depth.
+    """
+    rows, columns = photo.depth_m.shape
+    points = unproject(photo.depth_m, photo.intrinsics) @ scene.radar_from_camera.T
+    heights = []
+    for x, y in marks:
+        row, column = int(y * rows), int(x * columns)
+        near = points[max(row - _WINDOW, 0) : row + _WINDOW + 1, max(column - _WINDOW, 0) : column + _WINDOW + 1, 2]
+        if np.isfinite(near).any():
+            heights.append(float(np.nanmedian(near)))
+    return abs(float(np.median(heights)) - scene.floor_z_m), len(heights)
+
+
+def measured_m(scene: Scene, photo: RgbdPhoto) -> Points:
+    """The measured points above the floor."""
+    depth_m = photo.depth_m
+    points = unproject(depth_m, photo.intrinsics)[np.isfinite(depth_m) & (depth_m > _NEAREST_M)]
+    points = points @ scene.radar_from_camera.T
+    return points[points[:, 2] > scene.floor_z_m + _LOWEST_M]
+
+
+def deepest_m(tree: Any, pose: PoseSequence, seat_m: Float[Array, "2"] | None) -> tuple[float, float]:
+    """How deep a measured point is inside the body beyond what is allowed: in trunk, legs and head, and in the arms.
+
+    About a seat trunk and thighs may sink in, for they sit there.
+    """
+    worst = {"body": 0.0, "arms": 0.0}
+    for capsule, points, radius in sampled(pose, _ALONG):
+        allowed = np.full(len(points), ALLOWED_M)
+        if seat_m is not None and capsule.start in _SINKS:
+            allowed[np.hypot(*(points[:, :2] - seat_m).T) < _ON_SEAT_REACH_M] = ON_SEAT_M
+        distance, _ = tree.query(points, distance_upper_bound=_FARTHEST_M)
+        part = "arms" if any(word in capsule.start for word in _ARMS) else "body"
+        worst[part] = max(worst[part], float((radius - distance - allowed).max()))
+    return worst["body"], worst["arms"]
+
+
+def _seat_of(motion: Motion) -> Float[Array, "2"] | None:
+    """Where the pelvis is lowest, if the person sits."""
+    if not any(step.lower in ("sit", "sit_down", "stand_up") for step in motion.plan.steps):
+        return None
+    pelvis = motion.pose.joints_m[:, joint("pelvis")]
+    return np.asarray(pelvis[np.argmin(pelvis[:, 2]), :2], float)
+
+
+def room_row(folder: Path) -> dict[str, Any]:
+    """One room: its six sentences of the docs, ten seeds each."""
+    from scipy.spatial import KDTree
+
+    photo, assumptions = read_photo(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
+    scene = reconstruct(photo, assumptions=assumptions)
+    marks = json.loads(MARKS.read_text(encoding="utf-8"))[folder.name][FLOOR_MARKS]
+    error_m, num_marks = floor_error_m(scene, photo, marks)
+    tree = KDTree(measured_m(scene, photo))
+    clear, arms_clear, refused = [], [], 0
+    for text in SENTENCES[folder.name]:
+        for seed in SEEDS:
+            try:
+                motion = compose(text, scene, duration_s=SECONDS, seed=seed, range_window_m=RANGE_WINDOW_M)
+            except InputError:
+                refused += 1
+                continue
+            body_m, arms_m = deepest_m(tree, motion.pose, _seat_of(motion))
+            clear.append(body_m <= 0)
+            arms_clear.append(arms_m <= 0)
+    floor = {"value": round(error_m, 4), "unit": "m", "version": 1, "of": num_marks,
+             "definition": "found floor against the median height of places marked as floor by hand"}  # fmt: skip
+    clearness = "no measured point 3 cm inside trunk, legs or head"
+    return {
+        "dataset": {"name": folder.name, "split": "all four rooms were looked at while placements were made"},
+        "n": len(clear), "seeds": list(SEEDS), "refused": refused,
+        "metrics": {
+            "floor_error_m": floor,
+            "placements_clear": share_of("placements_clear", clear, clearness),
+            "arms_clear": share_of("arms_clear", arms_clear, "the same of the arms"),
+        },
+    }  # fmt: skip
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rooms", type=Path, required=True, help="folder of the real rooms")
+    parser.add_argument("--out", type=Path, default=Path("results"))
+    arguments = parser.parse_args()
+    rows = [room_row(arguments.rooms / name) for name in SENTENCES]
+    config = {"sentences": SENTENCES, "seconds": SECONDS, "range_window_m": list(RANGE_WINDOW_M)}
+    write_result(arguments.out, experiment="real_placements", method="depth", config=config, rows=rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,39 @@
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.compression.mmw_codec import compressed, read_cube
+from mmweaver.compression.mmw_field import open_mmw
+from mmweaver.core.records import RadarCube
+from mmweaver.fields.sampling import finer_grid
+from tests.fields.echoes import crowd, error_db
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RadarCube]:
+    path = tmp_path_factory.mktemp("mmw") / "a.mmw"
+    before, mmw.CHUNK_FRAMES = mmw.CHUNK_FRAMES, 2
+    path.write_bytes(compressed(crowd(), num_bytes=5000))
+    mmw.CHUNK_FRAMES = before
+    return path, read_cube(path)
+
+
+def test_the_field_of_a_file_is_the_cube_of_the_file(written: tuple[Path, RadarCube]):
+    path, cube = written
+    field = open_mmw(path)
+    assert error_db(field.cube().values, cube.values) < -90
+    index = np.stack([np.random.default_rng(0).integers(0, size, 200) for size in cube.values.shape], axis=1)
+    assert error_db(field.sample(index.astype(float)), cube.values[tuple(index.T)]) < -80
+    assert field.num_values > 100
+
+
+def test_finer_grids_contain_the_cells_and_stay_near_between_them(written: tuple[Path, RadarCube]):
+    path, cube = written
+    field = open_mmw(path)
+    finer = field.finer(n_r=2.0, n_d=2.0)
+    assert error_db(finer.values[:, ::2, ::2], cube.values) < -60
+    grid = finer_grid(cube.grid, n_r=2.0)
+    places = np.stack(np.meshgrid([1], np.arange(0, 47) / 2, [5], [3], indexing="ij"), -1).reshape(-1, 4)
+    assert error_db(field.sample(places), field.on_grid(replace(grid))[1, :47, 5, 3]) < -60

@@ -1,0 +1,117 @@
+"""A small data set: whole, the same again, and safe from a kill."""
+
+import hashlib
+import json
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.datasets.dataset_plan import DatasetPlan
+from mmweaver.datasets.dataset_store import PLAN_FILE, is_being_written, read_rooms
+from mmweaver.datasets.generate_rooms import generate, make_one
+
+zarr = pytest.importorskip("zarr")
+PLAN = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=4)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data") / "set"
+    generate(folder, PLAN, AWR1843)
+    return folder
+
+
+def test_it_reads_with_plain_zarr_and_its_axes_have_units(folder: Path):
+    root = zarr.open_group(folder, mode="r")
+    assert root["range_m"].attrs["units"] == "m"
+    iq = root["office_000"]["iq"]
+    assert iq.metadata.dimension_names == ("sequence", "frame", "range", "doppler", "antenna", "part")
+    assert iq.dtype == np.float16
+    assert iq.shape[1:] == (4, 64, 32, 12, 2)
+    assert json.loads((folder / PLAN_FILE).read_text())["seed"] == 0
+
+
+def test_half_precision_keeps_the_noise(folder: Path):
+    room = read_rooms(folder)[0]
+    cube = room.cube(0)
+    assert np.isfinite(cube.values).all()
+    noise = np.median(np.abs(cube.values) ** 2)
+    expected = AWR1843.noise_power_mw * 1.5 / AWR1843.num_samples * 1.5 / AWR1843.num_loops * np.log(2)
+    assert 10 * np.log10(noise / expected) == pytest.approx(0, abs=1.5)
+
+
+def test_after_a_kill_the_rest_is_made_and_is_the_same_to_the_bit(folder: Path, tmp_path: Path):
+    again = tmp_path / "again"
+    shutil.copytree(folder, again)
+    shutil.rmtree(again / "office_001")
+    host = platform.node().replace(".", "-")
+    dead, living = (again / f".office_001.{host}.{process}" for process in (4_000_000, os.getppid()))
+    for partial in (dead, living):  # what a killed process leaves, and what a worker that outlives it still writes
+        partial.mkdir()
+    reports = generate(again, PLAN, AWR1843)
+    assert [report.name for report in reports] == ["office_001"]
+    assert not dead.exists()
+    assert living.exists()
+    shutil.rmtree(living)
+    for first, second in zip(read_rooms(folder), read_rooms(again), strict=True):
+        assert np.array_equal(first.cube(1).values, second.cube(1).values)
+        assert np.array_equal(first.joints_m, second.joints_m)
+        assert np.array_equal(first.photo.rgb, second.photo.rgb)
+    assert generate(again, PLAN, AWR1843) == []
+
+
+def test_another_plan_and_a_full_folder_are_refused(folder: Path, tmp_path: Path):
+    other = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=5)
+    with pytest.raises(InputError, match="another plan"):
+        generate(folder, other, AWR1843)
+    (tmp_path / "mine.txt").write_text("keep me")
+    with pytest.raises(InputError, match="not empty"):
+        generate(tmp_path, PLAN, AWR1843)
+    assert (tmp_path / "mine.txt").read_text() == "keep me"
+    with pytest.raises(InputError, match="no data set"):
+        read_rooms(tmp_path)
+
+
+def test_a_room_that_was_made_meanwhile_is_kept(folder: Path, tmp_path: Path):
+    again = tmp_path / "again"
+    shutil.copytree(folder, again)
+    before = (again / "office_000" / "zarr.json").stat().st_mtime_ns
+    make_one((again, PLAN.rooms()[0], AWR1843, PLAN.num_frames, False))
+    assert (again / "office_000" / "zarr.json").stat().st_mtime_ns == before
+    assert not list(again.glob(".office*"))
+
+
+def test_on_ray_it_is_the_same_to_the_bit(folder: Path, tmp_path: Path):
+    pytest.importorskip("ray")
+    reports = generate(tmp_path / "set", PLAN, AWR1843, workers=2, ray_address="local")
+    assert sorted(report.name for report in reports) == ["office_000", "office_001"]
+    assert contents(tmp_path / "set") == contents(folder)
+
+
+def contents(folder: Path) -> dict[str, str]:
+    """{file: its sha256}."""
+    files = (file for file in sorted(folder.rglob("*")) if file.is_file())
+    return {str(file.relative_to(folder)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="the state of a process is not to be had here")
+def test_what_a_dead_worker_left_is_swept_before_anybody_asks_after_it(tmp_path: Path):
+    """A worker that was killed stays in the list of processes until its parent asks how it ended."""
+    child = subprocess.Popen([sys.executable, "-c", "pass"])
+    deadline = time.monotonic() + 30
+    while Path(f"/proc/{child.pid}/stat").exists() and time.monotonic() < deadline:
+        if Path(f"/proc/{child.pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
+            break
+        time.sleep(0.01)
+    host = platform.node().replace(".", "-") or "here"
+    assert not is_being_written(tmp_path / f".office_000.{host}.{child.pid}")
+    child.wait()

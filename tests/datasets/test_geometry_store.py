@@ -1,0 +1,87 @@
+"""A data set without signals: they are made from it, the same as those that are stored, and no ray is cast."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.datasets.dataset_plan import DatasetPlan
+from mmweaver.datasets.dataset_store import read_rooms
+from mmweaver.datasets.generate_rooms import generate
+
+pytest.importorskip("zarr")
+SETTINGS = {"kinds": ("office", "dining_room"), "lightings": ("day",), "num_layouts": 1, "sequences_a_room": 3}
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory: pytest.TempPathFactory) -> dict[bool, Path]:
+    base = tmp_path_factory.mktemp("data")
+    folders = {without: base / f"set{without}" for without in (True, False)}
+    for without, folder in folders.items():
+        generate(folder, DatasetPlan(**SETTINGS, num_frames=4, geometry_only=without), AWR1843)
+    return folders
+
+
+def _size(folder: Path) -> int:
+    return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file())
+
+
+def _error(got: np.ndarray, wanted: np.ndarray) -> float:
+    return float((np.abs(got - wanted) ** 2).sum() / (np.abs(wanted) ** 2).sum())
+
+
+def test_signals_are_those_that_would_be_stored(folders: dict[bool, Path]):
+    """-68 dB was measured, of which the stored set's half precision is a part."""
+    for drawn, stored in zip(read_rooms(folders[True]), read_rooms(folders[False]), strict=True):
+        assert np.array_equal(drawn.joints_m, stored.joints_m)
+        assert np.array_equal(drawn.empty, stored.empty)
+        assert drawn.split == stored.split
+        for index in range(len(drawn.split)):
+            wanted = stored.cube(index).values
+            got = drawn.cube(index).values
+            assert _error(got, wanted) < 1e-6
+            assert _error(drawn.cube(index, np.array([1, 3])).values, got[[1, 3]]) < 1e-8
+            assert np.array_equal(stored.cube(index, np.array([1, 3])).values, wanted[[1, 3]])
+
+
+def test_a_twin_is_another_signal(folders: dict[bool, Path]):
+    room = read_rooms(folders[True])[0]
+    first, twin = room.cube(0).values, room.cube(0, twin=7).values
+    assert _error(twin, first) > 0.3
+    assert np.array_equal(twin, room.cube(0, twin=7).values)
+
+
+def test_a_sequence_takes_little(folders: dict[bool, Path]):
+    with_signals, without = (
+        sum(_size(folders[key] / "office_000" / name) for name in names)
+        for key, names in ((False, ("iq",)), (True, ("geometry/node_joints_m", "geometry/visibility")))
+    )
+    assert without < with_signals / 50
+
+
+def test_geometry_of_other_people_is_refused(folders: dict[bool, Path], monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("mmweaver.datasets.geometry_store.skin_mark", lambda: "another")
+    with pytest.raises(InputError, match="another version"):
+        read_rooms(folders[True])[0].cube(0)
+
+
+def test_the_same_command_does_not_mix_both(folders: dict[bool, Path]):
+    with pytest.raises(InputError, match="another plan"):
+        generate(folders[True], DatasetPlan(**SETTINGS, num_frames=4), AWR1843)
+
+
+def test_the_network_trains_on_it_without_a_ray_caster(folders: dict[bool, Path], tmp_path: Path):
+    code = f"""
+import sys
+sys.modules["embreex"] = None
+from pathlib import Path
+from mmweaver.training.network_training import TrainingRecipe, train
+recipe = TrainingRecipe(steps=2, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
+done = train(Path({str(folders[True])!r}), Path({str(tmp_path)!r}), recipe)
+assert done.step == 2 and done.best.value < 100
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -1,0 +1,34 @@
+import numpy as np
+import pytest
+import torch
+
+from mmweaver.dsp.window_kernels import WindowKernel
+from mmweaver.dsp.windows import hann
+
+
+@pytest.mark.parametrize("num", [16, 85, 256])
+def test_the_kernel_is_the_windows_spectrum_anywhere(num: int):
+    """Against the sum over samples; odd lengths change sign from one period to the next."""
+    window = hann(num)
+    place = np.linspace(-1.6 * num, 1.6 * num, 1501)
+    middle = np.arange(num) - num / 2
+    turns = np.outer(place, middle) / num
+    value = np.cos(2 * np.pi * turns) @ window / window.sum()
+    slope = -np.sin(2 * np.pi * turns) @ (window * 2 * np.pi * middle / num) / window.sum()
+    ours = WindowKernel(window)(torch.from_numpy(place))
+    assert np.abs(ours[0].numpy() - value).max() < 2e-6
+    assert np.abs(ours[1].numpy() - slope).max() < 2e-4
+
+
+def test_it_can_be_differentiated():
+    kernel = WindowKernel(hann(32))
+    x = torch.tensor([0.3, -1.7, 4.2], dtype=torch.float64, requires_grad=True)
+    value, slope = kernel(x)
+    value.sum().backward()
+    assert x.grad is not None
+    assert torch.allclose(x.grad, slope.detach(), atol=1e-5)
+
+
+def test_a_lopsided_window_is_refused():
+    with pytest.raises(ValueError, match="symmetric"):
+        WindowKernel(np.arange(8.0))

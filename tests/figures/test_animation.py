@@ -1,0 +1,42 @@
+"""The animation has a picture a frame, in real time, and its skeleton moves."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageSequence
+
+from mmweaver.figures.animation import draw_animation
+from mmweaver.figures.figure_data import FigureData
+
+
+def frames_of(path: Path) -> list[np.ndarray]:
+    with Image.open(path) as picture:
+        return [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(picture)]
+
+
+def test_a_picture_a_frame_in_real_time(view: FigureData, tmp_path: Path):
+    draw_animation(view, tmp_path / "a.gif")
+    with Image.open(tmp_path / "a.gif") as picture:
+        assert picture.size == (900, 370)
+        assert picture.n_frames == 12
+        assert picture.info["duration"] == 100
+        assert picture.info["loop"] == 0
+
+
+def test_the_skeleton_and_the_maps_move(view: FigureData, tmp_path: Path):
+    draw_animation(view, tmp_path / "a.gif")
+    frames = frames_of(tmp_path / "a.gif")
+    changed = np.abs(frames[-1] - frames[0]).max(axis=2) > 60
+    for columns in (slice(0, 320), slice(370, 540), slice(560, 900)):
+        assert changed[:, columns].sum() > 100, columns
+    yellow = [((frame[:, :320] - (252, 230, 36)) ** 2).sum(axis=2) < 2000 for frame in frames]
+    heights = [np.ptp(np.argwhere(mask)[:, 0]) for mask in (yellow[0], yellow[-1])]
+    assert heights[1] > heights[0] > 20  # nearer is taller
+
+
+def test_a_recording_of_one_frame(view: FigureData, tmp_path: Path):
+    grid = replace(view.cube.grid, frame_time_s=view.cube.grid.frame_time_s[:1])
+    cube = replace(view.cube, values=view.cube.values[:1], grid=grid)
+    draw_animation(replace(view, cube=cube, photo=None, poses=(), motions=()), tmp_path / "a.gif")
+    assert len(frames_of(tmp_path / "a.gif")) == 1

@@ -1,0 +1,67 @@
+"""The maps that the pictures show: decibels, fans, thinning."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.core.records import CubeGrid
+from mmweaver.figures.figure_data import MAX_FRAMES, Fan, FigureData, decibels
+
+
+def test_decibels_are_relative_to_the_peak_and_end_at_the_floor():
+    assert decibels(np.array([1.0, 10.0, 100.0, 0.0])).tolist() == pytest.approx([-20, -10, 0, -50])
+    assert decibels(np.zeros((2, 3))).tolist() == [[-50.0] * 3] * 2
+
+
+def test_a_fan_lays_a_target_at_its_place_in_metres():
+    range_m, angle_rad = np.linspace(0.5, 3.5, 61), np.deg2rad(np.linspace(-60, 60, 121))
+    values = np.zeros((61, 121))
+    values[30, 90] = 1.0  # 2 m, 30 degrees right
+    fan = Fan.over(range_m, angle_rad)
+    raster = fan.lay(values)
+    row, column = np.argwhere(raster == 1.0).mean(axis=0)
+    left, right, near, far = fan.extent
+    x_m = left + (right - left) * column / (raster.shape[1] - 1)
+    y_m = near + (far - near) * row / (raster.shape[0] - 1)
+    assert (x_m, y_m) == pytest.approx((2 * np.sin(np.pi / 6), 2 * np.cos(np.pi / 6)), abs=0.02)
+
+
+def test_a_fan_is_empty_beyond_its_angles_and_before_its_first_range():
+    fan = Fan.over(np.linspace(1.0, 3.0, 21), np.deg2rad(np.linspace(-45, 45, 91)))
+    raster = fan.lay(np.ones((21, 91)))
+    assert np.isnan(raster[0]).all()  # beside and at the radar
+    assert np.isnan(raster[-1, 0])
+    middle = raster[:, raster.shape[1] // 2]
+    assert np.isnan(middle[: len(middle) // 4]).all()
+    assert (middle[len(middle) // 2 : -2] == 1.0).all()
+
+
+def test_long_sequences_are_thinned_out(view: FigureData):
+    count = 3 * MAX_FRAMES
+    values = np.repeat(view.cube.values, count // 12, axis=0)
+    cube = replace(view.cube, values=values, grid=CubeGrid.of(view.cube.config, count))
+    long = replace(view, cube=cube)
+    assert len(long.frames) == MAX_FRAMES
+    assert (long.frames[0], long.frames[-1]) == (0, count - 1)
+    assert long.range_doppler.shape == (MAX_FRAMES, 64, 32)
+    assert f"{MAX_FRAMES} of {count} frames" in long.heading
+    assert set(long.shown_points.frame) == set(long.points.frame) & set(long.frames.tolist())
+    assert view.heading == view.title
+
+
+def test_the_moving_maps_see_the_walker_and_the_full_maps_the_standing_target(view: FigureData):
+    pelvis_m = np.linalg.norm(view.poses[0].joints_m[:, 0], axis=1)
+    extent_m = np.linalg.norm(view.poses[0].joints_m, axis=2)
+    range_m = view.cube.grid.range_m
+    moving_m = range_m[view.range_doppler_moving.sum(axis=2).argmax(axis=1)]
+    assert (moving_m > extent_m.min(axis=1) - 0.1).all()
+    assert (moving_m < extent_m.max(axis=1) + 0.1).all()
+    standing_m = range_m[view.range_doppler[:, :, 16].argmax(axis=1)]
+    assert standing_m == pytest.approx(np.hypot(0.6, 2.0), abs=0.05)
+    assert np.ptp(pelvis_m) > 0.8
+
+
+def test_azimuth_of_the_walker_is_left(view: FigureData):
+    azimuth_rad = view.azimuth_rad[view.range_azimuth_moving.mean(axis=0).max(axis=0).argmax()]
+    assert np.tan(azimuth_rad) == pytest.approx(-0.3 / 2.5, abs=0.06)

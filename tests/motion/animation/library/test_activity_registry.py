@@ -1,0 +1,38 @@
+"""Every activity, whoever does it: bones, floor, speeds and accelerations of a person."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.skeleton import BONES
+from mmweaver.motion.animation.library.activity_registry import GESTURES, POSTURES
+from mmweaver.motion.empty_floor import RADAR_HEIGHT_M, act_out
+from mmweaver.motion.language.activities import BODY, BY_KEY, HANDS
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.timing import natural_s
+
+FAST = {"jog", "kick", "throw", "golf", "jumping_jacks", "arm_circles", "jump", "leap", "walk"}
+
+
+def test_the_table_and_the_library_have_the_same_activities():
+    assert set(POSTURES) == {activity.key for activity in BODY}
+    assert set(GESTURES) == {activity.key for activity in HANDS}
+    assert len(BY_KEY) == len(BODY) + len(HANDS) >= 30
+
+
+@pytest.mark.parametrize("activity", [*BODY, *HANDS], ids=lambda activity: activity.key)
+def test_every_example_is_acted_out_as_a_body_can(activity):
+    seconds = max(1.5 * activity.natural_s, 1.1 * natural_s(parse(activity.example)))
+    made = [act_out(activity.example, duration_s=seconds, seed=seed) for seed in range(3)]
+    for motion in made:
+        joints = motion.pose.joints_m
+        assert np.isfinite(joints).all()
+        for parent, child in BONES:
+            assert np.ptp(np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1)) < 1e-3
+        assert joints[..., 2].min() > -RADAR_HEIGHT_M - 0.015
+        speed = np.linalg.norm(np.gradient(joints, motion.pose.time_s, axis=0), axis=-1)
+        acceleration = np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1) * 120**2
+        assert speed.max() < (8.0 if activity.key in FAST else 5.5)
+        assert acceleration.max() < 160
+    moving = np.linalg.norm(np.ptp(made[0].pose.joints_m - made[0].pose.joints_m[:, :1], axis=0), axis=-1).max()
+    assert moving > 0.004
+    assert not np.allclose(made[0].pose.joints_m, made[1].pose.joints_m)

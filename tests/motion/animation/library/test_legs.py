@@ -1,0 +1,41 @@
+"""Which leg acts, how high, how often."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.empty_floor import RADAR_HEIGHT_M, act_out
+
+
+def feet(text: str, seconds: float = 3.0, seed: int = 0) -> dict[str, np.ndarray]:
+    joints = act_out(text, duration_s=seconds, seed=seed, height_m=1.75).pose.joints_m
+    return {side: joints[:, joint(f"{side}_ankle"), 2] + RADAR_HEIGHT_M for side in ("left", "right")}
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+@pytest.mark.parametrize("text", ["kicks with the {} foot", "raises the {} leg", "stamps with the {} foot"])
+def test_the_leg_that_is_said_acts(text: str, side: str):
+    z = feet(text.format(side), seed=3)
+    other = "right" if side == "left" else "left"
+    assert z[side].max() > 0.2
+    assert z[other].max() < 0.12, "the other one stands"
+
+
+def test_on_the_left_leg_the_right_one_is_lifted():
+    for text in ("stands on the left leg", "hops on the left leg"):
+        z = feet(text)
+        middle = slice(len(z["left"]) // 3, 2 * len(z["left"]) // 3)
+        assert z["right"][middle].min() > z["left"][middle].max()
+
+
+def test_a_high_kick_is_higher():
+    high = [max(z.max() for z in feet("performs a high kick", seed=seed).values()) for seed in range(4)]
+    low = [max(z.max() for z in feet("kicks", seed=seed).values()) for seed in range(4)]
+    assert min(high) > max(low)
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_hops_are_counted_and_about_two_a_second(count: int):
+    z = np.minimum(*feet(f"hops {count} times", seconds=0.6 + 0.5 * count).values())
+    air = z > z.min() + 0.03
+    assert (np.diff(air.astype(int)) == 1).sum() == count

@@ -1,0 +1,47 @@
+"""Sideways without crossing, limping unevenly, pushed the way that is said."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.empty_floor import act_out
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(("side", "sign"), [("left", -1.0), ("right", 1.0)])
+def test_sidesteps_go_to_the_side_that_is_said_facing_as_before_and_never_cross(side: str, sign: float, seed: int):
+    joints = act_out(f"takes two steps sideways to the {side}", duration_s=3.0, seed=seed).pose.joints_m
+    gone = joints[-1, 0] - joints[0, 0]
+    assert sign * gone[0] > 0.25
+    across = joints[:, joint("left_hip"), :2] - joints[:, joint("right_hip"), :2]
+    heading = np.arctan2(-across[:, 0], across[:, 1])
+    assert np.ptp(np.unwrap(heading)) < 0.4
+    apart = np.sum((joints[:, joint("left_ankle"), :2] - joints[:, joint("right_ankle"), :2]) * across, axis=1)
+    assert apart.min() > 0
+
+
+@pytest.mark.parametrize(
+    ("text", "way"),
+    [
+        ("is pushed to the left", (-1, 0)),
+        ("is pushed from the left", (1, 0)),
+        ("is pushed from behind", (0, -1)),
+        ("is pushed from the front", (0, 1)),
+    ],
+)
+def test_a_push_moves_the_body_its_way(text: str, way: tuple[int, int]):
+    """Who is pushed faces the radar: forwards is towards it, to smaller y."""
+    for seed in range(3):
+        pelvis = act_out(f"a person {text}", duration_s=2.5, seed=seed).pose.joints_m[:, 0, :2]
+        gone = pelvis[-1] - pelvis[0]
+        assert gone @ np.array(way) > 0.15
+
+
+def test_a_limp_is_uneven():
+    def contrast(text: str) -> float:
+        joints = act_out(text, duration_s=4.0, seed=2, height_m=1.75).pose.joints_m
+        low = [joints[:, joint(f"{side}_foot"), 2] for side in ("left", "right")]
+        down = [np.mean(z < z.min() + 0.02) for z in low]
+        return abs(down[0] - down[1])
+
+    assert contrast("limps to the left") > 2 * contrast("walks to the left")

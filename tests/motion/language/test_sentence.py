@@ -1,0 +1,267 @@
+"""Sentences become the right steps, or the error says why not."""
+
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import BODY, HANDS
+from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.language.sentence import overlay, parse
+
+
+def said(plan: MotionPlan) -> str:
+    """'walking left slow x2 | waving left-hand': a short form to compare with."""
+    parts = []
+    for step in plan.steps:
+        words = [step.name, step.direction, {-1: "slow", 0: "", 1: "fast"}[step.speed]]
+        if step.hand and step.upper != "raise":
+            words.append(f"{step.hand}-hand" if step.hand != "both" else "both-hands")
+        words += [f"x{step.count}" if step.count else "", f"{step.seconds:g}s" if step.seconds else ""]
+        words.append(f"facing-{step.facing}" if step.facing else "")
+        parts.append(" ".join(word for word in words if word))
+    return " | ".join(parts)
+
+
+UNDERSTOOD = {
+    # the twelve
+    "a person walks": "walking",
+    "jogging": "jogging",
+    "the man is waving": "waving",
+    "clapping": "clapping",
+    "she does jumping jacks": "jumping jacks",
+    "someone jumps up and down": "jumping",
+    "left-hand raise": "left-hand raise",
+    "he raises his right arm": "right-hand raise",
+    "sitting": "sitting",
+    "user seated on couch drinking water": "sitting and drinking",
+    "squats": "squatting",
+    "the user is punching": "punching",
+    # synonyms and inflections
+    "a woman strolled across the room": "walking slow",
+    "paces back and forth": "walking pacing",
+    "the kid hops": "hopping",
+    "everybody's friend applauds": "clapping",
+    "he boxes": "punching",
+    "shadow boxing": "punching",
+    "runs to the right": "jogging right",
+    "does a few squats": "squatting x3",
+    "star jumps": "jumping jacks",
+    "takes a seat": "sitting down",
+    "gets up from the chair": "standing up",
+    "puts both hands up": "raising both hands",
+    "holds his left hand up": "left-hand raise",
+    "greets the camera with his right hand": "waving right-hand",
+    "sips coffee from a cup": "drinking",
+    "throws punches": "punching",
+    "a man in a red shirt walks": "walking",
+    "stands still": "standing",
+    "stands without moving": "standing",
+    # directions, speeds, numbers, hands
+    "walks to the left": "walking left",
+    "walks from left to right": "walking right",
+    "walks towards the radar": "walking towards",
+    "walks toward me slowly": "walking towards slow",
+    "approaches the sensor": "walking towards",
+    "moves away from the camera quickly": "walking away fast",
+    "goes to the right": "walking right",
+    "walks backwards": "walking backwards",
+    "takes three steps forward": "walking forwards x3",
+    "walks to his left": "walking right",
+    "walks in a circle": "walking circle",
+    "jogs in place": "jogging spot",
+    "waves with the left hand": "waving left-hand",
+    "waves his left and right hands": "waving both-hands",
+    "waves twice": "waving x2",
+    "claps three times": "clapping x3",
+    "does 10 jumping jacks": "jumping jacks x10",
+    "punches with the right fist": "punching right-hand",
+    "turns left": "turning left",
+    "turns around": "turning around",
+    "turns 180 degrees to the left": "turning around",
+    "turns to face the radar": "turning facing-towards",
+    "stands facing the camera and waves": "waving facing-towards",
+    "sits for 3 seconds": "sitting 3s",
+    # in time
+    "walks to the left, then sits down": "walking left | sitting down",
+    "walks towards the radar, then waves with the left hand": "walking towards | waving left-hand",
+    "waves and then claps": "waving | clapping",
+    "walks. After that he jumps.": "walking | jumping",
+    "walks, waves, claps, and jumps": "walking | waving | clapping | jumping",
+    "before sitting down, she waves": "waving | sitting down",
+    "waves before jumping": "waving | jumping",
+    "after walking to the left, he claps": "walking left | clapping",
+    "waves after clapping": "clapping | waving",
+    "a squat followed by a jump": "squatting | jumping",
+    "walks to the sofa to sit down": "walking seat | sitting down",
+    "starts to walk and then stops": "walking | standing",
+    "stops walking": "standing",
+    "takes a step to the left": "sidestepping left x1",
+    "a man lifts his hands": "raising both hands",
+    "turns 90 degrees to the right": "turning right",
+    "raises the left arm, then waves": "left-hand raise | waving left-hand",
+    "walks left, then walks back": "walking left | walking back",
+    # at once
+    "drinks while sitting": "sitting and drinking",
+    "sits on the sofa and drinks": "sitting and drinking",
+    "sits on the sofa, drinking tea": "sitting and drinking",
+    "walks while waving": "walking and waving",
+    "as she walks, she waves": "walking and waving",
+    "walking and waving": "walking and waving",
+    "walks with his left hand raised": "walking and left-hand raise",
+    "is waving with both hands while standing": "waving both-hands",
+    # postures last
+    "sits down and drinks, then stands up": "sitting down | sitting and drinking | standing up",
+    "sits, then walks away": "sitting | standing up | walking away",
+    "walks and then sits and waves": "walking | sitting down | sitting and waving",
+    "squats and stands up again": "squatting",
+    "raises the left hand, then lowers it": "left-hand raise",
+}  # fmt: skip
+
+# upper | lower | direction | hand | foot | arc | turn | style | target of every step, what is not said left out
+MORE = {
+    "a person is pushed from behind": "stumble forwards",
+    "gets shoved to the left and recovers": "stumble left",
+    "walks forward, is pushed from the right and walks on": "walk forwards | stumble left | walk",
+    "gets pushed while walking": "walk | stumble | walk",
+    "walks a quarter circle to the left": "walk 90",
+    "walks in a half circle": "walk 180 either",
+    "walks 90 degrees to the right": "walk -90",
+    "walks in a circle to the left": "walk circle 360",
+    "walks forward while turning right": "walk -90",
+    "walks 3/4 of a circle to the right": "walk -270",
+    "turns 270 degrees to the left": "turn t270",
+    "walks forward and backward": "walk forwards | walk backwards",
+    "walks sideways": "sidestep",
+    "jumps to the left": "leap left",
+    "hops on his left leg": "hop_one_leg Lleft",
+    "stands on one leg": "one_leg",
+    "raises his right leg": "raise_leg Lright",
+    "lifts the right foot and puts it down again": "raise_leg Lright",
+    "kicks a ball with the left foot": "kick Lleft",
+    "dances": "dance",
+    "takes a deep bow": "bow",
+    "bends over": "bend",
+    "picks something up from the floor": "pick_up",
+    "puts a box down on the floor": "put_down",
+    "goes down on her knees, then stands up": "kneel_down | kneel_up",
+    "a kneeling person waves": "kneel | kneel+wave",
+    "lies down and then gets up": "lie_down back | get_up back",
+    "falls forward": "fall front",
+    "walks and falls, then waves": "walk | fall back | lie+wave back",
+    "a person lying on his belly gets up": "lie front | get_up front",
+    "sits at the desk and types": "sit+type",
+    "sits down and eats": "sit_down | sit+eat",
+    "reads a book on the sofa": "sit+read",
+    "a drunk person walks": "stagger",
+    "brushes his teeth": "brush_teeth",
+    "talks on the phone while walking": "walk+phone",
+    "cleans the window with his left hand": "wipe left",
+    "plays air guitar": "guitar",
+    "throws punches": "punch",
+    "throws a ball": "throw",
+    "walks carrying a box": "walk+carry",
+    "opens the door": "open_door",
+    "walks to the door": "walk >door",
+    "goes over to the kitchen table and picks up a cup": "walk >table | reach",
+    "user seated on couch drinking water": "sit+drink",
+    "sits on the couch and drinks": "sit+drink",
+    "nods": "nod",
+    "crosses her arms": "cross_arms",
+    "walsk forwads": "refused",
+    "walks forwads": "walk forwards",
+}  # fmt: skip
+
+
+def short(plan: MotionPlan) -> str:
+    parts = []
+    for step in plan.steps:
+        doing = step.upper if step.lower == "stand" and step.upper else "+".join(filter(None, (step.lower, step.upper)))
+        words = [doing, step.direction, step.hand, f"L{step.foot}" if step.foot else ""]
+        words += [f"{step.arc_deg:g}" if step.arc_deg else "", f"t{step.turn_deg:g}" if step.turn_deg else ""]
+        words += [step.style, f">{step.target}" if step.target else ""]
+        parts.append(" ".join(word for word in words if word))
+    return " | ".join(parts)
+
+
+@pytest.mark.parametrize("text", MORE)
+def test_activities_of_home_life(text: str):
+    if MORE[text] == "refused":
+        with pytest.raises(InputError):
+            parse(text)
+    else:
+        assert short(parse(text)) == MORE[text]
+
+
+def test_every_example_of_the_table_is_read_as_its_activity():
+    for activity in (*BODY, *HANDS):
+        steps = parse(activity.example).steps
+        assert activity.key in {step.lower for step in steps} | {step.upper for step in steps}, activity.example
+
+
+REFUSED = {
+    "": "empty",
+    "   ": "empty",
+    "walks " * 200: "characters",
+    "a person": "no activity",
+    "asdf qwer": "asdf",
+    "flies": "flies",
+    "walks and then flies": "'flies'",
+    "walks and sings": "'sings'",
+    "lies down on the bed": "on the floor only",
+    "does not walk": "not",
+    "doesn't wave": "not",
+    "never sits": "never",
+    "walks without waving": "without",
+    "walks instead of jogging": "instead",
+    "two people walk": "several people",
+    "the men are clapping": "several people",
+    "a dog walks": "alone",
+    "walks up the stairs": "stairs",
+    "walks like a zombie": "like",
+    "jumps over the chair": "over",
+    "sits on the floor": "floor",
+    "raises an eyebrow": "hand, an arm or a leg",
+    "walks while jumping": "same time",
+    "claps while waving": "same time",
+    "sits while walking": "same time",
+    "claps 1000 times": "times",
+    "moves objects around": "move",
+    "goes up the steps": "stairs",
+}
+
+
+@pytest.mark.parametrize("text", UNDERSTOOD)
+def test_understood(text: str):
+    assert said(parse(text)) == UNDERSTOOD[text]
+
+
+@pytest.mark.parametrize("text", REFUSED, ids=lambda text: text[:30])
+def test_refused_with_the_reason(text: str):
+    with pytest.raises(InputError, match=REFUSED[text]) as error:
+        parse(text)
+    assert "\n" not in str(error.value)
+
+
+def test_an_unknown_activity_says_what_comes_nearest_and_where_all_are_listed():
+    with pytest.raises(InputError, match=r"known are standing, walking and .* mmweaver motions|did you mean"):
+        parse("the person teleports")
+    with pytest.raises(InputError, match="did you mean 'a person plays golf'"):
+        parse("a person swings a bat")
+
+
+def test_what_is_left_aside_is_told():
+    assert any("'zealously'" in note for note in parse("walks zealously").notes)
+    assert any("distance" in note for note in parse("walks 2 meters").notes)
+    assert any("right in the photo" in note for note in parse("walks to her left").notes)
+    assert parse("a person walks to the left, then sits down").notes == ()
+
+
+def test_case_punctuation_and_fillers_change_nothing():
+    assert said(parse("The MAN, walks!  To the LEFT...")) != ""
+    assert said(parse("Please: a person WAVES.")) == "waving"
+
+
+def test_overlay_takes_legs_of_one_and_arms_of_the_other():
+    walk, wave = parse("walks to the left slowly").steps[0], parse("waves with the left hand twice").steps[0]
+    both = overlay(walk, wave)
+    assert (both.lower, both.upper, both.hand, both.direction, both.count) == ("walk", "wave", "left", "left", 2)
+    assert overlay(wave, walk).name == both.name

@@ -1,0 +1,94 @@
+"""The way that keeps clear."""
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
+from mmweaver.motion.animation.root_path import RootPath
+from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.collision_ranking import MARGIN_M, most_clear
+from mmweaver.motion.planning.placement import Placement
+from tests.motion.rooms import room
+from tests.rooms import standing_person
+
+POSE = standing_person((0.0, 2.0, -1.1), seconds=0.2)
+
+
+class _Known(CollisionMap):
+    """Says what a pose's height says."""
+
+    def deepest_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0):
+        return max(pose.height_m - 1.0 + margin_m, 0.0)
+
+
+def _chosen(*deep_m: list[float]):
+    """`deep_m`: how deep the placements of each draw get in; further draws find no way."""
+    drawn: list[int] = []
+
+    def draw(again: int) -> list[Placement]:
+        drawn.append(again)
+        if again >= len(deep_m):
+            raise InputError("no other")
+        return [_placement(deep) for deep in deep_m[again]]
+
+    def moved(placement: Placement) -> PoseSequence:
+        return PoseSequence(
+            joints_m=POSE.joints_m, time_s=POSE.time_s, height_m=1.0 + placement.path.heading_rad, subject=0
+        )
+
+    return most_clear(draw, moved, _Known(room())), drawn
+
+
+def _placement(deep_m: float) -> Placement:
+    path = RootPath(start_m=(0.0, 2.0), heading_rad=deep_m, moves=(), turns=())
+    return Placement(path=path, moves=(), seat_height_m=(), seats_m=(), assumptions=())
+
+
+def test_the_first_that_keeps_the_margin_is_taken():
+    best, drawn = _chosen([0.01, -MARGIN_M - 0.001, -0.3])
+    assert best.placement.path.heading_rad == -MARGIN_M - 0.001
+    assert drawn == [0]
+    assert best.notes == ()
+
+
+def test_others_are_drawn_where_none_keeps_clear():
+    best, drawn = _chosen([0.05, 0.02], [0.04, -0.2])
+    assert drawn == [0, 1]
+    assert best.placement.path.heading_rad == -0.2
+
+
+def test_seats_are_left_only_where_one_gets_in_so_far_that_it_is_said():
+    best, drawn = _chosen([0.02, 0.05], [0.015], [-0.2])
+    assert (best.placement.path.heading_rad, drawn) == (0.015, [0, 1])
+    best, drawn = _chosen([0.05], [0.04], [-0.2])
+    assert (best.placement.path.heading_rad, drawn) == (-0.2, [0, 1, 2])
+
+
+def test_of_two_seats_the_one_where_the_trunk_is_seen_is_taken():
+    """The camera sees something 3 m away: the first seat is behind it."""
+    seats = [dataclasses.replace(_placement(-0.2), seats_m=((0.0, y),)) for y in (3.8, 2.0)]
+    poses = {seat: standing_person((0.0, seat.seats_m[0][1], -1.1), seconds=0.2) for seat in seats}
+
+    def moved(placement: Placement) -> PoseSequence:
+        return dataclasses.replace(poses[placement], height_m=0.8)
+
+    best = most_clear(lambda _again: seats, moved, _Known(room()))
+    assert best.placement.seats_m == ((0.0, 2.0),)
+    hidden = most_clear(lambda _again: seats[:1], moved, _Known(room()))
+    assert hidden.hidden_m > 0.03
+    assert hidden.notes == ()  # nothing is known to be there
+
+
+@pytest.mark.parametrize("others", [[], [[0.08]]])
+def test_the_better_of_bad_ones_is_taken_and_said(others: list[list[float]]):
+    best, _ = _chosen([0.07, 0.05], *others)
+    assert best.deep_m == pytest.approx(0.05, abs=1e-6)
+    assert "5 cm into furniture" in best.notes[0]
+
+
+def test_numbers_are_numbers():
+    assert np.isfinite(_chosen([0.0])[0].deep_m)

@@ -1,0 +1,57 @@
+"""Bends, turns by an angle, leaps, and the floor that somebody lies on."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.compose import compose
+from mmweaver.motion.empty_floor import act_out
+from mmweaver.motion.planning.floor_map import FloorMap
+from rooms import WINDOW_M, room
+
+
+def headings(text: str, seconds: float, seed: int = 0) -> np.ndarray:
+    joints = act_out(text, duration_s=seconds, seed=seed).pose.joints_m
+    across = joints[:, joint("left_hip"), :2] - joints[:, joint("right_hip"), :2]
+    return np.unwrap(np.arctan2(-across[:, 0], across[:, 1]))
+
+
+@pytest.mark.parametrize(
+    ("text", "angle"),
+    [
+        ("walks a quarter circle to the left", 90),
+        ("walks a half circle to the right", -180),
+        ("turns 270 degrees to the left", 270),
+        ("spins 360 degrees to the right", -360),
+        ("walks forward while turning left", 90),
+    ],
+)
+def test_angles_are_kept_left_being_the_persons_own(text: str, angle: float):
+    for seed in range(3):
+        turned = headings(text, 4.0, seed)
+        assert np.degrees(turned[-1] - turned[0]) == pytest.approx(angle, abs=25)
+
+
+def test_leaps_go_where_they_are_sent_through_the_air():
+    joints = act_out("jumps to the left", duration_s=2.4, seed=1).pose.joints_m
+    gone = joints[-1, 0] - joints[0, 0]
+    assert gone[0] < -0.2
+    feet = joints[:, [joint("left_foot"), joint("right_foot")]]
+    speed = np.linalg.norm(np.gradient(feet[..., :2], 1 / 120, axis=0), axis=-1)
+    low = feet[..., 2] < feet[..., 2].min() + 0.012
+    assert speed[low].max() < 0.8, "feet on the floor do not slide"
+
+
+def test_nobody_lies_in_furniture():
+    boxes = ((-1.6, -0.7, 1.2, 1.8), (0.8, 1.8, 1.5, 2.2), (-0.4, 0.3, 3.0, 3.3))
+    scene = room(boxes=boxes)
+    for seed in range(20):
+        text = ("falls", "lies down", "falls forward")[seed % 3]
+        made = compose(text, scene, duration_s=4.0, seed=seed, range_window_m=WINDOW_M)
+        floor = FloorMap(scene, WINDOW_M, made.pose.height_m)
+        trunk_and_legs = made.pose.joints_m[:, :18]  # arms may reach over what is low
+        assert floor.clearance_at(trunk_and_legs[..., :2]).min() > 0.0
+    cell = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 2.4, 6.0)))
+    with pytest.raises(InputError, match="no room"):
+        compose("lies down", cell, duration_s=4.0, seed=0, range_window_m=WINDOW_M)

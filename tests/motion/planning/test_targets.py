@@ -1,0 +1,61 @@
+"""Going to a thing of the room."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import Landmark, Scene
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.placement import place
+from mmweaver.motion.planning.targets import without_things
+from tests.motion.rooms import WINDOW_M, room, seat
+
+DOOR = Landmark(kind="door", position_m=np.array([0.9, 2.9, -0.1]), approach_m=(0.75, 2.5), facing_rad=1.2)
+
+
+def _plan(target: str) -> MotionPlan:
+    walk = Step(lower="walk", target=target, clause=f"walks to the {target}", start_s=0.0, end_s=3.0)
+    return MotionPlan(text=walk.clause, steps=(walk, Step(start_s=3.0, end_s=4.0)))
+
+
+def _placed(scene: Scene, target: str, seed: int = 0):
+    return place(_plan(target), FloorMap(scene, WINDOW_M, 1.75), SkeletonProportions(1.75), seed=seed, start_m=None)[0]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_walk_ends_at_the_door_and_faces_it(seed: int):
+    scene = dataclasses.replace(room(), landmarks=(DOOR,))
+    path = _placed(scene, "door", seed).path
+    end = path.position_m(np.array([3.9]))[0]
+    assert end == pytest.approx(DOOR.approach_m, abs=0.03)
+    assert np.angle(np.exp(1j * (path.facing_rad(np.array([3.9]))[0] - DOOR.facing_rad))) == pytest.approx(0, abs=0.05)
+
+
+def test_it_goes_round_what_stands_between():
+    blocked = dataclasses.replace(room(boxes=((-0.6, 0.5, 1.9, 2.1),)), landmarks=(DOOR,))
+    for seed in range(4):
+        floor = FloorMap(blocked, WINDOW_M, 1.75)
+        way = _placed(blocked, "door", seed).path.position_m(np.linspace(0, 3.9, 60))
+        assert floor.can_stand(way).all()
+
+
+def test_what_the_room_lacks_is_refused_with_what_it_has():
+    scene = dataclasses.replace(room(seats=(seat(),)), landmarks=(DOOR, dataclasses.replace(DOOR, kind="table")))
+    with pytest.raises(InputError, match=r"no window was found.*it has a door, a seat, a table"):
+        _placed(scene, "window")
+    with pytest.raises(InputError, match="say a direction instead"):
+        _placed(room(), "door")
+    with pytest.raises(InputError, match="--landmark window=X,Y"):
+        _placed(scene, "window")
+    assert _placed(scene, "desk").path  # a desk is a table
+
+
+def test_without_a_photo_the_way_leads_anywhere_and_says_so():
+    plan = without_things(_plan("door"))
+    assert [step.target for step in plan.steps] == ["", ""]
+    assert plan.notes == ("for 'walks to the door': without a photo there is no door; the way leads where room is",)
+    assert without_things(plan) == plan

@@ -1,0 +1,98 @@
+"""Millimetres: their sizes and speeds, who keeps what, and what stays where it is."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.micro_motion import STILL, MicroMotion, MicroMotionSettings, Waves
+from mmweaver.paths.body_model import ScatteringBody
+from tests.rooms import standing_person
+
+TIME_S = np.arange(0.0, 120.0, 0.02)
+JOINTS = np.repeat(standing_person((0.0, 2.0, -1.2)).joints_m[:1], len(TIME_S), axis=0)
+
+
+def moved(subject: int, seed: int, motions: MicroMotionSettings | None = None) -> np.ndarray:
+    return MicroMotion(subject, seed, motions or MicroMotionSettings()).moved(JOINTS, TIME_S, 1.75) - JOINTS
+
+
+def rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean((values - values.mean(axis=0)) ** 2)))
+
+
+def test_sway_is_that_of_quiet_standing():
+    """Averaged over people: 3 to 5 mm to and fro, less sideways, 3 to 7 mm/s; the head more than the hips."""
+    motions = MicroMotionSettings(waver_m=0.0, tremor_m=0.0)
+    all_of = np.stack([moved(subject, 0, motions) for subject in range(20)])
+    pelvis, head = all_of[:, :, joint("pelvis")], all_of[:, :, joint("head")]
+    fro, side = rms(pelvis[..., 1].T), rms(pelvis[..., 0].T)
+    assert 0.003 < fro < 0.005
+    assert 0.4 < side / fro < 0.8
+    assert 0.003 < rms(np.diff(pelvis[..., 1].T, axis=0) / 0.02) < 0.007
+    assert 1.4 < rms(head[..., 1].T) / fro < 1.9
+
+
+def test_feet_stay_and_hands_tremble():
+    wander = moved(0, 0)
+    assert rms(wander[:, joint("left_foot")]) < 0.2e-3  # it lies a little over the lower one
+    alone = moved(0, 0, MicroMotionSettings(sway_m=0.0))
+    assert rms(alone[:, joint("left_wrist")]) > rms(alone[:, joint("left_shoulder")])
+    trembling = moved(0, 0, MicroMotionSettings(sway_m=0.0, waver_m=0.0))[:, joint("left_wrist"), 0]
+    power = np.abs(np.fft.rfft(trembling)) ** 2
+    frequency_hz = np.fft.rfftfreq(len(trembling), 0.02)
+    assert power[(frequency_hz > 7.9) & (frequency_hz < 12.1)].sum() > 0.95 * power.sum()
+
+
+def test_who_sits_does_not_sway_at_the_hips():
+    seated = JOINTS.copy()
+    above = seated[..., 2] > seated[:, [joint("left_knee")], 2]
+    seated[..., 2] -= np.where(above, 0.35, 0.0)
+    one = MicroMotion(0, 0, MicroMotionSettings(waver_m=0.0, tremor_m=0.0))
+    wander = one.moved(seated, TIME_S, 1.75) - seated
+    assert rms(wander[:, joint("pelvis")]) < 1e-6
+    assert rms(wander[:, joint("head")]) > 1e-3
+
+
+def test_rates_belong_to_the_person_and_the_moment_to_the_take():
+    one, again, later, other = (MicroMotion(*who, MicroMotionSettings()) for who in ((0, 0), (0, 0), (0, 1), (1, 0)))
+    assert np.array_equal(one.chest_m(TIME_S), again.chest_m(TIME_S))
+    assert one.breath_hz == later.breath_hz != other.breath_hz
+    assert not np.array_equal(one.chest_m(TIME_S), later.chest_m(TIME_S))
+    assert np.array_equal(moved(0, 0), moved(0, 0))
+
+
+def test_how_time_is_cut_changes_no_bit():
+    one = MicroMotion(0, 0, MicroMotionSettings())
+    whole, part = one.moved(JOINTS, TIME_S, 1.75), one.moved(JOINTS[40:60], TIME_S[40:60], 1.75)
+    assert np.array_equal(whole[40:60], part)
+    assert np.array_equal(one.chest_m(TIME_S)[40:60], one.chest_m(TIME_S[40:60]))
+
+
+def test_breath_is_millimetres_at_a_quarter_hertz():
+    chest = np.stack(
+        [MicroMotion(subject, 0, MicroMotionSettings(heart_m=0.0)).chest_m(TIME_S) for subject in range(20)]
+    )
+    assert 0.004 < np.median(np.ptp(chest, axis=1)) < 0.012
+    peak_hz = np.fft.rfftfreq(len(TIME_S), 0.02)[np.abs(np.fft.rfft(chest, axis=1)).argmax(axis=1)]
+    assert np.all((peak_hz > 0.19) & (peak_hz < 0.34))
+
+
+def test_the_chest_breathes_forwards_and_the_limbs_do_not():
+    body = ScatteringBody(0, 1.75)
+    out = body.skin(JOINTS[:1], np.array([0.01])).place_m - body.skin(JOINTS[:1]).place_m
+    size = np.linalg.norm(out[0], axis=-1)
+    assert size.max() == pytest.approx(0.01, rel=0.05)
+    front = body.skin(JOINTS[:1]).normal[0] @ [0.0, -1.0, 0.0]  # the person faces the radar
+    assert size[(size > 0) & (front > 0.7)].mean() > 3 * size[(size > 0) & (front < -0.7)].mean()
+    assert (size > 0).mean() < 0.5
+
+
+def test_still_is_still():
+    assert np.array_equal(moved(0, 0, STILL), np.zeros_like(JOINTS))
+    assert not MicroMotion(0, 0, STILL).chest_m(TIME_S).any()
+
+
+def test_waves_have_the_rms_asked_for():
+    rng = np.random.Generator(np.random.SFC64(0))
+    waves = Waves(rng, (40,), 0.2, 2.0, 1.0).at(np.arange(0, 600, 0.05))
+    assert np.sqrt((waves**2).mean()) == pytest.approx(1.0, rel=0.05)

@@ -1,0 +1,88 @@
+"""The body: skin near the bones, outward normals, the same person every time, a believable cross-section."""
+
+import numpy as np
+import pytest
+
+from mmweaver.paths.body_model import CAPSULES, ScatteringBody
+from mmweaver.paths.skin_scattering import SkinEcho
+from tests.rooms import standing_person
+
+PERSON = standing_person((0.0, 2.0, -1.2))
+JOINTS = PERSON.joints_m[:1]
+
+
+def distance_to_bones(points: np.ndarray, starts: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    along = np.einsum("pi,ci->pc", points, axes) - (starts * axes).sum(-1)
+    share = np.clip(along / np.maximum((axes**2).sum(-1), 1e-9), 0, 1)
+    nearest = starts[None] + share[..., None] * axes[None]
+    return np.linalg.norm(points[:, None] - nearest, axis=-1).min(axis=1)
+
+
+def test_skin_lies_about_the_bones_and_looks_outwards():
+    body = ScatteringBody(0, 1.75)
+    skin = body.skin(JOINTS)
+    starts, axes, _ = body.frames(JOINTS)
+    distance = distance_to_bones(skin.place_m[0], starts[0], axes[0])
+    assert distance.max() < 0.20
+    assert np.allclose(np.linalg.norm(skin.normal, axis=-1), 1)
+    further = distance_to_bones(skin.place_m[0] + 0.02 * skin.normal[0], starts[0], axes[0])
+    assert (further > distance).mean() > 0.85  # joints overlap, so not all
+
+
+def test_rotations_are_rotations():
+    _, axes, turn = ScatteringBody(0, 1.75).frames(JOINTS)
+    assert np.allclose(np.swapaxes(turn, -1, -2) @ turn, np.eye(3), atol=1e-9)
+    unit = axes / np.linalg.norm(axes, axis=-1, keepdims=True)
+    assert np.allclose(turn[..., 2], unit)
+    assert np.allclose(np.linalg.det(turn), 1)
+
+
+def test_the_hull_is_closed_and_within_the_skin():
+    vertices, faces = ScatteringBody(0, 1.75).hull(JOINTS)
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    _, count = np.unique(edges, axis=0, return_counts=True)
+    assert np.all(count == 2)
+    corners = vertices[0][faces]
+    volume = np.einsum("fi,fi->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6
+    assert 0.04 < volume < 0.16  # m3; overlaps count twice
+    assert len(vertices[0]) == len(CAPSULES) * 14
+
+
+def test_the_person_keeps_the_skin_and_others_have_another():
+    assert np.array_equal(ScatteringBody(1, 1.7).micro_phase, ScatteringBody(1, 1.9).micro_phase)
+    assert not np.array_equal(ScatteringBody(1, 1.7).micro_phase, ScatteringBody(2, 1.7).micro_phase)
+
+
+def test_skin_area_is_a_persons():
+    body = ScatteringBody(0, 1.75)
+    assert 1.5 < body.area_m2 * 800 < 2.2
+
+
+def test_turning_an_arm_spins_no_skin():
+    """Raising the arm by 2 mm moves no point of it by more than its lever allows."""
+    joints = np.repeat(JOINTS, 2, axis=0)
+    joints[1, [20]] += [0.0, 0.0, 0.002]
+    body = ScatteringBody(0, 1.75)
+    places = body.skin(joints).place_m
+    assert np.linalg.norm(places[1] - places[0], axis=-1).max() < 0.005
+    assert np.linalg.norm(places[1] - places[0], axis=-1).max() == pytest.approx(0.003, abs=0.0015)
+
+
+def test_arms_and_legs_have_a_brightness_of_their_own():
+    plain = ScatteringBody(0, 1.75, echo=SkinEcho(arms_db=0.0, legs_db=0.0))
+    dim = ScatteringBody(0, 1.75, echo=SkinEcho(arms_db=3.0, legs_db=-10.0))
+    assert np.all(plain.brightness == 1)
+    names = np.array([capsule.end.rsplit("_", 1)[-1] for capsule in CAPSULES])[dim.part]
+    assert np.allclose(dim.brightness[np.isin(names, ["elbow", "wrist"])], 10**0.3)
+    assert np.allclose(dim.brightness[np.isin(names, ["knee", "ankle", "foot"])], 0.1)
+    assert np.all(dim.brightness[np.isin(names, ["head", "neck", "spine1", "hip", "shoulder"])] == 1)
+
+
+def test_skin_of_a_tapering_limb_faces_its_thin_end():
+    """Of a truncated cone normals are square to its flanks, not to its axis."""
+    body = ScatteringBody(0, 1.75, 4000)
+    skin = body.skin(JOINTS[:1])
+    shin = next(k for k, c in enumerate(CAPSULES) if (c.start, c.end) == ("left_knee", "left_ankle"))
+    axis = JOINTS[0, 7] - JOINTS[0, 4]
+    lean = skin.normal[0][body.part == shin] @ (axis / np.linalg.norm(axis))
+    assert np.degrees(np.arcsin(lean)) == pytest.approx(np.degrees(np.arctan((0.055 - 0.038) / 0.4)), abs=0.05)

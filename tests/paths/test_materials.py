@@ -1,0 +1,46 @@
+"""Reflection coefficients against the figures of ITU-R P.2040-3 and against theory."""
+
+import numpy as np
+import pytest
+
+from mmweaver.paths.materials import MATERIALS, reflection, relative_permittivity
+
+
+def level_db(name: str, cos: float, polarisation: str = "te") -> float:
+    return 20 * np.log10(abs(reflection(MATERIALS[name], np.array([cos]), 77e9, polarisation=polarisation)[0]))
+
+
+@pytest.mark.parametrize(("name", "expected_db"), [("concrete", -8), ("metal", 0)])
+def test_thick_materials_straight_on(name: str, expected_db: float):
+    """Thick lossy slabs act as half spaces: |1 - sqrt(eps)| / |1 + sqrt(eps)|."""
+    assert level_db(name, 1.0) == pytest.approx(expected_db, abs=0.7)
+    root = np.sqrt(relative_permittivity(MATERIALS[name], 77e9))
+    assert level_db(name, 1.0) == pytest.approx(20 * np.log10(abs((1 - root) / (1 + root))), abs=0.7)
+
+
+@pytest.mark.parametrize("name", list(MATERIALS))
+@pytest.mark.parametrize("polarisation", ["te", "tm"])
+def test_no_face_throws_back_more_than_it_gets(name: str, polarisation: str):
+    gamma = reflection(MATERIALS[name], np.linspace(0.001, 1, 200), 77e9, polarisation=polarisation)
+    assert np.abs(gamma).max() <= 1 + 1e-9
+
+
+def test_both_polarisations_agree_straight_on():
+    for material in MATERIALS.values():
+        te, tm = (abs(reflection(material, np.ones(1), 77e9, polarisation=p)[0]) for p in ("te", "tm"))
+        assert te == pytest.approx(tm, rel=1e-6)
+
+
+def test_brewster_angle_is_seen_by_tm_alone():
+    cos_brewster = np.cos(np.arctan(np.sqrt(5.24)))
+    assert level_db("concrete", cos_brewster, "tm") < -25
+    assert level_db("concrete", cos_brewster, "te") > -4
+
+
+def test_grazing_is_total():
+    assert level_db("plasterboard", 0.005) > -0.5
+
+
+def test_an_unknown_polarisation_is_a_bug():
+    with pytest.raises(ValueError, match="te or tm"):
+        reflection(MATERIALS["wood"], np.ones(1), 77e9, polarisation="rhcp")

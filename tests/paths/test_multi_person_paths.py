@@ -1,0 +1,108 @@
+"""Several people before one radar: far apart a sum, behind one another a shadow."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.records import PoseSequence
+from mmweaver.paths.body_model import body_of
+from mmweaver.paths.multi_person_paths import PeopleEchoes
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.receiver import IDEAL
+from tests.rooms import back_wall, floor, scene_of, side_wall, standing_person
+
+NOTHING = scene_of((floor(-8.0),))
+
+
+@pytest.fixture(scope="module")
+def nowhere() -> Simulator:
+    return Simulator(NOTHING, AWR1843, IDEAL)
+
+
+@pytest.fixture(scope="module")
+def room() -> Simulator:
+    return Simulator(scene_of((floor(), back_wall(), side_wall(1.5, "metal"))), AWR1843, IDEAL)
+
+
+def person(x_m: float, y_m: float, subject: int = 0) -> PoseSequence:
+    return replace(standing_person((x_m, y_m, -1.2)), subject=subject)
+
+
+def echo(simulator: Simulator, *people: PoseSequence, mutual: bool = True) -> np.ndarray:
+    """What the people change in the samples of one frame, (loop, tx, rx, sample)."""
+    adc = simulator.run(people, num_frames=1, seed=0, mutual_shadows=mutual).adc.samples[0]
+    return adc - simulator.room_adc
+
+
+def energy(samples: np.ndarray) -> float:
+    return float((np.abs(samples) ** 2).sum())
+
+
+def test_nobody_is_the_empty_room(room: Simulator):
+    adc = room.run((), num_frames=2, seed=0).adc.samples
+    assert np.allclose(adc, room.room_adc, atol=1e-9)
+
+
+def test_one_person_in_a_tuple_is_one_person(room: Simulator):
+    one = room.run(person(0.2, 2.0), num_frames=1, seed=0).adc.samples
+    assert one.tobytes() == room.run((person(0.2, 2.0),), num_frames=1, seed=0).adc.samples.tobytes()
+
+
+def test_two_far_apart_are_the_sum_of_both(nowhere: Simulator, room: Simulator):
+    left, right = person(-0.9, 2.2), person(0.7, 1.9, subject=1)
+    both, each = echo(nowhere, left, right), echo(nowhere, left) + echo(nowhere, right)
+    assert energy(both - each) < 1e-6 * energy(each)
+    # in a room the shadows on it overlap in places, and each stands in the way of some of the other's ghosts
+    both, each = echo(room, left, right), echo(room, left) + echo(room, right)
+    assert 0 < energy(both - each) < 0.1 * energy(each)
+
+
+def test_without_mutual_shadows_it_is_the_plain_sum(room: Simulator):
+    front, behind = person(0.0, 1.4), person(0.0, 2.4, subject=1)
+    total = echo(room, front, behind, mutual=False)
+    each = echo(room, front) + echo(room, behind)
+    assert energy(total - each) < 1e-6 * energy(each)
+
+
+def test_who_stands_behind_another_is_dimmed(nowhere: Simulator):
+    front, behind = person(0.0, 1.4), person(0.0, 2.4, subject=1)
+    of_behind = echo(nowhere, front, behind) - echo(nowhere, front)
+    assert energy(of_behind) < 0.1 * energy(echo(nowhere, behind))
+    aside = person(0.9, 2.4, subject=1)
+    of_aside = echo(nowhere, front, aside) - echo(nowhere, front)
+    assert energy(of_aside) == pytest.approx(energy(echo(nowhere, aside)), rel=1e-3)
+
+
+def test_ghosts_are_hidden_by_others_too(room: Simulator):
+    """Somebody between a person and the metal wall beside takes that person's ghosts away."""
+    seen, screen = person(0.0, 2.0), person(0.75, 1.5, subject=1)
+    middle = room._joints_at_nodes(seen, np.arange(1)), room._joints_at_nodes(screen, np.arange(1))
+    alone = PeopleEchoes(room.room, [body_of(seen)], [middle[0]])
+    both = PeopleEchoes(room.room, [body_of(seen), body_of(screen)], list(middle))
+
+    def over_the_wall(echoes: PeopleEchoes) -> int:
+        wall = [part for part in echoes.each[0].parts if part.back and part.back.plane.material == "metal"]
+        return sum(int(part.present.sum()) for part in wall)
+
+    assert over_the_wall(alone) > 20
+    assert over_the_wall(both) < 0.7 * over_the_wall(alone)
+
+
+def test_what_two_hide_of_the_room_is_hidden_once(room: Simulator):
+    front, behind = person(0.0, 1.4), person(0.0, 2.4, subject=1)
+    joints = [room._joints_at_nodes(pose, np.arange(1)) for pose in (front, behind)]
+    bodies = [body_of(front), body_of(behind)]
+    together = PeopleEchoes(room.room, bodies, joints).shadowed(0)
+    apart = PeopleEchoes(room.room, bodies, joints, mutual=False).shadowed(0)
+    assert len(together) == 1
+    places = [{tuple(place) for place in np.round(shadow.first_m, 6)} for shadow in (*together, *apart)]
+    assert places[0] == places[1] | places[2]
+    assert places[1] & places[2]
+
+
+def test_the_order_of_the_people_does_not_matter(room: Simulator):
+    people = person(0.0, 1.4), person(0.1, 2.2, subject=1), person(-0.8, 2.6, subject=2)
+    one, other = echo(room, *people), echo(room, *people[::-1])
+    assert energy(one - other) < 1e-9 * energy(one)

@@ -1,0 +1,88 @@
+"""Windows generated from sentences: the same each time, and with the motion that the sentence says."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.firmware_settings import FIRMWARE
+from mmweaver.core.presets import IWR1443_RADHAR
+from mmweaver.recognition.generated_windows import GenerationRecipe, generate_window, generate_windows, read_window
+from mmweaver.recognition.variation import Variation
+
+QUIET = Variation(turn_deg=0.0, noise_db=(-3.0, 0.0), wall_share=0.0, most_panels=0, skin_exponents=(20.0,))
+RECIPE = GenerationRecipe(
+    activities={"walk": ("a person walks towards the radar slowly",), "stand": ("a person stands",)},
+    radar=IWR1443_RADHAR, firmware=FIRMWARE["iwr1443_radhar"], variation=QUIET, window_s=0.5,
+)  # fmt: skip
+
+
+def test_the_same_seed_gives_the_same_points_and_another_does_not():
+    one, again, other = (generate_window(RECIPE, "walk", index, 3) for index in (0, 0, 1))
+    assert np.array_equal(one.cloud.x_m, again.cloud.x_m)
+    assert np.array_equal(one.cloud.frame, again.cloud.frame)
+    assert not np.array_equal(one.cloud.frame, other.cloud.frame)
+    assert (one.num_frames, one.label) == (15, "walk")
+
+
+def test_who_walks_towards_the_radar_moves_nearer():
+    walking = generate_window(RECIPE, "walk", 0, 3).cloud
+    moving = walking.radial_velocity_mps[np.abs(walking.radial_velocity_mps) > 0.1]
+    assert len(moving) > 15
+    assert np.mean(moving < 0) > 0.7
+
+
+def test_who_stands_hardly_moves():
+    standing, walking = (generate_window(RECIPE, label, 0, 3).cloud for label in ("stand", "walk"))
+    assert np.mean(np.abs(standing.radial_velocity_mps) > 0.1) < 0.3 * np.mean(
+        np.abs(walking.radial_velocity_mps) > 0.1
+    )
+
+
+def test_a_cache_gives_back_what_was_made(tmp_path):
+    made = generate_windows(RECIPE, each=1, seed=3, cache=tmp_path)
+    heard = []
+    again = generate_windows(RECIPE, each=1, seed=3, cache=tmp_path, report=lambda done, of: heard.append((done, of)))
+    assert heard == [(1, 2), (2, 2)]
+    for one, other in zip(made, again, strict=True):
+        assert np.allclose(one.cloud.y_m, other.cloud.y_m, atol=1e-5)
+        assert one.label == other.label
+    assert read_window(tmp_path / "walk_3_0.npz", "walk", RECIPE).num_frames == 15
+
+
+def test_more_noise_gives_no_more_points_of_a_body():
+    loud = replace(RECIPE, variation=replace(QUIET, noise_db=(55.0, 55.5)))
+    moving = [np.abs(generate_window(one, "walk", 0, 3).cloud.radial_velocity_mps) > 0.1 for one in (RECIPE, loud)]
+    assert moving[1].sum() < 0.3 * moving[0].sum()
+
+
+def test_activities_that_cannot_be_are_refused():
+    with pytest.raises(InputError, match="two activities"):
+        replace(RECIPE, activities={"walk": ("a person walks",)})
+    with pytest.raises(InputError, match="no activity that is known"):
+        replace(RECIPE, activities={"walk": ("a person walks",), "knit": ("a person knits",)})
+    with pytest.raises(InputError, match="has no sentence"):
+        replace(RECIPE, activities={"walk": ("a person walks",), "stand": ()})
+
+
+def test_habits_change_one_activity_alone():
+    still = replace(RECIPE, habits={"walk": {"vigour": (0.9, 0.91)}})
+    assert still.variation_of("walk").vigour == (0.9, 0.91)
+    assert still.variation_of("stand") == QUIET
+    same, other = (generate_window(one, "stand", 0, 3).cloud for one in (RECIPE, still))
+    assert np.array_equal(same.x_m, other.x_m)
+    with pytest.raises(InputError, match="fit no activity or no span"):
+        replace(RECIPE, habits={"walk": {"speed": (0.0, 1.0)}})
+    with pytest.raises(InputError, match="fit no activity or no span"):
+        replace(RECIPE, habits={"run": {"vigour": (0.0, 1.0)}})
+
+
+def test_a_window_may_be_any_part_of_a_way():
+    """Among a few walkers to and fro some come nearer, some go away, and they do so at different speeds."""
+    activities = {**RECIPE.activities, "walk": ("a person walks back and forth",)}
+    recipe = replace(RECIPE, activities=activities, variation=replace(QUIET, hurry=(0.3, 0.4)), window_s=1.0)
+    clouds = [generate_window(recipe, "walk", index, 5).cloud for index in range(6)]
+    speeds = [cloud.radial_velocity_mps[np.abs(cloud.radial_velocity_mps) > 0.1] for cloud in clouds]
+    mean = [float(speed.mean()) for speed in speeds if len(speed) > 5]
+    assert min(mean) < -0.3 < 0.3 < max(mean)

@@ -1,0 +1,71 @@
+"""Tables, doors, windows and beds, from a mask and from depth alone."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import Scene
+from mmweaver.scene.affordances.landmarks import with_given_landmarks
+from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
+from mmweaver.scene.reconstruction import reconstruct
+
+
+@pytest.fixture(scope="module")
+def office() -> ProceduralRoom:
+    return make_room("office", 2, 21)
+
+
+def _near(scene: Scene, room: ProceduralRoom, kind: str) -> list[float]:
+    """Distance of each found thing of a kind to the nearest true one."""
+    places = [mark.position_m[:2] for mark in room.landmarks if mark.kind == kind]
+    found = [mark.position_m[:2] for mark in scene.landmarks if mark.kind == kind]
+    return [float(min(np.hypot(*(place - one)) for place in places)) for one in found]
+
+
+@pytest.mark.parametrize("with_mask", [True, False])
+def test_door_and_desks_are_where_they_are(office: ProceduralRoom, with_mask: bool):
+    photo = office.photo("lamps", noise=True)
+    scene = reconstruct(photo if with_mask else dataclasses.replace(photo, classes=None))
+    for kind in ("door", "table"):
+        distances = _near(scene, office, kind)
+        assert distances, kind
+        assert max(distances) < 0.6, kind
+
+
+def test_one_can_stand_where_one_uses_them(office: ProceduralRoom):
+    scene = reconstruct(office.photo("lamps"))
+    space = scene.free_space
+    for mark in scene.landmarks:
+        column = int(np.argmin(np.abs(space.x_m - mark.approach_m[0])))
+        row = int(np.argmin(np.abs(space.y_m - mark.approach_m[1])))
+        assert space.is_free[row, column]
+        gap = mark.position_m[:2] - np.array(mark.approach_m)
+        assert np.angle(np.exp(1j * (np.arctan2(gap[1], gap[0]) - mark.facing_rad))) == pytest.approx(0, abs=1e-6)
+
+
+def test_a_mask_rules_out_a_box_as_a_seat():
+    room = next(
+        room for room in (make_room("workshop", layout, 300) for layout in range(8)) if "carton" in room.boxes.names
+    )
+    scene = reconstruct(room.photo())
+    cartons = np.array([name == "carton" for name in room.boxes.names])
+    for seat in scene.seats:
+        assert room.boxes.distance_m(seat.position_m[None])[0][cartons].min() > 0.05
+
+
+def test_what_a_person_tells_takes_the_place_of_what_was_found(office: ProceduralRoom):
+    scene = reconstruct(office.photo("lamps"))
+    told = with_given_landmarks(scene, [("door", (0.2, 2.0))])
+    (door,) = [mark for mark in told.landmarks if mark.kind == "door"]
+    assert door.position_m[:2] == pytest.approx([0.2, 2.0])
+    assert np.hypot(*(np.array(door.approach_m) - [0.2, 2.0])) < 1.2
+    assert [mark.kind for mark in told.landmarks].count("table") == [mark.kind for mark in scene.landmarks].count(
+        "table"
+    )
+    assert "told, not found" in told.assumptions[-1]
+    with pytest.raises(InputError, match="known: door, window"):
+        with_given_landmarks(scene, [("lamp", (0.2, 2.0))])
+    with pytest.raises(InputError, match="not before the radar"):
+        with_given_landmarks(scene, [("door", (0.2, -2.0))])

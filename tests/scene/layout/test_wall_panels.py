@@ -1,0 +1,61 @@
+"""Windows, doors and screens become panels of their own, on the wall that they hang on."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mmweaver.core.records import CameraIntrinsics, ClassMask, Plane, RgbdPhoto
+from mmweaver.scene.coco_stuff import NAMES
+from mmweaver.scene.layout.wall_panels import hung_panels, with_hung
+from tests.rooms import back_wall, plane, side_wall
+
+LENS = CameraIntrinsics(fx=120.0, fy=120.0, cx=79.5, cy=59.5, width=160, height=120)
+RADAR_FROM_CAMERA = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+WALL_M = 3.0
+
+
+def _photo(
+    name: str, depth_m: float = WALL_M, rows: slice = slice(30, 70), columns: slice = slice(90, 130)
+) -> RgbdPhoto:
+    index = np.full((120, 160), NAMES.index("wall-other"), np.uint8)
+    index[rows, columns] = NAMES.index(name)
+    depth = np.full((120, 160), WALL_M)
+    depth[rows, columns] = depth_m
+    return RgbdPhoto(
+        rgb=np.zeros((120, 160, 3), np.uint8), depth_m=depth, intrinsics=LENS,
+        classes=ClassMask(index=index, names=NAMES),
+    )  # fmt: skip
+
+
+def _found(photo: RgbdPhoto) -> tuple[Plane, ...]:
+    return hung_panels(photo, RADAR_FROM_CAMERA, [side_wall(2.4), back_wall(WALL_M)])
+
+
+@pytest.mark.parametrize(("name", "material"), [("window-other", "glass"), ("mirror", "metal"), ("door-stuff", "wood")])
+def test_a_pane_is_a_rectangle_of_its_own_material(name: str, material: str):
+    (panel,) = _found(_photo(name))
+    assert panel.material == material
+    assert panel.normal == pytest.approx([0, -1, 0])
+    assert panel.centre_m == pytest.approx([0.75, WALL_M - 0.01, 0.25], abs=0.02)
+    assert panel.half_size_m == pytest.approx((0.5, 0.5), abs=0.03)
+
+
+def test_a_leaf_before_its_wall_is_put_there():
+    (panel,) = _found(_photo("door", depth_m=WALL_M - 0.05))
+    assert panel.centre_m[1] == pytest.approx(WALL_M - 0.05, abs=0.005)
+
+
+def test_what_hangs_on_no_wall_or_is_small_or_something_else_is_left():
+    assert _found(_photo("tv", depth_m=2.2)) == ()
+    assert _found(_photo("window-other", rows=slice(30, 36))) == ()
+    assert _found(_photo("couch")) == ()
+    assert _found(replace(_photo("window-other"), classes=None)) == ()
+
+
+def test_it_takes_the_place_of_what_was_found_there():
+    (panel,) = _found(_photo("window-other"))
+    same = plane("panel", (0.7, WALL_M - 0.03, 0.2), (0, -1, 0), (1, 0, 0), (0.3, 0.3), "wood")
+    elsewhere = plane("panel", (-0.7, 2.0, 0.2), (0, -1, 0), (1, 0, 0), (0.3, 0.3), "wood")
+    wall = back_wall(WALL_M)
+    assert with_hung([wall, same, elsewhere], [panel], [wall]) == (panel, wall, elsewhere)

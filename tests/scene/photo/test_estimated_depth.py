@@ -1,0 +1,28 @@
+"""Depth by a model."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.scene.photo.estimated_depth import estimate_depth
+from tests.scene import models
+
+pytest.importorskip("transformers")
+RGB = np.random.default_rng(0).integers(0, 255, (48, 80, 3), dtype=np.uint8)
+
+
+def test_a_metric_model_gives_metres(tmp_path: Path):
+    depth_m = estimate_depth(RGB, models.depth_anything(tmp_path / "model"))
+    assert depth_m.shape == RGB.shape[:2]
+    assert np.isfinite(depth_m).any()
+    assert np.nanmax(depth_m) <= 20.0
+    assert np.nanmin(depth_m) > 0
+
+
+def test_models_without_a_unit_are_refused(tmp_path: Path):
+    with pytest.raises(InputError, match="without a unit"):
+        estimate_depth(RGB, models.depth_anything(tmp_path / "relative", "relative"))
+    with pytest.raises(InputError, match="no metric depth"):
+        estimate_depth(RGB, models.segformer(tmp_path / "segformer"))

@@ -1,0 +1,67 @@
+"""Segmenters of other people: built tiny, saved as published ones are, and loaded again from the folder."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.scene.coco_stuff import NAMES
+from mmweaver.scene.segmentation import pretrained_segmenter
+from mmweaver.scene.segmentation.pretrained_segmenter import painted, sam_masks, segment
+from tests.scene import models
+
+pytest.importorskip("transformers")
+RGB = np.random.default_rng(0).integers(0, 255, (48, 80, 3), dtype=np.uint8)
+KNOWN = {0, *(NAMES.index(name) for name in ("wall-other", "floor-other", "couch", "window-other"))}
+
+
+@pytest.mark.parametrize("make", [models.segformer, models.mask2former, models.maskformer])
+def test_every_family_gives_coco_stuffs_classes(tmp_path: Path, make):
+    mask = segment(RGB, make(tmp_path / "model"))
+    assert mask.index.shape == RGB.shape[:2]
+    assert mask.names == NAMES
+    assert set(np.unique(mask.index).tolist()) <= KNOWN
+    again = segment(RGB, str(tmp_path / "model"))
+    assert np.array_equal(mask.index, again.index)
+
+
+def test_the_labels_of_the_model_decide(tmp_path: Path):
+    """The same weights under other labels give the same regions under other names."""
+    one = segment(RGB, models.segformer(tmp_path / "one"))
+    other = segment(RGB, models.segformer(tmp_path / "other", {0: "bed", 1: "door", 2: "tree", 3: "sky"}))
+    names = {"wall-other": "bed", "floor-other": "door", "couch": "tree", "window-other": "sky-other"}
+    for name, instead in names.items():
+        assert np.array_equal(one.index == NAMES.index(name), other.index == NAMES.index(instead)), name
+
+
+def test_sams_masks_are_masks_of_the_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(pretrained_segmenter, "SURE", -10.0)  # random weights are sure of nothing
+    monkeypatch.setattr(pretrained_segmenter, "LARGEST", 1.1)
+    masks = sam_masks(RGB, models.sam(tmp_path / "sam"))
+    assert len(masks) > 0
+    assert all(mask.shape == RGB.shape[:2] and mask.dtype == bool for mask in masks)
+    sizes = [int(mask.sum()) for mask in masks]
+    assert sizes == sorted(sizes, reverse=True)
+    mask = segment(RGB, models.segformer(tmp_path / "model"), str(tmp_path / "sam"))
+    assert set(np.unique(mask.index).tolist()) <= KNOWN
+
+
+def test_a_mask_takes_the_class_of_most_of_it():
+    index = np.zeros((10, 10), np.uint8)
+    index[:, :5], index[:, 5:] = 63, 172
+    large, small, mixed = (np.zeros((10, 10), bool) for _ in range(3))
+    large[:, :6], small[0, 4:6], mixed[9, 2:8] = True, True, True
+    out = painted(index, [large, mixed, small])
+    assert (out[1:9, :6] == 63).all()
+    assert (out[1:9, 6:] == 172).all()
+    assert out[9, 7] == 172  # half and half: left as it was
+
+
+def test_models_that_are_no_segmenters(tmp_path: Path):
+    with pytest.raises(InputError, match="gives no classes"):
+        segment(RGB, models.depth_anything(tmp_path / "depth"))
+    with pytest.raises(InputError, match="no SAM"):
+        sam_masks(RGB, models.segformer(tmp_path / "segformer"))
+    with pytest.raises(InputError, match="none of COCO-Stuff"):
+        segment(RGB, models.segformer(tmp_path / "dumb", {0: "LABEL_0", 1: "LABEL_1"}))

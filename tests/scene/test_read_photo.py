@@ -1,0 +1,331 @@
+"""Good and bad input files."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mmweaver.core.errors import InputError
+from mmweaver.scene.read_photo import read_photo
+
+CAMERA = {"fx": 80.0, "fy": 80.0, "cx": 47.5, "cy": 35.5}
+DEPTH = np.full((72, 96), 2500, np.uint16)
+
+
+class Files:
+    """A folder with a good photo in it, to be spoilt."""
+
+    def __init__(self, folder: Path):
+        self.rgb, self.depth, self.camera = folder / "rgb.png", folder / "depth.png", folder / "camera.json"
+        colours = np.random.default_rng(0).integers(0, 255, (72, 96, 3), dtype=np.uint8)
+        Image.fromarray(colours).save(self.rgb)
+        Image.fromarray(DEPTH).save(self.depth)
+        self.set_camera(**CAMERA)
+
+    def set_camera(self, **content: Any) -> None:
+        self.camera.write_text(json.dumps(content))
+
+    def set_npy(self, values: np.ndarray, **options: Any) -> None:
+        self.depth = self.depth.with_suffix(".npy")
+        np.save(self.depth, values, **options)
+
+    def read(self):
+        return read_photo(self.rgb, self.depth, self.camera)
+
+    def error(self) -> str:
+        with pytest.raises(InputError) as raised:
+            self.read()
+        assert "\n" not in str(raised.value)
+        return str(raised.value)
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> Files:
+    return Files(tmp_path)
+
+
+def test_a_good_photo(files: Files):
+    photo, assumptions = files.read()
+    assert photo.rgb.shape == (72, 96, 3)
+    assert photo.depth_m[0, 0] == 2.5
+    assert (photo.intrinsics.fx, photo.intrinsics.width) == (80.0, 96)
+    assert assumptions == ()
+
+
+def test_no_camera_takes_a_d455_and_says_so(files: Files):
+    photo, assumptions = read_photo(str(files.rgb), str(files.depth))
+    assert photo.intrinsics.fx == pytest.approx(640 * 72 / 800)
+    assert "RealSense D455" in assumptions[0]
+
+
+@pytest.mark.parametrize("values", [DEPTH, DEPTH.astype(np.int32), DEPTH / np.float32(1000), DEPTH / 1000.0])
+def test_npy_in_counts_or_metres(files: Files, values: np.ndarray):
+    files.set_npy(values)
+    assert files.read()[0].depth_m[3, 3] == pytest.approx(2.5)
+
+
+def test_the_unit_of_the_camera_file(files: Files):
+    Image.fromarray(DEPTH * 5).save(files.depth)
+    files.set_camera(**CAMERA, depth_unit_m=0.0002)
+    assert files.read()[0].depth_m[0, 0] == pytest.approx(2.5)
+
+
+def test_holes_become_nan(files: Files):
+    depth = DEPTH.copy()
+    depth[:10], depth[10:12] = 0, 65535
+    Image.fromarray(depth).save(files.depth)
+    photo, _ = files.read()
+    assert np.isnan(photo.depth_m[:12]).all()
+    assert np.isfinite(photo.depth_m[12:]).all()
+    values = DEPTH / 1000.0
+    values[0, :4] = [np.nan, np.inf, -1, 0]
+    files.set_npy(values)
+    assert np.isnan(files.read()[0].depth_m[0]).sum() == 4
+
+
+def test_intrinsics_of_a_larger_picture_are_scaled(files: Files):
+    files.set_camera(fx=160, fy=160, cx=95.5, cy=71.5, width=192, height=144)
+    intrinsics = files.read()[0].intrinsics
+    assert (intrinsics.fx, intrinsics.cx, intrinsics.cy) == (80.0, 47.5, 35.5)
+
+
+@pytest.mark.parametrize("mode", ["L", "RGBA", "P", "CMYK", "LA", "I;16"])
+def test_all_kinds_of_colour_become_rgb(files: Files, mode: str):
+    if mode == "I;16":
+        Image.fromarray(np.full((72, 96), 32768, np.uint16)).save(files.rgb)
+    else:
+        files.rgb = files.rgb.with_suffix(".tiff") if mode == "CMYK" else files.rgb
+        Image.new("RGB", (96, 72), (200, 30, 90)).convert(mode).save(files.rgb)
+    photo, _ = files.read()
+    assert photo.rgb.dtype == np.uint8
+    expected = {"L": (88, 88, 88), "LA": (88, 88, 88), "I;16": (128, 128, 128)}.get(mode, (200, 30, 90))
+    np.testing.assert_allclose(photo.rgb[5, 5], expected, atol=26 if mode == "P" else 3)
+
+
+def test_what_is_transparent_is_white(files: Files):
+    Image.new("RGBA", (96, 72), (0, 0, 0, 0)).save(files.rgb)
+    assert (files.read()[0].rgb == 255).all()
+
+
+def test_exif_turns_the_picture(files: Files):
+    exif = Image.Exif()
+    exif[0x0112] = 6
+    files.rgb = files.rgb.with_suffix(".jpg")
+    Image.new("RGB", (72, 96)).save(files.rgb, exif=exif)
+    photo, assumptions = files.read()
+    assert photo.rgb.shape == (72, 96, 3)
+    assert "EXIF" in assumptions[0]
+    Image.new("RGB", (96, 72)).save(files.rgb, exif=exif)
+    assert "EXIF" in files.error()
+    exif[0x0112] = 99  # no direction
+    Image.new("RGB", (96, 72)).save(files.rgb, exif=exif)
+    assert not any("EXIF" in sentence for sentence in files.read()[1])
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (np.zeros((72, 96), np.uint16), "every depth value is zero"),
+        (np.full((72, 96), 9, np.uint16), "unit"),
+        (np.full((72, 96), 25000, np.uint16), "set depth_unit_m to 0.0001"),
+        (np.full((72, 96), 120, np.uint8), "8 bits"),
+        (np.full((72, 96, 3), 120, np.uint8), "colour picture"),
+        (np.where(np.arange(96) < 5, DEPTH, 0).astype(np.uint16), "5.2 %"),
+        (np.full((70, 96), 2500, np.uint16), "aligned"),
+    ],
+    ids=["zero", "too near", "wrong unit", "8 bits", "colour", "holes", "other size"],
+)
+def test_bad_depth_pictures(files: Files, values: np.ndarray, message: str):
+    Image.fromarray(values).save(files.depth)
+    assert message in files.error()
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        (np.full((72, 96), np.nan), "is nan"),
+        (np.full((72, 96), np.inf), "is infinite"),
+        (np.full((72, 96), -2.0), "is negative"),
+        (np.full((72, 96), 2500.0), "multiply it by 0.001"),
+        (np.full((72, 96, 1), 2.0), "shape"),
+        (np.full((72, 96), 2 + 0j), "complex128"),
+        (np.full((72, 96), 2, np.uint8), "8 bits"),
+        (np.full((3, 3), 2.0), "3 x 3"),
+        (np.full((72, 96), True), "bool"),
+    ],
+)
+def test_bad_npy(files: Files, values: np.ndarray, message: str):
+    files.set_npy(values)
+    assert message in files.error()
+
+
+def test_pickles_archives_and_rubbish_in_npy(files: Files):
+    files.set_npy(np.array([{"a": 1}], dtype=object), allow_pickle=True)
+    assert "plain .npy" in files.error()
+    files.depth.write_bytes(b"\x93NUMPY rubbish")
+    assert "plain .npy" in files.error()
+    files.depth.write_bytes(b"")
+    assert "plain .npy" in files.error()
+    np.savez(files.depth.with_suffix(".npz"), a=DEPTH)
+    files.depth.with_suffix(".npz").rename(files.depth)
+    assert "archive" in files.error()
+
+
+@pytest.mark.parametrize("which", ["rgb", "depth", "camera"])
+def test_missing_folder_and_rubbish(files: Files, which: str):
+    path: Path = getattr(files, which)
+    path.write_bytes(b"no picture, no json")
+    assert path.name in files.error()
+    path.unlink()
+    assert "does not exist" in files.error()
+    path.mkdir()
+    assert "is a folder" in files.error()
+
+
+@pytest.mark.parametrize("which", ["rgb", "depth"])
+def test_truncated_pictures(files: Files, which: str):
+    path: Path = getattr(files, which)
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) * 2 // 3])
+    assert path.name in files.error()
+
+
+def test_a_gigantic_picture_is_refused_unread(files: Files):
+    Image.new("L", (9000, 6000)).save(files.rgb)
+    assert "too large" in files.error()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"fx": None}, "fx is None"),
+        ({"fx": float("nan")}, "fx is nan"),
+        ({"fx": -80}, "positive"),
+        ({"fx": 0}, "positive"),
+        ({"fy": "80"}, "finite number"),
+        ({"cx": True}, "finite number"),
+        ({"cx": 900}, "principal point"),
+        ({"cy": -300}, "principal point"),
+        ({"fx": 0.08, "fy": 0.08}, "view of"),
+        ({"fx": 8000, "fy": 8000}, "view of"),
+        ({"fx": 80, "fy": 8}, "view of"),
+        ({"width": 640, "height": 640}, "another shape"),
+        ({"depth_unit_m": 0}, "positive"),
+        ({"depth_unit_m": float("inf")}, "finite number"),
+    ],
+)
+def test_bad_camera_files(files: Files, change: dict[str, Any], message: str):
+    files.set_camera(**{**CAMERA, **change})
+    assert message in files.error()
+
+
+def test_missing_keys_are_named(files: Files):
+    files.set_camera(fx=80, cy=3)
+    assert "missing fy, cx" in files.error()
+    files.camera.write_text("[1, 2]")
+    assert "JSON object" in files.error()
+    files.camera.write_bytes(b"\xff\xfe\x00")
+    assert "not a JSON file" in files.error()
+
+
+# sizes, depths and formats of other cameras ----------------------------------------------------------------------
+def test_a_coarse_depth_picture_is_enlarged_by_whole_pixels(files: Files):
+    """As phones have it: the colour picture several times as large."""
+    ramp = (1500 + 10 * np.arange(96)[None, :] + np.zeros((72, 1))).astype(np.uint16)
+    Image.fromarray(ramp).save(files.depth)
+    Image.new("RGB", (960, 720), (10, 200, 30)).save(files.rgb)
+    files.set_camera(fx=800.0, fy=800.0, cx=479.5, cy=359.5)
+    photo, assumptions = files.read()
+    assert photo.rgb.shape == (504, 672, 3)
+    assert photo.depth_m.shape == (504, 672)
+    assert np.unique(photo.depth_m) == pytest.approx(ramp[0] / 1000)
+    assert photo.intrinsics.fx == pytest.approx(560.0)
+    assert photo.intrinsics.cx == pytest.approx(335.5)
+    assert "960 x 720" in assumptions[0]
+    assert "96 x 72" in assumptions[0]
+
+
+def test_a_fine_depth_picture_keeps_its_pixels(files: Files):
+    Image.fromarray(np.full((144, 192), 2500, np.uint16)).save(files.depth)
+    photo, _ = files.read()
+    assert photo.rgb.shape == (144, 192, 3)
+    assert (photo.intrinsics.fx, photo.intrinsics.width) == (160.0, 192)
+
+
+def test_float_tiff_and_whole_number_tiff(files: Files):
+    files.depth = files.depth.with_suffix(".tiff")
+    for values in (np.full((72, 96), 2.5, np.float32), np.full((72, 96), 2500, np.int32), DEPTH):
+        Image.fromarray(values).save(files.depth)
+        assert files.read()[0].depth_m[3, 3] == pytest.approx(2.5)
+    metres = np.full((72, 96), 2.5, np.float32)
+    metres[:5] = np.nan
+    Image.fromarray(metres).save(files.depth)
+    assert np.isnan(files.read()[0].depth_m[:5]).all()
+
+
+def test_openexr_is_named(files: Files):
+    files.depth = files.depth.with_suffix(".exr")
+    files.depth.write_bytes(b"v/1\x01\x02\0\0\0" + bytes(100))
+    assert "OpenEXR" in files.error()
+    assert "TIFF" in files.error()
+
+
+def test_sixteen_bits_a_channel(files: Files):
+    """A PNG of 48 bits a pixel, as raw converters write them."""
+    import struct
+    import zlib
+
+    def chunk(name: bytes, content: bytes) -> bytes:
+        return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+    row = b"\0" + np.array([40000, 20000, 10000], ">u2").tobytes() * 96
+    header = struct.pack(">IIBBBBB", 96, 72, 16, 2, 0, 0, 0)
+    files.rgb.write_bytes(
+        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(row * 72)) + chunk(b"IEND", b"")
+    )
+    np.testing.assert_allclose(files.read()[0].rgb[5, 5], (156, 78, 39), atol=1)
+
+
+def test_nine_holes_in_ten_are_the_most(files: Files):
+    kept = np.random.default_rng(0).permutation(72 * 96).reshape(72, 96)
+    Image.fromarray(np.where(kept < 0.101 * kept.size, DEPTH, 0).astype(np.uint16)).save(files.depth)
+    photo, assumptions = files.read()
+    assert np.isfinite(photo.depth_m).mean() > 0.9
+    assert "Only 10 % of the pixels" in assumptions[0]
+    Image.fromarray(np.where(kept < 0.09 * kept.size, DEPTH, 0).astype(np.uint16)).save(files.depth)
+    assert "only 9.0 %" in files.error()
+
+
+def test_a_photo_without_depth_says_what_to_do(files: Files):
+    with pytest.raises(InputError, match="--depth-model"):
+        read_photo(files.rgb)
+
+
+def test_what_says_the_classes(files: Files, tmp_path: Path):
+    Image.fromarray(np.full((72, 96), 62, np.uint8)).save(tmp_path / "classes.png")
+    photo, _ = read_photo(files.rgb, files.depth, files.camera, classes=tmp_path / "classes.png")
+    assert photo.classes is not None
+    assert (photo.classes.index == photo.classes.names.index("couch")).all()
+    with pytest.raises(InputError, match="leave out --segmenter"):
+        read_photo(files.rgb, files.depth, classes=tmp_path / "classes.png", segmenter="any")
+    with pytest.raises(InputError, match="give --segmenter too"):
+        read_photo(files.rgb, files.depth, sam="any")
+    with pytest.raises(InputError, match="--classes"):
+        read_photo(files.rgb, files.depth, classes=tmp_path / "none.png")
+
+
+def test_a_model_takes_the_place_of_depth_and_of_classes(files: Files, tmp_path: Path):
+    pytest.importorskip("transformers")
+    from tests.scene import models
+
+    Image.new("RGB", (96, 72), (120, 90, 40)).save(files.rgb)
+    photo, assumptions = read_photo(
+        files.rgb, camera=files.camera, depth_model=models.depth_anything(tmp_path / "depth"),
+        segmenter=models.segformer(tmp_path / "segmenter"),
+    )  # fmt: skip
+    assert photo.depth_m.shape == (72, 96)
+    assert photo.classes is not None
+    assert any("estimated from the colours" in sentence for sentence in assumptions)

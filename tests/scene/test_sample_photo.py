@@ -1,0 +1,80 @@
+"""The bundled room: small, remade from its seed, and what its maker says is what is found."""
+
+import importlib.util
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from mmweaver.core.records import Scene
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.scene.sample_photo import SAMPLE_FOLDER, sample_photo
+
+TOOL = Path(__file__).resolve().parents[2] / "tools" / "make_sample_room.py"
+
+
+@pytest.fixture(scope="module")
+def maker() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("make_sample_room", TOOL)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    import sys
+
+    sys.modules["make_sample_room"] = module  # dataclasses look their module up
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    photo, assumptions = sample_photo()
+    return reconstruct(photo, assumptions=assumptions)
+
+
+def test_it_is_small():
+    assert sum(file.stat().st_size for file in SAMPLE_FOLDER.iterdir()) < 600_000
+
+
+def test_its_geometry_is_the_maker_s(scene: Scene, maker: ModuleType):
+    assert scene.floor_z_m == pytest.approx(-maker.CAMERA_HEIGHT_M, abs=0.01)
+    pitch = np.rad2deg(np.arcsin(-scene.radar_from_camera[2, 2]))
+    assert pitch == pytest.approx(maker.PITCH_DEG, abs=0.5)
+    walls = [plane for plane in scene.planes if plane.kind == "wall"]
+    for normal, distance in (
+        ((0, -1, 0), maker.BACK_WALL_M),
+        ((1, 0, 0), -maker.LEFT_WALL_M),
+        ((-1, 0, 0), maker.RIGHT_WALL_M),
+    ):
+        errors = [abs(abs(wall.normal @ wall.centre_m) - distance) for wall in walls if wall.normal @ normal > 0.999]
+        assert min(errors) < 0.03
+
+
+def test_its_sofa_is_found_and_its_low_table_is_not_a_seat(scene: Scene):
+    assert len(scene.seats) >= 2
+    for seat in scene.seats:
+        assert seat.position_m[2] - scene.floor_z_m == pytest.approx(0.43, abs=0.03)
+        assert -1.5 < seat.position_m[0] < 0.35
+        assert np.linalg.norm(seat.position_m) < 3.2
+        assert np.rad2deg(seat.facing_rad) == pytest.approx(-90, abs=16)
+
+
+def test_there_is_room_to_walk(scene: Scene):
+    space = scene.free_space
+    chosen = (space.y_m > 0.6) & (space.y_m < 2.6)
+    across = np.abs(space.x_m) < 1.0
+    assert space.is_free[np.ix_(chosen, across & (space.x_m < 0.6))].mean() > 0.95
+
+
+def test_its_depth_is_remade_from_the_seed(maker: ModuleType):
+    """The depth is remade whole; the photo takes half a minute, so its light is remade coarsely, twice."""
+    photo, _ = sample_photo()
+    first, depth_m = maker.render(0, 1, 1, 1)
+    again, _ = maker.render(0, 1, 1, 1)
+    np.testing.assert_array_equal(first, again)
+    remade = maker.measured_depth(depth_m, 0) * 0.001
+    bundled = np.nan_to_num(photo.depth_m)
+    assert (np.abs(remade - bundled) < 1e-6).mean() > 0.999
+    difference = first.astype(float).mean(axis=(0, 1)) - photo.rgb.astype(float).mean(axis=(0, 1))
+    assert np.abs(difference).max() < 6

@@ -1,0 +1,46 @@
+import json
+from pathlib import Path
+
+from mmweaver.motion.language.sentence import parse
+from studies.motion.kitml import Sentence, drawn, reading_of, result_row, sentences_of, understood
+
+
+def sentences(count: int) -> list[Sentence]:
+    texts = ("a person walks forward", "a person juggles")
+    return [Sentence(name=f"{k:05d}_0", motion=f"{k:05d}", text=texts[k % 2]) for k in range(count)]
+
+
+def test_half_of_the_motions_is_for_checking():
+    share = sum(sentence.is_for_checking for sentence in sentences(2000)) / 2000
+    assert 0.45 < share < 0.55
+
+
+def test_shares_and_judgements(tmp_path: Path):
+    some = sentences(400)
+    readings = understood(some)
+    assert len(readings) == 200
+    checking = [sentence for sentence in some if sentence.is_for_checking]
+    names = drawn(readings, checking, ())
+    assert set(names) <= set(readings)
+    assert not set(drawn(readings, checking, names[:5])) & set(names[:5])
+    verdicts = {
+        name: {"reading": "walk forwards", "verdict": "wrong" if k < 3 else "right"} for k, name in enumerate(names)
+    }
+    verdicts[names[-1]]["reading"] = "another"
+    row = result_row(some, verdicts, {"first": {}}, "digest")
+    assert row["metrics"]["understood"]["value"] == 0.5
+    assert row["judged_void"] == 1
+    assert row["metrics"]["wrong"]["value"] == round(3 / (len(names) - 1), 4)
+
+
+def test_mirrored_motions_are_left_out(tmp_path: Path):
+    path = tmp_path / "kitml_annotations.json"
+    note = {"annotations": [{"seg_id": "1_0", "text": "a person waves"}]}
+    path.write_text(json.dumps({"00001": note, "M00001": note}))
+    assert [sentence.motion for sentence in sentences_of(path)] == ["00001"]
+
+
+def test_a_reading_in_a_row():
+    assert (
+        reading_of(parse("walks 4 steps forward, then kicks with the left foot")) == "walk forwards x4 | kick left foot"
+    )

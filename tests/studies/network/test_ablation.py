@@ -1,0 +1,78 @@
+"""The ablation on a tiny data set: variants train, ghosts count where they show, photos are those of the variant."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from mmweaver.models.network import PARTS
+from mmweaver.training.network_training import TrainingRecipe
+from studies.network.ablation import (
+    COLUMNS,
+    MEAN_COLUMNS,
+    AblationMaterial,
+    mean_scores,
+    photo_of,
+    row_of,
+    scores,
+    slug,
+    trained,
+)
+from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
+from tests.training.tiny_data import tiny_data
+
+pytest.importorskip("zarr")
+RECIPE = TrainingRecipe(steps=2, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
+
+
+@pytest.fixture(scope="module")
+def material(tmp_path_factory: pytest.TempPathFactory) -> AblationMaterial:
+    return AblationMaterial.of(tiny_data(tmp_path_factory.mktemp("data") / "set", geometry_only=True), 1, 1)
+
+
+def test_a_variant_is_trained_and_goes_on_as_it_was(material: AblationMaterial, tmp_path: Path):
+    variant = AblationVariant(terms_without=("_person",), without=("steps",))
+    one, again = (trained(variant, material, tmp_path, RECIPE) for _ in range(2))
+    assert all(torch.equal(a, b) for a, b in zip(one.state_dict().values(), again.state_dict().values(), strict=True))
+    figures = scores(one, lambda case: case.room, material.cases[0])
+    assert set(figures) == {*COLUMNS, *MEAN_COLUMNS}
+    assert np.isfinite(list(figures.values())).all()
+    row = row_of("fewer", [figures], ["dining_room_0"])
+    assert row["metrics"]["ra_ssim"]["value"] == figures["ra_ssim"]
+
+
+def test_single_draws_are_other_targets(material: AblationMaterial):
+    (mean,), (drawn,) = material.mean[0], material.drawn[0]
+    frames = np.array([1, 2])
+    expected, alone = mean.maps(0, frames)
+    draw, none = drawn.maps(0, frames)
+    assert alone is not None
+    assert none is None
+    ratio = torch.log10(draw.range_doppler / expected.range_doppler)
+    assert 0.1 < float(ratio.std()) < 1.5  # speckle
+
+
+def test_ghosts_show_in_the_person_alone(material: AblationMaterial, tmp_path: Path):
+    with_ghosts, without = (
+        trained(AblationVariant(without=part, recipe=(("steps", 0),)), material, tmp_path, RECIPE)
+        for part in ((), ("ghosts",))
+    )
+    case = material.cases[0]
+    own, other = (mean_scores(learner, case.room, case) for learner in (with_ghosts, without))
+    assert abs(own["person_rd_db"] - other["person_rd_db"]) > 0.1
+
+
+def test_each_variant_has_its_photo_and_names_known_parts(material: AblationMaterial):
+    case = material.cases[0]
+    photos = {
+        photo: photo_of(case, AblationVariant(photo=photo), material.generic)
+        for photo in ("own", "generic", "shuffled")
+    }
+    assert photos["own"] is case.room
+    assert photos["generic"].kind == "office"
+    assert photos["shuffled"] is case.other
+    assert {part for variant in VARIANTS.values() for part in variant.without} <= set(PARTS)
+    assert VARIANTS["shuffled photo"].is_trained_as_whole
+    assert VARIANTS[WHOLE].is_trained_as_whole
+    assert len({slug(name) for name in VARIANTS}) == len(VARIANTS)

@@ -1,0 +1,118 @@
+"""The use experiment on a tiny data set: motions in the photographed room, the same for all; a gain that is one."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.datasets.dataset_plan import ACTIVITIES, DatasetPlan
+from mmweaver.datasets.dataset_store import read_plan, read_rooms
+from mmweaver.datasets.generate_rooms import generate
+from mmweaver.models.activity_network import ActivityNetwork
+from mmweaver.models.network import WeaverNetwork
+from studies.network.activity_gain import (
+    ALONE,
+    Labelled,
+    Study,
+    few_of,
+    gains,
+    judged,
+    motions_in,
+    rows_of,
+    simulated_in,
+    unseen_rooms,
+    with_generated,
+)
+from studies.network.room_cache import RoomCache
+
+pytest.importorskip("zarr")
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data") / "set"
+    plan = DatasetPlan(
+        kinds=("office", "living_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4
+    )
+    generate(folder, plan, AWR1843)
+    return folder
+
+
+def _base(per_class: int, width: int) -> Labelled:
+    label = torch.arange(12).repeat(per_class)
+    return Labelled(frames=torch.randn(len(label), 4, width), label=label)
+
+
+def test_rows_of_a_room(data: Path, tmp_path: Path):
+    (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
+    assert room.name == "living_room_0"
+    assert room.generic.kind == "office"
+    motions = motions_in(room, 1, seed=0)
+    assert {activity for activity, _ in motions} <= set(ACTIVITIES)
+    assert len(motions) >= 10
+    torch.manual_seed(0)
+    network = ActivityNetwork(AWR1843).eval()
+    methods = {"true_room": simulated_in(lambda one: one.true_scene(one.room), micro_seed=0)}
+    told: list[int] = []
+    study = Study(network, _base(2, network.head.first.in_features))
+    kept = RoomCache(tmp_path, {})
+    found = gains(study, [room], methods, each=1, kept=kept, after=lambda one: told.append(len(one[ALONE])))
+    assert told == [1]
+    again = gains(study, [room], {}, each=1, kept=kept)  # of what was kept
+    assert np.array_equal(again["true_room"], found["true_room"])
+    rows = rows_of(found, [room])
+    assert [row["method"] for row in rows] == [ALONE, "true_room"]
+    assert rows[0]["metrics"]["gain"]["value"] == 0
+    gain = rows[1]["metrics"]["gain"]["value"]
+    assert gain == pytest.approx(float(found["true_room"][0, 0] - found[ALONE][0, 0]))
+
+
+def test_data_of_the_room_helps_where_the_room_differs():
+    """In the room every activity looks like nothing elsewhere: only its own data can tell."""
+    torch.manual_seed(0)
+    network = ActivityNetwork(AWR1843)
+    width = network.head.first.in_features
+    centres = 3 * torch.randn(12, width)
+
+    def drawn(of: torch.Tensor, count: int) -> Labelled:
+        label = torch.arange(12).repeat(count)
+        return Labelled(frames=of[label][:, None] + 0.1 * torch.randn(len(label), 4, width), label=label)
+
+    elsewhere, here = centres, 3 * torch.randn(12, width)
+    base, test = drawn(elsewhere, 4), drawn(here, 2)
+    study = Study(network, base)
+    alone, loss = judged(study, None, test, 0)
+    helped, lower = judged(study, drawn(here, 4), test, 0)
+    assert alone < 0.5
+    assert helped > alone + 0.2
+    assert lower < loss
+    assert judged(study, None, test, 0) == (alone, loss)
+
+
+def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_knows_nothing():
+    label = np.repeat(np.arange(12), 10)
+    chosen = few_of(label, 24)
+    assert len(set(chosen)) == 24
+    assert np.array_equal(np.bincount(label[chosen]), np.full(12, 2))
+    torch.manual_seed(0)
+    network = ActivityNetwork(AWR1843)
+    base = _base(1, network.head.first.in_features)
+    old, new = (Study(network, base, begins_anew=anew).head().state_dict() for anew in (False, True))
+    assert torch.equal(old["first.weight"], network.head.first.weight)
+    assert not torch.equal(new["first.weight"], old["first.weight"])
+
+
+def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
+    """The network that was given the empty room has the truth's own resting echoes."""
+    (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
+    torch.manual_seed(0)
+    make = with_generated(WeaverNetwork().eval(), lambda one: one.photographed, recorded=True)(room)
+    (_, pose), *_ = motions_in(room, 1, seed=0)
+    rest = AWR1843.num_loops // 2
+    cubes = [make(pose, seed) for seed in (1, 2)]
+    still = [cube.values[:, :, rest].mean(axis=0) for cube in cubes]
+    truth = room.room.empty
+    for one in still:
+        assert np.abs(np.vdot(one, truth)) > 0.5 * np.linalg.norm(one) * np.linalg.norm(truth)

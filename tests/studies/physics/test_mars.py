@@ -1,0 +1,91 @@
+"""The comparison with MARS, on tables that are made up: what must hold whatever the recordings say."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mmweaver.experiments import mars
+from tests.experiments.test_mars_data import write_split
+
+from studies.physics.cloud_scores import score
+from studies.physics.mars import MarsVariant, Setup, centroid_floor, detect, neighbour_ceiling, simulate, surface_floor
+from studies.physics.mars_data import MarsStretch, cut, read_mars
+
+HERE = Setup(shift_m=(0.0, 0.0, 0.2), height_m=1.75)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("mars")
+    for split in ("validate", "test"):
+        write_split(folder, split, list(range(40)), moving=0.15)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pieces(folder: Path) -> list[MarsStretch]:
+    return cut(read_mars(folder, "test"), 10, 2)
+
+
+def test_a_swaying_person_gives_points_on_the_body(pieces: list[MarsStretch]):
+    clouds = detect(simulate(pieces, HERE, MarsVariant()), pieces, HERE, MarsVariant())
+    assert [len(piece) for piece in clouds] == [10, 10]
+    every = [cloud for piece in clouds for cloud in piece if len(cloud.x_m)]
+    assert len(every) > 12
+    range_m = np.concatenate([np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2) for cloud in every])
+    assert 1.5 < np.median(range_m) < 2.1
+    speeds = np.concatenate([np.abs(cloud.radial_velocity_mps) for cloud in every])
+    assert 0.1 < speeds.mean() < 0.9
+
+
+def test_the_chains_and_variants_differ(pieces: list[MarsStretch]):
+    adcs = simulate(pieces, HERE, MarsVariant())
+    most = {
+        name: sum(len(cloud.x_m) for piece in detect(adcs, pieces, HERE, variant) for cloud in piece)
+        for name, variant in {
+            "plain": MarsVariant(), "grouped": MarsVariant(grouped=True), "ours": MarsVariant(chain="cfar"),
+        }.items()
+    }  # fmt: skip
+    assert most["grouped"] < most["plain"]
+    assert most["ours"] > 0
+    fainter = simulate(pieces[:1], HERE, MarsVariant(brighter_db=-20.0))
+    assert not np.array_equal(fainter[0].samples, adcs[0].samples)
+    again = simulate(pieces[:1], HERE, MarsVariant())
+    assert np.array_equal(again[0].samples, adcs[0].samples)
+
+
+def test_floors_and_ceiling(pieces: list[MarsStretch]):
+    real = [piece.clouds for piece in pieces]
+    centre = centroid_floor(pieces, HERE)
+    assert all(len(cloud.x_m) == 1 for piece in centre for cloud in piece)
+    assert centre[0][0].z_m[0] == pytest.approx(pieces[0].joints_m[0, :, 2].mean() + 0.2)
+    skin = surface_floor(pieces, HERE, 25)
+    height = np.concatenate([cloud.z_m for piece in skin for cloud in piece])
+    assert 1.2 < np.ptp(height) < 2.0
+    assert score(skin, real).value("points") == 25
+    neighbour = neighbour_ceiling(pieces)
+    assert neighbour[0][1] is real[0][0]
+    assert neighbour[0][0] is real[0][1]
+
+
+def test_the_whole_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Small: it writes one file a method, and estimates on validate alone."""
+    monkeypatch.setattr(mars, "PIECES", 1)
+    monkeypatch.setattr(mars, "PIECES_TO_ESTIMATE", 1)
+    monkeypatch.setattr(mars, "PIECE_FRAMES", 10)
+    monkeypatch.setattr(mars, "HEIGHTS_M", (0.2, 0.3))
+    monkeypatch.setattr(mars, "VARIANTS", {"simulator": MarsVariant(), "grouped": MarsVariant(grouped=True)})
+    lines: list[str] = []
+    scores = mars.run(folder, tmp_path, lines.append)
+    written = {path.stem for path in (tmp_path / "mars").iterdir()}
+    assert written == set(scores) == {
+        "floor_centroid", "floor_random_on_body", "floor_random_real_frame", "ceiling_neighbouring_frame", "simulator",
+        "grouped",
+    }  # fmt: skip
+    record = json.loads((tmp_path / "mars" / "simulator.json").read_text())
+    assert set(record["config"]["estimated_on_validate"]) == set(Setup.__dataclass_fields__)
+    row = record["rows"][0]
+    assert row["n"] == 10
+    assert row["metrics"]["chamfer_m"]["unit"] == "m"
+    assert "validate" not in str(row["dataset"]["sha256"])

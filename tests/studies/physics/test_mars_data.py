@@ -1,0 +1,91 @@
+"""Reading recordings in the format of MARS; the tables here are made up."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import BONES, joint
+from studies.physics.mars_data import as_published, body_height_m, cloud_of, cut, joints_from_kinect, read_mars
+from tests.rooms import STANDING_M
+
+KINECT = (
+    "pelvis", "spine2", "neck", "head", "left_shoulder", "left_elbow", "left_wrist", "left_wrist", "right_shoulder",
+    "right_elbow", "right_wrist", "right_wrist", "left_hip", "left_knee", "left_ankle", "left_foot", "right_hip",
+    "right_knee", "right_ankle", "right_foot", "spine3", "left_wrist", "left_wrist", "right_wrist", "right_wrist",
+)  # fmt: skip
+
+
+def standing_kinect() -> np.ndarray:
+    """A person 1.9 m ahead with the floor 0.95 m below, as 25 joints, who faces the sensor."""
+    place = np.array([STANDING_M[name] for name in KINECT], float) + np.array([0, 1.9, -0.95])
+    place[3] = place[2] + np.array([0, 0, 0.16])
+    return place
+
+
+def write_split(folder: Path, split: str, numbers: list[int], moving: float = 0.0) -> None:
+    """A point or two a frame near the chest, joints that sway."""
+    rng = stream(0, split)
+    radar = []
+    for number in numbers:
+        for _ in range(1 + number % 2):
+            place = np.array([0.1, 1.8, 0.3]) + 0.1 * rng.standard_normal(3)
+            radar.append([number, 1 + number % 2, *place, 0.356 * (number % 3 - 1), 20 + number % 7, 1.6e9])
+    joints = standing_kinect()
+    sway = moving * np.sin(2 * np.pi * 0.5 * 0.1 * np.array(numbers))
+    kinect = np.stack([(joints + np.array([0, by, 0])).T.ravel() for by in sway])
+    np.savetxt(folder / f"radar_data_{split}.csv", radar, delimiter=",", header="names", comments="")
+    np.savetxt(folder / f"kinect_data_{split}.csv", kinect, delimiter=",", header="names", comments="")
+
+
+def test_joints_of_the_kinect_become_ours():
+    joints = joints_from_kinect(standing_kinect()[None])
+    assert joints.shape == (1, 22, 3)
+    # who faces us has the left hand on our right
+    assert joints[0, joint("left_wrist"), 0] > 0 > joints[0, joint("right_wrist"), 0]
+    length = [np.linalg.norm(joints[0, a] - joints[0, b]) for a, b in BONES]
+    assert 0.02 < min(length) < max(length) < 0.6
+    assert joints[0, joint("neck"), 2] < joints[0, joint("head"), 2] < standing_kinect()[3, 2]
+
+
+def test_stretches_end_at_long_gaps(tmp_path: Path):
+    write_split(tmp_path, "test", [5, 6, 7, 9, 50, 51, 52, 53, 90])
+    stretches = read_mars(tmp_path, "test")
+    assert [stretch.frame.tolist() for stretch in stretches] == [[0, 1, 2, 4], [0, 1, 2, 3]]
+    assert [len(cloud.x_m) for cloud in stretches[0].clouds] == [2, 1, 2, 2]
+    assert stretches[0].clouds[0].intensity[0] == 25
+    pose = stretches[0].pose((0.1, 0.2, 0.3), 1.7)
+    assert pose.time_s == pytest.approx([0, 0.1, 0.2, 0.4])
+    assert pose.joints_m - stretches[0].joints_m == pytest.approx(np.broadcast_to((0.1, 0.2, 0.3), (4, 22, 3)))
+    assert body_height_m(stretches) == pytest.approx(STANDING_M["neck"][2] + 0.16 - STANDING_M["left_foot"][2] + 0.11)
+
+
+def test_pieces_begin_and_end_with_a_measured_pose(tmp_path: Path):
+    write_split(tmp_path, "test", [*range(12), *range(13, 31)])
+    pieces = cut(read_mars(tmp_path, "test"), 6, 10)
+    assert [piece.frame.tolist() for piece in pieces] == [[0, 1, 2, 3, 4, 5]] * 2 + [[0, 1, 2, 3, 4, 5]] * 2
+    assert len(cut(read_mars(tmp_path, "test"), 6, 2)) == 2
+
+
+def test_what_is_no_recording_is_refused(tmp_path: Path):
+    with pytest.raises(InputError, match="MARS subject"):
+        read_mars(tmp_path, "test")
+    write_split(tmp_path, "test", [1, 2, 3])
+    write_split(tmp_path, "validate", [1, 2])
+    (tmp_path / "radar_data_validate.csv").write_bytes((tmp_path / "radar_data_test.csv").read_bytes())
+    with pytest.raises(InputError, match="3 frames of validate, the Kinect 2"):
+        read_mars(tmp_path, "validate")
+    (tmp_path / "kinect_data_test.csv").write_text("a\nx\n")
+    with pytest.raises(InputError, match="no table of numbers"):
+        read_mars(tmp_path, "test")
+    (tmp_path / "kinect_data_test.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(InputError, match="2 columns, 75"):
+        read_mars(tmp_path, "test")
+
+
+def test_clouds_are_cut_to_the_recordings_box():
+    places = [(0.9, 2.0, 0.9), (1.1, 2.0, 0.0), (0.0, 2.0, 1.1), (0.0, 3.1, 0.0), (-1.0, 3.0, -1.0), (0.0, 2.0, -1.2)]
+    rows = np.array([[0, 1, *place, 0.0, 20 + index, 1.6e9] for index, place in enumerate(places)])
+    assert as_published(cloud_of(rows)).intensity.tolist() == [20, 24]

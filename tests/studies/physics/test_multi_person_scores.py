@@ -1,0 +1,23 @@
+"""The experiment on one pair of people."""
+
+import pytest
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.paths.ray_traced import Simulator
+from studies.fields.field_signals import sample_scene
+from studies.physics.multi_person_scores import ARRANGEMENTS, Pair, make_pair, row_of, scores_of
+
+
+@pytest.fixture(scope="module")
+def behind() -> Pair:
+    return make_pair(Simulator(sample_scene(), AWR1843), ARRANGEMENTS["one behind the other"], 0)
+
+
+def test_who_stands_behind_is_dimmed_and_the_plain_sum_does_not_know_it(behind: Pair):
+    scores = scores_of(behind)
+    assert scores["second_dimmed_db"]["superposition"] < -0.5
+    assert scores["nmse_active_db"]["superposition"] > scores["nmse_active_db"]["other_noise"] + 10
+    assert scores["ra_ssim"]["other_noise"] > 0.95 > scores["ra_ssim"]["superposition"]
+    row = row_of("behind", ARRANGEMENTS["one behind the other"], {0: scores}, refused=0)
+    assert row["n"] == 1
+    assert row["metrics"]["rd_ssim"]["beside"].keys() == {"without_second", "other_noise", "twin"}

@@ -1,0 +1,14 @@
+"""The picture has both rows."""
+
+from PIL import Image
+
+from mmweaver.recognition.generated_windows import generate_window
+from mmweaver.recognition.radhar import radhar_recipe
+from studies.recognition.zero_shot_pictures import draw
+
+
+def test_a_picture_is_drawn(tmp_path):
+    one = {"jack": generate_window(radhar_recipe(), "jack", 0, 3)}
+    draw(one, one, tmp_path / "a.png")
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size[0] > 300

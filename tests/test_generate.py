@@ -1,0 +1,303 @@
+"""The front door: five lines, the files promised, the same bits for the same seed, no long work for a bad request."""
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mmweaver
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843, MMMESH
+from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
+from mmweaver.core.skeleton import JOINT_NAMES
+from mmweaver.core.stages import Stages
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.dsp.firmware import firmware_points
+from mmweaver.formats.npz_files import (
+    read_npz,
+    read_points_npz,
+    read_pose_npz,
+    read_poses_npz,
+    read_radar_npz,
+    write_radar_npz,
+)
+from mmweaver.generate import MAX_FRAMES, Room, Weaver, check_request
+from mmweaver.methods import METHODS, Signal
+from mmweaver.paths.ray_traced import Simulator
+
+README = Path(__file__).resolve().parents[1] / "README.md"
+TEXT = "a person walks towards the radar"
+
+
+@pytest.fixture(scope="module")
+def weaver() -> Weaver:
+    return Weaver("physics")
+
+
+@pytest.fixture(scope="module")
+def room(weaver: Weaver) -> Room:
+    return weaver.sample_room()
+
+
+@pytest.fixture(scope="module")
+def walk(weaver: Weaver, room: Room, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of one short sequence."""
+    out = tmp_path_factory.mktemp("walk") / "out"
+    weaver.generate(room, TEXT, frames=6, seed=3, keep_adc=True).save(out, adc_data_bin=True)
+    return out
+
+
+def test_the_five_lines_of_the_readme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    snippets = re.findall(r"```python\n(.*?)```", README.read_text(), re.DOTALL)
+    assert len(snippets) == 1
+    lines = [line for line in snippets[0].splitlines() if line.strip()]
+    assert len(lines) <= 5
+    monkeypatch.chdir(tmp_path)
+    exec(compile(snippets[0], "README.md", "exec"), {})
+    assert read_radar_npz("walk/radar.npz").values.shape == (20, 64, 32, 12)
+
+
+def test_the_files_and_keys_promised(walk: Path):
+    assert {file.name for file in walk.iterdir()} == {
+        "radar.npz", "pose.npz", "points.npz", "adc_data.bin", "radar.json", "meta.json", "preview.png", "preview.gif",
+    }  # fmt: skip
+    radar = read_npz(walk / "radar.npz")
+    assert radar["cube"].shape == (6, 64, 32, 12)
+    assert radar["cube"].dtype == np.complex64
+    assert radar["frame_time_s"] == pytest.approx(np.arange(6) / 10)
+    assert radar["range_m"].shape == (64,)
+    assert radar["radial_velocity_mps"].shape == (32,)
+    assert radar["antenna_position_m"].shape == (12, 3)
+    pose = read_npz(walk / "pose.npz")
+    assert pose["joints_m"].shape == (6, 22, 3)
+    assert tuple(pose["joint_names"].tolist()) == JOINT_NAMES
+    points = read_points_npz(walk / "points.npz")
+    assert set(points.frame.tolist()) <= set(range(6))
+
+
+def test_meta_says_how_to_make_it_again(walk: Path):
+    meta = json.loads((walk / "meta.json").read_text())
+    assert (meta["text"], meta["seed"], meta["frames"], meta["fps"]) == (TEXT, 3, 6, 10.0)
+    assert (meta["method"], meta["version"]) == ("physics", mmweaver.__version__)
+    assert mmweaver.RadarConfig.from_json(json.dumps(meta["radar"])) == AWR1843
+    assert len(meta["assumed"]) == len(set(meta["assumed"])) > 2
+    assert {"simulate", "reconstruct the room", "draw preview.png"} <= set(meta["seconds"])
+    assert set(meta["files"]) == {file.name for file in walk.iterdir()}
+    assert {"fx", "fy", "cx", "cy"} <= set(meta["camera"])
+
+
+def test_the_person_nears_and_stands_on_the_floor(walk: Path, room: Room):
+    pose = read_pose_npz(walk / "pose.npz")
+    distance_m = np.linalg.norm(pose.joints_m[:, 0], axis=1)
+    assert distance_m[-1] < distance_m[0] - 0.15
+    assert pose.joints_m[:, :, 2].min() == pytest.approx(room.scene.floor_z_m, abs=0.1)
+
+
+def test_the_same_seed_gives_the_same_bits(walk: Path, tmp_path: Path):
+    again = Weaver("physics", radar=AWR1843)
+    made = again.generate(again.sample_room(), TEXT, frames=6, seed=3, keep_adc=True)
+    made.save(tmp_path / "again", adc_data_bin=True)
+    for name in ("radar.npz", "pose.npz", "points.npz", "adc_data.bin", "radar.json", "preview.png", "preview.gif"):
+        assert (walk / name).read_bytes() == (tmp_path / "again" / name).read_bytes(), name
+
+
+def test_the_network_is_the_default(room: Room, tmp_path: Path):
+    made = Weaver().generate(room, TEXT, frames=6, seed=3)
+    meta = made.save(tmp_path / "out")
+    assert (meta["method"], made.adc) == ("weaver", None)
+    assert "weave the signal" in meta["seconds"]
+    named = Weaver("weaver").generate(room, TEXT, frames=6, seed=3)
+    assert made.cube.values.tobytes() == named.cube.values.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("radar", "texts", "asked", "because"),
+    [
+        ("awr1843", TEXT, {"keep_adc": True}, "ADC"),
+        ("awr1843", [TEXT, "a person stands"], {}, "each other"),
+        ("hupr", TEXT, {}, "last long"),
+    ],
+)
+def test_physics_makes_what_the_network_cannot(
+    room: Room, radar: str, texts: str | list[str], asked: dict, because: str
+):
+    made = Weaver(radar=radar).generate(room, texts, frames=2, **asked)
+    assert made.meta["method"] == "physics"
+    assert any("not the network" in sentence and because in sentence for sentence in made.meta["assumed"])
+    traced = Weaver("physics", radar).generate(room, texts, frames=2, **asked)
+    assert made.cube.values.tobytes() == traced.cube.values.tobytes()
+    assert not any("network" in sentence for sentence in traced.meta["assumed"])
+
+
+def test_a_recording_of_the_empty_room_is_the_networks_alone(weaver: Weaver, room: Room, tmp_path: Path):
+    simulator = Simulator(room.scene, AWR1843, micro_seed=7)
+    recording = radar_cube(simulator.run((), num_frames=4, seed=1).adc)
+    write_radar_npz(tmp_path / "radar.npz", recording)
+    (tmp_path / "radar.json").write_text(AWR1843.to_json())
+    known = room.with_empty_recording(tmp_path)
+    made = Weaver().generate(known, [TEXT, "a person stands"], frames=4)
+    assert made.meta["method"] == "weaver"
+    assert len(made.meta["inputs"]["empty_room"]["sha256"]) == 64
+    assert any("recording of the empty room" in sentence for sentence in made.meta["assumed"])
+    same = Weaver().generate(room.with_empty_recording(recording), [TEXT, "a person stands"], frames=4)
+    assert np.allclose(made.cube.values, same.cube.values, rtol=1e-4, atol=1e-9)
+    for method, asked in ((weaver, {}), (Weaver(), {"keep_adc": True})):
+        with pytest.raises(InputError, match="nothing from a recording"):
+            method.generate(known, TEXT, frames=2, **asked)
+    with pytest.raises(InputError, match="other settings"):
+        Weaver(radar="hupr").generate(known, TEXT, frames=2)
+    with pytest.raises(InputError, match=r"no radar\.npz"):
+        room.with_empty_recording(tmp_path / "nowhere")
+
+
+def test_another_seed_and_another_frame_rate_change_the_signal(weaver: Weaver, room: Room):
+    first = weaver.generate(room, TEXT, frames=2, seed=1, keep_adc=False)
+    other = weaver.generate(room, TEXT, frames=2, seed=2, fps=20.0, keep_adc=False)
+    assert first.adc is None
+    assert other.cube.grid.frame_time_s == pytest.approx([0, 0.05])
+    assert not np.array_equal(first.cube.values, other.cube.values)
+
+
+def test_dropping_the_samples_changes_nothing_else(weaver: Weaver, room: Room):
+    kept = weaver.generate(room, TEXT, frames=2, keep_adc=True)
+    dropped = weaver.generate(room, TEXT, frames=2, keep_adc=False)
+    assert isinstance(kept.adc, AdcCube)
+    assert np.array_equal(kept.cube.values, dropped.cube.values)
+    with pytest.raises(InputError, match="keep_adc"):
+        dropped.save("nowhere", adc_data_bin=True)
+    assert not Path("nowhere").exists()
+
+
+def test_firmware_points_leave_the_signal_as_it_is(weaver: Weaver, room: Room):
+    board = Weaver(points="firmware").generate(room, TEXT, frames=4, seed=3, keep_adc=False)
+    ours = weaver.generate(room, TEXT, frames=4, seed=3, keep_adc=True)
+    assert board.adc is None
+    assert np.array_equal(board.cube.values, ours.cube.values)
+    assert np.array_equal(board.points.x_m, firmware_points(ours.adc).x_m)
+    with pytest.raises(InputError, match="known: cfar, firmware"):
+        Weaver(points="lidar")
+    with pytest.raises(InputError, match="take --points cfar"):
+        Weaver(radar="bgt60", points="firmware")
+
+
+def test_a_listener_hears_every_stage():
+    heard: list[str] = []
+    weaver = Weaver("physics", listener=heard.append)
+    result = weaver.generate(weaver.sample_room(), TEXT, frames=1)
+    assert heard == list(result.stages.seconds)
+
+
+def test_several_people_each_with_a_body_and_a_place(weaver: Weaver, room: Room, tmp_path: Path):
+    texts = ["a person walks towards the radar", "a woman sits and drinks", "a man claps"]
+    result = weaver.generate(room, texts, frames=6, seed=1, at=[None, None, (0.6, 2.2)])
+    assert [pose.subject for pose in result.poses] == [0, 1, 2]
+    assert len({pose.height_m for pose in result.poses}) == 3
+    assert result.poses[2].joints_m[0, 0, :2] == pytest.approx([0.6, 2.2], abs=0.15)
+    pelvises_m = np.array([motion.joints_m[:, 0, :2] for motion in result.motions])
+    for one, other in ((0, 1), (0, 2), (1, 2)):
+        assert np.linalg.norm(pelvises_m[one] - pelvises_m[other], axis=1).min() >= 0.5
+    meta = result.save(tmp_path / "out")
+    assert meta["text"] == texts
+    assert "person" not in meta
+    assert [person["height_m"] for person in meta["people"]] == [pose.height_m for pose in result.poses]
+    assert any("from one person over another" in sentence for sentence in meta["assumed"])
+    saved = read_poses_npz(tmp_path / "out" / "pose.npz")
+    assert np.array([pose.joints_m for pose in saved]) == pytest.approx(
+        np.array([pose.joints_m for pose in result.poses]), abs=1e-5
+    )
+    with pytest.raises(InputError, match="3 people"):
+        read_pose_npz(tmp_path / "out" / "pose.npz")
+
+
+def test_another_method_plugs_in(room: Room, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def ones(
+        scene: Scene, poses: tuple[PoseSequence, ...], config: mmweaver.RadarConfig, *, num_frames: int, seed: int,
+        keep_adc: bool, stages: Stages,
+    ) -> Signal:  # fmt: skip
+        grid = CubeGrid.of(config, num_frames)
+        cube = RadarCube(values=np.ones(grid.shape, np.complex64), grid=grid, config=config, scale=1.0)
+        return Signal(cube=cube, adc=None, assumptions=("all cells are one",))
+
+    monkeypatch.setitem(METHODS._entries, "ones", lambda: ones)
+    result = Weaver(method="ones").generate(room, TEXT, frames=2)
+    assert result.meta["method"] == "ones"
+    assert "all cells are one" in result.meta["assumed"]
+    with pytest.raises(InputError, match="ADC"):
+        result.save(tmp_path / "out", adc_data_bin=True)
+
+
+@pytest.mark.parametrize(
+    ("request_", "says"),
+    [
+        ({"text": ""}, "empty"),
+        ({"text": " \n"}, "empty"),
+        ({"text": "walk " * 2000}, "10000 characters"),
+        ({"text": "a person photosynthesises"}, "walk"),
+        ({"text": "a person walks, then squats five times", "frames": 10}, "need at least"),
+        ({"frames": 0}, f"1 to {MAX_FRAMES}"),
+        ({"frames": 1_000_000}, f"1 to {MAX_FRAMES}"),
+        ({"fps": 0.0}, "fps"),
+        ({"fps": float("nan")}, "fps"),
+        ({"fps": 500.0}, "frame period"),
+        ({"fps": 0.1, "frames": 100}, "600 s"),
+        ({"seed": -1}, "seed"),
+        ({"at": (float("nan"), 1.0)}, "two numbers"),
+        ({"at": [(0.0, 1.0), (0.5, 1.0)]}, "at most 1 places"),
+        ({"text": []}, "1 to 8 texts"),
+        ({"text": [TEXT] * 9}, "1 to 8 texts"),
+        ({"text": [TEXT, "a person photosynthesises"]}, "walk"),
+        ({"text": [TEXT, TEXT], "at": (0.0, 1.0)}, "list of at most 2 places"),
+        ({"text": [TEXT, TEXT], "at": [None, (0.0, float("inf"))]}, "two numbers"),
+    ],
+)
+def test_a_bad_request_is_refused_before_any_work(request_: dict, says: str):
+    with pytest.raises(InputError, match=says):
+        check_request(AWR1843, **{"text": TEXT, **request_})
+
+
+def test_memory_is_asked_for_before_it_is_used():
+    with pytest.raises(InputError, match="GB of memory"):
+        check_request(MMMESH, text=TEXT, frames=MAX_FRAMES, keep_adc=True)
+    check_request(AWR1843, text=TEXT, frames=MAX_FRAMES, keep_adc=False)
+
+
+def test_the_frame_rate_is_the_radars_own_unless_given():
+    slow = replace(AWR1843, frame_period_s=0.2)
+    assert check_request(slow, text=TEXT).frame_period_s == 0.2
+    assert check_request(slow, text=TEXT, fps=10.0) == AWR1843
+
+
+def test_unknown_names_list_the_known():
+    with pytest.raises(InputError, match="physics"):
+        Weaver(method="magic")
+    with pytest.raises(InputError, match="awr1843"):
+        Weaver(radar="nope")
+
+
+def test_public_names_are_few_and_all_there():
+    assert len(mmweaver.__all__) <= 15
+    for name in mmweaver.__all__:
+        assert getattr(mmweaver, name) is not None
+    assert set(mmweaver.__all__) <= set(dir(mmweaver))
+    with pytest.raises(AttributeError, match="nope"):
+        _ = mmweaver.nope
+
+
+def test_a_recorded_motion_instead_of_a_sentence(tmp_path: Path):
+    """The same clip twice gives the same bits; a text beside it only names it."""
+    weaver = Weaver()
+    room = weaver.sample_room()
+    made = weaver.generate(room, "a person waves", frames=4, keep_adc=False)
+    np.savez(tmp_path / "wave.npz", joints=made.motion.joints_m, fps=120.0)
+    clip = weaver.read_motion(tmp_path / "wave.npz")
+    one, same = (weaver.generate(room, "my wave", motion=clip, frames=3, keep_adc=False) for _ in range(2))
+    assert np.array_equal(one.cube.values, same.cube.values)
+    assert one.meta["text"] == "my wave"
+    assert one.meta["inputs"]["motion"]["name"] == "wave.npz"
+    assert one.pose.height_m == pytest.approx(made.pose.height_m, rel=0.03)
+    tall = weaver.generate(room, motion=clip, height_m=1.9, frames=3, keep_adc=False)
+    assert tall.pose.height_m == pytest.approx(1.9)
+    assert weaver.generate(room, "a person waves", height_m=1.5, frames=2, keep_adc=False).pose.height_m == 1.5

@@ -1,0 +1,49 @@
+"""Left and right exchanged, once and twice."""
+
+from dataclasses import fields
+
+import numpy as np
+import torch
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.skeleton import joint
+from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.paths.mean_power import MeanPower
+from mmweaver.paths.radar_equation import points_of
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.reflection_augmentation import reflected_joints, reflected_scene
+
+
+def _view() -> SceneTensors:
+    return SceneTensors.stacked([SceneTensors.of(reconstruct(make_room("office").photo()), AWR1843)])
+
+
+def test_twice_is_as_before():
+    view = _view()
+    again = reflected_scene(reflected_scene(view))
+    for field in fields(SceneTensors):
+        torch.testing.assert_close(getattr(again, field.name), getattr(view, field.name), msg=field.name)
+    joints = torch.from_numpy(np.random.default_rng(0).standard_normal((2, 22, 3))).float()
+    assert torch.equal(reflected_joints(reflected_joints(joints)), joints)
+
+
+def test_a_raised_right_hand_is_a_raised_left_hand():
+    joints = torch.zeros(22, 3)
+    joints[joint("right_wrist")] = torch.tensor([0.4, 2.0, 0.7])
+    assert reflected_joints(joints)[joint("left_wrist")].tolist() == torch.tensor([-0.4, 2.0, 0.7]).tolist()
+
+
+def test_the_network_s_resting_map_turns_round():
+    """Before training the network says what physics does, which has no handedness."""
+    torch.manual_seed(0)
+    network, radar, view = WeaverNetwork().eval(), MeanPower(AWR1843), _view()
+    with torch.inference_mode():
+        maps = [
+            radar.maps(points_of(network.encode_room(one).resting, radar.response)).range_azimuth
+            for one in (view, reflected_scene(view))
+        ]
+    gap_db = 10 * torch.log10(maps[1].flip(-1) / maps[0])
+    assert gap_db.abs().max() < 0.5
+    assert (10 * torch.log10(maps[1] / maps[0])).abs().max() > 3

@@ -1,0 +1,54 @@
+"""The built-in segmenter's training."""
+
+from pathlib import Path
+
+import pytest
+
+from mmweaver.scene.segmentation.builtin_segmenter import load_network
+from mmweaver.training.segmenter_data import SegmenterExample, make_example
+from mmweaver.training.segmenter_training import TEST_KINDS, TRAIN_KINDS, SegmenterRecipe, save_weights, train
+
+
+@pytest.fixture(scope="module")
+def example() -> SegmenterExample:
+    return make_example("office", 1000)
+
+
+def test_no_kind_is_in_both_parts():
+    assert not set(TRAIN_KINDS) & set(TEST_KINDS)
+    assert len(TRAIN_KINDS) == 8
+
+
+def test_it_learns_and_its_weights_come_back(example: SegmenterExample, tmp_path: Path):
+    recipe = SegmenterRecipe(epochs=6, batch=2)
+    network, losses = train([example] * 4, recipe)
+    assert losses[-1] < 0.9 * losses[0]
+    again, same = train([example] * 4, recipe)
+    assert losses == same
+    save_weights(network, tmp_path / "weights.safetensors")
+    back = load_network(tmp_path / "weights.safetensors")
+    import torch
+
+    cells = torch.from_numpy(example.features[None])
+    with torch.inference_mode():
+        assert torch.allclose(back(cells), network(cells), atol=0.3)
+        assert torch.allclose(again(cells), network(cells))
+
+
+def test_a_stopped_training_goes_on_to_the_same_end(
+    example: SegmenterExample, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)
+    recipe = SegmenterRecipe(epochs=3, batch=2)
+    _, whole = train([example] * 4, recipe)
+
+    def stop(line: str) -> None:
+        if line.startswith("epoch   2"):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train([example] * 4, recipe, tmp_path, stop)
+    heard: list[str] = []
+    _, losses = train([example] * 4, recipe, tmp_path, heard.append)
+    assert losses == whole
+    assert len(heard) == 2
