@@ -1,7 +1,7 @@
 """What the networks see of a room: a small picture, the echoes of what it shows, and the flat faces."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -9,6 +9,7 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.paths.antenna import scatterer_gain
 from mmweaver.paths.apparent_paths import between
 from mmweaver.paths.image_method import SpecularReflector
@@ -27,7 +28,7 @@ PLANE_KINDS = ("floor", "ceiling", "wall", "top", "panel")
 
 
 @dataclass(frozen=True, kw_only=True)
-class SceneTensors:
+class SceneTensors(TensorRecord):
     """Tensors of one room, or of several with a leading axis; frame of reference is the radar's."""
 
     image: Tensor  # (channel, row, column), 0 where nothing is known
@@ -72,11 +73,6 @@ class SceneTensors:
             ),
             **planes,
         )  # fmt: skip
-
-    @classmethod
-    def stacked(cls, views: list["SceneTensors"]) -> "SceneTensors":
-        """Several rooms as one batch."""
-        return cls(**{f.name: torch.stack([getattr(view, f.name) for view in views]) for f in fields(cls)})
 
 
 def _nearest(wanted: int, given: int) -> np.ndarray:

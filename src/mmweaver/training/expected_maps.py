@@ -7,7 +7,6 @@ Reference: decision 98.
 from dataclasses import fields
 
 import numpy as np
-import torch
 
 from mmweaver.datasets.dataset_store import StoredRoom
 from mmweaver.paths.adc_synthesis import FrameClock
@@ -30,7 +29,7 @@ class ExpectedMaps:
         """Maps (frame, range, other) of frames of a sequence: of room, person and noise, and of the person alone."""
         person = self.room.echoes(index, frames)
         both = [self._frame(person, number) for number in range(len(frames))]
-        return stacked([whole for whole, _ in both]), stacked([alone for _, alone in both])
+        return PowerMaps.stack([whole for whole, _ in both]), PowerMaps.stack([alone for _, alone in both])
 
     def _frame(self, person: BodyEchoes, number: int) -> tuple[PowerMaps, PowerMaps]:
         response = self.radar.response
@@ -43,12 +42,6 @@ class ExpectedMaps:
             left = (empty - getattr(hidden, name)).clamp(min=0)
             maps[name] = left + getattr(moving, name) + noise
         return PowerMaps(**maps), moving
-
-
-def stacked(maps: list[PowerMaps]) -> PowerMaps:
-    """One leading axis more."""
-    names = [field.name for field in fields(PowerMaps)]
-    return PowerMaps(**{name: torch.stack([getattr(one, name) for one in maps]) for name in names})
 
 
 _RADARS: dict[str, MeanPower] = {}

@@ -14,8 +14,8 @@ from mmweaver.models.activity_network import ActivityNetwork, load_activity
 from mmweaver.models.paper_method import field_of_image, unit_sqrt_mw
 from mmweaver.models.paper_network import PaperNetwork, evaluate_each
 from mmweaver.models.precision import exactly
+from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.training.device import ComputeDevice
-from mmweaver.training.expected_maps import stacked
 from mmweaver.training.network_examples import power_maps
 from mmweaver.training.paper_examples import PaperBatch, PaperRoom, paper_rooms, sample_paper_batch
 from mmweaver.training.paper_loss import paper_loss
@@ -85,7 +85,7 @@ class PaperLearner(Learner):
             cube = field_of_image(self.network, one.image, self.config, joints, velocity).cube()
             true.append(power_maps(one.room.cube(index, middle).values, self.config))
             made.append(power_maps(cube.values[middle], self.config))
-        return draw_sheet(stacked(true), stacked(made), self.config, made="network")
+        return draw_sheet(PowerMaps.stack(true), PowerMaps.stack(made), self.config, made="network")
 
     def _cost(self, made: Tensor, batch: PaperBatch) -> dict[str, Tensor]:
         with exactly(made):
