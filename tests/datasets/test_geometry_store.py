@@ -50,9 +50,9 @@ def test_signals_are_those_that_would_be_stored(folders: dict[bool, Path]):
 
 def test_a_twin_is_another_signal(folders: dict[bool, Path]):
     room = read_rooms(folders[True])[0]
-    first, twin = room.cube(0).values, room.cube(0, twin=7).values
+    first, twin = room.cube(0).values, room.cube(0, realization=7).values
     assert _error(twin, first) > 0.3
-    assert np.array_equal(twin, room.cube(0, twin=7).values)
+    assert np.array_equal(twin, room.cube(0, realization=7).values)
 
 
 def test_a_sequence_takes_little(folders: dict[bool, Path]):

@@ -211,28 +211,28 @@ class StoredRoom:
     geometry: StoredGeometry | None = None  # of a set without signals
     device: str = "cpu"  # where signals are made from geometry
 
-    def cube(self, index: int, frames: np.ndarray | None = None, *, twin: int = 0) -> RadarCube:
+    def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
         """The cube of one sequence, in sqrt(mW), or some of its frames.
 
-        Where signals are not stored they are made, and another `twin` has other micro-phases and noise.
+        Signals that are not stored are made; another `realization` has other micro-phases and noise.
         """
         if self.geometry is not None:
             wanted = np.arange(len(self.joints_m[index])) if frames is None else frames
-            values = self.geometry.cube_values(self._look(index), wanted, twin=twin, device=self.device)
+            values = self.geometry.cube(self._motion(index), wanted, realization=realization, device=self.device)
         else:
             values = self._stored(index)
             values = values if frames is None else values[frames]
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
-    def echoes(self, index: int, frames: np.ndarray) -> Any:
-        """The person's echoes (`paths.body_paths.BodyEchoes`) in frames of one sequence, of a set with geometry."""
+    def body_paths(self, index: int, frames: np.ndarray) -> Any:
+        """The person's paths (`paths.body_paths.BodyPaths`) in frames of one sequence, of a set with geometry."""
         assert self.geometry is not None, "signals are stored, not geometry"
-        return self.geometry.replay("cpu").person(self._look(index), frames)
+        return self.geometry.resynthesis("cpu").person(self._motion(index), frames)
 
-    def _look(self, index: int) -> Any:
+    def _motion(self, index: int) -> Any:
         assert self.geometry is not None
         person = int(self.person[index])
-        return self.geometry.look(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
+        return self.geometry.motion(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
 
     def _stored(self, index: int) -> np.ndarray:
         zarr = _zarr()
