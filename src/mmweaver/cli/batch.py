@@ -2,15 +2,16 @@
 
 import argparse
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
-    from mmweaver.core.radar_config import RadarConfig
-    from mmweaver.generate import Room, Weaver
+    from mmweaver.generate import Weaver
+    from mmweaver.generation import Room
+    from mmweaver.request import Request
 
 LIST = "sequences.json"
 MOST = 100_000  # sequences
@@ -54,21 +55,21 @@ def asked_of(arguments: argparse.Namespace, out: Path) -> list[BatchRequest]:
     ]
 
 
-def check_texts(weaver: "Weaver", asked: list[BatchRequest], request: dict[str, Any], file: Path) -> "RadarConfig":
-    """The radar at the frame rate asked for. Raises InputError for a sentence that cannot be acted out in the time."""
-    from mmweaver.generate import check_request
-
-    config = weaver.radar
+def parse_texts(
+    weaver: "Weaver", asked: list[BatchRequest], request: dict[str, Any], file: Path
+) -> "dict[str, Request]":
+    """The parsed request of each distinct sentence. Raises InputError for one that cannot be acted out in the time."""
+    requests = {}
     for text in dict.fromkeys(one.text for one in asked):
         try:
-            config = check_request(weaver.radar, text=text, **request)
+            requests[text] = weaver.request(text, **request)
         except InputError as error:
             raise InputError(f"{file}, {text[:60]!r}: {error}") from None
-    return config
+    return requests
 
 
 def make_many(
-    weaver: "Weaver", room: "Room", asked: list[BatchRequest], request: dict[str, Any], config: "RadarConfig",
+    weaver: "Weaver", room: "Room", asked: list[BatchRequest], requests: "dict[str, Request]",
     arguments: argparse.Namespace,
 ) -> dict[str, Any]:  # fmt: skip
     """Makes what is not there yet and tells what there is; a sentence for which the room has no place is left out.
@@ -80,7 +81,7 @@ def make_many(
     from mmweaver.core.atomic_files import atomic_file
 
     out = asked[0].folder.parent
-    wanted = _wanted(weaver, room, request, config, arguments)
+    wanted = _wanted(weaver, room, next(iter(requests.values())), arguments)
     there = set() if arguments.overwrite else {one.folder for one in asked if _is_there(one, *wanted)}
     made: list[dict[str, Any]] = []
     refused: list[dict[str, Any]] = []
@@ -90,7 +91,7 @@ def make_many(
             made.append(entry)
             continue
         try:
-            result = weaver.generate(room, one.text, **{**request, "seed": one.seed})
+            result = weaver.carry_out(replace(requests[one.text], seed=one.seed), room)
         except InputError as error:
             refused.append({**entry, "why": str(error)})
             continue
@@ -116,16 +117,18 @@ def told(summary: dict[str, Any]) -> str:
 
 
 def _wanted(
-    weaver: "Weaver", room: "Room", request: dict[str, Any], config: "RadarConfig", arguments: argparse.Namespace
+    weaver: "Weaver", room: "Room", request: "Request", arguments: argparse.Namespace
 ) -> tuple[dict[str, Any], set[str]]:
     """What meta.json says of all that is asked for, and the files that not every run writes."""
     from mmweaver.methods import DEFAULT_METHOD
     from mmweaver.result_folder import plain, radar_meta
 
-    same = {"frames": request["frames"], "points": weaver.points, "weights": weaver.weights, "inputs": room.inputs}
+    same = {"frames": request.frames, "points": weaver.points, "weights": weaver.weights, "inputs": room.inputs}
     method = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
     files = {"adc_data.bin": arguments.bin, "preview.png": not arguments.no_pictures}
-    return plain({**same, **method, **radar_meta(config)}), {name for name, is_asked in files.items() if is_asked}
+    return plain({**same, **method, **radar_meta(request.config)}), {
+        name for name, is_asked in files.items() if is_asked
+    }
 
 
 def _is_there(one: BatchRequest, said: dict[str, Any], files: set[str]) -> bool:

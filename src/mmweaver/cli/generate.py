@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from mmweaver.core.records import RadarCube
-    from mmweaver.generate import Room, Weaver
+    from mmweaver.generate import Weaver
+    from mmweaver.generation import Room
 
 DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
 DEMO_OUT = "demo"
@@ -35,7 +36,7 @@ EXAMPLES = """examples:
   mmweaver generate --demo --method physics --out traced/
   mmweaver generate --demo --texts sentences.txt --repeat 20 --no-pictures --out set/       # one sentence a line
   mmweaver process empty.bin --radar profile.cfg --out empty/       # your room with nobody in it, a few seconds
-  mmweaver generate --rgb rgb.png --depth depth.png --empty-room empty/ --text "a person walks" --out walk/
+  mmweaver generate --rgb rgb.png --depth depth.png --background empty/ --text "a person walks" --out walk/
   mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
   mmweaver generate --demo --motion-model small --text "a person waves with the left hand" --out wave/
 """
@@ -81,7 +82,7 @@ def add_verb(verbs: Any) -> None:
     radar = parser.add_argument_group("the radar")
     radar.add_argument(
         "--radar", metavar="NAME|FILE",
-        help="preset, TI .cfg or radar.json (default awr1843, or what --empty-room was recorded with)",
+        help="preset, TI .cfg or radar.json (default awr1843, or what --background was recorded with)",
     )  # fmt: skip
     radar.add_argument("--frames", type=whole, default=20, help="how many frames (default 20)")
     radar.add_argument("--fps", type=number, help="frames a second (default: the radar's own, 10 for awr1843)")
@@ -144,10 +145,11 @@ def _add_room_options(parser: argparse.ArgumentParser) -> None:
         help="instead: a capture folder of mmwave-capture-std; its RealSense's photo and depth",
     )  # fmt: skip
     room.add_argument(
-        "--empty-room", type=Path, metavar="DIR|NPZ",
-        help="a recording of this room by your radar with nobody there, a folder of mmweaver process or a capture"
-        " folder: what rests is taken from it, phases and all, and the person is added",
+        "--background", type=Path, metavar="DIR|NPZ",
+        help="a recording of this room by your radar with nobody present, a folder of mmweaver process or a capture"
+        " folder: its static clutter is used as it is, and the person is added",
     )  # fmt: skip
+    room.add_argument("--empty-room", type=Path, dest="background", default=argparse.SUPPRESS, help=argparse.SUPPRESS)
     room.add_argument("--photo", type=whole, default=0, metavar="N", help="which photo of the capture (default 0)")
     room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
 
@@ -165,11 +167,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_output_folder(out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
-        from mmweaver.generate import check_request
-
         recording = _recording(arguments)
         weaver = _weaver(arguments, recording, bar)
-        request = _request(arguments) | {"at": _places(arguments)}
+        asked = _request(arguments) | {"at": _places(arguments)} | placing_options(arguments)
         texts = text if text is None or len(text) > 1 else text[0]
         period_s = 1 / arguments.fps if arguments.fps else weaver.radar.frame_period_s
         seconds = arguments.frames * period_s
@@ -177,9 +177,8 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.motion_model is not None and only is None and text is not None:
             raise InputError("--motion-model acts out one text; give --text once")
         motion = read_own_motion(arguments) or motion_of_model(arguments, only, seconds)
-        check_request(weaver.radar, text=texts, motion=motion, **request)
-        request |= placing_options(arguments)
-        result = weaver.generate(_read_room(weaver, arguments, recording), texts, motion=motion, **request)
+        request = weaver.request(texts, motion=motion, **asked)
+        result = weaver.carry_out(request, _read_room(weaver, arguments, recording))
         meta = result.save(
             out, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq",
             pictures=not arguments.no_pictures,
@@ -190,13 +189,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_many(arguments: argparse.Namespace, out: Path) -> int:
     """Many sequences in one room."""
-    from mmweaver.cli.batch import asked_of, check_texts, make_many, told
+    from mmweaver.cli.batch import asked_of, make_many, parse_texts, told
 
     asked, request = asked_of(arguments, out), _request(arguments)
     recording = _recording(arguments)
     weaver = _weaver(arguments, recording)
-    config = check_texts(weaver, asked, request, arguments.texts)
-    summary = make_many(weaver, _read_room(weaver, arguments, recording), asked, request, config, arguments)
+    requests = parse_texts(weaver, asked, request, arguments.texts)
+    summary = make_many(weaver, _read_room(weaver, arguments, recording), asked, requests, arguments)
     if arguments.json:
         print(json.dumps(summary, indent=2, ensure_ascii=False))
     elif not arguments.quiet:
@@ -279,21 +278,21 @@ def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
 def _read_room(weaver: "Weaver", arguments: argparse.Namespace, recording: "RadarCube | None") -> "Room":
     room = _seen_room(weaver, arguments)
     room = room.with_landmarks(*arguments.landmark) if arguments.landmark else room
-    return room if recording is None else room.with_empty_recording(recording, came_from=arguments.empty_room)
+    return room if recording is None else room.with_background(recording, came_from=arguments.background)
 
 
 def _recording(arguments: argparse.Namespace) -> "RadarCube | None":
     """The recording of the empty room, if one is given. Raises InputError for what physics would have to take."""
-    if arguments.empty_room is None:
+    if arguments.background is None:
         return None
     if arguments.method == "physics" or arguments.bin or arguments.points == "firmware":
         raise InputError(
-            "--empty-room is for the network, which has no raw samples; leave it out, or --method physics, --bin and"
+            "--background is for the network, which has no raw samples; leave it out, or --method physics, --bin and"
             " --points firmware"
         )
     from mmweaver.recordings.captures import recorded_cube
 
-    return recorded_cube(arguments.empty_room)
+    return recorded_cube(arguments.background)
 
 
 def _seen_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
