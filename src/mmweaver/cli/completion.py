@@ -25,11 +25,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the script on stdout. Raises InputError where shtab is not installed."""
-    from mmweaver.cli.main import build_parser
-
     try:
         import shtab
     except ImportError:
         raise InputError("completion needs shtab: pip install 'mmweaver[completion]'") from None
-    print(shtab.complete(build_parser(), shell=arguments.shell))
+    print(shtab.complete(arguments.whole_parser, shell=arguments.shell))
     return 0

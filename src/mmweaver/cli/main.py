@@ -74,7 +74,7 @@ def _parser_and_commands() -> tuple[Parser, dict[str, Parser]]:
     for module in modules_in_order:
         command = module.add_command(commands)
         add_general_options(command)
-        command.set_defaults(parser=command)
+        command.set_defaults(parser=command, whole_parser=parser)
     return parser, commands.choices
 
 
