@@ -7,7 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.config_file import REQUEST_FILE, request_toml
-from mmweaver.cli.generate_options import DEMO_OUT, DEMO_TEXT, USAGE, add_generate_options
+from mmweaver.cli.generate_options import (
+    DEMO_OUT,
+    DEMO_TEXT,
+    DEMO_TEXT_S,
+    SHORT_DEMO_TEXT,
+    USAGE,
+    add_generate_options,
+)
 from mmweaver.cli.motion_options import (
     check_motion_options,
     motion_of_model,
@@ -68,6 +75,8 @@ def run(arguments: argparse.Namespace) -> int:
     with StageBar(NUM_STAGES, quiet=arguments.quiet or arguments.verbose) as bar:
         background = _background(arguments)
         weaver = _weaver(arguments, background, bar)
+        if texts is None and arguments.motion is None:
+            texts = [DEMO_TEXT if _duration_s(arguments, weaver) >= DEMO_TEXT_S else SHORT_DEMO_TEXT]
         text = texts[0] if texts is not None and len(texts) == 1 else texts
         motion = read_own_motion(arguments) or _motion_of_model(arguments, weaver, text)
         request = weaver.request(text, motion=motion, **_settings(arguments), **placing_options(arguments))
@@ -142,12 +151,15 @@ def _motion_of_model(
         return None
     if isinstance(text, list):
         raise InputError("--motion-model acts out one text; give --text once")
-    period_s = 1 / arguments.fps if arguments.fps else weaver.radar.frame_period_s
-    return motion_of_model(arguments.motion_model, text, arguments.frames * period_s, arguments.seed)
+    return motion_of_model(arguments.motion_model, text, _duration_s(arguments, weaver), arguments.seed)
+
+
+def _duration_s(arguments: argparse.Namespace, weaver: "Weaver") -> float:
+    return arguments.frames * (1 / arguments.fps if arguments.fps else weaver.radar.frame_period_s)
 
 
 def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
-    """The texts and the output folder, once it is clear which room is meant."""
+    """The texts (None: those of the demo, or a recorded motion alone) and the output folder, if the room is clear."""
     pictures = (
         arguments.rgb, arguments.depth, arguments.camera, arguments.capture, arguments.depth_model, arguments.classes,
         arguments.segmenter, arguments.sam,
@@ -158,8 +170,7 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
                 "--demo brings its own room; leave out --rgb, --depth, --camera and all else that describes a room,"
                 " or leave out --demo"
             )
-        is_given = arguments.text is not None or arguments.motion is not None or arguments.texts is not None
-        return arguments.text if is_given else [DEMO_TEXT], arguments.out or Path(DEMO_OUT)
+        return arguments.text, arguments.out or Path(DEMO_OUT)
     if arguments.capture is not None:
         if any(given is not None for given in (arguments.depth, arguments.camera, arguments.depth_model)):
             raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")

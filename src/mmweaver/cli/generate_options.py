@@ -18,6 +18,8 @@ from mmweaver.cli.arguments import (
 from mmweaver.cli.motion_options import add_motion_options
 
 DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
+DEMO_TEXT_S = 1.6  # what this text needs
+SHORT_DEMO_TEXT = "a person walks towards the radar"  # for less
 DEMO_OUT = "demo"
 USAGE = """mmweaver generate --demo
        mmweaver generate --rgb PNG --depth FILE --text TEXT --out DIR [options]
