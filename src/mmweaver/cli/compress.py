@@ -68,9 +68,9 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
             iq_order=arguments.iq_order, tx_order=arguments.tx_order,
         ).cube  # fmt: skip
-        from mmweaver.compression.mmw_codec import compressed, errors_db
+        from mmweaver.compression.mmw_codec import compress_cube, errors_db
 
-        data = compressed(
+        data = compress_cube(
             cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise, progress=bar
         )
         bar("check")
