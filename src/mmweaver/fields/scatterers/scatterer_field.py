@@ -118,7 +118,7 @@ class ScattererField(SignalField):
         return out
 
     def with_noise(self, cube: RadarCube, seed: int) -> RadarCube:
-        """A rendered cube plus receiver noise at the fitted power: white before windowing, so neighbours are correlated.
+        """A rendered cube plus receiver noise of the fitted power: white before windowing, so neighbours correlate.
 
         Overlapping frames share the noise of their chirps. Raises InputError where the cube is not on the
         native grid.
