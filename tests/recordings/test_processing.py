@@ -12,7 +12,7 @@ from mmweaver.core.records import CameraIntrinsics
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.recordings.recording import process_capture, process_recording
+from mmweaver.recordings.processing import process_recording
 from tests.captures import counts, packets_of, radar_of_cfg, write_camera, write_radar
 from tests.rooms import back_wall, floor, scene_of, standing_person
 
@@ -62,7 +62,7 @@ def test_a_simulated_sequence_in_a_capture_folder_comes_back_bit_by_bit(tmp_path
     write_camera(
         tmp_path / "capture_00000" / "realsense", lens, [np.full((48, 64), 2.0)], [np.zeros((48, 64, 3), np.uint8)]
     )
-    recording = process_capture(tmp_path / "capture_00000")
+    recording = process_recording(tmp_path / "capture_00000")
     assert np.array_equal(recording.adc.samples, whole.samples)
     assert np.array_equal(recording.cube.values, radar_cube(replace(whole, scale=float("nan"))).values)
     meta = recording.save(tmp_path / "out")
@@ -77,7 +77,7 @@ def test_lost_packets_are_told(tmp_path: Path):
     config = radar_of_cfg(tmp_path)
     packets = packets_of(tmp_path, counts(config))
     write_radar(tmp_path / "iwr1843", counts(config), packets[:5] + packets[7:])
-    recording = process_capture(tmp_path / "iwr1843")
+    recording = process_recording(tmp_path / "iwr1843")
     assert any("2 packets were lost" in sentence for sentence in recording.meta["assumed"])
     assert "photo_of_frame" not in recording.meta
 
