@@ -21,8 +21,6 @@ WITHOUT_HEADING = "    options:\n      show_root_heading: false\n      show_root
 REMOTE = re.compile(
     r"""(?:<(?:link|script|img|iframe)\b[^>]*?(?:href|src)=|@import\s*|url\()\s*["']?((?:https?:)?//[^"')>\s]+)"""
 )
-    r"""(?:<(?:link|script|img|iframe)\b[^>]*?(?:href|src)=|@import\s*|url\()\s*["']?((?:https?:)?//[^"')>\s]+)"""
-)
 
 
 def main() -> int:
@@ -89,8 +87,8 @@ def write_decision_index(folder: Path) -> str:
 
 def write_references(folder: Path) -> str:
     """Writes pages of the command line, the public names and each package; returns navigation entries of the last."""
-    from mmweaver import __all__ as public
     from mmweaver import _HOME
+    from mmweaver import __all__ as public
     from mmweaver.cli.main import build_parser
 
     folder.mkdir()
