@@ -63,8 +63,8 @@ def test_killed_and_called_again_it_ends_with_the_same_bits(
     """A process that is killed with no chance to say good-bye."""
     from safetensors.torch import load_file
 
-    words = ["train", "weaver", "--data", str(tiny_signals), "--steps", "6", "--batch", "1", "--save-every", "0", "--json"]
-    words += ["--validate-every", "3"]
+    words = ["train", "weaver", "--data", str(tiny_signals), "--steps", "6", "--batch", "1", "--save-every", "0"]
+    words += ["--validate-every", "3", "--json"]
     assert main([*words, "--out", str(tmp_path / "whole")]) == 0
     whole = json.loads(capsys.readouterr().out)
     out = tmp_path / "killed"
