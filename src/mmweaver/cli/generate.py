@@ -291,9 +291,9 @@ def _recording(arguments: argparse.Namespace) -> "RadarCube | None":
             "--empty-room is for the network, which has no raw samples; leave it out, or --method physics, --bin and"
             " --points firmware"
         )
-    from mmweaver.recordings.captures import recorded_cube
+    from mmweaver.recordings.read_recording import read_recording
 
-    return recorded_cube(arguments.empty_room)
+    return read_recording(arguments.empty_room).cube
 
 
 def _seen_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option
-from mmweaver.core.errors import InputError
 
 NUM_STAGES = 6
 EXAMPLES = """examples:
@@ -23,13 +22,16 @@ def add_verb(verbs: Any) -> None:
     )  # fmt: skip
     parser.add_argument(
         "file", type=Path, metavar="FILE|DIR",
-        help="adc_data.bin of a DCA1000, raw ADC samples as .npy, or a capture folder of mmwave-capture-std"
-        " (radar.cfg, dca.pcap)",
+        help="adc_data.bin of a DCA1000, raw ADC samples as .npy, radar.npz, a HuPR, mmMesh or RF-Genesis array, or a"
+        " capture folder of mmwave-capture-std (radar.cfg, dca.pcap)",
     )  # fmt: skip
     parser.add_argument(
         "--radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (a capture folder brings its own)"
     )
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
+    parser.add_argument(
+        "--layout", metavar="NAME", help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis"
+    )
     add_points_option(parser)
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     add_layout_options(parser)
@@ -46,26 +48,12 @@ def run(arguments: argparse.Namespace) -> int:
     check_output_folder(arguments.out, overwrite=arguments.overwrite)
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         from mmweaver.core.stages import Stages
-        from mmweaver.formats.capture_std import is_capture
-        from mmweaver.recordings.recording import process_capture, process_recording
+        from mmweaver.recordings.processing import process_recording
 
-        if is_capture(arguments.file):
-            _check_capture(arguments)
-            recording = process_capture(arguments.file, points=arguments.points, stages=Stages(bar))
-        else:
-            recording = process_recording(
-                arguments.file, arguments.radar, iq_order=arguments.iq_order or "iq", tx_order=arguments.tx_order,
-                axes=arguments.axes, points=arguments.points, stages=Stages(bar),
-            )  # fmt: skip
+        recording = process_recording(
+            arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
+            iq_order=arguments.iq_order, tx_order=arguments.tx_order, points=arguments.points, stages=Stages(bar),
+        )  # fmt: skip
         meta = recording.save(arguments.out, overwrite=arguments.overwrite)
     print_summary(arguments.out, meta, as_json=arguments.json, quiet=arguments.quiet)
     return 0
-
-
-def _check_capture(arguments: argparse.Namespace) -> None:
-    """A capture folder says all that these options would."""
-    given = {"--radar": arguments.radar, "--axes": arguments.axes, "--tx-order": arguments.tx_order}
-    given["--iq-order"] = arguments.iq_order
-    named = [name for name, value in given.items() if value is not None]
-    if named:
-        raise InputError(f"{arguments.file} is a capture folder, whose radar.cfg says it all; leave out {named[0]}")

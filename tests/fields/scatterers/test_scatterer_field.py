@@ -81,7 +81,7 @@ def test_what_stands_still_is_seen_by_another_radar_too():
 
 
 def test_overlapping_windows_at_any_instant():
-    """Fitted once for the whole stretch; a window between two windows is that of the scatterers there."""
+    """Fitted once for the whole fit_window; a window between two windows is that of the scatterers there."""
     long = replace(SMALL, num_loops=64)
     whole = exact_point(long, 1.4, 0.6, direction_of(0.2, 0.0))
     cube = overlapping(hop=4, num_frames=5)
@@ -93,7 +93,7 @@ def test_overlapping_windows_at_any_instant():
     every = radar_cube(AdcCube(samples=windows, config=SMALL, scale=1.0))
     grid = replace(every.grid, frame_time_s=np.arange(10) * 4 * SMALL.loop_period_s)
     field = ScattererField.fit(replace(every, grid=grid), FitRecipe(num_points=3, stages=3, with_static=False))
-    assert field.stretch.hop == 4
+    assert field.fit_window.hop == 4
     assert error_db(field.native(), every.values) < -35
     halfway = replace(grid, frame_time_s=grid.frame_time_s[2:4] + 2 * SMALL.loop_period_s)
     late = np.stack([adc[2 + 2 + 4 * at : 18 + 2 + 4 * at] for at in (2, 3)])
