@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from mmweaver.formats.npz_files import read_radar_npz
     from mmweaver.formats.radar_file import load_radar
     from mmweaver.generate import Generation, Weaver
-    from mmweaver.recordings.recording import Recording, process_recording
+    from mmweaver.recordings.processing import ProcessedRecording, process_recording
+    from mmweaver.recordings.read_recording import Recording, read_recording
 
 _HOME = {
     "AdcCube": "core.records",
@@ -25,14 +26,16 @@ _HOME = {
     "PRESETS": "core.presets",
     "PointCloud": "core.records",
     "PoseSequence": "core.records",
+    "ProcessedRecording": "recordings.processing",
     "RadarConfig": "core.radar_config",
     "RadarCube": "core.records",
-    "Recording": "recordings.recording",
+    "Recording": "recordings.read_recording",
     "Scene": "core.records",
     "Weaver": "generate",
     "load_radar": "formats.radar_file",
-    "process_recording": "recordings.recording",
+    "process_recording": "recordings.processing",
     "read_radar_npz": "formats.npz_files",
+    "read_recording": "recordings.read_recording",
 }
 
 __all__ = [
@@ -42,6 +45,7 @@ __all__ = [
     "InputError",
     "PointCloud",
     "PoseSequence",
+    "ProcessedRecording",
     "RadarConfig",
     "RadarCube",
     "Recording",
@@ -51,6 +55,7 @@ __all__ = [
     "load_radar",
     "process_recording",
     "read_radar_npz",
+    "read_recording",
 ]
 
 

@@ -35,10 +35,10 @@ class Room:
         folder, for meta.json). Raises InputError for what is no recording.
         """
         if not isinstance(source, RadarCube):
-            from mmweaver.recordings.captures import recorded_cube
+            from mmweaver.recordings.read_recording import read_recording
 
             came_from = Path(source)
-            source = recorded_cube(came_from)
+            source = read_recording(came_from).cube
         inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
         return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
 

@@ -28,8 +28,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument(
         "file",
         type=Path,
-        metavar="FILE",
-        help="radar.npz, adc_data.bin of a DCA1000, raw ADC samples as .npy, or a HuPR, mmMesh or RF-Genesis array",
+        metavar="FILE|DIR",
+        help="radar.npz or its folder, adc_data.bin of a DCA1000, raw ADC samples as .npy, a HuPR, mmMesh or RF-Genesis"
+        " array, or a capture folder of mmwave-capture-std",
     )
     parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the .mmw file to write")
     rate = parser.add_mutually_exclusive_group(required=True)
@@ -62,15 +63,15 @@ def run(arguments: argparse.Namespace) -> int:
     start = time.monotonic()
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read the recording")
-        from mmweaver.recordings.recording import read_any_cube
+        from mmweaver.recordings.read_recording import read_recording
 
-        cube = read_any_cube(
+        cube = read_recording(
             arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
-            iq_order=arguments.iq_order or "iq", tx_order=arguments.tx_order,
-        )  # fmt: skip
-        from mmweaver.compression.mmw_codec import compressed, errors_db
+            iq_order=arguments.iq_order, tx_order=arguments.tx_order,
+        ).cube  # fmt: skip
+        from mmweaver.compression.mmw_codec import compress_cube, errors_db
 
-        data = compressed(
+        data = compress_cube(
             cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise, progress=bar
         )
         bar("check")

@@ -215,9 +215,9 @@ def _background(arguments: argparse.Namespace) -> "RadarCube | None":
             "--background is for the network, which has no raw samples; leave it out, or --method physics, --bin and"
             " --points firmware"
         )
-    from mmweaver.recordings.captures import recorded_cube
+    from mmweaver.recordings.read_recording import read_recording
 
-    return recorded_cube(arguments.background)
+    return read_recording(arguments.background).cube
 
 
 def _photographed_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":

@@ -25,9 +25,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the description on stdout. Raises InputError where the file is damaged."""
-    from mmweaver.compression.mmw_codec import described
+    from mmweaver.compression.mmw_codec import describe_mmw
 
-    facts = described(arguments.file)
+    facts = describe_mmw(arguments.file)
     print(json.dumps(facts, indent=2) if arguments.json else "\n".join(_lines(facts)))
     return 0
 
