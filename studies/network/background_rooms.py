@@ -17,7 +17,8 @@ from mmweaver.dsp.points import point_cloud
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_azimuth_standing, draw_photo
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Room, Weaver
+from mmweaver.generate import Weaver
+from mmweaver.generation import Room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
