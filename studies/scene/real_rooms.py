@@ -16,7 +16,8 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.generate import Generation, Room, Weaver
+from mmweaver.generate import Weaver
+from mmweaver.generation import Generation, Room
 from studies.report.result_files import write_result
 
 SKIN_M = 0.2  # joints lie inside the body

@@ -14,16 +14,12 @@ from safetensors.torch import load_file
 
 from mmweaver.cli.main import main
 from mmweaver.models.weights import load_into
-from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 
 
-def test_activity_then_paper(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data = str(tmp_path / "data")
-    rooms = ["--rooms", "office,dining_room", "--layouts", "1", "--sequences", "3", "--frames", "3", "--quiet"]
-    assert main(["dataset", data, *rooms]) == 0
-    few = ["--data", data, "--steps", "2", "--batch", "1", "--json"]
+def test_activity_then_paper(tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    few = ["--data", str(tiny_signals), "--steps", "2", "--batch", "1", "--json"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
     weights = json.loads(capsys.readouterr().out)["weights"]
     assert main(["train", "paper", "--out", str(tmp_path / "p"), "--features", weights, *few]) == 0
@@ -52,9 +48,10 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert not (tmp_path / "o").exists()
 
 
-def test_it_goes_on_from_weights_of_its_own_recipe_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data = str(tiny_data(tmp_path / "data"))
-    few = ["--data", data, "--steps", "1", "--batch", "1", "--json"]
+def test_it_goes_on_from_weights_of_its_own_recipe_alone(
+    tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    few = ["--data", str(tiny_signals), "--steps", "1", "--batch", "1", "--json"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
     weights = json.loads(capsys.readouterr().out)["weights"]
     assert main(["train", "activity", "--out", str(tmp_path / "b"), "--from", str(tmp_path / "a"), *few]) == 0
@@ -64,14 +61,10 @@ def test_it_goes_on_from_weights_of_its_own_recipe_alone(tmp_path: Path, capsys:
     assert "mmweaver train paper" in capsys.readouterr().err
 
 
-@pytest.fixture(scope="module")
-def light(tmp_path_factory: pytest.TempPathFactory) -> str:
-    return str(tiny_data(tmp_path_factory.mktemp("light") / "data", geometry_only=True))
-
-
-def test_two_processes_that_were_killed_end_as_two_that_were_not(light: str, tmp_path: Path):
+def test_two_processes_that_were_killed_end_as_two_that_were_not(tiny_geometry: Path, tmp_path: Path):
     pytest.importorskip("accelerate")
-    words = ["train", "activity", "--data", light, "--steps", "16", "--batch", "2", "--save-every", "0", "--out"]
+    words = ["train", "activity", "--data", str(tiny_geometry), "--steps", "16", "--batch", "2", "--save-every", "0"]
+    words.append("--out")
     out = tmp_path / "killed"
     kill_when(out / "checkpoint.pt", two_processes([*words, str(out)]))
     assert 1 <= torch.load(out / "checkpoint.pt", weights_only=True)["done"] < 16
@@ -81,9 +74,11 @@ def test_two_processes_that_were_killed_end_as_two_that_were_not(light: str, tmp
     assert all(torch.equal(tensor, other[name]) for name, tensor in one.items())
 
 
-def test_two_processes_train_the_papers_network(light: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_two_processes_train_the_papers_network(
+    tiny_geometry: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
     pytest.importorskip("accelerate")
-    words = ["--data", light, "--steps", "2", "--batch", "2"]
+    words = ["--data", str(tiny_geometry), "--steps", "2", "--batch", "2"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *words, "--quiet"]) == 0
     judge = str(tmp_path / "a" / "weights.safetensors")
     capsys.readouterr()

@@ -14,13 +14,12 @@ from mmweaver.models.weights import read_card
 from mmweaver.training.activity_training import ActivityRecipe, train_activity
 from mmweaver.training.paper_training import PaperRecipe, train_paper
 from mmweaver.training.recipe_weights import write_recipe_weights
-from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 
 
-def test_weights_are_read_again_and_their_page_tells_the_floor(tmp_path: Path):
-    data = tiny_data(tmp_path / "data")
+def test_weights_are_read_again_and_their_page_tells_the_floor(tiny_signals: Path, tmp_path: Path):
+    data = tiny_signals
     judge = train_activity(data, tmp_path / "a", ActivityRecipe(steps=2, batch_size=2, validate_every=2))
     features = write_recipe_weights(tmp_path / "a", data, judge)
     assert load_activity(features, AWR1843) is not None

@@ -2,7 +2,6 @@ import json
 from dataclasses import replace
 
 import pytest
-from mmweaver.experiments import field_fidelity
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
@@ -10,6 +9,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.fields.paper_inr import InrField, InrShape, fresh_modulation
 from mmweaver.metrics.scorecard import METRICS
 from mmweaver.training.single_signal import PAPER
+from studies.fields import field_fidelity
 from studies.fields.field_signals import simulated
 
 
