@@ -1,7 +1,7 @@
 """ADC samples <-> range-Doppler cube."""
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, TypeVar
+from typing import Any
 
 import numpy as np
 from jaxtyping import Complex
@@ -11,10 +11,6 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.dsp.windows import hann
 
-if TYPE_CHECKING:
-    from torch import Tensor
-
-SamplesT = TypeVar("SamplesT", np.ndarray, "Tensor")
 # Singular values below this share of the largest carry nothing but rounding.
 SMALLEST_SINGULAR_VALUE = 1e-9
 FRAMES_A_BLOCK = 20
@@ -40,7 +36,7 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
     return RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=adc.scale)
 
 
-def cube_values(samples: SamplesT, config: RadarConfig, *, compensate_tdm: bool = True) -> SamplesT:
+def cube_values(samples: Any, config: RadarConfig, *, compensate_tdm: bool = True) -> Any:
     """The values of `radar_cube`, complex64 (frame, range, doppler, antenna), of samples (frame, loop, tx, rx, sample).
 
     Takes and gives numpy arrays, or torch tensors on any device.
@@ -125,7 +121,7 @@ def tdm_compensation(config: RadarConfig) -> Complex[np.ndarray, "doppler antenn
     return np.exp(-2j * np.pi * doppler_hz[:, None] * delay_s).astype(np.complex64)
 
 
-def _fft(values: SamplesT, axis: int) -> SamplesT:
+def _fft(values: Any, axis: int) -> Any:
     """The transform of real or complex values, of which `values` may be lost.
 
     scipy's keeps single precision and is several times faster than numpy's.
@@ -141,7 +137,7 @@ def _fft(values: SamplesT, axis: int) -> SamplesT:
     return fft.fft(values, dim=axis) if values.is_complex() else fft.rfft(values, dim=axis)
 
 
-def _like(values: np.ndarray, samples: SamplesT) -> SamplesT:
+def _like(values: np.ndarray, samples: Any) -> Any:
     """An array where the samples are one, else a tensor on their device."""
     if isinstance(samples, np.ndarray):
         return values

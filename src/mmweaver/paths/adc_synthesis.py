@@ -94,14 +94,15 @@ class AdcSynthesis:
         shift_hz = length_m @ segment.slope_at_blocks / config.wavelength_m  # (frame, path, block)
         carrier = phasor(length_m @ segment.to_chirps / config.wavelength_m) * paths.amplitude[..., None]
         carrier = carrier.unflatten(-1, (-1, config.num_tx))  # (frame, path, loop, tx)
-        departure_m, arrival_m = (end.at(segment.block_s) for end in (paths.departure, paths.arrival))
+        ends_m = [end.at(segment.block_s).transpose(1, 2) for end in (paths.departure, paths.arrival)]
         for index, block in enumerate(segment.segment.blocks):
-            out, back = departure_m[..., index, :], arrival_m[..., index, :]
-            array = self.array(out, back, paths.is_reciprocal)
-            for m, centre in enumerate(self._centre_m):
+            departure_m, arrival_m = (end[:, index] for end in ends_m)  # (frame, path, 3)
+            array = self.array(departure_m, arrival_m, paths.is_reciprocal)
+            centred_m = torch.stack([departure_m, arrival_m])[:, None] - self._centre_m[:, None, None]
+            delay_s = centred_m.norm(dim=-1).sum(dim=0) / SPEED_OF_LIGHT_MPS  # (tx, frame, path)
+            for m in range(config.num_tx):
                 slow = carrier[:, :, block, m, None] * array[:, :, None, m]  # (frame, path, loop, rx)
-                delay_s = ((out - centre).norm(dim=-1) + (back - centre).norm(dim=-1)) / SPEED_OF_LIGHT_MPS
-                fast = fast_time(delay_s, shift_hz[..., index], config)
+                fast = fast_time(delay_s[m], shift_hz[..., index], config)
                 product = slow.flatten(2).transpose(1, 2) @ fast
                 adc[:, block, m] = product.unflatten(1, (-1, config.num_rx))
 
@@ -150,7 +151,7 @@ def unpadded(paths: Paths) -> Paths:
 
 def phasor(cycles: Tensor) -> Tensor:
     """exp(2 pi j cycles), complex64; wrapped in double precision first."""
-    angle = ((cycles - cycles.round()) * (2 * math.pi)).to(torch.float32)
+    angle = (cycles - cycles.round()).to(torch.float32).mul_(2 * math.pi)
     return torch.complex(angle.cos(), angle.sin())
 
 

@@ -30,7 +30,7 @@ def moving_points(paths: Paths, response: PointResponse) -> Points:
 
     Both orders of a reciprocal path add up as far as the array cannot tell its ends apart.
     """
-    towards = apparent_direction(paths.departure.position_m.double(), paths.arrival.position_m.double())
+    towards = apparent_direction(paths.departure.position_m, paths.arrival.position_m)
     both = 2 + 2 * _agreement(paths, response)
     power = paths.amplitude.abs().square() * torch.where(paths.is_reciprocal, both, torch.ones_like(both))
     return _points(paths.length_m / 2, paths.rate_mps / 2, towards, power.sqrt(), response)
