@@ -120,7 +120,7 @@ def run(
         rows = [codec_row(codec, signal, size) for signal in signals for size in sizes]
         rows = in_order(rows + (kept_rows(out / EXPERIMENT / f"{name}.json", signal_names) if keep else []))
         path = write_result(out, experiment=EXPERIMENT, method=name, config={"sizes": list(sizes)}, rows=rows)
-        print(json.dumps({"codec": name, "written": str(path)}), flush=True)  # noqa: T201
+        print(json.dumps({"codec": name, "written": str(path)}), flush=True)
 
 
 def kept_rows(path: Path, measured: list[str]) -> list[dict[str, Any]]:

@@ -15,8 +15,8 @@ from mmweaver.fields.field import SignalField
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.metrics.scorecard import scorecard
-from mmweaver.training.single_signal import RECIPES, fit
 from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
+from studies.paper.single_signal import RECIPES, fit
 from studies.report.result_files import write_result
 
 EXPERIMENT = "field_fidelity"

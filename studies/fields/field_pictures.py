@@ -20,11 +20,11 @@ from mmweaver.figures.theme import POWER_MAP
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.map_scores import SHOWN_DB, shown_db
-from mmweaver.training.single_signal import RECIPES, fit
 from studies.fields.field_fidelity import fit_scatterers
 from studies.fields.field_signals import SIGNALS
 from studies.fields.finer_radar import middle_delay_s
 from studies.fields.super_resolution import finer_truths, methods
+from studies.paper.single_signal import RECIPES, fit
 
 ZOOM_MPS, ZOOM_M = 2.0, 0.7
 

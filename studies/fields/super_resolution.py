@@ -40,7 +40,6 @@ from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
-from mmweaver.training.single_signal import RECIPES, fit
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, without_room
 from studies.fields.finer_radar import (
@@ -52,6 +51,7 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
+from studies.paper.single_signal import RECIPES, fit
 from studies.report.result_files import write_result
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)

@@ -208,7 +208,7 @@ def main() -> None:
         row = row_of(name, each, rooms)
         write_result(arguments.out, experiment="weaver_ablation", method=slug(name), config=about, rows=[row])
         figures = (f"{column} {metric['value']:.3f}" for column, metric in row["metrics"].items())
-        print(f"{name:32}", *figures, flush=True)  # noqa: T201
+        print(f"{name:32}", *figures, flush=True)
 
 
 def _judge(

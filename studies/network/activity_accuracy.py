@@ -55,7 +55,7 @@ def main() -> None:
         except InputError:
             continue
         metric = rows[-1]["metrics"]["accuracy"]
-        print(f"{split:12} {metric['value']:.3f} ({metric['low']:.3f} to {metric['high']:.3f})")  # noqa: T201
+        print(f"{split:12} {metric['value']:.3f} ({metric['low']:.3f} to {metric['high']:.3f})")
     write_result(
         arguments.out, experiment="activity_accuracy", method="activity",
         config={"weights": card.__dict__, "data_plan": read_plan(arguments.data), "activities": ACTIVITY_NAMES},

@@ -37,7 +37,6 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.paper_method import load_paper, paper_field
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -46,6 +45,7 @@ from mmweaver.training.activity_examples import activity_examples, maps_of
 from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS
 from studies.network.learned_table import TWIN, empty_room, interval
 from studies.network.room_cache import RoomCache, digest
+from studies.paper.paper_method import load_paper, paper_field
 from studies.report.result_files import write_result
 
 # chosen on rooms of the validation kind
@@ -184,7 +184,7 @@ def seen(network: ActivityNetwork, doppler: Tensor, angle: Tensor) -> Tensor:
 
 
 @dataclass(frozen=True)
-class Study:
+class GainStudy:
     """A recogniser, recordings of other rooms as it sees them, and whether its head begins anew."""
 
     network: ActivityNetwork
@@ -201,7 +201,7 @@ class Study:
         return head
 
 
-def judged(study: Study, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
+def judged(study: GainStudy, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
     """Accuracy and log loss on test sequences once the head has been trained on; a quarter of a batch is the room's."""
     torch.manual_seed(seed)
     head, rng = study.head(), stream(seed, "activity gain head")
@@ -231,7 +231,7 @@ Found = dict[str, list[float]]  # {method: accuracy, log loss} in one room
 
 
 def gained(
-    study: Study, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
+    study: GainStudy, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
 ) -> Found:
     """What each method's data are worth in one room; besides, the head trained on with nothing generated."""
     network = study.network
@@ -249,7 +249,7 @@ def gained(
 
 
 def gains(
-    study: Study,
+    study: GainStudy,
     rooms: list[UnseenRoom],
     methods: dict[str, Method],
     *,
@@ -286,7 +286,7 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[
     return rows
 
 
-def studied(judge_file: Path, data: Path, recordings: int | None) -> Study:
+def studied(judge_file: Path, data: Path, recordings: int | None) -> GainStudy:
     """The recogniser and what it has seen elsewhere: all that it was trained on, or so many recordings of it."""
     if recordings is None:
         examples = activity_examples(data, TRAIN_SPLITS, judge_file.parent / TRAIN_MAPS, keep=False)
@@ -294,7 +294,7 @@ def studied(judge_file: Path, data: Path, recordings: int | None) -> Study:
         examples = activity_examples(data, TRAIN_SPLITS, pick=partial(few_of, count=recordings))
     judge = load_activity(judge_file, examples.config)
     base = Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label)
-    return Study(judge, base, begins_anew=recordings is not None)
+    return GainStudy(judge, base, begins_anew=recordings is not None)
 
 
 def few_of(label: np.ndarray, count: int) -> np.ndarray:
@@ -354,11 +354,11 @@ def main() -> None:
             arguments.out, experiment="activity_gain", method=name, config=about, rows=rows_of(found, rooms)
         )  # fmt: skip
         room = rooms[len(found[ALONE]) - 1].name
-        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)  # noqa: T201
+        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)
 
     for row in rows_of(gains(study, rooms, methods, each=arguments.each, kept=kept, after=write), rooms):
         values = (f"{name} {m['value']:.3f} ({m['low']:.3f} to {m['high']:.3f})" for name, m in row["metrics"].items())
-        print(f"{row['method']:30}", *values)  # noqa: T201
+        print(f"{row['method']:30}", *values)
 
 
 if __name__ == "__main__":

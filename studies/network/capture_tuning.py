@@ -89,7 +89,7 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
         recipe = recipe_for(captures, **({} if arguments.steps is None else {"steps": arguments.steps}))
         tuned = tune(captures, work / name / "run", recipe, start=start.state_dict())
         networks[name] = getattr(tuned.trainer.learner, "network")  # noqa: B009 - any learner of this recipe has one
-        print(f"{work.name} {name}: {tuned.loss_before:.3f} -> {tuned.trainer.best.value:.3f}", flush=True)  # noqa: T201
+        print(f"{work.name} {name}: {tuned.loss_before:.3f} -> {tuned.trainer.best.value:.3f}", flush=True)
     scene = reconstruct(read_capture(work / "tuned_with_joints" / "take0").photo)
     methods: dict[str, Method] = {name: _woven(LearnedRoom(network, scene, room.config, room_seed=1), room)
                                   for name, network in networks.items()}  # fmt: skip
@@ -101,7 +101,7 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
         twin(int(asked[0]))
         methods["twin"] = twin
     except InputError as error:
-        print(f"{work.name}: no twin, {error}", flush=True)  # noqa: T201
+        print(f"{work.name}: no twin, {error}", flush=True)
     scores: dict[str, list[dict[str, float]]] = {}
     for index in asked:
         truth = room.cube(int(index))
@@ -206,7 +206,7 @@ def main() -> None:
     )  # fmt: skip
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
-        print(f"{row['method']:22}", *values, flush=True)  # noqa: T201
+        print(f"{row['method']:22}", *values, flush=True)
 
 
 if __name__ == "__main__":

@@ -102,7 +102,7 @@ def main() -> None:
     twin = simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1)
     rows.append({"method": "twin", "split": SPLIT, "n": len(cases), "metrics": judged(twin, cases)})
     for row in rows:
-        print(row["method"], *(f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items()), flush=True)  # noqa: T201
+        print(row["method"], *(f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items()), flush=True)
     write_result(
         arguments.out, experiment="weaver_few_shot", method=ACTIVITY,
         config={"data_plan": plan, "shots": list(SHOTS), "steps": RECIPE.steps}, rows=rows,

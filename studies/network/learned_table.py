@@ -8,7 +8,7 @@
 Truth is the simulator in the true room. Everybody is given the exact joints. `twin` is the same simulator with other
 surface micro-phases of room and person: the best that anyone can do who does not know them. `twin_skin` knows the
 room's, and `weaver_with_empty_room` was given a recording of the room without the person. `static_mean` is that of the
-truth itself, `training_mean` that of the rooms trained on. `paper` is the paper's own network (`mmweaver train paper`);
+truth itself, `training_mean` that of the rooms trained on. `paper` is the paper's own network (study `train_paper`);
 `energy_db`, a cube's energy over the truth's, tells whether it has collapsed. Intervals: bootstrap over rooms.
 """
 
@@ -33,11 +33,11 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.paper_method import paper_method
 from mmweaver.models.weights import load_weights, read_card, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from studies.paper.paper_method import paper_method
 from studies.report.result_files import write_result
 
 COLUMNS = (
@@ -265,7 +265,7 @@ def main() -> None:
     )  # fmt: skip
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
-        print(f"{row['method']:30}", *values, flush=True)  # noqa: T201
+        print(f"{row['method']:30}", *values, flush=True)
 
 
 def _row(name: str, values: dict[str, np.ndarray], rooms: list[str], split: str) -> dict[str, Any]:

@@ -19,10 +19,10 @@ import torch
 from mmweaver.core.records import RadarCube
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.metrics.scorecard import METRICS, scorecard
-from mmweaver.models.paper_method import RECIPE, paper_method
 from mmweaver.models.weights import load_into
 from studies.network.learned_table import Case, cases_of, energy_db, interval
 from studies.network.room_cache import RoomCache, digest
+from studies.paper.paper_method import RECIPE, paper_method
 from studies.report.result_files import write_result
 
 COLUMNS = ("cssim", "psnr_db", "nmse_db", "nmse_active_db", "nmse_moving_db", "rd_ssim", "ra_ssim")
@@ -79,7 +79,7 @@ def learning_curve(folder: Path) -> list[dict[str, Any]]:
 
 
 def main() -> None:
-    from mmweaver.models.paper_network import PaperNetwork
+    from studies.paper.paper_network import PaperNetwork
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True)
@@ -104,7 +104,7 @@ def main() -> None:
     )  # fmt: skip
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
-        print(f"{row['method']:12}", *values)  # noqa: T201
+        print(f"{row['method']:12}", *values)
 
 
 if __name__ == "__main__":

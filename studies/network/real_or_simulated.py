@@ -20,7 +20,6 @@ import torch
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.models.activity_network import load_activity
-from mmweaver.models.paper_method import paper_method
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -28,6 +27,7 @@ from mmweaver.scene.reconstruction import reconstruct
 from studies.network.cube_statistics import cube_statistics
 from studies.network.learned_table import TWIN, Case, Method, cases_of, interval, simulated, woven
 from studies.network.room_cache import RoomCache, digest
+from studies.paper.paper_method import paper_method
 from studies.report.result_files import write_result
 
 FOLDS = 5
@@ -122,7 +122,7 @@ def main() -> None:
 
 
 def _tell(line: str) -> None:
-    print(line, flush=True)  # noqa: T201
+    print(line, flush=True)
 
 
 def _own_room(case: Case) -> StoredRoom:

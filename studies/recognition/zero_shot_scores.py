@@ -216,7 +216,7 @@ def main() -> None:
         return
     made = training_set(recipe, each=given.each, seed=given.seed, cache=given.cache)
     for split, value in validate(made, first_draws(recipe, given.each, given.seed)).items():
-        print(f"{split:24s} {value:.3f}")  # noqa: T201
+        print(f"{split:24s} {value:.3f}")
 
 
 if __name__ == "__main__":
