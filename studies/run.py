@@ -11,7 +11,7 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from studies.manifest import StudyRun, rows_sha256
 from studies.schema import check_record
-from studies.study import load_study, question_of, study_files
+from studies.study import inputs_of, load_study, question_of, study_files
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "results"
@@ -64,7 +64,7 @@ def run_named(name: str, words: Sequence[str]) -> list[Path]:
     parser.add_argument("--threads", type=int, default=1, help="threads of numpy and torch (default 1)")
     study.add_options(parser)
     options = parser.parse_args(list(words))
-    inputs: list[Path] = vars(options).pop("inputs", [])
+    inputs = inputs_of(parser, options)
     missing = [path for path in inputs if not path.exists()]
     if missing:
         raise InputError(f"{missing[0]} does not exist")

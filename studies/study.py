@@ -3,7 +3,6 @@
 import argparse
 import ast
 import importlib
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol, cast, runtime_checkable
 
@@ -34,13 +33,18 @@ class Study(Protocol):
         ...
 
 
-class InputAction(argparse.Action):
+class Reads(argparse.Action):
     """An option that names files or folders which the study reads: their sha256 goes into the manifest."""
 
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
         setattr(namespace, self.dest, values)
-        paths = values if isinstance(values, Sequence) and not isinstance(values, str) else [values]
-        namespace.inputs = [*(getattr(namespace, "inputs", None) or []), *paths]
+
+
+def inputs_of(parser: argparse.ArgumentParser, options: argparse.Namespace) -> list[Path]:
+    """Files and folders that a study reads, by its `Reads` options."""
+    values = [getattr(options, action.dest) for action in parser._actions if isinstance(action, Reads)]
+    paths = [path for value in values for path in (value if isinstance(value, list) else [value]) if path is not None]
+    return list(dict.fromkeys(paths))
 
 
 def study_files() -> dict[str, Path]:

@@ -30,7 +30,7 @@ def load_paper(file: Path) -> PaperNetwork:
 
 
 def paper_method(weights: Path) -> Callable[[Any], RadarCube]:
-    """A row for `learned_table`: the cube of a `Case`, of which it sees room.photo, room.config and joints."""
+    """A row for `learned_scores`: the cube of a `Case`, of which it sees room.photo, room.config and joints."""
     network = load_paper(weights)
 
     def method(case: Any) -> RadarCube:

@@ -11,8 +11,8 @@ from mmweaver.experiments import weaver_paper
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.metrics.baselines import all_zeros
-from studies.network.paper_rows import learning_curve, rows_of, scores_of
 from studies.network.room_cache import RoomCache
+from studies.paper.paper_scores import learning_curve, rows_of, scores_of
 from tests.cubes import point_cube
 
 
