@@ -15,7 +15,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import RadarCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.fields.phase_centring import centring_turn
+from mmweaver.fields.phase_centring import centring_phasor
 from mmweaver.figures.theme import POWER_MAP
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
@@ -93,7 +93,7 @@ def draw_super_resolution(path: Path, factor: float, recipe: str, frame: int) ->
     """The same picture of a radar of `factor` times the bandwidth, and of what coarse methods make of it."""
     coarse, truths = finer_truths((factor,), ("more_bandwidth",))
     cube, truth = radar_cube(coarse), truths["more_bandwidth", factor]
-    turn = centring_turn(truth.config, truth.grid).conj() * centring_turn(cube.config, truth.grid)
+    turn = centring_phasor(truth.config, truth.grid).conj() * centring_phasor(cube.config, truth.grid)
     shown = {}
     for method in methods((recipe,)):
         if method.name in ("zero_padding", f"inr_{recipe}") and method.make is not None:

@@ -92,14 +92,14 @@ class _Tracks:
         )
 
 
-def fit_tracks(target: Tensor, stretch: FitWindow, shape: TrackShape, frame_s: float, start: Points) -> float:
+def fit_tracks(target: Tensor, fit_window: FitWindow, shape: TrackShape, frame_s: float, start: Points) -> float:
     """Energy that the tracks leave of the target (frame, range, doppler, antenna), over its own."""
-    axes = stretch.axes
-    tracks = _Tracks(shape, stretch.response, frame_s, start)
+    axes = fit_window.axes
+    tracks = _Tracks(shape, fit_window.response, frame_s, start)
 
     def unit(geometry: Tensor) -> Tensor:
         """(frame, track, cell)."""
-        every = [stretch.response.render(tracks.points(geometry, frame), axes) for frame in range(shape.num_frames)]
+        every = [fit_window.response.render(tracks.points(geometry, frame), axes) for frame in range(shape.num_frames)]
         return torch.stack(every)[:, :, rows, columns_seen].flatten(2)
 
     rows, columns_seen = _with_signal(target, 1), _with_signal(target, 2)
@@ -157,20 +157,20 @@ def _geometry_step(geometry: Tensor, unit, columns: Tensor, amplitude: Tensor, l
     return step.view(len(geometry), count).clamp(-0.5, 0.5).to(geometry.dtype)
 
 
-def compare(target: Tensor, stretch: FitWindow, shape: TrackShape, frame_s: float) -> dict[str, float]:
+def compare(target: Tensor, fit_window: FitWindow, shape: TrackShape, frame_s: float) -> dict[str, float]:
     """Errors in dB over the same frames: free points, tracks in as many numbers, and how many of each."""
     recipe = FitRecipe(num_points=POINTS_A_FRAME * shape.num_frames, with_static=False, least_gain=0.0)
-    free = fitted(target, stretch, recipe)
-    each = values_of_point(stretch.response)
+    free = fitted(target, fit_window, recipe)
+    each = values_of_point(fit_window.response)
     num_values = int(free.counts().sum()) * each
     num_tracks = num_values // shape.num_values
     middle = target[shape.num_frames // 2 :][:1]
     one = FitRecipe(num_points=num_tracks, with_static=False, least_gain=0.0)
-    start = fitted(middle, FitWindow.of(stretch.config, 1, 0), one).points
-    left = target - stretch.response.render(free.points, stretch.axes)
+    start = fitted(middle, FitWindow.of(fit_window.config, 1, 0), one).points
+    left = target - fit_window.response.render(free.points, fit_window.axes)
     return {
         "free_points_db": _db(float(left.abs().square().sum() / target.abs().square().sum())),
-        "tracks_db": _db(fit_tracks(target, stretch, shape, frame_s, start)),
+        "tracks_db": _db(fit_tracks(target, fit_window, shape, frame_s, start)),
         "values": num_values,
         "tracks": start.amplitude.shape[1],
     }
@@ -190,10 +190,10 @@ def measure(run: StudyRun) -> Path:
         start = time.process_time()
         found = []
         for first in FIRST_FRAMES:
-            stretch = FitWindow.of(cube.config, shape.num_frames, 0)
+            fit_window = FitWindow.of(cube.config, shape.num_frames, 0)
             values = cube.values[first : first + shape.num_frames]
-            working = stretch.working(values / np.abs(values).max())
-            found.append(compare(working, stretch, shape, cube.config.frame_period_s))
+            working = fit_window.working(values / np.abs(values).max())
+            found.append(compare(working, fit_window, shape, cube.config.frame_period_s))
         rows.append(_row(signal.digest, shape, found, time.process_time() - start))
     config = {"first_frames": list(FIRST_FRAMES), "points_a_frame": POINTS_A_FRAME, "steps": STEPS}
     return run.write(EXPERIMENT, "tracks", config=config, rows=rows)

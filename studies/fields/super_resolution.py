@@ -30,7 +30,7 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
 from mmweaver.fields.field import SignalField
-from mmweaver.fields.phase_centring import centred, centring_turn
+from mmweaver.fields.phase_centring import centred, centring_phasor
 from mmweaver.fields.sampling import finer_grid, sampled_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
@@ -160,7 +160,7 @@ def sampled_places(sampler: Sampler, cube: RadarCube, adc: AdcCube, radius: int)
 
 def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig) -> dict[str, Any]:
     """The scorecard of a coarse cube's sampler on the grid of a finer radar's cube, both phase-centred."""
-    values = sampler(truth.grid) * centring_turn(coarse, truth.grid)[None, :, :, None]
+    values = sampler(truth.grid) * centring_phasor(coarse, truth.grid)[None, :, :, None]
     prediction = replace(truth, values=values.astype(np.complex64))
     return scorecard_metrics(scorecard(prediction, centred(truth)))
 

@@ -17,7 +17,8 @@ from mmweaver.dsp.points import point_cloud
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_azimuth_standing, draw_photo
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Room, Weaver
+from mmweaver.generate import Weaver
+from mmweaver.generation import Room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -38,7 +39,7 @@ def views_of(kind: str, *, frames: int = 20) -> list[FigureData]:
     recording = radar_cube(true_room.run((), num_frames=frames, seed=1).adc)
     room = Room(scene=reconstruct(made_room.photo()), inputs={}, seconds={})
     weaver = Weaver("weaver", AWR1843)
-    found = [weaver.generate(one, TEXT, frames=frames) for one in (room, room.with_empty_recording(recording))]
+    found = [weaver.generate(one, TEXT, frames=frames) for one in (room, room.with_background(recording))]
     person = replace(found[0].motion, subject=found[0].motion.subject + OTHER_SKIN)
     truth = radar_cube(true_room.run(person, num_frames=frames, seed=2).adc)
     cubes = (truth, *(one.cube for one in found))

@@ -4,7 +4,7 @@
 
 Rooms are of kinds that the weights never saw. Of each, a few sequences are written as capture folders, as a user would
 have them, and what `mmweaver train weaver --captures` runs is run on them; scored are other sequences of the room.
-`captures_as_background` takes the same captures, with people in them, for `--empty-room`, and tunes nothing.
+`captures_as_background` takes the same captures, with people in them, for `--background`, and tunes nothing.
 `captures_mean` repeats the mean of the captures: it knows the room with its phases, and nobody in it. `realization`,
 where the data set is of this version's motion library, is the simulator in the true room with other phases (an oracle).
 Intervals: bootstrap over rooms. A stopped run continues where it was.

@@ -24,7 +24,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.shapes import CubeValues
 from mmweaver.fields.field import CHUNK_POINTS, SignalField
-from mmweaver.fields.phase_centring import centring_turn, centring_turn_at
+from mmweaver.fields.phase_centring import centring_phasor, centring_phasor_at
 from mmweaver.fields.sampling import Coordinates, coordinates_on
 from studies.paper.positional_encoding import (
     OCTAVES,
@@ -292,7 +292,7 @@ class InrField(SignalField):
             out[first : first + len(part)] = _complex(iq)
         out *= np.float32(self.amplitude)
         if self.is_centred:
-            out *= centring_turn_at(self.config, self.grid, coordinates).conj()
+            out *= centring_phasor_at(self.config, self.grid, coordinates).conj()
         return out
 
     def on_grid(self, grid: CubeGrid) -> CubeValues:
@@ -300,7 +300,7 @@ class InrField(SignalField):
         gamma, beta = self._modulation_at(axes[0])
         turn = np.full(grid.shape[1:], self.amplitude, np.complex64)
         if self.is_centred:
-            turn *= centring_turn(self.config, grid).conj()[:, :, None]
+            turn *= centring_phasor(self.config, grid).conj()[:, :, None]
         iq = evaluate_on_axes(
             self.shape, self.theta, gamma, beta, self._norm(axes[1:]), turn=torch.from_numpy(turn.ravel()),
             dtype=self.decode_dtype, threads=self.decode_threads,
@@ -354,7 +354,7 @@ class BaseInrField(SignalField):
             iq = evaluate(self.shape, self.theta, torch.from_numpy(np.stack(axes, axis=1)))
         out = _complex(iq) * np.float32(self.amplitude)
         if self.is_centred:
-            out *= centring_turn_at(self.config, self.grid, coordinates).conj()
+            out *= centring_phasor_at(self.config, self.grid, coordinates).conj()
         return out
 
 

@@ -13,7 +13,8 @@ from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_doppler_time, draw_range_time
 from mmweaver.figures.skeleton_drawing import SkeletonInPhoto
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Generation, Room, Weaver
+from mmweaver.generate import Weaver
+from mmweaver.generation import Generation, Room
 from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small, small
 from studies.scene.top_view import draw_top

@@ -16,16 +16,12 @@ from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.models.weights import load_into, shipped_weights
-from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 
 
-def test_activity_writes_weights_and_their_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data = str(tmp_path / "data")
-    rooms = ["--rooms", "office,dining_room", "--layouts", "1", "--sequences", "3", "--frames", "3", "--quiet"]
-    assert main(["dataset", data, *rooms]) == 0
-    few = ["--data", data, "--steps", "2", "--batch", "1", "--json"]
+def test_activity_writes_weights_and_their_page(tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    few = ["--data", str(tiny_signals), "--steps", "2", "--batch", "1", "--json"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["steps"] == 2
@@ -48,9 +44,10 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert not (tmp_path / "o").exists()
 
 
-def test_it_goes_on_from_weights_of_its_own_recipe_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data = str(tiny_data(tmp_path / "data"))
-    few = ["--data", data, "--steps", "1", "--batch", "1", "--json"]
+def test_it_goes_on_from_weights_of_its_own_recipe_alone(
+    tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    few = ["--data", str(tiny_signals), "--steps", "1", "--batch", "1", "--json"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
     assert main(["train", "activity", "--out", str(tmp_path / "b"), "--from", str(tmp_path / "a"), *few]) == 0
     capsys.readouterr()
@@ -59,14 +56,10 @@ def test_it_goes_on_from_weights_of_its_own_recipe_alone(tmp_path: Path, capsys:
     assert "mmweaver train activity" in capsys.readouterr().err
 
 
-@pytest.fixture(scope="module")
-def light(tmp_path_factory: pytest.TempPathFactory) -> str:
-    return str(tiny_data(tmp_path_factory.mktemp("light") / "data", geometry_only=True))
-
-
-def test_two_processes_that_were_killed_end_as_two_that_were_not(light: str, tmp_path: Path):
+def test_two_processes_that_were_killed_end_as_two_that_were_not(tiny_geometry: Path, tmp_path: Path):
     pytest.importorskip("accelerate")
-    words = ["train", "activity", "--data", light, "--steps", "16", "--batch", "2", "--save-every", "0", "--out"]
+    words = ["train", "activity", "--data", str(tiny_geometry), "--steps", "16", "--batch", "2", "--save-every", "0"]
+    words.append("--out")
     out = tmp_path / "killed"
     kill_when(out / "checkpoint.pt", two_processes([*words, str(out)]))
     assert 1 <= torch.load(out / "checkpoint.pt", weights_only=True)["done"] < 16

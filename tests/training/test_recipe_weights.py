@@ -9,13 +9,12 @@ from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.models.activity_network import load_activity
 from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityRecipe, train_activity
 from mmweaver.training.recipe_weights import write_activity_weights
-from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 
 
-def test_weights_are_read_again_and_their_page_gives_the_baseline(tmp_path: Path):
-    data = tiny_data(tmp_path / "data")
+def test_weights_are_read_again_and_their_page_gives_the_baseline(tiny_signals: Path, tmp_path: Path):
+    data = tiny_signals
     trainer = train_activity(data, tmp_path / "a", ActivityRecipe(steps=2, batch_size=2, validate_every=2))
     features = write_activity_weights(tmp_path / "a", data, trainer)
     assert load_activity(features, AWR1843) is not None

@@ -24,9 +24,9 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "train",
         help="train the network on a data set",
         epilog=EXAMPLES,
@@ -81,6 +81,7 @@ def add_verb(verbs: Any) -> None:
     output.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     output.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -11,7 +11,6 @@ from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from studies.network.learned_scores import _row, cases_of, energy_db, training_mean
 from studies.report.tables import _loudness
 from tests.cubes import point_cube
-from tests.training.tiny_data import tiny_data
 
 
 def test_energy_over_the_truths():
@@ -30,10 +29,8 @@ def test_a_row_whose_energy_is_gone_says_so():
         assert _loudness(row) == told
 
 
-def test_the_mean_of_training_rooms_is_theirs_alone_and_does_not_move(tmp_path: Path):
-    pytest.importorskip("zarr")
-    data = tiny_data(tmp_path / "set")
-    rooms, plan = read_rooms(data), read_plan(data)
+def test_the_mean_of_training_rooms_is_theirs_alone_and_does_not_move(tiny_signals: Path):
+    rooms, plan = read_rooms(tiny_signals), read_plan(tiny_signals)
     office = next(room for room in rooms if room.kind == "office")
     (case,) = cases_of(rooms, "validation", 1, plan, 0)
     cube = training_mean(rooms)(case)

@@ -9,14 +9,13 @@ import torch
 from mmweaver.core.presets import AWR1843
 from studies.paper.paper_examples import PaperRoom, paper_rooms, sample_paper_batch
 from studies.paper.paper_method import unit_sqrt_mw
-from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 
 
-@pytest.fixture(scope="module", params=[False, True], ids=["signals", "geometry"])
-def room(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> PaperRoom:
-    folder: Path = tiny_data(tmp_path_factory.mktemp("data") / "set", geometry_only=request.param)
+@pytest.fixture(scope="module", params=["tiny_signals", "tiny_geometry"])
+def room(request: pytest.FixtureRequest) -> PaperRoom:
+    folder: Path = request.getfixturevalue(request.param)
     (room,) = paper_rooms(folder, "train")
     return room
 

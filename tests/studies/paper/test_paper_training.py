@@ -15,15 +15,10 @@ from mmweaver.training.trainer import Progress
 from studies.paper.paper_examples import paper_rooms, sample_paper_batch
 from studies.paper.paper_network import PaperNetwork
 from studies.paper.paper_training import PaperLearner, PaperRecipe, train_paper
-from tests.training.tiny_data import StoppedError, tiny_data
+from tests.training.tiny_data import StoppedError
 
 pytest.importorskip("zarr")
 RECIPE = PaperRecipe(steps=4, batch_size=2, validate_every=2, validation_batches=2)
-
-
-@pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tiny_data(tmp_path_factory.mktemp("data") / "set", geometry_only=True)
 
 
 @pytest.fixture(scope="module")
@@ -41,12 +36,12 @@ def stop_at_three(progress: Progress) -> None:
         raise StoppedError
 
 
-def test_it_goes_on_where_it_stopped(data: Path, features: Path, tmp_path: Path):
+def test_it_goes_on_where_it_stopped(tiny_geometry: Path, features: Path, tmp_path: Path):
     options = {"features": features, "save_every_s": 0.0}
-    whole = train_paper(data, tmp_path / "whole", RECIPE, **options)
+    whole = train_paper(tiny_geometry, tmp_path / "whole", RECIPE, **options)
     with pytest.raises(StoppedError):
-        train_paper(data, tmp_path / "parts", RECIPE, listener=stop_at_three, **options)
-    parts = train_paper(data, tmp_path / "parts", RECIPE, **options)
+        train_paper(tiny_geometry, tmp_path / "parts", RECIPE, listener=stop_at_three, **options)
+    parts = train_paper(tiny_geometry, tmp_path / "parts", RECIPE, **options)
     for (name, one), two in zip(whole.learner.state_dict().items(), parts.learner.state_dict().values(), strict=True):
         assert torch.equal(one, two), name
     assert whole.best.figures == parts.best.figures
@@ -55,20 +50,20 @@ def test_it_goes_on_where_it_stopped(data: Path, features: Path, tmp_path: Path)
     assert len(list((tmp_path / "whole" / "pictures").glob("*.png"))) == 2
 
 
-def test_a_longer_run_goes_on_and_no_other_setting_may_change(data: Path, features: Path, tmp_path: Path):
-    train_paper(data, tmp_path, replace(RECIPE, steps=1), features=features)
+def test_a_longer_run_goes_on_and_no_other_setting_may_change(tiny_geometry: Path, features: Path, tmp_path: Path):
+    train_paper(tiny_geometry, tmp_path, replace(RECIPE, steps=1), features=features)
     steps: list[int] = []
     longer = replace(RECIPE, steps=2)
-    train_paper(data, tmp_path, longer, features=features, listener=lambda told: steps.append(told.step))
+    train_paper(tiny_geometry, tmp_path, longer, features=features, listener=lambda told: steps.append(told.step))
     assert steps == [2]
     with pytest.raises(InputError, match="other settings"):
-        train_paper(data, tmp_path, replace(RECIPE, steps=3, learning_rate=1e-3), features=features)
+        train_paper(tiny_geometry, tmp_path, replace(RECIPE, steps=3, learning_rate=1e-3), features=features)
 
 
-def test_bf16_does_no_harm_and_nothing_stays_on_the_cpu(data: Path, features: Path):
+def test_bf16_does_no_harm_and_nothing_stays_on_the_cpu(tiny_geometry: Path, features: Path):
     from mmweaver.models.activity_network import load_activity
 
-    batch = sample_paper_batch(paper_rooms(data, "train"), 0, 0, size=2)
+    batch = sample_paper_batch(paper_rooms(tiny_geometry, "train"), 0, 0, size=2)
     torch.manual_seed(0)
     learner = PaperLearner(PaperNetwork(), load_activity(features, AWR1843), AWR1843).eval()
     exact = sum(float(term.detach()) for term in learner(batch).values())
@@ -83,9 +78,9 @@ def test_bf16_does_no_harm_and_nothing_stays_on_the_cpu(data: Path, features: Pa
     assert all(gradient is not None for gradient in gradients)  # several processes would wait for one that is missing
 
 
-def test_weights_of_another_recipe_are_refused(data: Path, features: Path, tmp_path: Path):
+def test_weights_of_another_recipe_are_refused(tiny_geometry: Path, features: Path, tmp_path: Path):
     card = WeightsCard(recipe="paper", licence="MIT", dataset_sha256="", radar="awr1843", steps=0, seed=0,
                        validation_loss=0.0, mmweaver_version="0")  # fmt: skip
     save_weights(tmp_path / "paper.safetensors", PaperNetwork(), card)
     with pytest.raises(InputError, match="mmweaver train activity"):
-        train_paper(data, tmp_path / "out", RECIPE, features=tmp_path / "paper.safetensors")
+        train_paper(tiny_geometry, tmp_path / "out", RECIPE, features=tmp_path / "paper.safetensors")

@@ -16,22 +16,16 @@ from mmweaver.training.activity_training import ActivityRecipe, train_activity
 from mmweaver.training.recipe_weights import write_activity_weights
 from studies.paper.paper_method import load_paper
 from studies.run import main
-from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 ROOT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tiny_data(tmp_path_factory.mktemp("data") / "data", geometry_only=True)
-
-
-@pytest.fixture(scope="module")
-def features(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def features(tiny_geometry: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("features")
-    trainer = train_activity(data, out, ActivityRecipe(steps=1, batch_size=1, validate_every=1))
-    return write_activity_weights(out, data, trainer)
+    trainer = train_activity(tiny_geometry, out, ActivityRecipe(steps=1, batch_size=1, validate_every=1))
+    return write_activity_weights(out, tiny_geometry, trainer)
 
 
 def words(data: Path, features: Path, out: Path, *more: str) -> list[str]:
@@ -40,9 +34,9 @@ def words(data: Path, features: Path, out: Path, *more: str) -> list[str]:
 
 
 def test_weights_are_read_again_and_their_page_gives_the_baseline(
-    data: Path, features: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tiny_geometry: Path, features: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
-    assert main(words(data, features, tmp_path)) == 0
+    assert main(words(tiny_geometry, features, tmp_path)) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["steps"] == 2
     assert {"zeros_loss", "nmse", "energy"} <= set(summary["validation"])
@@ -53,28 +47,28 @@ def test_weights_are_read_again_and_their_page_gives_the_baseline(
     page = (tmp_path / "README.md").read_text()
     assert "| all zeros |" in page
     assert "python -m studies run paper_scores" in page
-    count = sum(name == "train" for room in read_rooms(data) for name in room.split)
+    count = sum(name == "train" for room in read_rooms(tiny_geometry) for name in room.split)
     assert f"{count} sequences of 1 rooms, {4 / count:.1f} passes" in page  # two steps of two
     assert list((tmp_path / "pictures").glob("*.png"))
 
 
 def test_weights_of_another_recipe_are_refused(
-    data: Path, features: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tiny_geometry: Path, features: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     with pytest.raises(InputError, match="python -m studies run train_paper"):
         load_paper(features)
-    assert main(words(data, features, tmp_path, "--from", str(features))) == 2
+    assert main(words(tiny_geometry, features, tmp_path, "--from", str(features))) == 2
     assert "recipe 'activity'" in capsys.readouterr().err
 
 
-def test_two_processes_train_it(data: Path, features: Path, tmp_path: Path):
+def test_two_processes_train_it(tiny_geometry: Path, features: Path, tmp_path: Path):
     pytest.importorskip("accelerate")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = str(free.getsockname()[1])
     shared = {"WORLD_SIZE": "2", "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port, "OMP_NUM_THREADS": "1"}
     shared["PYTHONPATH"] = os.pathsep.join([str(ROOT / "src"), str(ROOT)])
-    command = [sys.executable, "-m", "studies", *words(data, features, tmp_path)]
+    command = [sys.executable, "-m", "studies", *words(tiny_geometry, features, tmp_path)]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     started = [
         subprocess.Popen(command, env=os.environ | shared | {"RANK": rank, "LOCAL_RANK": rank}, **pipes)
