@@ -59,7 +59,7 @@ def start(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
     text = plan.to_json()
     file = folder / PLAN_FILE
     if file.is_file():
-        if file.read_text() != text:
+        if file.read_text(encoding="utf-8") != text:
             raise InputError(f"{folder} holds a data set of another plan; choose another folder or the same settings")
         return
     if folder.exists() and any(folder.iterdir()):
@@ -76,8 +76,8 @@ def start(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
          "wavelength_m": config.wavelength_m}
     )  # fmt: skip
     partial = folder / f".{PLAN_FILE}"
-    partial.write_text(text)
-    partial.rename(file)
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(file)
 
 
 def is_done(folder: Path, name: str) -> bool:
@@ -90,7 +90,7 @@ def is_being_written(partial: Path) -> bool:
     Workers outlive a parent that was killed by a room or two; what they write must not be taken from under them.
     """
     *_, host, process = partial.name.rsplit(".", 2)
-    if host != _host():
+    if host != _host() or os.name == "nt":  # Windows has no signal that only asks: os.kill would end the process
         return time.time() - partial.stat().st_mtime < FORGOTTEN_S
     try:
         os.kill(int(process), 0)
@@ -264,7 +264,7 @@ def read_radar(folder: Path) -> RadarConfig:
 
 def plan_text(folder: Path) -> str:
     """The plan a data set was made by, as JSON."""
-    return (folder / PLAN_FILE).read_text()
+    return (folder / PLAN_FILE).read_text(encoding="utf-8")
 
 
 def read_plan(folder: Path) -> dict[str, Any]:

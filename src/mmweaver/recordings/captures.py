@@ -164,7 +164,7 @@ def _beside(place: Path) -> RgbdPhoto | None:
 def _named(meta: Path) -> RgbdPhoto | None:
     """The photo that `mmweaver generate` says it used. Raises InputError where that has changed since."""
     try:
-        inputs: dict[str, Any] = json.loads(meta.read_text())["inputs"]
+        inputs: dict[str, Any] = json.loads(meta.read_text(encoding="utf-8"))["inputs"]
     except (OSError, ValueError, KeyError, TypeError):
         return None
     if "sample" in inputs:
