@@ -29,7 +29,7 @@ Fitter = Callable[[RadarCube], tuple[SignalField, float]]
 def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
     """Fits a field to one signal and scores it: what it stores, in which type, against the same frames in theirs."""
     field, seconds = make(signal.cube)
-    metrics = scorecard(field.cube(), signal.cube, twin=signal.twin).as_json()
+    metrics = scorecard(field.cube(), signal.cube, oracle=signal.twin).as_json()
     if signal.noise_free is not None:
         for name, entry in scorecard(signal.noise_free, signal.cube).as_json().items():
             metrics[name]["noise_free"] = entry["value"]

@@ -34,7 +34,7 @@ from mmweaver.fields.phase_centring import centred, centring_phasor
 from mmweaver.fields.sampling import finer_grid, sampled_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.metrics.baselines import FLOORS
+from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS, scorecard
@@ -239,7 +239,7 @@ def _entry(
         "definition": f"{metric.definition}; {cells}",
         "version": metric.version,
         "is_headline": metric.is_headline,
-        "floor": {floor: nmse_db(make(truth).values, truth.values, where) for floor, make in FLOORS.items()},
+        "floor": {floor: nmse_db(make(truth).values, truth.values, where) for floor, make in BASELINES.items()},
     }
 
 

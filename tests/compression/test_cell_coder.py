@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
-from tests.fields.codec.test_residual_coder import clusters
 
 from mmweaver.compression.cell_coder import COARSE, FINE, MapCoder, NumberCoder
 from mmweaver.compression.entropy import Decoder, Encoder
 from mmweaver.core.seeding import stream
+from tests.compression.test_residual_coder import clusters
 
 SHAPES = [(2, 4, 3, 20, 16), (2, 1, 1, 37, 9), (2, 12, 1, 24, 1), (2, 2, 2, 1, 1)]
 

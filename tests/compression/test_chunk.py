@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 import torch
-from tests.fields.scatterers.test_stretch import overlapping
 
 from mmweaver.compression.chunk import ChunkEncoder, decode_chunk
 from mmweaver.core.errors import InputError
 from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from tests.fields.echoes import SMALL, crowd, error_db
+from tests.fields.scatterers.test_fit_window import overlapping
 
 
 def encoder_of(cube, hop: int, recipe: FitRecipe) -> ChunkEncoder:

@@ -9,7 +9,7 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import examples, power_maps
 
@@ -25,7 +25,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         kinds=("office", "dining_room"), lightings=("day",), num_layouts=3, sequences_a_room=3, num_frames=4,
         geometry_only=True,
     )  # fmt: skip
-    generate(folder, plan, AWR1843)
+    generate_dataset(folder, plan, AWR1843)
     return folder
 
 
@@ -35,7 +35,7 @@ def room(folder: Path) -> StoredRoom:
 
 
 def _mean(room: StoredRoom, index: int, name: str) -> torch.Tensor:
-    drawn = [power_maps(room.cube(index, FRAMES, twin=1 + draw).values, room.config) for draw in range(DRAWS)]
+    drawn = [power_maps(room.cube(index, FRAMES, realization=1 + draw).values, room.config) for draw in range(DRAWS)]
     return torch.stack([getattr(maps, name) for maps in drawn]).mean(dim=0)
 
 

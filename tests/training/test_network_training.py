@@ -8,7 +8,7 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.training.device import ComputeDevice, moved
@@ -25,7 +25,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     plan = DatasetPlan(
         kinds=("office", "dining_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4
     )
-    generate(folder, plan, AWR1843)
+    generate_dataset(folder, plan, AWR1843)
     return folder
 
 

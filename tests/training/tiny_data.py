@@ -4,7 +4,7 @@ from pathlib import Path
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 
 
 def tiny_data(folder: Path, *, geometry_only: bool = False) -> Path:
@@ -13,7 +13,7 @@ def tiny_data(folder: Path, *, geometry_only: bool = False) -> Path:
         kinds=("office", "dining_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4,
         geometry_only=geometry_only,
     )  # fmt: skip
-    generate(folder, plan, AWR1843)
+    generate_dataset(folder, plan, AWR1843)
     return folder
 
 

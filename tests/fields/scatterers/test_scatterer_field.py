@@ -2,7 +2,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.fields.scatterers.test_stretch import overlapping
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
@@ -10,6 +9,7 @@ from mmweaver.fields.sampling import finer_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from tests.fields.echoes import SMALL, crowd, direction_of, error_db, exact_point
+from tests.fields.scatterers.test_fit_window import overlapping
 
 RECIPE = FitRecipe(num_points=90, stages=10)
 
