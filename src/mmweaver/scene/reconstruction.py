@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Rotation
 from mmweaver.geometry.pinhole import unproject
@@ -143,9 +144,10 @@ def _spread(parts: list[np.ndarray]) -> tuple[float, float]:
 
 def _own_assumptions(floor: Plane, *, has_classes: bool) -> tuple[str, ...]:
     width, length = 2 * floor.half_size_m[0], 2 * floor.half_size_m[1]
-    return (
+    sentences = (
         "The radar stands level at the camera and looks where it looks.",
         f"The floor was completed to a level rectangle of {width:.1f} x {length:.1f} m; walls were taken to reach it.",
         "Places under the picture's lower edge, before floor that is seen, were taken to be free.",
         ASSUMPTION_OF_CLASSES if has_classes else ASSUMPTION,
     )
+    return tuple(map(UsualAssumption, sentences))

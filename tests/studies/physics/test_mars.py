@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mmweaver.experiments import mars
 
+from studies.physics import mars
 from studies.physics.cloud_scores import score
 from studies.physics.mars import MarsVariant, Setup, centroid_floor, detect, neighbour_ceiling, simulate, surface_floor
 from studies.physics.mars_data import MarsStretch, cut, read_mars

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Vec3
 from mmweaver.scene.layout.surfaces import UP, LevelGrid
@@ -67,7 +68,9 @@ def close_room(grid: LevelGrid, planes: Sequence[Plane], is_wall: GridBool | Non
     kept = tuple(plane for plane in planes if not any(_is_part_of(plane, wall) for wall in walls))
     return RoomLayout(
         planes=(*walls, *kept), added=walls,
-        assumptions=(f"Walls ({', '.join(sides)}) were continued until they meet, and past the radar.",),
+        assumptions=(
+            UsualAssumption(f"Walls ({', '.join(sides)}) were continued until they meet, and past the radar."),
+        ),
     )  # fmt: skip
 
 
