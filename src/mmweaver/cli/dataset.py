@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import whole
+from mmweaver.cli.arguments import source, whole
 from mmweaver.core.errors import InputError
 
 EXAMPLES = """examples:
@@ -17,9 +17,9 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "dataset",
         help="make a data set of rooms, motions and radar signals",
         epilog=EXAMPLES,
@@ -32,7 +32,9 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--layouts", type=whole, default=10, help="rearrangements of each kind (default 10)")
     parser.add_argument("--sequences", type=whole, default=120, help="sequences in each room (default 120)")
     parser.add_argument("--frames", type=whole, default=20, help="radar frames of each sequence (default 20)")
-    parser.add_argument("--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
+    parser.add_argument(
+        "--radar", type=source, default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json"
+    )
     parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     parser.add_argument(
         "--geometry-only", action="store_true",
@@ -45,6 +47,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -24,16 +24,15 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.datasets.dataset_store import StoredRoom
-from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import noise_power
-from mmweaver.formats.capture_std import is_capture, read_radar_capture
-from mmweaver.formats.npz_files import read_pose_npz, read_radar_npz
+from mmweaver.formats.npz_files import read_pose_npz
 from mmweaver.motion.animation.resample import joints_and_velocities
+from mmweaver.recordings.read_recording import read_recording
 from mmweaver.scene.photo.capture_photo import photo_folder, read_capture_photo
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.sample_photo import sample_photo
 
-CUBE, POSE, META = "radar.npz", "pose.npz", "meta.json"
+POSE, META = "pose.npz", "meta.json"
 FRAMES = 20  # of a sequence, where a capture is longer
 LATE_S = 0.25  # that joints may be missing at either end
 SPLIT = "captured"
@@ -88,23 +87,12 @@ def read_capture(
 
     Raises InputError for a folder that is none, has no photo, or joints that do not belong to its frames.
     """
-    cube = recorded_cube(folder)
+    cube = read_recording(folder).cube
     photo = _own_photo(folder) if rgb is None else read_photo(rgb, depth, camera)[0]
     pose = read_pose_npz(folder / POSE) if (folder / POSE).is_file() else None
     if pose is not None:
         _check_times(folder, pose, cube)
     return Capture(folder=folder, cube=cube, photo=photo, pose=pose)
-
-
-def recorded_cube(source: Path) -> RadarCube:
-    """The cube of a recording: a radar.npz, a folder that holds one, or a capture folder. Raises InputError."""
-    if source.is_file():
-        return read_radar_npz(source)
-    if (source / CUBE).is_file():
-        return read_radar_npz(source / CUBE)
-    if is_capture(source):
-        return radar_cube(read_radar_capture(source).packets.adc)
-    raise InputError(f"{source} holds no {CUBE} and is no capture folder; make one with: mmweaver process")
 
 
 def rooms_of(captures: Sequence[Capture]) -> list[RecordedRoom]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
 from mmweaver.geometry.aligned_photo import AlignedPhoto
@@ -138,9 +139,10 @@ def _extent(parts: Sequence[Float[Array, " _"]]) -> tuple[float, float]:
 
 def _general_assumptions(floor: Plane, *, has_classes: bool) -> tuple[str, ...]:
     width, length = 2 * floor.half_size_m[0], 2 * floor.half_size_m[1]
-    return (
+    sentences = (
         "The radar stands level at the camera and points where the camera points.",
         f"The floor was extended to a level rectangle of {width:.1f} x {length:.1f} m, and walls down to it.",
         "Places below the picture's lower edge, before the visible floor, were assumed to be free.",
         ASSUMPTION_OF_CLASSES if has_classes else ASSUMPTION,
     )
+    return tuple(map(UsualAssumption, sentences))

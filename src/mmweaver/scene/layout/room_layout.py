@@ -9,12 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Faces, PerPoint, Points, Vec3, Vertices
 from mmweaver.scene.layout.surfaces import UP, AlignedGrid
 from mmweaver.scene.photo.depth_grid import GridBool
 
-BEHIND_M = 0.5  # side walls extend this far_m behind the radar
+BEHIND_M = 0.5  # side walls extend this far behind the radar
 DEFAULT_MATERIAL = "plasterboard"
 DEFAULT_HEIGHT_M = 2.5  # of a room whose ceiling is not visible
 _BIN_M = 0.04
@@ -65,10 +66,8 @@ def estimate_layout(grid: AlignedGrid, planes: Sequence[Plane], is_wall: GridBoo
         return unchanged
     walls = _rectangles(found, grid, -front, right, _ceiling_m(grid, planes), _wall_material(planes))
     kept = tuple(plane for plane in planes if not any(_is_part_of(plane, wall) for wall in walls))
-    return RoomLayout(
-        planes=(*walls, *kept), extended=walls,
-        assumptions=(f"Walls ({', '.join(found)}) were extended until they meet, and past the radar.",),
-    )  # fmt: skip
+    note = UsualAssumption(f"Walls ({', '.join(found)}) were extended until they meet, and past the radar.")
+    return RoomLayout(planes=(*walls, *kept), extended=walls, assumptions=(note,))
 
 
 def wall_faces(walls: Sequence[Plane]) -> tuple[Vertices, Faces]:
