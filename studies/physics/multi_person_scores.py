@@ -21,7 +21,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.dsp.cube import radar_cube, remove_static
 from mmweaver.dsp.points import point_cloud
-from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.paths.ray_traced import Simulator
@@ -91,12 +91,12 @@ def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> P
 
 def scores_of(pair: Pair) -> dict[str, dict[str, float]]:
     """{metric: {superposition, without_second, ...}} against mutual occlusion; and its effects."""
-    truth = Views(pair.mutual)
+    truth = Representations(pair.mutual)
     predictions = {
         "superposition": pair.plain, "without_second": pair.without_second, "other_noise": pair.other_noise,
         "realization": pair.realization,
     }  # fmt: skip
-    views = {name: Views(cube) for name, cube in predictions.items()}
+    views = {name: Representations(cube) for name, cube in predictions.items()}
     scores = {name: {who: METRICS[name].score(seen, truth) for who, seen in views.items()} for name in SHOWN}
     scores["second_dimmed_db"] = {"superposition": dimming_db(pair)}
     second = pair.poses[1]
