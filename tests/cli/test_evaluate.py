@@ -28,10 +28,10 @@ def recordings(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Trained within a second, on a fortieth of the windows."""
+    """Trained within a second, on a few of the windows."""
 
     def train(frozen: Frozen) -> ActivityClassifier:
-        few = replace(frozen.made, features=frozen.made.features[::40], labels=frozen.made.labels[::40])
+        few = replace(frozen.made, features=frozen.made.features[::23], labels=frozen.made.labels[::23])
         return few.train(replace(frozen.classifier, num_trees=5, boosting_rounds=2, repetitions=1))
 
     monkeypatch.setattr(Frozen, "train", train)
