@@ -15,13 +15,14 @@ if TYPE_CHECKING:
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
     from mmweaver.formats.npz_files import read_radar_npz
     from mmweaver.formats.radar_file import load_radar
-    from mmweaver.generate import Generation, Weaver
+    from mmweaver.generate import Weaver
+    from mmweaver.generation import Generation
     from mmweaver.recordings.processing import ProcessedRecording, process_recording
     from mmweaver.recordings.read_recording import Recording, read_recording
 
 _HOME = {
     "AdcCube": "core.records",
-    "Generation": "generate",
+    "Generation": "generation",
     "InputError": "core.errors",
     "PRESETS": "core.presets",
     "PointCloud": "core.records",

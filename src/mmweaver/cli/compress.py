@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_layout_options, number, whole
+from mmweaver.cli.arguments import add_layout_options, number, source, whole
 from mmweaver.core.errors import InputError
 
 NUM_STAGES = 4
@@ -19,9 +19,9 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "compress", help="store a recording in few bytes", epilog=EXAMPLES,
         description="Stores a radar cube as moving scatterers, a static layer and what they leave, in a .mmw file.",
     )  # fmt: skip
@@ -40,7 +40,7 @@ def add_verb(verbs: Any) -> None:
         "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
     )
     parser.add_argument(
-        "--radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: that beside .npz)"
+        "--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: that beside .npz)"
     )
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
     parser.add_argument(
@@ -51,6 +51,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

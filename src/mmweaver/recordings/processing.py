@@ -32,12 +32,15 @@ class ProcessedRecording:
     meta: dict[str, Any]
     stages: Stages
 
-    def save(self, out: str | Path, *, overwrite: bool = False) -> dict[str, Any]:
-        """Writes radar.npz, points.npz, radar.json, meta.json and the pictures into a folder; returns the meta."""
+    def save(self, out: str | Path, *, overwrite: bool = False, extra: dict[str, str] | None = None) -> dict[str, Any]:
+        """Writes radar.npz, points.npz, radar.json, meta.json and the pictures into a folder; returns the meta.
+
+        `extra`: text files to add, by name.
+        """
         view = FigureData(
             title=f"{Path(self.meta['inputs']['recording']['path']).name}", cube=self.cube, points=self.points
         )
-        return save_results(out, view, self.meta, overwrite=overwrite, stages=self.stages)
+        return save_results(out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra)
 
 
 def process_recording(
