@@ -16,7 +16,7 @@ weaver = Weaver()
 room = weaver.sample_room()
 fig, axes = plt.subplots(1, 4, figsize=(12, 3), sharey=True, layout="constrained")
 for seed, (text, panel) in enumerate(zip(sentences, axes, strict=True)):
-    result = weaver.generate(room, text, frames=40, seed=seed)
+    result = weaver.generate(room, text, frames=30, seed=seed)
     result.save(f"sequences/{seed}", pictures=False)
     grid = result.cube.grid
     doppler = range_doppler_power(result.cube).sum(axis=1)  # (frame, doppler)
