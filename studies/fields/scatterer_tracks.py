@@ -1,6 +1,6 @@
 """Would scatterers that live on from frame to frame say more in as many numbers? A track against free points.
 
-python -m studies.fields.scatterer_tracks --out results
+python -m studies run scatterer_tracks
 
 A track over L frames: range a polynomial of time (its slope is the Doppler), direction cosines too, an amplitude a
 frame. It starts at a scatterer of the middle frame; then all tracks are fitted together (Levenberg-Marquardt with the
@@ -22,7 +22,7 @@ from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import values_of_point
 from studies.fields.field_signals import SIGNALS
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
 
 EXPERIMENT = "scatterer_tracks"
 SIGNAL = "walking_alone"
@@ -180,7 +180,7 @@ def _db(ratio: float) -> float:
     return float(10 * np.log10(ratio))
 
 
-def run(out: Path) -> Path:
+def measure(run: StudyRun) -> Path:
     """One row a shape of track, means over a few places of the sequence."""
     signal = SIGNALS[SIGNAL](None)
     cube = signal.noise_free
@@ -196,7 +196,7 @@ def run(out: Path) -> Path:
             found.append(compare(working, fit_window, shape, cube.config.frame_period_s))
         rows.append(_row(signal.digest, shape, found, time.process_time() - start))
     config = {"first_frames": list(FIRST_FRAMES), "points_a_frame": POINTS_A_FRAME, "steps": STEPS}
-    return write_result(out, experiment=EXPERIMENT, method="tracks", config=config, rows=rows)
+    return run.write(EXPERIMENT, "tracks", config=config, rows=rows)
 
 
 def _row(digest: str, shape: TrackShape, found: list[dict[str, float]], seconds: float) -> dict[str, Any]:
@@ -206,7 +206,6 @@ def _row(digest: str, shape: TrackShape, found: list[dict[str, float]], seconds:
         "dataset": {"name": SIGNAL, "origin": "simulated, without noise", "sha256": digest},
         "n": len(found),
         "seeds": [0],
-        "interval": None,
         "seconds": {"all": round(seconds, 2)},
         "frames": shape.num_frames,
         "range_degree": shape.range_degree,
@@ -215,18 +214,16 @@ def _row(digest: str, shape: TrackShape, found: list[dict[str, float]], seconds:
         "metrics": {
             "nmse_db": {
                 "value": tracks, "unit": "dB", "definition": definition, "version": 1, "is_headline": True,
-                "floor": {"zeros": 0.0}, "free_points": free,
+                "baseline": {"zeros": 0.0, "free_points": free},
             }
         },
         "places": found,
     }  # fmt: skip
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    run(parser.parse_args().out)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """This study has no options of its own."""
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(run)

@@ -1,6 +1,6 @@
 """What a recording of the empty room is worth, to look at: truth, the network from the photo alone, and with it.
 
-    python -m studies.network.background_rooms --out docs/images/weaver_empty_room.png
+    python -m studies run background_rooms --out docs/images/weaver_empty_room.png
 
 Made-up rooms of kinds that the network never saw. The simulator in the true room is the truth and, with nobody there,
 the recording; motion and person are the same in all three, skin is not. Scores: `weaver_table`.
@@ -22,6 +22,7 @@ from mmweaver.generation import Room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small
 
 TEXT = "a person walks to the left"
@@ -69,11 +70,9 @@ def draw_rooms(path: Path, rooms: Sequence[Sequence[FigureData]]) -> None:
         save_small(figure, path)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, default=Path("docs/images/weaver_empty_room.png"))
-    draw_rooms(parser.parse_args().out, [views_of(kind) for kind in KINDS])
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    draw_rooms(options.out, [views_of(kind) for kind in KINDS])

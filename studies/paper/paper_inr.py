@@ -25,14 +25,14 @@ from mmweaver.core.records import CubeGrid
 from mmweaver.core.shapes import CubeValues
 from mmweaver.fields.field import CHUNK_POINTS, SignalField
 from mmweaver.fields.phase_centring import centring_phasor, centring_phasor_at
-from mmweaver.fields.positional_encoding import (
+from mmweaver.fields.sampling import Coordinates, coordinates_on
+from studies.paper.positional_encoding import (
     OCTAVES,
     Frequencies,
     encode_axis,
     normalised,
     positional_encoding,
 )
-from mmweaver.fields.sampling import Coordinates, coordinates_on
 
 HIDDEN_WIDTH = 32
 NUM_HIDDEN = 4

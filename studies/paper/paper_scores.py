@@ -1,6 +1,6 @@
 """What the recipe `paper` reaches in rooms it has never seen, beside all zeros and the static mean.
 
-    python -m studies.network.paper_rows --data DATASET --weights PAPER --out results
+    python -m studies run paper_scores --data DATASET --weights PAPER
 
 Exact joints, simulated truth. cSSIM and PSNR, which the paper reports, are shown with what all zeros score. A learning
 curve that stands beside the weights (`log.jsonl`) is kept with the result.
@@ -19,11 +19,13 @@ import torch
 from mmweaver.core.records import RadarCube
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.metrics.scorecard import METRICS, scorecard
-from mmweaver.models.paper_method import RECIPE, paper_method
 from mmweaver.models.weights import load_into
-from studies.network.learned_table import Case, cases_of, energy_db, interval
+from studies.manifest import StudyRun
+from studies.network.learned_scores import Case, cases_of, energy_db, interval
 from studies.network.room_cache import RoomCache, digest
-from studies.report.result_files import write_result
+from studies.paper.paper_method import RECIPE, paper_method
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 COLUMNS = ("cssim", "psnr_db", "nmse_db", "nmse_active_db", "nmse_moving_db", "rd_ssim", "ra_ssim")
 PAPER, LOG = "paper", "log.jsonl"
@@ -48,7 +50,7 @@ def _name(case: Case) -> str:
 def _scores(case: Case, method: Callable[[Case], RadarCube]) -> Scores:
     truth, cube = case.room.cube(case.index), method(case)
     card = scorecard(cube, truth)
-    rows = {**card.floors, PAPER: card.prediction}
+    rows = {**card.baselines, PAPER: card.prediction}
     scores = {name: {column: values[column] for column in COLUMNS} for name, values in rows.items()}
     scores[PAPER]["energy_db"] = energy_db(cube, truth)
     return scores
@@ -63,7 +65,7 @@ def rows_of(scores: dict[str, dict[str, np.ndarray]], cases: list[Case]) -> list
         for column, values in columns.items():
             mean, low, high = interval(values, rooms)
             unit = METRICS[column].unit if column in METRICS else "dB"
-            metrics[column] = {"value": mean, "low": low, "high": high, "unit": unit}
+            metrics[column] = {"value": mean, "interval_95": [low, high], "unit": unit}
         rows.append({"method": name, "n": len(cases), "num_rooms": len(set(rooms)), "metrics": metrics})
     return rows
 
@@ -78,34 +80,35 @@ def learning_curve(folder: Path) -> list[dict[str, Any]]:
     return [{"step": line["step"], "loss": line["validation"], **line["figures"]} for line in told]
 
 
-def main() -> None:
-    from mmweaver.models.paper_network import PaperNetwork
-
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, required=True, help="of recipe paper")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, required=True, help="of recipe paper")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=3, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
     parser.add_argument("--called", help="the result's name (default: the split)")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    from studies.paper.paper_network import PaperNetwork
+
     torch.set_num_threads(1)
-    plan = read_plan(arguments.data)
-    cases = cases_of(read_rooms(arguments.data), arguments.split, arguments.each, plan, 0, arguments.most)
-    kept = RoomCache(arguments.runs, {"data_plan": plan, "weights": digest(arguments.weights)})
-    rows = rows_of(scores_of(cases, paper_method(arguments.weights), kept), cases)
-    card = load_into(PaperNetwork(), arguments.weights, recipe=RECIPE)
-    write_result(
-        arguments.out, experiment="weaver_paper", method=arguments.called or arguments.split,
-        config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each,
-                "learning_curve": learning_curve(arguments.weights.parent)}, rows=rows,
+    plan = read_plan(options.data)
+    cases = cases_of(read_rooms(options.data), options.split, options.each, plan, 0, options.most)
+    kept = RoomCache(options.runs, {"data_plan": plan, "weights": digest(options.weights)})
+    rows = rows_of(scores_of(cases, paper_method(options.weights), kept), cases)
+    card = load_into(PaperNetwork(), options.weights, recipe=RECIPE)
+    complete = complete_rows(
+        rows, dataset={**dataset_of(options.data), "split": options.split}, seeds=[0],
+        baselines=("zeros", "static_mean"),
+        unknown={"seconds": "see the manifest: all rows together"},
+    )  # fmt: skip
+    run.write(
+        "paper_scores", options.called or options.split,
+        config={"weights": card.__dict__, "data_plan": plan, "each": options.each,
+                "learning_curve": learning_curve(options.weights.parent)}, rows=complete,
     )  # fmt: skip
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
-        print(f"{row['method']:12}", *values)  # noqa: T201
-
-
-if __name__ == "__main__":
-    main()
+        print(f"{row['method']:12}", *values)

@@ -10,9 +10,9 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.metrics.baselines import all_zeros
-from studies.network import paper_rows
-from studies.network.paper_rows import learning_curve, rows_of, scores_of
 from studies.network.room_cache import RoomCache
+from studies.paper import paper_scores
+from studies.paper.paper_scores import learning_curve, rows_of, scores_of
 from tests.cubes import point_cube
 
 
@@ -24,7 +24,7 @@ def _case(seed: int) -> Any:
 
 def test_a_method_that_writes_zeros_scores_as_zeros_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     for name in ("_scores", "_name"):  # cases of a test are not quite cases
-        monkeypatch.setattr(paper_rows, name, getattr(paper_rows, name).__wrapped__)
+        monkeypatch.setattr(paper_scores, name, getattr(paper_scores, name).__wrapped__)
     cases, kept = [_case(seed) for seed in (0, 1)], RoomCache(tmp_path, {})
     scores = scores_of.__wrapped__(  # type: ignore[attr-defined]
         cases, lambda case: all_zeros(case.room.cube(0)), kept

@@ -5,7 +5,8 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from mmweaver.fields.paper_inr import (
+from mmweaver.fields.sampling import finer_grid
+from studies.paper.paper_inr import (
     MODULATIONS_PER_FRAME,
     BaseInrField,
     InrField,
@@ -14,8 +15,7 @@ from mmweaver.fields.paper_inr import (
     evaluate_on_axes,
     fresh_modulation,
 )
-from mmweaver.fields.positional_encoding import harmonics
-from mmweaver.fields.sampling import finer_grid
+from studies.paper.positional_encoding import harmonics
 from tests.cubes import SMALL
 
 

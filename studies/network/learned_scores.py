@@ -1,15 +1,16 @@
-"""The table that decides: the network in rooms it has never seen, beside floors, rivals and the ceiling.
+"""The network in rooms it has never seen, compared with baselines, the simulator and an oracle.
 
-    python -m studies.network.learned_table --data DATASET --weights FILE --out results
-    python -m studies.network.learned_table --data DATASET --weights FILE --split test_person --most 40
-    python -m studies.network.learned_table --data DATASET --weights FILE --paper PAPER/weights.safetensors
-    python -m studies.network.learned_table --data OF_ANOTHER_RADAR --elsewhere hupr
+    python -m studies run learned_scores --data DATASET --weights FILE
+    python -m studies run learned_scores --data DATASET --weights FILE --split test_person --most 40
+    python -m studies run learned_scores --data DATASET --weights FILE --paper PAPER/weights.safetensors
+    python -m studies run learned_scores --data OF_ANOTHER_RADAR --other-radar hupr
 
-Truth is the simulator in the true room. Everybody is given the exact joints. `twin` is the same simulator with other
-surface micro-phases of room and person: the best that anyone can do who does not know them. `twin_skin` knows the
-room's, and `weaver_with_empty_room` was given a recording of the room without the person. `static_mean` is that of the
-truth itself, `training_mean` that of the rooms trained on. `paper` is the paper's own network (`mmweaver train paper`);
-`energy_db`, a cube's energy over the truth's, tells whether it has collapsed. Intervals: bootstrap over rooms.
+Ground truth is the simulator in the true room, and every method is given the exact joints. `realization` is the same
+simulator with other surface micro-phases of room and person: the oracle for methods that cannot know them.
+`realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the room without the
+person. `static_mean` is that of the ground truth itself, `training_mean` that of the rooms trained on. `paper` is the
+paper's own network (study `train_paper`); `energy_db`, the energy of a cube over that of the ground truth, shows
+whether it has collapsed. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -28,24 +29,27 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.make_room import make_sequence
+from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.paper_method import paper_method
 from mmweaver.models.weights import load_weights, read_card, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.paper.paper_method import paper_method
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 COLUMNS = (
     "rd_ssim", "ra_ssim", "rd_ssim_all_cells", "ra_ssim_all_cells", "rd_difference_db", "ra_difference_db",
     "magnitude_nmse_db", "antenna_phase_error_rad", "chamfer_m", "hausdorff_m",
 )  # fmt: skip
+BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
 SAME_M = 1e-4
-TWIN = 1000  # added to a person's number for other skin
+OTHER = 1000  # added to a person's number for other skin
 
 
 @dataclass(frozen=True)
@@ -84,8 +88,8 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
     def method(case: Case) -> RadarCube:
         simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed)
         spec, frames = case.spec, len(case.joints[0])
-        subject, noise = spec.person + skin, spec.seed + TWIN
-        made = make_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
+        subject, noise = spec.person + skin, spec.seed + OTHER
+        made = generate_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
         if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
             raise InputError("the data set's people move otherwise in this version; make it again")
         return made.cube
@@ -93,17 +97,17 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
     return method
 
 
-def woven(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
+def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
     """The network, given a photo, and `recorded` with as many frames of the empty room as the radar records them."""
 
     def method(case: Case) -> RadarCube:
         config = case.room.config
         empty = None
         if recorded:
-            empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + TWIN)
+            empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER)
         woven_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, empty=empty)
         joints, velocity = case.joints
-        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=TWIN + case.spec.person)
+        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=OTHER + case.spec.person)
         return woven_room.cube([motion], seed=case.index)
 
     return method
@@ -159,7 +163,7 @@ def scored(cases: list[Case], methods: dict[str, Method]) -> dict[str, dict[str,
             seconds = time.process_time() - began
             card = scorecard(cube, truth)
             if name == next(iter(methods)):
-                for floor, values in card.floors.items():
+                for floor, values in card.baselines.items():
                     empty = _magnitude_nmse_db(_floor_cube(floor, truth), truth)
                     add(floor, {**_columns(values), "magnitude_nmse_db": empty, "cpu_s": 0.0})
             own = {
@@ -175,9 +179,9 @@ def _columns(values: dict[str, float]) -> dict[str, float]:
 
 
 def _floor_cube(name: str, truth: RadarCube) -> RadarCube:
-    from mmweaver.metrics.baselines import FLOORS
+    from mmweaver.metrics.baselines import BASELINES
 
-    return FLOORS[name](truth)
+    return BASELINES[name](truth)
 
 
 def _magnitude_nmse_db(cube: RadarCube, truth: RadarCube) -> float:
@@ -221,51 +225,53 @@ def cases_of(
     return cases
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
-    parser.add_argument("--paper", type=Path, help="of recipe paper, for a row of its own")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
     parser.add_argument("--only", nargs="*", help="rows (default: all)")
-    parser.add_argument("--elsewhere", metavar="NAME", help="data of another radar or length: a result of this name")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    weights = arguments.weights or shipped_weights()
+    parser.add_argument("--other-radar", metavar="NAME", help="data of another radar or length: a result of this name")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    weights = options.weights or shipped_weights()
     network, card = load_weights(weights)
-    rooms, plan = read_rooms(arguments.data), read_plan(arguments.data)
-    cases = cases_of(rooms, arguments.split, arguments.each, plan, 0, arguments.most)
+    rooms, plan = read_rooms(options.data), read_plan(options.data)
+    cases = cases_of(rooms, options.split, options.each, plan, 0, options.most)
     generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods: dict[str, Method] = {
-        "weaver": woven(network, lambda case: case.room),
-        "weaver_with_empty_room": woven(network, lambda case: case.room, recorded=True),
-        "wrong_photo": woven(network, lambda case: case.other),
+        "weaver": learned(network, lambda case: case.room),
+        "weaver_with_background": learned(network, lambda case: case.room, recorded=True),
+        "wrong_photo": learned(network, lambda case: case.other),
         "training_mean": training_mean(rooms),
         "nearest_training_pose": nearest(rooms),
-        "generic_room_physics": simulated(lambda case: generic_scene, skin=TWIN, micro_seed=1),
-        "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=TWIN, micro_seed=1),
-        "twin_skin": simulated(lambda case: case.true_scene, skin=TWIN),
-        "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),
+        "generic_room_physics": simulated(lambda case: generic_scene, skin=OTHER, micro_seed=1),
+        "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=OTHER, micro_seed=1),
+        "realization_skin": simulated(lambda case: case.true_scene, skin=OTHER),
+        "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
     }
-    about = {"weights": card.__dict__, "data_plan": plan, "each": arguments.each}
-    if arguments.paper is not None:
-        methods["paper"] = paper_method(arguments.paper)
-        about["paper"] = read_card(arguments.paper).__dict__
-    if arguments.only:
-        methods = {name: methods[name] for name in arguments.only}
+    about = {"weights": card.__dict__, "data_plan": plan, "each": options.each}
+    if options.paper is not None:
+        methods["paper"] = paper_method(options.paper)
+        about["paper"] = read_card(options.paper).__dict__
+    if options.only:
+        methods = {name: methods[name] for name in options.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
     table = scored(cases, methods)
-    rows = [_row(name, values, names, arguments.split) for name, values in table.items()]
-    write_result(
-        arguments.out, experiment="weaver_elsewhere" if arguments.elsewhere else "weaver",
-        method=arguments.elsewhere or arguments.split, config=about, rows=rows,
+    rows = [_row(name, values, names, options.split) for name, values in table.items()]
+    rows = complete_rows(
+        rows, dataset=dataset_of(options.data), seeds=[0], baselines=BASELINES, oracles=ORACLES,
+        unknown={"seconds": "metric cpu_s has those of each method"},
     )  # fmt: skip
+    folder = "other_radars" if options.other_radar else "learned_scores"
+    run.write(folder, options.other_radar or options.split, config=about, rows=rows)
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
-        print(f"{row['method']:30}", *values, flush=True)  # noqa: T201
+        print(f"{row['method']:30}", *values, flush=True)
 
 
 def _row(name: str, values: dict[str, np.ndarray], rooms: list[str], split: str) -> dict[str, Any]:
@@ -274,7 +280,7 @@ def _row(name: str, values: dict[str, np.ndarray], rooms: list[str], split: str)
         mean, low, high = interval(each, rooms)
         known = METRICS.get(column)
         metrics[column] = {
-            "value": _number(mean), "low": _number(low), "high": _number(high),
+            "value": _number(mean), "interval_95": [_number(low), _number(high)],
             "unit": known.unit if known else {"cpu_s": "s"}.get(column, "dB"),
         }  # fmt: skip
     return {"method": name, "split": split, "n": len(rooms), "num_rooms": len(set(rooms)), "metrics": metrics}
@@ -282,7 +288,3 @@ def _row(name: str, values: dict[str, np.ndarray], rooms: list[str], split: str)
 
 def _number(value: float) -> float | None:
     return value if np.isfinite(value) else None
-
-
-if __name__ == "__main__":
-    main()

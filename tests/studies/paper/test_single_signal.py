@@ -5,10 +5,10 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
-from mmweaver.fields.paper_inr import InrField
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db, peak_of
-from mmweaver.training.single_signal import PAPER, PAPER_BASE, RECIPES, TUNED_SHORT, InrFitRecipe, _Draw, fit
+from studies.paper.paper_inr import InrField
+from studies.paper.single_signal import PAPER, PAPER_BASE, RECIPES, TUNED_SHORT, InrFitRecipe, _Draw, fit
 from tests.cubes import SMALL, point_cube
 
 
@@ -69,7 +69,7 @@ def test_the_training_pass_is_the_field(cube: RadarCube):
     """Gathering, folding and padding in training are the same function as the field's plain evaluation."""
     import torch
 
-    from mmweaver.training.single_signal import _Network
+    from studies.paper.single_signal import _Network
 
     network = _Network(cube, TUNED_SHORT, 0, "cpu")
     with torch.no_grad():

@@ -10,11 +10,11 @@ import torch
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
-from mmweaver.models.paper_method import load_paper, paper_field, paper_method, unit_sqrt_mw
-from mmweaver.models.paper_network import PaperNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
+from studies.paper.paper_method import load_paper, paper_field, paper_method, unit_sqrt_mw
+from studies.paper.paper_network import PaperNetwork
 
 CARD = WeightsCard(
     recipe="paper", licence="MIT", dataset_sha256="", radar="awr1843", steps=1, seed=0, validation_loss=1.0,

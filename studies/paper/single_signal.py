@@ -14,7 +14,9 @@ from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
 from mmweaver.core.seeding import stream
 from mmweaver.fields.field import SignalField
-from mmweaver.fields.paper_inr import (
+from mmweaver.fields.phase_centring import centred
+from mmweaver.metrics.cells import Cells, cells_of
+from studies.paper.paper_inr import (
     ACTIVATIONS,
     BaseInrField,
     InrField,
@@ -22,9 +24,7 @@ from mmweaver.fields.paper_inr import (
     first_layer_terms,
     fresh_modulation,
 )
-from mmweaver.fields.phase_centring import centred
-from mmweaver.fields.positional_encoding import OCTAVES, harmonics, normalised
-from mmweaver.metrics.cells import Cells, cells_of
+from studies.paper.positional_encoding import OCTAVES, harmonics, normalised
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,8 @@ import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.models.paper_method import unit_sqrt_mw
-from mmweaver.training.paper_examples import PaperRoom, paper_rooms, sample_paper_batch
+from studies.paper.paper_examples import PaperRoom, paper_rooms, sample_paper_batch
+from studies.paper.paper_method import unit_sqrt_mw
 
 pytest.importorskip("zarr")
 

@@ -9,12 +9,12 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.models.paper_network import PaperNetwork
 from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.training.device import ComputeDevice, moved
-from mmweaver.training.paper_examples import paper_rooms, sample_paper_batch
-from mmweaver.training.paper_training import PaperLearner, PaperRecipe, train_paper
 from mmweaver.training.trainer import Progress
+from studies.paper.paper_examples import paper_rooms, sample_paper_batch
+from studies.paper.paper_network import PaperNetwork
+from studies.paper.paper_training import PaperLearner, PaperRecipe, train_paper
 from tests.training.tiny_data import StoppedError
 
 pytest.importorskip("zarr")

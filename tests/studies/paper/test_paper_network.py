@@ -3,9 +3,9 @@
 import pytest
 import torch
 
-from mmweaver.fields.paper_inr import InrShape, evaluate
-from mmweaver.fields.positional_encoding import positional_encoding
-from mmweaver.models.paper_network import Hypernetwork, PaperNetwork, evaluate_each
+from studies.paper.paper_inr import InrShape, evaluate
+from studies.paper.paper_network import Hypernetwork, PaperNetwork, evaluate_each
+from studies.paper.positional_encoding import positional_encoding
 
 
 def _count(module: torch.nn.Module) -> int:

@@ -11,16 +11,16 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.models.activity_network import ActivityNetwork, load_activity
-from mmweaver.models.paper_method import field_of_image, unit_sqrt_mw
-from mmweaver.models.paper_network import PaperNetwork, evaluate_each
 from mmweaver.models.precision import exactly
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.network_examples import power_maps
-from mmweaver.training.paper_examples import PaperBatch, PaperRoom, paper_rooms, sample_paper_batch
-from mmweaver.training.paper_loss import paper_loss
 from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
 from mmweaver.training.validation_sheet import MOST_ROWS, draw_sheet
+from studies.paper.paper_examples import PaperBatch, PaperRoom, paper_rooms, sample_paper_batch
+from studies.paper.paper_loss import paper_loss
+from studies.paper.paper_method import field_of_image, unit_sqrt_mw
+from studies.paper.paper_network import PaperNetwork, evaluate_each
 
 VALIDATION_SEED = 10_000  # added to the recipe's
 

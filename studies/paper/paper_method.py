@@ -11,11 +11,11 @@ from torch import Tensor
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, RadarCube, Scene
-from mmweaver.fields.paper_inr import InrField, InrShape
-from mmweaver.models.paper_network import PaperNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.models.weights import load_into
 from mmweaver.scene.reconstruction import reconstruct
+from studies.paper.paper_inr import InrField, InrShape
+from studies.paper.paper_network import PaperNetwork
 
 RECIPE = "paper"
 UNIT_DB = 25.0  # the network's 1.0 above a sample's noise, the median peak; a constant, for it must hold in new rooms
@@ -25,12 +25,12 @@ MOTION_SCALE = 2.0  # metres, and metres a second
 def load_paper(file: Path) -> PaperNetwork:
     """Reads weights of recipe `paper`. Raises InputError for any other file."""
     network = PaperNetwork()
-    load_into(network, file, recipe=RECIPE)
+    load_into(network, file, recipe=RECIPE, made_by="python -m studies run train_paper")
     return network
 
 
 def paper_method(weights: Path) -> Callable[[Any], RadarCube]:
-    """A row for experiments.weaver_table: the cube of a `Case`, of which it sees room.photo, room.config and joints."""
+    """A row for `learned_scores`: the cube of a `Case`, of which it sees room.photo, room.config and joints."""
     network = load_paper(weights)
 
     def method(case: Any) -> RadarCube:

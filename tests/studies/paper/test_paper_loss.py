@@ -6,7 +6,7 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.metrics.cube_errors import complex_ssim
 from mmweaver.models.activity_network import ActivityNetwork
-from mmweaver.training.paper_loss import SHARE_CSSIM, paper_loss
+from studies.paper.paper_loss import SHARE_CSSIM, paper_loss
 from tests.cubes import point_cube
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from studies.network.learned_table import _row, cases_of, energy_db, training_mean
+from studies.network.learned_scores import _row, cases_of, energy_db, training_mean
 from studies.report.tables import _loudness
 from tests.cubes import point_cube
 

@@ -11,9 +11,9 @@ import itertools
 import torch
 from torch import Tensor, nn
 
-from mmweaver.fields.paper_inr import HIDDEN_WIDTH, MODULATIONS_PER_FRAME, NUM_HIDDEN, InrShape
 from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
+from studies.paper.paper_inr import HIDDEN_WIDTH, MODULATIONS_PER_FRAME, NUM_HIDDEN, InrShape
 
 TRUNK_WIDTH = 1088
 

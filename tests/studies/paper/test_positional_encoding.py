@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.fields.positional_encoding import OCTAVES, encoded_size, harmonics, normalised, positional_encoding
+from studies.paper.positional_encoding import OCTAVES, encoded_size, harmonics, normalised, positional_encoding
 
 
 def test_three_coordinates_become_51_values():
