@@ -33,7 +33,8 @@ def test_the_radars_own_bodies_do_not_touch_either(seed: int):
     for mover, other in ((0, 1), (1, 0)):
         one, two = people[mover].pose, people[other].pose
         corners, _ = body_of(one).hull(one.joints_m[::12])
-        starts, axes, _ = body_of(two).frames(two.joints_m[::12])
+        posed = body_of(two).posed(two.joints_m[::12])
+        starts, axes = posed.start_m, posed.axis_m
         radii = body_of(two).radii_m.max(axis=1) * 1.25
         for at in range(len(corners)):
             gap = corners[at][:, None] - starts[at][None]

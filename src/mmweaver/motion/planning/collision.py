@@ -9,7 +9,8 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
-from mmweaver.core.skeleton import joint
+from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
+from mmweaver.geometry.body_capsules import capsule_between, part_of, scale_of
 from mmweaver.motion.planning.occluded_geometry import (
     feet_of,
     legs_of,
@@ -21,19 +22,37 @@ from mmweaver.motion.planning.occluded_geometry import (
 )
 
 Array = np.ndarray
-# Radii of a person of 1.75 m about the bones, and what may be pressed by them.
-_LIMBS = (
-    ("pelvis", "spine3", 0.12), ("spine3", "neck", 0.11), ("neck", "head", 0.08), ("left_hip", "right_hip", 0.105),
-    ("left_collar", "left_shoulder", 0.07), ("right_collar", "right_shoulder", 0.07),
-    ("left_hip", "left_knee", 0.075), ("right_hip", "right_knee", 0.075),
-    ("left_knee", "left_ankle", 0.05), ("right_knee", "right_ankle", 0.05),
-    ("left_ankle", "left_foot", 0.04), ("right_ankle", "right_foot", 0.04),
-    ("left_shoulder", "left_elbow", 0.05), ("right_shoulder", "right_elbow", 0.05),
-    ("left_elbow", "left_wrist", 0.04), ("right_elbow", "right_wrist", 0.04),
+# Limbs are tested as cylinders between two joints; each has one radius.
+_LIMB_ENDS = (
+    ("pelvis", "spine3"), ("spine3", "neck"), ("neck", "head"), ("left_hip", "right_hip"),
+    ("left_collar", "left_shoulder"), ("right_collar", "right_shoulder"),
+    ("left_hip", "left_knee"), ("right_hip", "right_knee"), ("left_knee", "left_ankle"), ("right_knee", "right_ankle"),
+    ("left_ankle", "left_foot"), ("right_ankle", "right_foot"),
+    ("left_shoulder", "left_elbow"), ("right_shoulder", "right_elbow"),
+    ("left_elbow", "left_wrist"), ("right_elbow", "right_wrist"),
 )  # fmt: skip
-_HAND_M = 0.15  # beyond the wrist
+# Where a mean of the capsules is too thin: the shoulder blades, and a head wider than the neck that carries it.
+_THICKER_M = {"neck": 0.02, "head": 0.015, "shoulder": 0.005}
+_RADIUS_STEP_M = 0.005  # mean radii are rounded up to it
+
+
+def _limb_radius_m(start: str, end: str) -> float:
+    """The mean radius of the capsules from joint to joint, at reference height, rounded up."""
+    if part_of(start) == part_of(end) == "hip":
+        return capsule_between(start, start).start_radius_m
+    radii_m = []
+    child = joint(end)
+    while child != joint(start):
+        capsule = capsule_between(JOINT_NAMES[PARENTS[child]], JOINT_NAMES[child])
+        radii_m += [capsule.start_radius_m, capsule.end_radius_m]
+        child = PARENTS[child]
+    mean_m = float(np.mean(radii_m)) + _THICKER_M.get(part_of(end), 0.0)
+    return round(float(np.ceil(round(mean_m / _RADIUS_STEP_M, 6))) * _RADIUS_STEP_M, 3)
+
+
+_LIMBS = tuple((start, end, _limb_radius_m(start, end)) for start, end in _LIMB_ENDS)
+_HAND_M = capsule_between("left_wrist", "left_wrist").extend_m + 0.03  # beyond the wrist, most of its round tip too
 _SEATED = ("pelvis", "spine3", "left_hip", "right_hip", "left_collar", "right_collar")
-_REFERENCE_HEIGHT_M = 1.75
 _SHARES = np.array([0.0, 0.33, 0.67, 1.0])
 _STEP_S = 0.1
 _ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
@@ -154,7 +173,7 @@ class CollisionMap:
         """
         rows = np.unique(np.searchsorted(pose.time_s, np.arange(max(pose.time_s[0], 0.0), pose.time_s[-1], _STEP_S)))
         joints = pose.joints_m[np.minimum(rows, len(pose.time_s) - 1)].astype(float)
-        scale = pose.height_m / _REFERENCE_HEIGHT_M
+        scale = scale_of(pose.height_m)
         points, radius, soft = [], [], []
         for start, end, thick in _LIMBS:
             first, last = joints[:, joint(start)], joints[:, joint(end)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, HALF_STANCE, SIDE_SIGN, TOES_OUT_RAD, upright
 from mmweaver.motion.animation.profiles import bump, plateau, rise, travel
@@ -61,7 +62,7 @@ def walking_style(stage: StepContext, speed_mps: float) -> Style:
     """Step rate from speed (walk ratio about 0.42 m s, longer legs step slower), the rest from the rate."""
     rng, height_m = stage.rng, stage.body.height_m
     share = min(speed_mps / 1.3, 1.4)
-    steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (1.75 / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
+    steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (REFERENCE_HEIGHT_M / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
     vigour = share**1.5 * np.exp(rng.normal(0, 0.3))
     leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
     drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
