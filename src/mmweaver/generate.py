@@ -29,8 +29,7 @@ from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
-from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.timing import schedule
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
@@ -289,9 +288,12 @@ class Weaver:
                     clip, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
                     start_m=starts[0], heading_rad=heading_rad, as_recorded=as_recorded,
                 )  # fmt: skip
+            plans = [
+                plan_motion(one, duration_s) if motion is None or index else None for index, one in enumerate(texts)
+            ]
             people = compose_people(
-                texts, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m, starts_m=starts,
-                heights_m=heights, first=recorded,
+                plans, room.scene, seed=seed, range_window_m=window_m, starts_m=starts, heights_m=heights,
+                first=recorded,
             )  # fmt: skip
         motions = tuple(person.pose for person in people)
         signal = self.method(
@@ -443,5 +445,5 @@ def check_request(
     if motion is not None:
         check_lasts(motion, frames * config.frame_period_s)
     for one in texts[0 if motion is None else 1 :]:
-        schedule(parse(one), frames * config.frame_period_s, 1 / config.frame_period_s)
+        plan_motion(one, frames * config.frame_period_s, 1 / config.frame_period_s)
     return config

@@ -11,6 +11,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import FreeSpace, PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import steadied
 from mmweaver.motion.mocap.humanml3d import FPS, features_from_joints, y_up
@@ -73,7 +74,7 @@ def library_examples(seeds: range, *, held_out_words: bool = False) -> Iterator[
             sentence = sentence_of(activity, seed, held_out=held_out_words)
             try:
                 motion = compose(
-                    sentence, room, duration_s=FRAMES / FPS + 1 / FPS, seed=seed, range_window_m=(0.7, 15.0),
+                    plan_motion(sentence, FRAMES / FPS + 1 / FPS), room, seed=seed, range_window_m=(0.7, 15.0),
                     height_m=HEIGHT_M,
                 )  # fmt: skip
             except InputError:

@@ -6,6 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto, Scene
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.collision import CollisionMap
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -54,7 +55,7 @@ def test_a_margin_counts_what_is_near():
 def test_thighs_may_sink_into_the_seat_but_not_into_the_table_before_it():
     """The same board: under the sitter at the height of a seat; before the belly at that of a table."""
     chair = seat(y_m=2.0)
-    sits = compose("a person sits", bare_room(seats=(chair,)), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
+    sits = compose(plan_motion("a person sits", 1.0), bare_room(seats=(chair,)), seed=0, range_window_m=WINDOW_M)
     place = (float(chair.position_m[0]), float(chair.position_m[1]))
     for height, touches in ((0.45, False), (0.62, True)):
         obstacles = CollisionMap(_before_a_board(height, 1.75))
@@ -64,7 +65,7 @@ def test_thighs_may_sink_into_the_seat_but_not_into_the_table_before_it():
 def test_a_table_behind_a_seat_is_no_back_of_it():
     """A board close behind the sitter: as wide as a table one must not lean into it, as narrow as a chair one may."""
     chair = seat(y_m=2.0)
-    sits = compose("a person sits", bare_room(seats=(chair,)), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
+    sits = compose(plan_motion("a person sits", 1.0), bare_room(seats=(chair,)), seed=0, range_window_m=WINDOW_M)
     place = (float(chair.position_m[0]), float(chair.position_m[1]))
     for width, touches in ((0.36, False), (1.4, True)):
         scene = _before_a_board(0.72, 2.08)

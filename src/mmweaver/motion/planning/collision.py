@@ -157,7 +157,7 @@ class CollisionMap:
         quick = {"balanced_tree": False, "compact_nodes": False}  # each is asked but once
         return (KDTree(hard, **quick), 0.0), (KDTree(tops[behind], **quick), _BEHIND_M)
 
-    def hidden(self, pose: PoseSequence) -> tuple[float, float]:
+    def occluded_shares(self, pose: PoseSequence) -> tuple[float, float]:
         """Where the pelvis is lowest: how much of the trunk is hidden, and of the legs hidden or outside the photo."""
         lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
         trunk = _along(lowest, "pelvis", "spine3", "neck")

@@ -29,7 +29,7 @@ from mmweaver.motion.planning.seating import (
     stool_fits,
     stool_note,
 )  # fmt: skip
-from mmweaver.motion.planning.separation import keeps_clear
+from mmweaver.motion.planning.separation import is_clear_of
 from mmweaver.motion.planning.targets import check_targets, goes_to_thing, start_for, walk_to_target
 from mmweaver.motion.planning.trajectory import (
     NoTrajectory,
@@ -61,11 +61,11 @@ class Placement:
 
 def place(
     plan: MotionPlan, floor: FloorMap, body: SkeletonProportions, *, seed: int, start_m: tuple[float, float] | None,
-    others: tuple[PoseSequence, ...] = (), again: int = 0,
+    others: tuple[PoseSequence, ...] = (), attempt: int = 0,
 ) -> list[Placement]:  # fmt: skip
     """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
 
-    `start_m` fixes where the person starts. `again` draws others, with more ways to sit: 1 leaves out some seats, 2
+    `start_m` fixes where the person starts. `attempt` draws others, with more ways to sit: 1 leaves out some seats, 2
     all where the room has none that the sentence names. Raises InputError where the start is not free or out
     of view, where there is no room, or where the room lacks what a step goes to, saying what there is.
     """
@@ -74,11 +74,11 @@ def place(
         raise InputError(_no_floor(floor))
     if start_m is not None:
         _check_start(floor, start_m)
-    rng = stream(seed, "motion", f"placement {again}" if again else "placement")
+    rng = stream(seed, "motion", f"placement {attempt}" if attempt else "placement")
     ways: list[Trajectory] = []
     for _ in range(TRIES):
         try:
-            way = _try(plan, floor, body, rng, start_m, again=again)
+            way = _try(plan, floor, body, rng, start_m, attempt=attempt)
         except NoTrajectory:
             continue
         if others and not _is_clear_of(way, plan, others):
@@ -115,7 +115,7 @@ def _placement(way: Trajectory) -> Placement:
 def _is_clear_of(way: Trajectory, plan: MotionPlan, others: tuple[PoseSequence, ...]) -> bool:
     time_s = np.arange(0.0, plan.steps[-1].end_s + 1e-9, 0.05)
     track_m = way.path().position_m(time_s)
-    return all(keeps_clear(track_m, time_s, other) for other in others)
+    return all(is_clear_of(track_m, time_s, other) for other in others)
 
 
 def _starts_seated(plan: MotionPlan) -> bool:
@@ -129,14 +129,14 @@ def _try(
     rng: np.random.Generator,
     start_m: tuple[float, float] | None,
     *,
-    again: int,
+    attempt: int,
 ) -> Trajectory:
     """One candidate: a start, and every step laid out from there."""
     seats = seats_of(floor, body)
-    if again:
+    if attempt:
         named = next((step.seat for step in plan.steps if step.seat), "")
         is_there = named and bool(fitting(seats, named, floor.scene))
-        left = [] if again > 1 and not is_there else some_of(preferred(seats, named, floor.scene), rng)
+        left = [] if attempt > 1 and not is_there else some_of(preferred(seats, named, floor.scene), rng)
         seats = [as_it_can_be(seat, rng) for seat in left]
     else:
         seats = [as_it_may_be(seat, rng) for seat in seats]

@@ -8,7 +8,7 @@ from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
 from mmweaver.geometry.body_capsules import TRUNK, TRUNK_WIDTH_PER_DEPTH, capsule_between, part_of, scale_of
 
 Array = np.ndarray
-PELVISES_APART_M, BODIES_APART_M = 0.5, 0.02
+LEAST_PELVIS_DISTANCE_M, LEAST_SURFACE_DISTANCE_M = 0.5, 0.02
 CHECK_RATE_HZ = 20.0  # how often the bodies are compared: a limb at 3 m/s moves 15 cm in between
 SPHERES_PER_BONE = 4
 
@@ -20,13 +20,13 @@ _MARGIN_M = {"head": (0.0, 0.01), "shoulder": (0.01, 0.0), "foot": (0.0, 0.025),
 _HAND_LONGER_M, _HAND_THINNER_M = 0.01, 0.01  # than its capsule: an outstretched, flat hand
 
 
-def are_apart(one: PoseSequence, other: PoseSequence) -> bool:
+def are_separate(one: PoseSequence, other: PoseSequence) -> bool:
     """Whether two people never come too near to each other."""
-    pelvis_m, body_m = gaps_m(one, other)
-    return pelvis_m >= PELVISES_APART_M and body_m >= BODIES_APART_M
+    pelvis_m, body_m = separations_m(one, other)
+    return pelvis_m >= LEAST_PELVIS_DISTANCE_M and body_m >= LEAST_SURFACE_DISTANCE_M
 
 
-def gaps_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
+def separations_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
     """The least distance over time of the pelvises (on the floor), and of the bodies' surfaces (negative: inside)."""
     time_s = _common_times(one, other)
     first, second = (_at(pose, time_s) for pose in (one, other))
@@ -40,11 +40,11 @@ def gaps_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
     return float(pelvises.min()), least
 
 
-def keeps_clear(track_m: Float[Array, "time 2"], time_s: Float[Array, " time"], other: PoseSequence) -> bool:
+def is_clear_of(track_m: Float[Array, "time 2"], time_s: Float[Array, " time"], other: PoseSequence) -> bool:
     """Whether a way over the floor stays clear of somebody's pelvis and, by half a body's width, of every joint."""
     joints_m = _at(other, time_s)[:, :, :2]
     apart = np.linalg.norm(joints_m - track_m[:, None], axis=-1)
-    return bool(apart[:, joint("pelvis")].min() >= PELVISES_APART_M + 0.15 and apart.min() >= 0.4)
+    return bool(apart[:, joint("pelvis")].min() >= LEAST_PELVIS_DISTANCE_M + 0.15 and apart.min() >= 0.4)
 
 
 def _common_times(one: PoseSequence, other: PoseSequence) -> Float[Array, " time"]:

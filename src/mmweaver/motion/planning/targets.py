@@ -50,7 +50,7 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
             )
 
 
-def without_things(plan: MotionPlan) -> MotionPlan:
+def without_targets(plan: MotionPlan) -> MotionPlan:
     """For where no photo is: each way to a thing leads anywhere instead, and a note says so."""
     lost = [step for step in plan.steps if step.moves and goes_to_thing(step)]
     notes = tuple(
