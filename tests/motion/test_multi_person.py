@@ -1,6 +1,7 @@
 """Several people composed for one room."""
 
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from mmweaver.paths.body_model import body_of
 from tests.rooms import floor, scene_of
 
 SCENE = scene_of((floor(),))
-REST = {"range_window_m": (0.7, 3.48)}
+REST: dict[str, Any] = {"range_window_m": (0.7, 3.48)}
 TEXTS = ["a person walks to the left", "a person walks to the right", "someone does jumping jacks", "a man claps"]
 PLANS = [plan_motion(text, 2.0) for text in TEXTS]
 

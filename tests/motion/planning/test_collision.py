@@ -25,11 +25,11 @@ def test_a_body_in_the_open_is_clear_and_one_in_the_wall_is_not():
     inside = (np.abs(x) < 0.15) & (y > 1.2) & (y < 2.5)
     assert inside.any()
     at = (float(np.median(x[inside])), float(np.median(y[inside])), scene.floor_z_m)
-    assert obstacles.deepest_m(standing_person(at, seconds=0.3)) == 0.0
+    assert obstacles.penetration_m(standing_person(at, seconds=0.3)) == 0.0
     wall = next(plane for plane in scene.planes if plane.kind == "wall")
     beside = wall.centre_m - 0.02 * wall.normal
     near = (float(beside[0]), float(beside[1]), scene.floor_z_m)
-    assert obstacles.deepest_m(standing_person(near, seconds=0.3)) > 0.05
+    assert obstacles.penetration_m(standing_person(near, seconds=0.3)) > 0.05
 
 
 def _before_a_board(height_m: float, away_m: float) -> Scene:
@@ -47,7 +47,7 @@ def test_a_margin_counts_what_is_near():
     obstacles = CollisionMap(_before_a_board(1.1, 2.0))
     scene = obstacles.scene
     pose = standing_person((0.0, 2.2, scene.floor_z_m), seconds=0.3)
-    gap = [margin for margin in np.arange(0.0, 0.2, 0.01) if obstacles.deepest_m(pose, margin_m=float(margin)) > 0]
+    gap = [margin for margin in np.arange(0.0, 0.2, 0.01) if obstacles.penetration_m(pose, margin_m=float(margin)) > 0]
     assert gap
     assert gap[0] > 0.0
 
@@ -59,7 +59,7 @@ def test_thighs_may_sink_into_the_seat_but_not_into_the_table_before_it():
     place = (float(chair.position_m[0]), float(chair.position_m[1]))
     for height, touches in ((0.45, False), (0.62, True)):
         obstacles = CollisionMap(_before_a_board(height, 1.75))
-        assert (obstacles.deepest_m(sits.pose, (place,)) > 0.0) == touches
+        assert (obstacles.penetration_m(sits.pose, (place,)) > 0.0) == touches
 
 
 def test_a_table_behind_a_seat_is_no_back_of_it():
@@ -73,4 +73,4 @@ def test_a_table_behind_a_seat_is_no_back_of_it():
         half = round(width / 2 / 2.08 * 300.0)
         depth[:, : 160 - half] = depth[:, 160 + half :] = np.nan
         obstacles = CollisionMap(dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=depth)))
-        assert (obstacles.deepest_m(sits.pose, (place,)) > 0.0) == touches
+        assert (obstacles.penetration_m(sits.pose, (place,)) > 0.0) == touches

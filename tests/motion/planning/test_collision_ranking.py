@@ -21,19 +21,19 @@ POSE = standing_person((0.0, 2.0, -1.1), seconds=0.2)
 class _Known(CollisionMap):
     """Says what a pose's height says."""
 
-    def deepest_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0):
+    def penetration_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0):
         return max(pose.height_m - 1.0 + margin_m, 0.0)
 
 
-def _chosen(*depth_m: list[float]):
+def _chosen(*penetration_m: list[float]):
     """`depth_m`: how deep the placements of each draw get in; further draws find no way."""
     drawn: list[int] = []
 
     def draw(again: int) -> list[Placement]:
         drawn.append(again)
-        if again >= len(depth_m):
+        if again >= len(penetration_m):
             raise InputError("no other")
-        return [_placement(deep) for deep in depth_m[again]]
+        return [_placement(deep) for deep in penetration_m[again]]
 
     def moved(placement: Placement) -> PoseSequence:
         return PoseSequence(
@@ -43,8 +43,8 @@ def _chosen(*depth_m: list[float]):
     return least_collision(draw, moved, _Known(room())), drawn
 
 
-def _placement(depth_m: float) -> Placement:
-    path = RootPath(start_m=(0.0, 2.0), heading_rad=depth_m, moves=(), turns=())
+def _placement(penetration_m: float) -> Placement:
+    path = RootPath(start_m=(0.0, 2.0), heading_rad=penetration_m, moves=(), turns=())
     return Placement(path=path, moves=(), seat_height_m=(), seats_m=(), assumptions=())
 
 
@@ -86,9 +86,9 @@ def test_of_two_seats_the_one_where_the_trunk_is_seen_is_taken():
 @pytest.mark.parametrize("others", [[], [[0.08]]])
 def test_the_better_of_bad_ones_is_taken_and_said(others: list[list[float]]):
     best, _ = _chosen([0.07, 0.05], *others)
-    assert best.depth_m == pytest.approx(0.05, abs=1e-6)
+    assert best.penetration_m == pytest.approx(0.05, abs=1e-6)
     assert "5 cm into furniture" in best.notes[0]
 
 
 def test_numbers_are_numbers():
-    assert np.isfinite(_chosen([0.0])[0].depth_m)
+    assert np.isfinite(_chosen([0.0])[0].penetration_m)

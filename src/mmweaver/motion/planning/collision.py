@@ -12,13 +12,13 @@ from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
 from mmweaver.geometry.body_capsules import capsule_between, part_of, scale_of
 from mmweaver.motion.planning.occluded_geometry import (
-    feet_of,
-    legs_of,
+    below_tops,
+    extended_to_floor,
     occluded_share,
-    pillars_of,
-    tops_of,
-    under,
+    table_legs,
+    table_tops,
     unseen_share,
+    upright_structures,
 )
 
 Array = np.ndarray
@@ -99,12 +99,12 @@ class CollisionMap:
     @cached_property
     def _tops_m(self) -> Float[Array, "point 3"]:
         """Of tables, also where a top hides itself: nobody's trunk leans into them as into the back of a seat."""
-        return tops_of(self.scene, self._measured_m)
+        return table_tops(self.scene, self._measured_m)
 
     @cached_property
     def _legs_m(self) -> Float[Array, "point 3"]:
         """Upright things, tables' legs among them: no thigh sinks into those as into a seat."""
-        return np.concatenate([pillars_of(self.scene, self._measured_m), legs_of(self.scene)])
+        return np.concatenate([upright_structures(self.scene, self._measured_m), table_legs(self.scene)])
 
     @cached_property
     def _solid_m(self) -> Float[Array, "point 3"]:
@@ -117,7 +117,7 @@ class CollisionMap:
         solid = np.concatenate([points, behind, self._tops_m, *below])
         solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
         solid = np.concatenate(
-            [solid, feet_of(np.concatenate([points, behind]), self.scene.floor_z_m), legs_of(self.scene)]
+            [solid, extended_to_floor(np.concatenate([points, behind]), self.scene.floor_z_m), table_legs(self.scene)]
         )
         _, one_each = np.unique(np.rint(solid / _GRAIN_M).astype(int) @ _GRAINS, return_index=True)
         return solid[one_each]
@@ -130,11 +130,11 @@ class CollisionMap:
         return KDTree(self._solid_m)
 
     @cached_property
-    def _under(self) -> Any:
+    def _below_tops(self) -> Any:
         """For the nearest point that may be something under a table's top, for whoever does not sit there."""
         from scipy.spatial import KDTree
 
-        return KDTree(under(self.scene, self._tops_m))
+        return KDTree(below_tops(self.scene, self._tops_m))
 
     def _not_of_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> tuple[tuple[Any, float], ...]:
         """For the nearest point about a seat that is not the seat's own: what is before it, above its surface, and
@@ -164,7 +164,7 @@ class CollisionMap:
         legs = [_along(lowest, f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("left", "right")]
         return occluded_share(self.scene, trunk), unseen_share(self.scene, np.concatenate(legs))
 
-    def deepest_m(
+    def penetration_m(
         self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
     ) -> float:
         """How far the body, thicker by a margin, gets into anything, at worst; 0 where it stays clear.
@@ -203,7 +203,7 @@ class CollisionMap:
             before, _ = tree.query(points[at_seat], distance_upper_bound=_FARTHEST_M)
             worst = max(worst, float((radius[at_seat] + besides_m - before - allowed[at_seat]).max(initial=0.0)))
             sits |= at_seat
-        unknown, _ = self._under.query(points[~sits], distance_upper_bound=_FARTHEST_M)
+        unknown, _ = self._below_tops.query(points[~sits], distance_upper_bound=_FARTHEST_M)
         worst = max(worst, float((radius[~sits] - unknown - allowed[~sits]).max(initial=0.0)))
         for seat, *_ in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M

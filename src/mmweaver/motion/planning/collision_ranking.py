@@ -10,13 +10,13 @@ from mmweaver.motion.planning.collision import CollisionMap
 from mmweaver.motion.planning.placement import Placement
 
 MOST_ANIMATED = 40  # placements that are animated and tested, of those that an attempt gives
-REPORTED_DEPTH_M = 0.03  # deeper collisions are reported to the user
+REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
 MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
-_ENOUGH_FOR_1_M, _ENOUGH_FOR_2_M = 0.0, REPORTED_DEPTH_M
+_ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,23 +25,23 @@ class RankedPlacement:
 
     placement: Placement
     pose: PoseSequence
-    depth_m: float
+    penetration_m: float
     trunk_cost_m: float = 0.0  # for an occluded trunk
     legs_cost_m: float = 0.0  # for occluded legs, which those under a table often are
 
     @property
     def cost_m(self) -> float:
         """What placements are ranked by."""
-        return self.depth_m + self.trunk_cost_m + self.legs_cost_m
+        return self.penetration_m + self.trunk_cost_m + self.legs_cost_m
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What is reported to the user where the body collides."""
-        if self.depth_m <= REPORTED_DEPTH_M:
+        if self.penetration_m <= REPORTED_PENETRATION_M:
             return ()
-        depth_cm = 100 * self.depth_m
+        penetration_cm = 100 * self.penetration_m
         return (
-            f"the body gets {depth_cm:.0f} cm into furniture or a wall, because the room leaves no better place",
+            f"the body gets {penetration_cm:.0f} cm into furniture or a wall, because the room leaves no better place",
         )  # fmt: skip
 
 
@@ -58,10 +58,8 @@ def least_collision(
     best = _best(candidates(0), animate, obstacles)
     for attempt in (1, 2):
         # Occluded legs alone are no reason to leave the room's seats.
-        cost_m, enough_m = (
-            (best.cost_m, _ENOUGH_FOR_1_M) if attempt == 1 else (best.depth_m + best.trunk_cost_m, _ENOUGH_FOR_2_M)
-        )
-        if cost_m <= enough_m:
+        cost_m = best.cost_m if attempt == 1 else best.penetration_m + best.trunk_cost_m
+        if cost_m <= _ENOUGH_M[attempt]:
             break
         try:
             other = _best(candidates(attempt), animate, obstacles)
@@ -78,15 +76,15 @@ def _best(
     for placement in _seats_varied(placements)[:MOST_ANIMATED]:
         pose = animate(placement)
         # Beyond the margin all are equally good.
-        depth_m = obstacles.deepest_m(pose, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
+        penetration_m = obstacles.penetration_m(pose, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
         trunk, legs = obstacles.occluded_shares(pose) if placement.seats_m else (0.0, 0.0)
         ranked = RankedPlacement(
-            placement=placement, pose=pose, depth_m=depth_m, trunk_cost_m=_OCCLUDED_TRUNK_M * trunk,
+            placement=placement, pose=pose, penetration_m=penetration_m, trunk_cost_m=_OCCLUDED_TRUNK_M * trunk,
             legs_cost_m=_OCCLUDED_LEGS_M * legs,
         )  # fmt: skip
         if best is None or ranked.cost_m < best.cost_m:
             best = ranked
-        if ranked.depth_m <= -MARGIN_M and ranked.trunk_cost_m + ranked.legs_cost_m <= _NEGLIGIBLE_M:
+        if ranked.penetration_m <= -MARGIN_M and ranked.trunk_cost_m + ranked.legs_cost_m <= _NEGLIGIBLE_M:
             break
     assert best is not None
     return best
