@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test check lint unit bench clean
+.PHONY: demo test check lint unit bench docs clean
 
 demo: $(STAMP)
 	$(BIN)/mmweaver generate --demo --out demo --overwrite
@@ -32,6 +32,10 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/weaver.py
 	$(BIN)/python benchmarks/devices.py
 	$(BIN)/python benchmarks/dataset.py
+
+docs: $(STAMP)  ## the site, into build/docs/site
+	$(BIN)/pip install --quiet --editable '.[docs]'
+	$(BIN)/python tools/build_docs.py
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)

@@ -12,7 +12,7 @@ from measuring import least_cpu_seconds, least_seconds, report, results_folder
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from mmweaver.fields.paper_inr import InrField, InrShape, fresh_modulation
+from studies.paper.paper_inr import InrField, InrShape, fresh_modulation
 
 NUM_FRAMES = 20
 REPEATS = 100  # so many that some run finds the machine free

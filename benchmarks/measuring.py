@@ -6,9 +6,31 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import COST, complete_rows
 
+UNITS = (
+    ("_cpu_s", "s"),
+    ("_wall_s", "s"),
+    ("_s", "s"),
+    ("_gb", "GB"),
+    ("_tb", "TB"),
+    ("_db", "dB"),
+    ("_core_days", "core-days"),
+)
+UNKNOWN = {
+    "dataset.sha256": "made anew in every run",
+    "seeds": "the least of several runs of the same",
+    "seconds": "the metrics are the seconds",
+    "metrics.*.baseline": COST,
+}
 RESULTS = Path(__file__).resolve().parents[1] / "results"
+
+
+def meaning_of(name: str) -> dict[str, str]:
+    """Unit and definition of a cost, from its name."""
+    unit = next((unit for ending, unit in UNITS if name.endswith(ending)), "1")
+    return {"unit": unit, "definition": name.replace("_", " ")}
 
 
 def least_seconds(function: Callable[[], object], repeats: int = 5) -> float:
@@ -42,8 +64,9 @@ def results_folder(description: str | None) -> Path:
 
 def report(out: Path, method: str, dataset: dict[str, Any], values: dict[str, float], config: dict[str, Any]) -> None:
     """Writes results/benchmark/<method>.json in the project's schema and prints the same as a table."""
-    metrics = {name: {"value": float(f"{value:.4g}")} for name, value in values.items()}
-    row = {"dataset": dataset, "metrics": metrics}
-    write_result(out, experiment="benchmark", method=method, config=config, rows=[row])
+    metrics = {name: {"value": float(f"{value:.4g}"), **meaning_of(name)} for name, value in values.items()}
+    row = {"dataset": dataset, "n": 1, "metrics": metrics}
+    rows = complete_rows([row], unknown=UNKNOWN)
+    StudyRun(f"benchmarks/{method}", out).write("benchmark", method, config=config, rows=rows)
     for name, value in values.items():
         print(f"{name:34} {value:12.4g}")

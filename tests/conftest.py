@@ -1,10 +1,37 @@
-"""Shared by all tests: where real recordings lie, if they are here at all."""
+"""Shared by all tests: one thread a process, checks of shapes, where real recordings lie."""
+
+import os
+
+# Before numpy and torch are imported, and for every process that a test starts: the bits are those of one thread, and
+# several processes with several threads each are slower on every machine.
+os.environ.update(
+    OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", VECLIB_MAXIMUM_THREADS="1"
+)  # fmt: skip
 
 from pathlib import Path
 
 import pytest
+from filelock import FileLock
+from threadpoolctl import threadpool_limits
 
+from tests import shape_checks
+
+threadpool_limits(1)  # of numpy, which a plugin has imported already
+shape_checks.check_first_calls()
 REAL_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--check-every-call", action="store_true", help="check the shapes of all calls, not of the first")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--check-every-call"):
+        shape_checks.check_every_call()
+
+
+def pytest_runtest_setup() -> None:
+    shape_checks.next_test()
 
 
 @pytest.fixture(scope="session")
@@ -13,3 +40,27 @@ def real_data() -> Path:
     if not REAL_DATA.is_dir():
         pytest.skip(f"no real recordings here: {REAL_DATA} is absent")
     return REAL_DATA
+
+
+@pytest.fixture(scope="session")
+def tiny_signals(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The tiny data set with its signals; shared by all tests, so nobody writes into it."""
+    return _made_once(tmp_path_factory, "signals", geometry_only=False)
+
+
+@pytest.fixture(scope="session")
+def tiny_geometry(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The tiny data set without signals; shared by all tests, so nobody writes into it."""
+    return _made_once(tmp_path_factory, "geometry", geometry_only=True)
+
+
+def _made_once(factory: pytest.TempPathFactory, name: str, *, geometry_only: bool) -> Path:
+    """By the first worker of pytest-xdist that asks for it; the others wait."""
+    pytest.importorskip("zarr")
+    is_worker = "PYTEST_XDIST_WORKER" in os.environ
+    folder = (factory.getbasetemp().parent if is_worker else factory.getbasetemp()) / "tiny" / name
+    folder.parent.mkdir(exist_ok=True)
+    from tests.training.tiny_data import tiny_data
+
+    with FileLock(f"{folder}.lock"):
+        return tiny_data(folder, geometry_only=geometry_only)

@@ -2,7 +2,6 @@
 
 import json
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 
 import mmweaver
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843, MMMESH
+from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.stages import Stages
@@ -24,7 +23,8 @@ from mmweaver.formats.npz_files import (
     read_radar_npz,
     write_radar_npz,
 )
-from mmweaver.generate import MAX_FRAMES, Room, Weaver, check_request
+from mmweaver.generate import Weaver
+from mmweaver.generation import Room
 from mmweaver.methods import METHODS, Signal
 from mmweaver.paths.ray_traced import Simulator
 
@@ -137,12 +137,12 @@ def test_a_recording_of_the_empty_room_is_the_networks_alone(weaver: Weaver, roo
     recording = radar_cube(simulator.run((), num_frames=4, seed=1).adc)
     write_radar_npz(tmp_path / "radar.npz", recording)
     (tmp_path / "radar.json").write_text(AWR1843.to_json())
-    known = room.with_empty_recording(tmp_path)
+    known = room.with_background(tmp_path)
     made = Weaver().generate(known, [TEXT, "a person stands"], frames=4)
     assert made.meta["method"] == "weaver"
-    assert len(made.meta["inputs"]["empty_room"]["sha256"]) == 64
+    assert len(made.meta["inputs"]["background"]["sha256"]) == 64
     assert any("recording of the empty room" in sentence for sentence in made.meta["assumed"])
-    same = Weaver().generate(room.with_empty_recording(recording), [TEXT, "a person stands"], frames=4)
+    same = Weaver().generate(room.with_background(recording), [TEXT, "a person stands"], frames=4)
     assert np.allclose(made.cube.values, same.cube.values, rtol=1e-4, atol=1e-9)
     for method, asked in ((weaver, {}), (Weaver(), {"keep_adc": True})):
         with pytest.raises(InputError, match="nothing from a recording"):
@@ -150,7 +150,7 @@ def test_a_recording_of_the_empty_room_is_the_networks_alone(weaver: Weaver, roo
     with pytest.raises(InputError, match="other settings"):
         Weaver(radar="hupr").generate(known, TEXT, frames=2)
     with pytest.raises(InputError, match=r"no radar\.npz"):
-        room.with_empty_recording(tmp_path / "nowhere")
+        room.with_background(tmp_path / "nowhere")
 
 
 def test_another_seed_and_another_frame_rate_change_the_signal(weaver: Weaver, room: Room):
@@ -227,47 +227,6 @@ def test_another_method_plugs_in(room: Room, tmp_path: Path, monkeypatch: pytest
     assert "all cells are one" in result.meta["assumed"]
     with pytest.raises(InputError, match="ADC"):
         result.save(tmp_path / "out", adc_data_bin=True)
-
-
-@pytest.mark.parametrize(
-    ("request_", "says"),
-    [
-        ({"text": ""}, "empty"),
-        ({"text": " \n"}, "empty"),
-        ({"text": "walk " * 2000}, "10000 characters"),
-        ({"text": "a person photosynthesises"}, "walk"),
-        ({"text": "a person walks, then squats five times", "frames": 10}, "need at least"),
-        ({"frames": 0}, f"1 to {MAX_FRAMES}"),
-        ({"frames": 1_000_000}, f"1 to {MAX_FRAMES}"),
-        ({"fps": 0.0}, "fps"),
-        ({"fps": float("nan")}, "fps"),
-        ({"fps": 500.0}, "frame period"),
-        ({"fps": 0.1, "frames": 100}, "600 s"),
-        ({"seed": -1}, "seed"),
-        ({"at": (float("nan"), 1.0)}, "two numbers"),
-        ({"at": [(0.0, 1.0), (0.5, 1.0)]}, "at most 1 places"),
-        ({"text": []}, "1 to 8 texts"),
-        ({"text": [TEXT] * 9}, "1 to 8 texts"),
-        ({"text": [TEXT, "a person photosynthesises"]}, "walk"),
-        ({"text": [TEXT, TEXT], "at": (0.0, 1.0)}, "list of at most 2 places"),
-        ({"text": [TEXT, TEXT], "at": [None, (0.0, float("inf"))]}, "two numbers"),
-    ],
-)
-def test_a_bad_request_is_refused_before_any_work(request_: dict, says: str):
-    with pytest.raises(InputError, match=says):
-        check_request(AWR1843, **{"text": TEXT, **request_})
-
-
-def test_memory_is_asked_for_before_it_is_used():
-    with pytest.raises(InputError, match="GB of memory"):
-        check_request(MMMESH, text=TEXT, frames=MAX_FRAMES, keep_adc=True)
-    check_request(AWR1843, text=TEXT, frames=MAX_FRAMES, keep_adc=False)
-
-
-def test_the_frame_rate_is_the_radars_own_unless_given():
-    slow = replace(AWR1843, frame_period_s=0.2)
-    assert check_request(slow, text=TEXT).frame_period_s == 0.2
-    assert check_request(slow, text=TEXT, fps=10.0) == AWR1843
 
 
 def test_unknown_names_list_the_known():

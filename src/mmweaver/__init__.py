@@ -15,24 +15,28 @@ if TYPE_CHECKING:
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
     from mmweaver.formats.npz_files import read_radar_npz
     from mmweaver.formats.radar_file import load_radar
-    from mmweaver.generate import Generation, Weaver
-    from mmweaver.recordings.recording import Recording, process_recording
+    from mmweaver.generate import Weaver
+    from mmweaver.generation import Generation
+    from mmweaver.recordings.processing import ProcessedRecording, process_recording
+    from mmweaver.recordings.read_recording import Recording, read_recording
 
 _HOME = {
     "AdcCube": "core.records",
-    "Generation": "generate",
+    "Generation": "generation",
     "InputError": "core.errors",
     "PRESETS": "core.presets",
     "PointCloud": "core.records",
     "PoseSequence": "core.records",
+    "ProcessedRecording": "recordings.processing",
     "RadarConfig": "core.radar_config",
     "RadarCube": "core.records",
-    "Recording": "recordings.recording",
+    "Recording": "recordings.read_recording",
     "Scene": "core.records",
     "Weaver": "generate",
     "load_radar": "formats.radar_file",
-    "process_recording": "recordings.recording",
+    "process_recording": "recordings.processing",
     "read_radar_npz": "formats.npz_files",
+    "read_recording": "recordings.read_recording",
 }
 
 __all__ = [
@@ -42,6 +46,7 @@ __all__ = [
     "InputError",
     "PointCloud",
     "PoseSequence",
+    "ProcessedRecording",
     "RadarConfig",
     "RadarCube",
     "Recording",
@@ -51,6 +56,7 @@ __all__ = [
     "load_radar",
     "process_recording",
     "read_radar_npz",
+    "read_recording",
 ]
 
 

@@ -4,12 +4,11 @@
                                |                       +--method--> RadarCube --dsp--> PointCloud
     sentences -----motion--> PoseSequences, placed ----+
 
-Only this file knows the order of the rooms; they exchange the records of `core/records.py` and nothing else.
+Only this file knows the order of the packages; they exchange the records of `core/records.py` and nothing else.
 """
 
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,120 +18,28 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
+from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect
-from mmweaver.figures.figure_data import FigureData
 from mmweaver.formats.radar_file import load_firmware, load_radar
-from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned
+from mmweaver.generation import Generation, Room
+from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
-from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_placement import place_clip
-from mmweaver.motion.mocap.clip_resampling import check_lasts
 from mmweaver.motion.mocap.read_motion import read_motion
-from mmweaver.motion.multi_person import MOST_PEOPLE, Place, compose_people
-from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
-from mmweaver.scene.affordances.landmarks import with_given_landmarks
+from mmweaver.motion.multi_person import Place, compose_people
+from mmweaver.request import Request, parse_request
+from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
 from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
 
-MAX_FRAMES = 2000
-FPS_LIMITS = (0.1, 1000.0)
-MAX_SECONDS = 600.0
-MAX_BYTES = 2_000_000_000  # of the largest array
 
-
-# rooms and results --------------------------------------------------------------------------------------------------
-@dataclass(frozen=True, kw_only=True)
-class Room:
-    """A photo, read and reconstructed; reused for as many sentences as wanted."""
-
-    scene: Scene
-    inputs: dict[str, Any]
-    seconds: dict[str, float]
-
-    def with_landmarks(self, *told: tuple[str, Place]) -> "Room":
-        """The room with things at places that you know: `("door", (0.9, 2.8))`, metres right of and ahead of the radar.
-
-        They take the place of what was found of that kind. Raises InputError for what no sentence goes to.
-        """
-        inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in told]}
-        return replace(self, scene=with_given_landmarks(self.scene, told), inputs=inputs)
-
-    def with_empty_recording(self, source: str | Path | RadarCube, *, came_from: Path | None = None) -> "Room":
-        """The room with a recording of it by your radar, nobody there: what rests is taken from that, phases and all.
-
-        `source`: a folder of `mmweaver process`, its radar.npz, a capture folder, or the cube (`came_from`: its file or
-        folder, for meta.json). Only the network takes it. Raises InputError for what is no recording.
-        """
-        if not isinstance(source, RadarCube):
-            from mmweaver.recordings.captures import recorded_cube
-
-            came_from = Path(source)
-            source = recorded_cube(came_from)
-        inputs = self.inputs if came_from is None else self.inputs | {"empty_room": _origin(came_from)}
-        return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Generation:
-    """One generated sequence. `poses` hold each person's joints at the radar's frames, `motions` densely in time."""
-
-    cube: RadarCube
-    points: PointCloud
-    adc: AdcCube | None
-    poses: tuple[PoseSequence, ...]
-    motions: tuple[PoseSequence, ...]
-    scene: Scene
-    meta: dict[str, Any]
-    stages: Stages = field(repr=False)
-
-    @property
-    def pose(self) -> PoseSequence:
-        """The first person's joints at the radar's frames."""
-        return self.poses[0]
-
-    @property
-    def motion(self) -> PoseSequence:
-        """The first person's joints densely in time."""
-        return self.motions[0]
-
-    @property
-    def photo(self) -> RgbdPhoto:
-        return self.scene.photo
-
-    def save(
-        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: bool = False, iq_order: str = "iq",
-        pictures: bool = True,
-    ) -> dict[str, Any]:  # fmt: skip
-        """Writes all files and pictures into a folder, or none of them; returns what meta.json holds.
-
-        Without `pictures` the files alone, much quicker. `adc_data_bin` asks for the raw samples too, as a DCA1000
-        writes them, I or Q first. Raises InputError where the folder cannot be written, or holds other files and
-        `overwrite` is not set.
-        """
-        if adc_data_bin and self.adc is None:
-            raise InputError(
-                "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
-            )
-        view = FigureData(
-            title=f"{' | '.join(texts_of(self.meta['text']))}   ({self.cube.config.name}, seed {self.meta['seed']})",
-            cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
-            poses=self.poses, motions=self.motions,
-        )  # fmt: skip
-        return save_results(
-            out, view, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order, overwrite=overwrite,
-            stages=self.stages, pictures=pictures,
-        )  # fmt: skip
-
-
-# the door -----------------------------------------------------------------------------------------------------------
 class Weaver:
     """Generates radar signals with one method and one radar.
 
@@ -244,6 +151,13 @@ class Weaver:
             scene = reconstruct(photo, assumptions=assumptions)
         return Room(scene=scene, inputs=inputs, seconds=stages.seconds)
 
+    def request(self, text: str | Sequence[str] | None = None, **asked: Any) -> Request:
+        """A checked and parsed request, with the arguments of `generate`. Cheap: no room is needed.
+
+        Raises InputError for a request that cannot be met.
+        """
+        return parse_request(self.radar, text, **asked, needs_adc=self.points == "firmware")
+
     def generate(
         self,
         room: Room,
@@ -259,82 +173,89 @@ class Weaver:
         as_recorded: bool = False,
         keep_adc: bool = False,
     ) -> Generation:
-        """The signal of who does in the room what the text says (one text a person), or what a `motion` shows.
+        """The signal of people doing in the room what the text says (one text a person), or what a `motion` shows.
 
         A `motion` comes from `read_motion` or a motion model; it is the first person's, and the first text only names
-        it. `heading_rad` (from +x towards +y) is where its body faces first, `as_recorded` takes its places as the
+        it. `heading_rad` (from +x towards +y) is where its body faces first, `as_recorded` takes its positions as the
         radar's own. `height_m` is the body's height, for several people a list; a recorded body is scaled to it.
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
-        half a metre apart. `keep_adc` asks for the raw samples too, which take several times the cube's memory and,
-        unless a method is named, make physics the method. The same seed gives the same bits. Raises
-        InputError for a request that cannot be met.
+        half a metre apart. `keep_adc` also returns the raw samples, which take several times the cube's memory and,
+        unless a method is named, make physics the method. The same seed gives the same bits. Raises InputError for a
+        request that cannot be met.
         """
-        needs_adc = keep_adc or self.points == "firmware"
-        config = check_request(
-            self.radar, text=text, motion=motion, frames=frames, fps=fps, seed=seed, at=at, keep_adc=needs_adc
-        )
-        duration_s = frames * config.frame_period_s
-        window_m = (float(config.range_m[0]), float(config.range_m[-1]))
+        request = self.request(
+            text, motion=motion, frames=frames, fps=fps, seed=seed, at=at, heading_rad=heading_rad, height_m=height_m,
+            as_recorded=as_recorded, keep_adc=keep_adc,
+        )  # fmt: skip
+        return self.carry_out(request, room)
+
+    def carry_out(self, request: Request, room: Room) -> Generation:
+        """What `generate` does with a request that is already parsed. Raises InputError where the room has no place."""
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            texts, starts, heights = texts_of(text), places_of(text, at), heights_of(text, height_m)
-            recorded = None
-            if motion is not None:
-                clip = motion if heights[0] is None else motion.scaled_to(heights[0])
-                recorded = place_clip(
-                    clip, room.scene, duration_s=duration_s, seed=seed, range_window_m=window_m,
-                    start_m=starts[0], heading_rad=heading_rad, as_recorded=as_recorded,
-                )  # fmt: skip
-            plans = [
-                plan_motion(one, duration_s) if motion is None or index else None for index, one in enumerate(texts)
-            ]
-            people = compose_people(
-                plans, room.scene, seed=seed, range_window_m=window_m, starts_m=starts, heights_m=heights,
-                first=recorded,
-            )  # fmt: skip
+            people = _compose(request, room.scene)
         motions = tuple(person.pose for person in people)
         signal = self.method(
-            room.scene, motions, config, num_frames=frames, seed=seed, keep_adc=needs_adc, stages=stages
-        )
+            room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
+            keep_adc=request.keep_adc or self.points == "firmware", stages=stages,
+        )  # fmt: skip
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)
         poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
-        meta = {
+        return Generation(
+            cube=signal.cube, points=points, adc=signal.adc if request.keep_adc else None, poses=poses,
+            motions=motions, scene=room.scene, meta=self._meta(request, room, people, poses, signal), stages=stages,
+        )  # fmt: skip
+
+    def _meta(
+        self, request: Request, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...], signal: Signal
+    ) -> dict[str, Any]:
+        """What meta.json says of a sequence: all that is needed to make it again."""
+        return {
             "schema_version": META_VERSION,
             "made_by": "mmweaver generate",
             "version": __version__,
-            "text": people[0].plan.text if text is None else text if isinstance(text, str) else list(text),
-            "seed": seed, "frames": frames, "fps": 1 / config.frame_period_s, "at": at,
+            "text": request.text or people[0].plan.text,
+            "seed": request.seed, "frames": request.frames, "fps": 1 / request.config.frame_period_s, "at": request.at,
             "method": signal.method or self.method_name,
             "weights": self.weights,
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
-            **radar_meta(config),
-            "inputs": room.inputs | _motion_input(motion),
-            "placed": {"heading_rad": heading_rad, "height_m": height_m, "as_recorded": as_recorded},
+            **radar_meta(request.config),
+            "inputs": room.inputs | _motion_input(request.motion),
+            "placed": {
+                "heading_rad": request.heading_rad, "height_m": request.height_m, "as_recorded": request.as_recorded,
+            },
             "camera": room.scene.photo.intrinsics,
             "assumed": _assumed(room.scene, people, signal.assumptions),
             **_people_meta(poses, people),
         }  # fmt: skip
-        return Generation(
-            cube=signal.cube, points=points, adc=signal.adc if keep_adc else None, poses=poses,
-            motions=motions, scene=room.scene, meta=meta, stages=stages,
+
+
+def _compose(request: Request, scene: Scene) -> tuple[Motion, ...]:
+    """The motion of each person, the first one's from the recording where there is one."""
+    recorded = None
+    first = request.people[0]
+    if request.motion is not None:
+        clip = request.motion if first.height_m is None else request.motion.scaled_to(first.height_m)
+        recorded = place_clip(
+            clip, scene, duration_s=request.duration_s, seed=request.seed, range_window_m=request.range_window_m,
+            start_m=first.start_m, heading_rad=request.heading_rad, as_recorded=request.as_recorded,
         )  # fmt: skip
+    return compose_people(
+        [person.plan for person in request.people], scene, seed=request.seed, range_window_m=request.range_window_m,
+        starts_m=[person.start_m for person in request.people],
+        heights_m=[person.height_m for person in request.people], first=recorded,
+    )  # fmt: skip
 
 
 def _found(weights: str | Path, revision: str | None = None) -> Path:
     from mmweaver.models.find_weights import find_weights
 
     return find_weights(weights, revision=revision)
-
-
-def _origin(place: Path) -> dict[str, str]:
-    """What meta.json says of a recording's file or folder."""
-    file = next((one for one in (place, place / "radar.npz") if one.is_file()), None)
-    return {"path": str(place)} if file is None else file_digest(file)
 
 
 def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...]) -> list[str]:
@@ -369,81 +290,3 @@ def _person(pose: PoseSequence) -> dict[str, Any]:
         "ends_at_m": path_m[-1],
         "path_length_m": round(float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum()), 3),
     }
-
-
-def texts_of(text: str | Sequence[str] | None) -> list[str]:
-    """One text a person. Raises InputError for none or too many."""
-    texts = [text or ""] if text is None or isinstance(text, str) else list(text)
-    if not 1 <= len(texts) <= MOST_PEOPLE:
-        raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
-    return texts
-
-
-def places_of(text: str | Sequence[str] | None, at: Place | Sequence[Place | None] | None) -> list[Place | None]:
-    """Where each person starts, None = chosen. Raises InputError for what is no place, or more places than people."""
-    one = at is not None and all(isinstance(value, int | float) for value in at)
-    given: list[Any] = [] if at is None else [at] if one else list(at)
-    texts = texts_of(text)
-    if len(given) > len(texts) or (one and len(texts) > 1):
-        raise InputError(f"{len(texts)} people need a list of at most {len(texts)} places to start, not {at}")
-    for place in given:
-        if place is not None and not (len(place) == 2 and all(math.isfinite(value) for value in place)):
-            raise InputError(f"the place to start must be two numbers, x and y in metres, not {place}")
-    return [(float(place[0]), float(place[1])) if place else None for place in given] + [None] * (
-        len(texts) - len(given)
-    )
-
-
-def heights_of(text: str | Sequence[str] | None, height_m: float | Sequence[float | None] | None) -> list[float | None]:
-    """Each person's height, None = drawn. Raises InputError for more heights than people."""
-    given = [height_m] if height_m is None or isinstance(height_m, int | float) else list(height_m)
-    texts = texts_of(text)
-    if len(given) > len(texts):
-        raise InputError(f"{len(texts)} people need at most {len(texts)} heights, not {len(given)}")
-    if len(given) == 1 and given[0] is not None and len(texts) > 1 and isinstance(height_m, int | float):
-        raise InputError(f"{len(texts)} people need a list of heights, one for each (--height for each)")
-    return [None if height is None else float(height) for height in given] + [None] * (len(texts) - len(given))
-
-
-def check_request(
-    radar: RadarConfig,
-    *,
-    text: str | Sequence[str] | None = None,
-    motion: MotionClip | None = None,
-    frames: int = 20,
-    fps: float | None = None,
-    seed: int = 0,
-    at: Place | Sequence[Place | None] | None = None,
-    keep_adc: bool = False,
-) -> RadarConfig:
-    """The radar at the frame rate asked for; cheap, so that it can be asked before long work.
-
-    Raises InputError for texts, frames, fps or a place out of their limits, for a frame rate that the chirps do not
-    fit into, for more samples than memory holds, for a text that is not understood or does not fit the time, and for a
-    recorded motion that is too short.
-    """
-    if not 1 <= frames <= MAX_FRAMES:
-        raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
-    if fps is not None and not FPS_LIMITS[0] <= fps <= FPS_LIMITS[1]:
-        raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {fps:g}")
-    if seed < 0:
-        raise InputError(f"the seed must be 0 or above, not {seed}")
-    texts = texts_of(text)
-    places_of(text, at)
-    config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
-    if frames * config.frame_period_s > MAX_SECONDS:
-        raise InputError(
-            f"{frames} frames last {frames * config.frame_period_s:g} s; at most {MAX_SECONDS:g} s are made"
-        )
-    numbers = config.num_loops * config.num_antennas * (config.num_samples if keep_adc else config.num_range_bins)
-    most = MAX_BYTES // (8 * numbers)
-    if frames > most:
-        raise InputError(
-            f"{frames} frames of radar {config.name!r} fill {frames * 8 * numbers / 1e9:.1f} GB of memory; at most"
-            f" {most} are made at a time"
-        )
-    if motion is not None:
-        check_lasts(motion, frames * config.frame_period_s)
-    for one in texts[0 if motion is None else 1 :]:
-        plan_motion(one, frames * config.frame_period_s, 1 / config.frame_period_s)
-    return config

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 
 LONGEST_FRAME_S = 0.04  # of chirps: of 28 ms the network is as good as physics, of 62 ms a little worse
 # what meta.json says
-LEARNED_NOTE = "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
+LEARNED_NOTE = UsualAssumption(
+    "the signal was written by a network trained on simulated rooms; phases of surfaces and skin are drawn"
+)
 RECORDED = (
     "what rests is that of the recording of the empty room; echoes of people were written by a network trained on"
     " simulated rooms, and the phases of their skin are drawn"

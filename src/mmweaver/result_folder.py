@@ -28,6 +28,7 @@ FILES = {
     "adc_data.bin": "raw ADC samples as a DCA1000 writes them, int16",
     "radar.json": "the radar: chirp, array and frame; --radar reads it",
     "meta.json": "all that is needed to make this again, and what was assumed",
+    "request.toml": "the options of this run; --config reads them",
     "preview.png": "one page of pictures",
     "preview.gif": "the same over time",
 }
@@ -43,12 +44,13 @@ def save_results(
     overwrite: bool = False,
     stages: Stages | None = None,
     pictures: bool = True,
+    extra: dict[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Writes all files into the folder `out`, or none; returns what meta.json holds.
+    """Writes all files into the folder `out`, or none; returns the content of meta.json.
 
     Without `pictures` there are no previews. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
-    `iq_order` says. Raises InputError where
-    `out` holds other files and `overwrite` is not set, or where it cannot be written.
+    `iq_order` says. `extra`: further text files, by name. Raises InputError where `out` holds other files and
+    `overwrite` is not set, or where it cannot be written.
     """
     stages = stages or Stages()
     with staged_folder(Path(out), overwrite=overwrite) as stage:
@@ -68,6 +70,8 @@ def save_results(
                     "counts_per_unit": counts,
                 }
             (stage / "radar.json").write_text(view.cube.config.to_json())
+            for name, text in (extra or {}).items():
+                (stage / name).write_text(text, encoding="utf-8")
         if pictures:
             with stages("draw preview.png"):
                 draw_preview(view, stage / "preview.png")

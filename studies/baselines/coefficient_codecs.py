@@ -4,7 +4,7 @@ import zlib
 
 import numpy as np
 
-from mmweaver.compression.entropy import Reader, Writer
+from mmweaver.compression.entropy import Decoder, Encoder
 from mmweaver.compression.residual_coder import ResidualCoder
 from mmweaver.compression.transforms import from_coefficients, to_coefficients
 from mmweaver.core.records import RadarCube
@@ -124,16 +124,16 @@ class KltContext(KnobCodec):
         coefficients = to_coefficients(values.astype(np.complex128), basis) / knob
         parts = np.stack([np.real(coefficients), np.imag(coefficients)])
         levels = (np.sign(parts) * np.floor(np.abs(parts) + 0.35)).astype(np.int64)
-        stream = Writer()
+        stream = Encoder()
         ResidualCoder(levels.shape[1:]).code(stream, levels, np.zeros(levels.shape[2:], np.int64))
-        return packed + np.float32(knob).tobytes() + stream.finished()
+        return packed + np.float32(knob).tobytes() + stream.to_bytes()
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
         frames, num_range, num_doppler, antennas = like.grid.shape
         basis, data = unpacked_klt(data, antennas)
         step = np.frombuffer(data[:4], np.float32)[0]
         levels = np.zeros((2, antennas, frames, num_range, num_doppler), np.int64)
-        ResidualCoder(levels.shape[1:]).code(Reader(data[4:]), levels, np.zeros(levels.shape[2:], np.int64))
+        ResidualCoder(levels.shape[1:]).code(Decoder(data[4:]), levels, np.zeros(levels.shape[2:], np.int64))
         restored = levels - 0.05 * np.sign(levels)  # rounded towards zero a little more often than away
         return from_coefficients((restored[0] + 1j * restored[1]) * float(step), basis)
 

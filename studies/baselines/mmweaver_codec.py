@@ -3,7 +3,7 @@
 import tempfile
 from pathlib import Path
 
-from mmweaver.compression.mmw_codec import compressed, read_cube
+from mmweaver.compression.mmw_codec import compress_cube, read_cube
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
@@ -19,7 +19,7 @@ class Mmw(Codec):
 
     def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
         try:
-            return compressed(cube, num_bytes=num_bytes, keep_noise=self.keep_noise)
+            return compress_cube(cube, num_bytes=num_bytes, keep_noise=self.keep_noise)
         except InputError:
             return None
 

@@ -8,9 +8,9 @@ import torch
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
-from mmweaver.fields.paper_inr import InrField
-from mmweaver.training.single_signal import RECIPES, fit, inr_shape
 from studies.baselines.codec_interface import Codec
+from studies.paper.paper_inr import InrField
+from studies.paper.single_signal import RECIPES, fit, inr_shape
 
 ROW = 64  # so many weights share a scale
 LEVELS = (127, 100, 80, 63)  # the finest that fits: scales take a little of the 8 bits a weight

@@ -1,6 +1,6 @@
 """What codecs keep of a radar cube in 2.5 to 40 KB: ours, the classical ones, tensors and the paper's INR.
 
-python -m studies.fields.codecs --out results --data <recordings>        (needs the extra `codecs`)
+python -m studies run codecs --data <recordings>        (needs the extra `codecs`)
 """
 
 import argparse
@@ -16,7 +16,7 @@ import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
-from mmweaver.metrics.baselines import FLOORS
+from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS
@@ -28,7 +28,9 @@ from studies.baselines.network_codecs import InrInBytes
 from studies.baselines.picture_codecs import Jpeg2000, JpegXl
 from studies.baselines.tensor_codecs import Cp, TensorTrain, TruncatedSvd, Tucker
 from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 EXPERIMENT = "codecs"
 SIZES = (2504, 5009, 10018, 20036, 40072)
@@ -72,7 +74,6 @@ def codec_row(codec: Codec, signal: ExperimentSignal, num_bytes: int) -> dict[st
         },
         "n": 1,
         "seeds": [0],
-        "interval": None,
         "seconds": {"encode": round(encode_s, 2), "encode_cpu": round(encode_cpu_s, 2), "decode": decode_s},
         "size": {"bytes_allowed": num_bytes, "bytes": None if data is None else len(data)},
         "metrics": _metrics(scores, cube),
@@ -88,21 +89,21 @@ def errors_db(values: np.ndarray, truth: RadarCube) -> dict[str, float | None]:
 
 
 def _metrics(scores: dict[str, Any], truth: RadarCube) -> dict[str, Any]:
-    floors = {name: errors_db(make(truth).values, truth) for name, make in FLOORS.items()}
+    baselines = {name: errors_db(make(truth).values, truth) for name, make in BASELINES.items()}
     return {
         name: {
             "value": scores[name],
             "unit": METRICS[name].unit,
             "definition": METRICS[name].definition,
             "version": METRICS[name].version,
-            "floor": {floor: values[name] for floor, values in floors.items()},
+            "baseline": {other: values[name] for other, values in baselines.items()},
         }
         for name in SCORES
     }
 
 
-def run(
-    out: Path,
+def measure(
+    run: StudyRun,
     codec_names: list[str],
     signal_names: list[str],
     data: Path | None,
@@ -118,9 +119,9 @@ def run(
     for name in codec_names:
         codec = CODECS[name]()
         rows = [codec_row(codec, signal, size) for signal in signals for size in sizes]
-        rows = in_order(rows + (kept_rows(out / EXPERIMENT / f"{name}.json", signal_names) if keep else []))
-        path = write_result(out, experiment=EXPERIMENT, method=name, config={"sizes": list(sizes)}, rows=rows)
-        print(json.dumps({"codec": name, "written": str(path)}), flush=True)  # noqa: T201
+        rows = in_order(rows + (kept_rows(run.out / EXPERIMENT / f"{name}.json", signal_names) if keep else []))
+        path = run.write(EXPERIMENT, name, config={"sizes": list(sizes)}, rows=complete_rows(rows))
+        print(json.dumps({"codec": name, "written": str(path)}), flush=True)
 
 
 def kept_rows(path: Path, measured: list[str]) -> list[dict[str, Any]]:
@@ -128,7 +129,11 @@ def kept_rows(path: Path, measured: list[str]) -> list[dict[str, Any]]:
     if not path.is_file():
         return []
     record = json.loads(path.read_text(encoding="utf-8"))
-    return [{"commit": record["commit"], **row} for row in record["rows"] if row["dataset"]["name"] not in measured]
+    return [
+        {"commit": record["provenance"]["commit"], **row}
+        for row in record["rows"]
+        if row["dataset"]["name"] not in measured
+    ]
 
 
 def in_order(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -136,19 +141,17 @@ def in_order(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return sorted(rows, key=lambda row: list(SIGNALS).index(row["dataset"]["name"]))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--data", type=Path, action=Reads, default=None, help="folder of recordings (with radar/ in it)"
+    )
     parser.add_argument("--codecs", nargs="*", default=list(CODECS))
     parser.add_argument("--signals", nargs="*", default=None)
     parser.add_argument("--sizes", nargs="*", type=int, default=SIZES)
     parser.add_argument("--keep", action="store_true", help="keep the rows of signals that are not measured now")
-    arguments = parser.parse_args()
-    every = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]
-    signals = arguments.signals or every
-    run(arguments.out, arguments.codecs, signals, arguments.data, tuple(arguments.sizes), keep=arguments.keep)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    every = [name for name in SIGNALS if options.data is not None or name not in RECORDED]
+    signals = options.signals or every
+    measure(run, options.codecs, signals, options.data, tuple(options.sizes), keep=options.keep)

@@ -1,6 +1,6 @@
 """How well fields hold a radar sequence, recipe by recipe, every row beside its floors.
 
-python -m studies.fields.field_fidelity --out results --data <recordings>
+python -m studies run field_fidelity --data <recordings>
 """
 
 import argparse
@@ -15,9 +15,11 @@ from mmweaver.fields.field import SignalField
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.metrics.scorecard import scorecard
-from mmweaver.training.single_signal import RECIPES, fit
 from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.paper.single_signal import RECIPES, fit
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 EXPERIMENT = "field_fidelity"
 BYTES_PER_VALUE = 4  # float32
@@ -29,10 +31,10 @@ Fitter = Callable[[RadarCube], tuple[SignalField, float]]
 def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
     """Fits a field to one signal and scores it: what it stores, in which type, against the same frames in theirs."""
     field, seconds = make(signal.cube)
-    metrics = scorecard(field.cube(), signal.cube, twin=signal.twin).as_json()
+    metrics = scorecard(field.cube(), signal.cube, oracle=signal.twin).as_json()
     if signal.noise_free is not None:
         for name, entry in scorecard(signal.noise_free, signal.cube).as_json().items():
-            metrics[name]["noise_free"] = entry["value"]
+            metrics[name].setdefault("oracle", {})["noise_free"] = entry["value"]
     return {
         "dataset": {
             "name": signal.name,
@@ -43,7 +45,6 @@ def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[
         },
         "n": 1,
         "seeds": [seed],
-        "interval": None,
         "seconds": {"fit": round(seconds, 2)},
         "size": size_of(field),
         "metrics": metrics,
@@ -89,39 +90,39 @@ def fit_scatterers(cube: RadarCube) -> tuple[ScattererField, float]:
     return field, time.process_time() - start
 
 
-def run_scatterers(out: Path, signal_names: tuple[str, ...], data: Path | None) -> Path:
+def measure_scatterers(run: StudyRun, signal_names: tuple[str, ...], data: Path | None) -> Path:
     """The scatterer field on every signal."""
     rows = [fidelity_row(SIGNALS[name](data), fit_scatterers) for name in signal_names]
     config = asdict(ScattererRecipe(num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_calibration=True))
-    return write_result(out, experiment=EXPERIMENT, method="scatterers", config=config, rows=rows)
+    return run.write(EXPERIMENT, "scatterers", config=config, rows=complete_rows(rows))
 
 
-def run(out: Path, recipe_names: tuple[str, ...], signal_names: tuple[str, ...], data: Path | None) -> list[Path]:
+def measure_inr(
+    run: StudyRun, recipe_names: tuple[str, ...], signal_names: tuple[str, ...], data: Path | None
+) -> list[Path]:
     """Every recipe on every signal; one file a recipe."""
     signals = [SIGNALS[name](data) for name in signal_names]
     paths = []
     for name in recipe_names:
         rows = [fidelity_row(signal, recipe_fitter(name)) for signal in signals]
         config = asdict(RECIPES[name])
-        paths.append(write_result(out, experiment=EXPERIMENT, method=f"inr_{name}", config=config, rows=rows))
+        paths.append(run.write(EXPERIMENT, f"inr_{name}", config=config, rows=complete_rows(rows)))
     return paths
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--data", type=Path, action=Reads, default=None, help="folder of recordings (with radar/ in it)"
+    )
     parser.add_argument("--recipes", nargs="*", default=["paper", "smooth_short"])
     parser.add_argument("--without-scatterers", action="store_true")
     parser.add_argument("--signals", nargs="*", default=None)
-    arguments = parser.parse_args()
-    every = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]
-    names = tuple(arguments.signals or every)
-    if arguments.recipes:
-        run(arguments.out, tuple(arguments.recipes), names, arguments.data)
-    if not arguments.without_scatterers:
-        run_scatterers(arguments.out, names, arguments.data)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    every = [name for name in SIGNALS if options.data is not None or name not in RECORDED]
+    names = tuple(options.signals or every)
+    if options.recipes:
+        measure_inr(run, tuple(options.recipes), names, options.data)
+    if not options.without_scatterers:
+        measure_scatterers(run, names, options.data)

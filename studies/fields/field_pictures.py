@@ -1,8 +1,8 @@
 """What fields keep of a signal, to look at: range-Doppler maps of the original, of each field and of its error.
 
-python -m studies.fields.field_pictures --signal two_people --out docs/images/fields.png --data <recordings>
-python -m studies.fields.field_pictures --signal walking --out docs/images/fields_simulated.png
-python -m studies.fields.field_pictures --super-resolution 3 --out docs/images/super_resolution.png
+python -m studies run field_pictures --signal two_people --out docs/images/fields.png --data <recordings>
+python -m studies run field_pictures --signal walking --out docs/images/fields_simulated.png
+python -m studies run field_pictures --super-resolution 3 --out docs/images/super_resolution.png
 """
 
 import argparse
@@ -15,16 +15,18 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import RadarCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import range_doppler_power
-from mmweaver.fields.phase_centring import centring_turn
+from mmweaver.fields.phase_centring import centring_phasor
 from mmweaver.figures.theme import POWER_MAP
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.map_scores import SHOWN_DB, shown_db
-from mmweaver.training.single_signal import RECIPES, fit
 from studies.fields.field_fidelity import fit_scatterers
 from studies.fields.field_signals import SIGNALS
 from studies.fields.finer_radar import middle_delay_s
 from studies.fields.super_resolution import finer_truths, methods
+from studies.manifest import StudyRun
+from studies.paper.single_signal import RECIPES, fit
+from studies.study import Reads
 
 ZOOM_MPS, ZOOM_M = 2.0, 0.7
 
@@ -91,7 +93,7 @@ def draw_super_resolution(path: Path, factor: float, recipe: str, frame: int) ->
     """The same picture of a radar of `factor` times the bandwidth, and of what coarse methods make of it."""
     coarse, truths = finer_truths((factor,), ("more_bandwidth",))
     cube, truth = radar_cube(coarse), truths["more_bandwidth", factor]
-    turn = centring_turn(truth.config, truth.grid).conj() * centring_turn(cube.config, truth.grid)
+    turn = centring_phasor(truth.config, truth.grid).conj() * centring_phasor(cube.config, truth.grid)
     shown = {}
     for method in methods((recipe,)):
         if method.name in ("zero_padding", f"inr_{recipe}") and method.make is not None:
@@ -104,23 +106,22 @@ def draw_super_resolution(path: Path, factor: float, recipe: str, frame: int) ->
     draw_fields(path, truth, shown, frame, title=f"{factor:g} times the bandwidth", zoom=True)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--signal", default="walking_alone")
     parser.add_argument("--recipes", nargs="*", default=["paper", "smooth_short"])
     parser.add_argument("--frame", type=int, default=6)
     parser.add_argument("--super-resolution", type=float, default=None, help="so many times the bandwidth instead")
     parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
-    arguments = parser.parse_args()
-    if arguments.super_resolution is not None:
-        draw_super_resolution(arguments.out, arguments.super_resolution, arguments.recipes[-1], arguments.frame)
+    parser.add_argument(
+        "--data", type=Path, action=Reads, default=None, help="folder of recordings (with radar/ in it)"
+    )
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    if options.super_resolution is not None:
+        draw_super_resolution(options.out, options.super_resolution, options.recipes[-1], options.frame)
         return
-    cube = SIGNALS[arguments.signal](arguments.data).cube
-    fields = {f"INR, recipe {name}": fit(cube, RECIPES[name]).field.cube() for name in arguments.recipes}
+    cube = SIGNALS[options.signal](options.data).cube
+    fields = {f"INR, recipe {name}": fit(cube, RECIPES[name]).field.cube() for name in options.recipes}
     fields["scatterers"] = fit_scatterers(cube)[0].cube()
-    draw_fields(arguments.out, cube, fields, arguments.frame)
-
-
-if __name__ == "__main__":
-    main()
+    draw_fields(options.out, cube, fields, options.frame)

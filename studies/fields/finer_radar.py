@@ -10,7 +10,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.windows import hann
-from mmweaver.fields.phase_centring import centred, centring_turn
+from mmweaver.fields.phase_centring import centred, centring_phasor
 from mmweaver.fields.sampling import antenna_at, coordinates_on
 
 NO_LIMITS_HZ = (1e9, 1e12)  # a finer radar exists in simulation alone
@@ -89,7 +89,7 @@ def interpolated(cube: RadarCube, grid: CubeGrid, *, is_centred: bool) -> CubeVa
     for axis, at in enumerate(coordinates_on(cube.grid, grid)):
         mix = _linear_mix(at, cube.grid.shape[axis])
         values = np.moveaxis(np.tensordot(mix.astype(np.float32), values, axes=(1, axis)), 0, axis)
-    return values * centring_turn(cube.config, grid).conj()[None, :, :, None] if is_centred else values
+    return values * centring_phasor(cube.config, grid).conj()[None, :, :, None] if is_centred else values
 
 
 def _fourier(bins: np.ndarray, window: np.ndarray) -> np.ndarray:

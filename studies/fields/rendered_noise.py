@@ -1,6 +1,6 @@
 """Does a rendered cube with noise look like the capture? Level and distribution of the noise, and its point cloud.
 
-python -m studies.fields.rendered_noise --out results --data <recordings>
+python -m studies run rendered_noise --data <recordings>
 
 The scatterer field holds no noise, one number says how strong it was; `ScattererField.with_noise` renders it.
 """
@@ -18,7 +18,8 @@ from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.metrics.cells import cells_of, noise_floor
 from studies.fields.field_fidelity import fit_scatterers, scatterer_recipe
 from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.study import Reads
 
 EXPERIMENT = "rendered_noise"
 SEED = 0
@@ -95,7 +96,7 @@ def noise_row(signal: ExperimentSignal) -> dict[str, Any]:
             "definition": definition,
             "version": 1,
             "is_headline": False,
-            "floor": {"without_noise": scores["without_noise"][name]},
+            "baseline": {"without_noise": scores["without_noise"][name]},
             "capture": scores["capture"][name],
         }
         for name, (unit, definition) in DEFINITIONS.items()
@@ -104,27 +105,24 @@ def noise_row(signal: ExperimentSignal) -> dict[str, Any]:
         "dataset": {"name": signal.name, "origin": signal.origin, "sha256": signal.digest},
         "n": len(signal.cube.values),
         "seeds": [SEED],
-        "interval": None,
         "seconds": {"fit": round(seconds, 2)},
         "metrics": metrics,
     }
 
 
-def run(out: Path, signal_names: tuple[str, ...], data: Path | None) -> Path:
+def measure(run: StudyRun, signal_names: tuple[str, ...], data: Path | None) -> Path:
     """Scores every signal; one file."""
     rows = [noise_row(SIGNALS[name](data)) for name in signal_names]
     config = asdict(scatterer_recipe(SIGNALS[signal_names[0]](data).cube))
-    return write_result(out, experiment=EXPERIMENT, method="scatterers", config=config, rows=rows)
+    return run.write(EXPERIMENT, "scatterers", config=config, rows=rows)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    parser.add_argument("--data", type=Path, default=None, help="folder of recordings (with radar/ in it)")
-    arguments = parser.parse_args()
-    names = [name for name in SIGNALS if arguments.data is not None or name not in RECORDED]
-    run(arguments.out, tuple(names), arguments.data)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--data", type=Path, action=Reads, default=None, help="folder of recordings (with radar/ in it)"
+    )
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    names = [name for name in SIGNALS if options.data is not None or name not in RECORDED]
+    measure(run, tuple(names), options.data)

@@ -1,6 +1,6 @@
 """Would scatterers that live on from frame to frame say more in as many numbers? A track against free points.
 
-python -m studies.fields.scatterer_tracks --out results
+python -m studies run scatterer_tracks
 
 A track over L frames: range a polynomial of time (its slope is the Doppler), direction cosines too, an amplitude a
 frame. It starts at a scatterer of the middle frame; then all tracks are fitted together (Levenberg-Marquardt with the
@@ -22,7 +22,7 @@ from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import values_of_point
 from studies.fields.field_signals import SIGNALS
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
 
 EXPERIMENT = "scatterer_tracks"
 SIGNAL = "walking_alone"
@@ -92,14 +92,14 @@ class _Tracks:
         )
 
 
-def fit_tracks(target: Tensor, stretch: FitWindow, shape: TrackShape, frame_s: float, start: Points) -> float:
+def fit_tracks(target: Tensor, fit_window: FitWindow, shape: TrackShape, frame_s: float, start: Points) -> float:
     """Energy that the tracks leave of the target (frame, range, doppler, antenna), over its own."""
-    axes = stretch.axes
-    tracks = _Tracks(shape, stretch.response, frame_s, start)
+    axes = fit_window.axes
+    tracks = _Tracks(shape, fit_window.response, frame_s, start)
 
     def unit(geometry: Tensor) -> Tensor:
         """(frame, track, cell)."""
-        every = [stretch.response.render(tracks.points(geometry, frame), axes) for frame in range(shape.num_frames)]
+        every = [fit_window.response.render(tracks.points(geometry, frame), axes) for frame in range(shape.num_frames)]
         return torch.stack(every)[:, :, rows, columns_seen].flatten(2)
 
     rows, columns_seen = _with_signal(target, 1), _with_signal(target, 2)
@@ -157,20 +157,20 @@ def _geometry_step(geometry: Tensor, unit, columns: Tensor, amplitude: Tensor, l
     return step.view(len(geometry), count).clamp(-0.5, 0.5).to(geometry.dtype)
 
 
-def compare(target: Tensor, stretch: FitWindow, shape: TrackShape, frame_s: float) -> dict[str, float]:
+def compare(target: Tensor, fit_window: FitWindow, shape: TrackShape, frame_s: float) -> dict[str, float]:
     """Errors in dB over the same frames: free points, tracks in as many numbers, and how many of each."""
     recipe = FitRecipe(num_points=POINTS_A_FRAME * shape.num_frames, with_static=False, least_gain=0.0)
-    free = fitted(target, stretch, recipe)
-    each = values_of_point(stretch.response)
+    free = fitted(target, fit_window, recipe)
+    each = values_of_point(fit_window.response)
     num_values = int(free.counts().sum()) * each
     num_tracks = num_values // shape.num_values
     middle = target[shape.num_frames // 2 :][:1]
     one = FitRecipe(num_points=num_tracks, with_static=False, least_gain=0.0)
-    start = fitted(middle, FitWindow.of(stretch.config, 1, 0), one).points
-    left = target - stretch.response.render(free.points, stretch.axes)
+    start = fitted(middle, FitWindow.of(fit_window.config, 1, 0), one).points
+    left = target - fit_window.response.render(free.points, fit_window.axes)
     return {
         "free_points_db": _db(float(left.abs().square().sum() / target.abs().square().sum())),
-        "tracks_db": _db(fit_tracks(target, stretch, shape, frame_s, start)),
+        "tracks_db": _db(fit_tracks(target, fit_window, shape, frame_s, start)),
         "values": num_values,
         "tracks": start.amplitude.shape[1],
     }
@@ -180,7 +180,7 @@ def _db(ratio: float) -> float:
     return float(10 * np.log10(ratio))
 
 
-def run(out: Path) -> Path:
+def measure(run: StudyRun) -> Path:
     """One row a shape of track, means over a few places of the sequence."""
     signal = SIGNALS[SIGNAL](None)
     cube = signal.noise_free
@@ -190,13 +190,13 @@ def run(out: Path) -> Path:
         start = time.process_time()
         found = []
         for first in FIRST_FRAMES:
-            stretch = FitWindow.of(cube.config, shape.num_frames, 0)
+            fit_window = FitWindow.of(cube.config, shape.num_frames, 0)
             values = cube.values[first : first + shape.num_frames]
-            working = stretch.working(values / np.abs(values).max())
-            found.append(compare(working, stretch, shape, cube.config.frame_period_s))
+            working = fit_window.working(values / np.abs(values).max())
+            found.append(compare(working, fit_window, shape, cube.config.frame_period_s))
         rows.append(_row(signal.digest, shape, found, time.process_time() - start))
     config = {"first_frames": list(FIRST_FRAMES), "points_a_frame": POINTS_A_FRAME, "steps": STEPS}
-    return write_result(out, experiment=EXPERIMENT, method="tracks", config=config, rows=rows)
+    return run.write(EXPERIMENT, "tracks", config=config, rows=rows)
 
 
 def _row(digest: str, shape: TrackShape, found: list[dict[str, float]], seconds: float) -> dict[str, Any]:
@@ -206,7 +206,6 @@ def _row(digest: str, shape: TrackShape, found: list[dict[str, float]], seconds:
         "dataset": {"name": SIGNAL, "origin": "simulated, without noise", "sha256": digest},
         "n": len(found),
         "seeds": [0],
-        "interval": None,
         "seconds": {"all": round(seconds, 2)},
         "frames": shape.num_frames,
         "range_degree": shape.range_degree,
@@ -215,18 +214,16 @@ def _row(digest: str, shape: TrackShape, found: list[dict[str, float]], seconds:
         "metrics": {
             "nmse_db": {
                 "value": tracks, "unit": "dB", "definition": definition, "version": 1, "is_headline": True,
-                "floor": {"zeros": 0.0}, "free_points": free,
+                "baseline": {"zeros": 0.0, "free_points": free},
             }
         },
         "places": found,
     }  # fmt: skip
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    run(parser.parse_args().out)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """This study has no options of its own."""
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(run)

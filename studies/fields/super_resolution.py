@@ -11,7 +11,7 @@ Questions that "super-resolution" mixes:
 Rivals: zero padding (the coarse radar's own spectrum) and straight lines between cells. Scatterers answer twice:
 sampled more finely, as every field, and rendered as the finer radar would see them (scatterers_rendered).
 
-    python -m studies.fields.super_resolution --out results
+    python -m studies run super_resolution
 """
 
 import argparse
@@ -30,17 +30,16 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 from mmweaver.dsp.cube import adc_from_cube, radar_cube
 from mmweaver.fields.field import SignalField
-from mmweaver.fields.phase_centring import centred, centring_turn
+from mmweaver.fields.phase_centring import centred, centring_phasor
 from mmweaver.fields.sampling import finer_grid, sampled_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.metrics.baselines import FLOORS
+from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
-from mmweaver.training.single_signal import RECIPES, fit
 from studies.fields.field_fidelity import PAPER_VALUES
 from studies.fields.field_signals import pose_of, sample_scene, without_room
 from studies.fields.finer_radar import (
@@ -52,7 +51,9 @@ from studies.fields.finer_radar import (
     spectrum_on,
     starting_later,
 )
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.paper.single_signal import RECIPES, fit
+from studies.result_rows import complete_rows
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
 RADII = (1, 2, 3, 4, 5, 6, 7)
@@ -159,15 +160,15 @@ def sampled_places(sampler: Sampler, cube: RadarCube, adc: AdcCube, radius: int)
 
 def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig) -> dict[str, Any]:
     """The scorecard of a coarse cube's sampler on the grid of a finer radar's cube, both phase-centred."""
-    values = sampler(truth.grid) * centring_turn(coarse, truth.grid)[None, :, :, None]
+    values = sampler(truth.grid) * centring_phasor(coarse, truth.grid)[None, :, :, None]
     prediction = replace(truth, values=values.astype(np.complex64))
     return scorecard(prediction, centred(truth)).as_json()
 
 
-def run(out: Path, recipe_names: tuple[str, ...], factors: tuple[float, ...] = FACTORS) -> list[Path]:
+def measure(run: StudyRun, recipe_names: tuple[str, ...], factors: tuple[float, ...] = FACTORS) -> list[Path]:
     """Scores every method on every question and writes one file each."""
     coarse, truths = finer_truths(factors)
-    return [_run_method(method, coarse, truths, factors, out) for method in methods(recipe_names)]
+    return [_run_method(method, coarse, truths, factors, run) for method in methods(recipe_names)]
 
 
 def finer_truths(
@@ -190,7 +191,7 @@ def _run_method(
     coarse: AdcCube,
     truths: dict[tuple[str, float], RadarCube],
     factors: tuple[float, ...],
-    out: Path,
+    run: StudyRun,
 ) -> Path:
     start = time.perf_counter()
     cube = radar_cube(coarse)
@@ -213,8 +214,10 @@ def _run_method(
             prediction = replace(prediction, grid=truth.grid)
             rows.append(_row(kind, factor, scorecard(prediction, truth).as_json()))
     for row in rows:
-        row |= {"n": 1, "seeds": [0], "interval": None, "seconds": {"prepare": round(seconds, 3)}}
-    return write_result(out, experiment="super_resolution", method=method.name, config=method.settings, rows=rows)
+        row |= {"n": 1, "seeds": [0], "seconds": {"prepare": round(seconds, 3)}}
+    unknown = {"dataset.sha256": "simulated anew in every run"}
+    rows = complete_rows(rows, unknown=unknown)
+    return run.write("super_resolution", method.name, config=method.settings, rows=rows)
 
 
 def _record(config: RadarConfig, pose: PoseSequence) -> AdcCube:
@@ -230,7 +233,7 @@ def _row(truth: str, factor: float, metrics: dict[str, Any]) -> Row:
 def _entry(
     name: str, prediction: CubeValues, truth: RadarCube, cells: str, where: RangeDopplerMask | None = None
 ) -> dict[str, Any]:
-    """An NMSE over some cells, beside its floors."""
+    """An NMSE over some cells, and its baselines."""
     metric = METRICS[name]
     value = nmse_db(prediction, truth.values, where)
     return {
@@ -239,17 +242,13 @@ def _entry(
         "definition": f"{metric.definition}; {cells}",
         "version": metric.version,
         "is_headline": metric.is_headline,
-        "floor": {floor: nmse_db(make(truth).values, truth.values, where) for floor, make in FLOORS.items()},
+        "baseline": {name: nmse_db(make(truth).values, truth.values, where) for name, make in BASELINES.items()},
     }
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--recipes", nargs="*", default=list(RECIPE_NAMES))
-    arguments = parser.parse_args()
-    run(arguments.out, tuple(arguments.recipes))
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(run, tuple(options.recipes))

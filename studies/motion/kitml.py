@@ -1,7 +1,7 @@
 """How many real sentences are understood, and how many of those rightly? 6,082 sentences of KIT-ML.
 
-python -m studies.motion.kitml --sentences <folder of kitml_text> --out results
-python -m studies.motion.kitml --sentences <folder> --list        # the sentences to judge, with their readings
+python -m studies run kitml --sentences <folder of kitml_text>
+python -m studies run kitml --sentences <folder> --list        # the sentences to judge, with their readings
 
 The sentences are split by motion into a half that the lexicon was made on and a half for checking. 200 understood
 sentences of the checking half, drawn by a fixed seed, were judged by hand: right if every movement that the sentence
@@ -25,7 +25,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.language.sentence import parse
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 JUDGED = 200
 Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | wrong), why
@@ -145,8 +147,8 @@ def _share(part: int, whole: int, definition: str) -> dict[str, Any]:
         z / (1 + z * z / max(whole, 1)) * (share * (1 - share) / max(whole, 1) + (z / (2 * max(whole, 1))) ** 2) ** 0.5
     )
     return {
-        "value": round(share, 4), "interval": [round(max(centre - half, 0.0), 4), round(min(centre + half, 1.0), 4)],
-        "n": whole, "unit": "share", "definition": definition, "version": 1, "floor": None,
+        "value": round(share, 4), "interval_95": [round(max(centre - half, 0.0), 4), round(min(centre + half, 1.0), 4)],
+        "n": whole, "unit": "share", "definition": definition, "version": 1,
     }  # fmt: skip
 
 
@@ -154,12 +156,13 @@ def _plain(text: str) -> str:
     return " ".join("".join(letter if letter.isalnum() else " " for letter in text.lower()).split())
 
 
-def run(out: Path, folder: Path) -> Path:
+def measure(run: StudyRun, folder: Path) -> Path:
     """Writes results/kitml/reading.json; judgements are read from results/kitml/judgements.json."""
     path = folder / "kitml_annotations.json"
-    judgements, before = _judgements(out, "judgements"), _before(out)
+    judgements, before = _judgements(run.out, "judgements"), _before(run.out)
     row = result_row(sentences_of(path), judgements, before, hashlib.sha256(path.read_bytes()).hexdigest())
-    return write_result(out, experiment="kitml", method="reading", config={"judged": JUDGED}, rows=[row])
+    unknown = {"seconds": "see the manifest"}
+    return run.write("kitml", "reading", config={"judged": JUDGED}, rows=complete_rows([row], unknown=unknown))
 
 
 def _judgements(out: Path, name: str) -> Judgements:
@@ -171,21 +174,19 @@ def _before(out: Path) -> dict[str, Judgements]:
     return {name: _judgements(out, f"judgements_{name}") for name in EARLIER}
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sentences", type=Path, required=True, help="folder with kitml_annotations.json")
-    parser.add_argument("--out", type=Path, default=Path("results"))
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--sentences", type=Path, action=Reads, required=True, help="folder with kitml_annotations.json"
+    )
     parser.add_argument("--list", action="store_true", help="only list the sentences to judge, as JSON")
-    arguments = parser.parse_args()
-    if arguments.list:
-        sentences = sentences_of(arguments.sentences / "kitml_annotations.json")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    if options.list:
+        sentences = sentences_of(options.sentences / "kitml_annotations.json")
         readings, texts = understood(sentences), {s.name: s.text for s in sentences}
-        before = {name for earlier in _before(arguments.out).values() for name in earlier}
+        before = {name for earlier in _before(run.out).values() for name in earlier}
         names = drawn(readings, [s for s in sentences if s.is_for_checking], before)
         json.dump([{"name": n, "text": texts[n], "reading": readings[n]} for n in names], sys.stdout, indent=1)
         return
-    run(arguments.out, arguments.sentences)
-
-
-if __name__ == "__main__":
-    main()
+    measure(run, options.sentences)

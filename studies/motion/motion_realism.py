@@ -1,6 +1,6 @@
 """Does the library move as people do? Its walking, running and jumping beside motion capture (CMU).
 
-python -m studies.motion.motion_realism --mocap <folder with cmu_joints_m_120fps.npz> --out results
+python -m studies run motion_realism --mocap <folder with cmu_joints_m_120fps.npz>
 
 Each figure is taken of every recorded clip and of as many generated ones: walks and runs at the clips' own speeds. Both
 pass the same smoothing, as the recordings are kept in half precision. A figure is inside where the median of ours lies
@@ -23,7 +23,9 @@ from mmweaver.motion.animation.assemble import assemble
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import Step
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 Array = np.ndarray
 Places = dict[str, Float[Array, "frame 3"]]
@@ -193,12 +195,11 @@ def compare(theirs: list[Figures], generated: list[Figures]) -> dict[str, dict[s
             "recorded_5_50_95": [round(low, 4), round(middle, 4), round(high, 4)],
             "inside": bool(low <= np.median(made) <= high),
             "share_inside": round(float(np.mean((made >= low) & (made <= high))), 4),
-            "floor": None,
         }
     return rows
 
 
-def run(out: Path, folder: Path) -> Path:
+def measure(run: StudyRun, folder: Path) -> Path:
     """One row for walking, running, jumping."""
     path = folder / "cmu_joints_m_120fps.npz"
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
@@ -229,16 +230,14 @@ def run(out: Path, folder: Path) -> Path:
                 "metrics": compare([figures(clip) for clip in clips], [figures(clip) for clip in made]),
             }
         )
-    return write_result(out, experiment="motion_realism", method="library", config={"rate_hz": RATE_HZ}, rows=rows)
+    unknown = {"seconds": "see the manifest: all rows together"}
+    rows = complete_rows(rows, unknown=unknown)
+    return run.write("motion_realism", "library", config={"rate_hz": RATE_HZ}, rows=rows)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--mocap", type=Path, required=True, help="folder with cmu_joints_m_120fps.npz")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    run(arguments.out, arguments.mocap)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--mocap", type=Path, action=Reads, required=True, help="folder with cmu_joints_m_120fps.npz")
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(run, options.mocap)

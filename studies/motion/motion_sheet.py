@@ -1,6 +1,6 @@
 """The pictures of docs/motion.md: every activity of the library as a strip of skeletons.
 
-python -m studies.motion.motion_sheet --out docs/images
+python -m studies run motion_sheet --out docs/images
 """
 
 import argparse
@@ -12,6 +12,7 @@ from mmweaver.motion.empty_floor import act_out
 from mmweaver.motion.language.activities import BODY, HANDS, Activity
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s
+from studies.manifest import StudyRun
 
 SEED = 1
 
@@ -22,13 +23,10 @@ def strip_of(activity: Activity) -> tuple[str, PoseSequence]:
     return activity.name, act_out(activity.example, duration_s=seconds, seed=SEED, height_m=1.75).pose
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    arguments = parser.parse_args()
-    draw_sheet([strip_of(activity) for activity in BODY], arguments.out / "motions_body.png")
-    draw_sheet([strip_of(activity) for activity in HANDS], arguments.out / "motions_hands.png")
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    draw_sheet([strip_of(activity) for activity in BODY], options.out / "motions_body.png")
+    draw_sheet([strip_of(activity) for activity in HANDS], options.out / "motions_hands.png")

@@ -1,6 +1,6 @@
 """Skeleton strips of what a MotionGPT makes of twelve sentences.
 
-python -m studies.motion.motiongpt_pictures --model motiongpt_small.safetensors --out strips.png
+python -m studies run motiongpt_pictures --model motiongpt_small.safetensors --out strips.png
 """
 
 import argparse
@@ -13,7 +13,9 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.skeleton import BONES, JOINT_NAMES
 from mmweaver.motion.mocap.humanml3d import FPS
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT
+from studies.manifest import StudyRun
 from studies.motion.motiongpt_data import ACTIVITIES, FRAMES, sentence_of
+from studies.study import Reads
 
 POSES, APART_M, VIEW_RAD = 10, 0.75, 0.6
 COLOURS = {"left": "#1f77b4", "right": "#d62728", "middle": "#444444"}
@@ -53,20 +55,16 @@ def _side(joint_index: int) -> str:
     return side if side in COLOURS else "middle"
 
 
-def main() -> None:
-    """Draws the twelve activities."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--model", type=Path, required=True, help="a MotionGPT checkpoint")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--model", type=Path, action=Reads, required=True, help="a MotionGPT checkpoint")
     parser.add_argument("--out", type=Path, required=True, help="picture to write")
     parser.add_argument("--seed", type=int, default=9000, help="of the motions and their sentences")
-    arguments = parser.parse_args()
-    model = MotionGPT.load(arguments.model)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    model = MotionGPT.load(options.model)
     clips = {}
     for activity in ACTIVITIES:
-        sentence = sentence_of(activity, arguments.seed, held_out=False)
-        clips[sentence] = model.generate(sentence, seconds=FRAMES / FPS, seed=arguments.seed).joints_m
-    draw_strips(clips, arguments.out)
-
-
-if __name__ == "__main__":
-    main()
+        sentence = sentence_of(activity, options.seed, held_out=False)
+        clips[sentence] = model.generate(sentence, seconds=FRAMES / FPS, seed=options.seed).joints_m
+    draw_strips(clips, options.out)

@@ -1,6 +1,6 @@
 """Does a MotionGPT do what the sentence says? Its motions judged by a classifier that saw the library's alone.
 
-python -m studies.motion.motiongpt_scores --model motiongpt_small.safetensors --data shared/data --out results
+python -m studies run motiongpt_scores --model motiongpt_small.safetensors --data shared/data
 
 R-precision here: among the twelve activities, is the one that was asked for the classifier's first (or one of its first
 three)? Floor: chance, and random codes through the same decoder. Ceiling: motions of the library with seeds that
@@ -21,6 +21,7 @@ from mmweaver.core.skeleton import BONES
 from mmweaver.motion.mocap.humanml3d import FPS, features_from_joints, joints_from_features, y_up
 from mmweaver.motion.motiongpt.motiongpt import MotionGPT
 from mmweaver.result_folder import file_digest
+from studies.manifest import StudyRun
 from studies.motion.motion_classifier import MotionClassifier, train_classifier
 from studies.motion.motiongpt_data import (
     ACTIVITIES,
@@ -31,7 +32,8 @@ from studies.motion.motiongpt_data import (
     library_examples,
     sentence_of,
 )
-from studies.report.result_files import write_result
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 Array = np.ndarray
 CLASSIFIER_SEEDS, TEST_SEEDS = range(3000, 3060), range(7000, 7025)
@@ -108,26 +110,26 @@ def row(name: str, judge: MotionClassifier, motions: Motions, seconds: float) ->
         "seeds": [TEST_SEEDS.start, TEST_SEEDS.stop], "seconds": {"cpu": round(seconds, 2)},
         "metrics": {
             "r_precision_1": {
-                "value": float(top1.mean()), "unit": "share", "version": 1, "floor": {"chance": 1 / 12},
+                "value": float(top1.mean()), "unit": "share", "version": 1, "baseline": {"chance": 1 / 12},
                 "interval_95": interval(top1, together),
                 "definition": "the activity asked for is the classifier's first of twelve",
                 "n_by_activity": {a: int((asked == a).sum()) for a in ACTIVITIES if (asked == a).any()},
                 "by_activity": {a: float(top1[asked == a].mean()) for a in ACTIVITIES if (asked == a).any()},
             },
             "r_precision_3": {
-                "value": float(top3.mean()), "unit": "share", "version": 1, "floor": {"chance": 3 / 12},
+                "value": float(top3.mean()), "unit": "share", "version": 1, "baseline": {"chance": 3 / 12},
                 "interval_95": interval(top3, together),
                 "definition": "the activity asked for is among the classifier's first three of twelve",
             },
             "bone_spread": {
-                "value": bone_spread(motions), "unit": "share", "version": 1, "floor": None,
+                "value": bone_spread(motions), "unit": "share", "version": 1,
                 "definition": "5th to 95th percentile of a bone's length over its median, mean over bones and motions",
             },
         },
     }  # fmt: skip
 
 
-def score(model_path: Path, data: Path, out: Path) -> Path:
+def score(model_path: Path, data: Path, run: StudyRun) -> Path:
     """Scores a model and writes results/motiongpt/<file>.json."""
     torch.set_num_threads(1)
     model = MotionGPT.load(model_path)
@@ -141,11 +143,11 @@ def score(model_path: Path, data: Path, out: Path) -> Path:
         if motions:
             rows.append(row(name, judge, motions, time.process_time() - began))
 
-    add("library, unseen seeds (ceiling)", lambda: [(e.activity, e.features) for e in library])
-    add("library through the tokenizer (its ceiling)", lambda: through_tokenizer(model, library))
+    add("library, unseen seeds (oracle)", lambda: [(e.activity, e.features) for e in library])
+    add("library through the tokenizer (its oracle)", lambda: through_tokenizer(model, library))
     add("generated, sentences as trained", lambda: generated(model, TEST_SEEDS, held_out_words=False))
     add("generated, words never trained", lambda: generated(model, TEST_SEEDS, held_out_words=True))
-    add("random codes (floor)", lambda: random_codes(model, TEST_SEEDS))
+    add("random codes (baseline)", lambda: random_codes(model, TEST_SEEDS))
     if (data / CMU_FILE).is_file():
         real = list(cmu_examples(data, "test"))
         add("CMU recordings, test clips (walk, run, jump)", lambda: [(e.activity, e.features) for e in real])
@@ -154,18 +156,14 @@ def score(model_path: Path, data: Path, out: Path) -> Path:
         "frames": FRAMES, "fps": FPS, "judge": "MLP on mean, spread, least, most of 263 features; library alone",
         "judge_seeds": [CLASSIFIER_SEEDS.start, CLASSIFIER_SEEDS.stop],
     }  # fmt: skip
-    return write_result(out, experiment="motiongpt", method=model_path.stem, config=config, rows=rows)
+    unknown = {"dataset.sha256": "generated anew in every run; recordings are hashed in the manifest"}
+    return run.write("motiongpt", model_path.stem, config=config, rows=complete_rows(rows, unknown=unknown))
 
 
-def main() -> None:
-    """Scores the model that is named."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--model", type=Path, required=True, help="a MotionGPT checkpoint")
-    parser.add_argument("--data", type=Path, default=Path("shared/data"), help="folder of real data")
-    parser.add_argument("--out", type=Path, default=Path("results"), help="folder of results")
-    arguments = parser.parse_args()
-    score(arguments.model, arguments.data, arguments.out)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--model", type=Path, action=Reads, required=True, help="a MotionGPT checkpoint")
+    parser.add_argument("--data", type=Path, action=Reads, default=Path("shared/data"), help="folder of real data")
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    score(options.model, options.data, run)

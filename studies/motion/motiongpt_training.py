@@ -1,6 +1,6 @@
 """A small MotionGPT, trained from nothing on one CPU core: the same architecture with smaller numbers.
 
-python -m studies.motion.motiongpt_training --data shared/data --weights motiongpt_small.safetensors
+python -m studies run motiongpt_training --data shared/data --weights motiongpt_small.safetensors
 
 An interrupted training goes on where it stopped. Scores of the result: `python -m
 studies.motion.motiongpt_scores`.
@@ -23,7 +23,9 @@ from mmweaver.motion.motiongpt.text_tokenizer import plain_words, train_words
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer, TokenizerConfig
 from mmweaver.training.motion_language import LanguageRecipe, train_language
 from mmweaver.training.motion_tokenizer import TokenizerRecipe, train_tokenizer
+from studies.manifest import StudyRun
 from studies.motion.motiongpt_data import SentenceExample, cmu_examples, library_examples
+from studies.study import Reads
 
 Array = np.ndarray
 TRAIN_SEEDS = range(1000, 1080)
@@ -97,21 +99,19 @@ def _codes(tokenizer: MotionTokenizer, motion: Float[Array, "frame feature"]) ->
         return tokenizer.encode(torch.from_numpy(motion[None].astype(np.float32)))[0].tolist()
 
 
-def main() -> None:
-    """Trains and writes the weights."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, default=Path("shared/data"), help="folder of real data (CMU's motions)")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--data", type=Path, action=Reads, default=Path("shared/data"), help="folder of real data (CMU's motions)"
+    )
     parser.add_argument(
         "--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training goes on"
     )
     parser.add_argument("--weights", type=Path, default=Path("motiongpt_small.safetensors"), help="file to write")
-    arguments = parser.parse_args()
-    made = train(arguments.data, arguments.work)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    made = train(options.data, options.work)
     save_weights(
-        arguments.weights, tokenizer=made["tokenizer"], language=made["language"], mean=made["mean"], std=made["std"],
+        options.weights, tokenizer=made["tokenizer"], language=made["language"], mean=made["mean"], std=made["std"],
         vocabulary=made["vocabulary"], half=True,
     )  # fmt: skip
-
-
-if __name__ == "__main__":
-    main()

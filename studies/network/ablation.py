@@ -1,13 +1,13 @@
 """What each part of the network, of its loss and of its training is worth, in rooms of the validation kind.
 
-    python -m studies.network.ablation --data DATASET --runs RUNS --steps 300 --rooms 48 --most 16
+    python -m studies run ablation --data DATASET --runs RUNS --steps 300 --rooms 48 --most 16
 
 Every variant (`ablation_variants`) is trained for the same short while, from the same seed, in the same rooms, and goes
 on where it was stopped; each writes a file of its own. Test splits are not looked at: this table is for choosing.
 
 Scores on drawn signals, as in the deciding table, and differences of mean power maps, which no phases blur, of all that
 is there and of the person alone: ghosts lie 15 to 20 dB below the person and below most rooms, and show there only.
-`physics_in_photographed_room` and `twin` stand beside them.
+`physics_in_photographed_room` and `realization` stand beside them.
 """
 
 import argparse
@@ -23,7 +23,7 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_power import PowerMaps
@@ -35,17 +35,23 @@ from mmweaver.training.network_loss import Targets
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, drawing
 from mmweaver.training.trainer import Trainer
 from mmweaver.training.validation_sheet import differences_db
+from studies.manifest import StudyRun
 from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
-from studies.network.learned_table import TWIN, Case, Method, cases_of, interval, simulated, woven
+from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache
-from studies.report.result_files import write_result
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db")
 MEAN_COLUMNS = ("mean_ra_db", "mean_rd_db", "person_ra_db", "person_rd_db")
+UNKNOWN = {
+    "seconds": "see the manifest",
+    "metrics.*.baseline": "each variant has a file of its own; rows of this study are compared with the whole network",
+}
 FRAMES = 6  # of a sequence, whose mean maps are compared
 BESIDE: dict[str, Method] = {
-    "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=TWIN, micro_seed=1),
-    "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),
+    "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=OTHER, micro_seed=1),
+    "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
 }
 
 
@@ -126,13 +132,13 @@ def photo_of(case: Case, variant: AblationVariant, generic: StoredRoom) -> Store
 
 def scores(learner: NetworkLearner, photo: Callable[[Case], StoredRoom], case: Case) -> dict[str, float]:
     """{column: value of one case}."""
-    drawn = drawn_scores(woven(learner.network, photo), case)
+    drawn = drawn_scores(learned(learner.network, photo), case)
     return drawn if case.room.geometry is None else {**drawn, **mean_scores(learner, photo(case), case)}
 
 
 def drawn_scores(method: Method, case: Case) -> dict[str, float]:
     """Of a signal with its own draw of phases against the truth's."""
-    truth, prediction = Views(case.room.cube(case.index)), Views(method(case))
+    truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))
     return {name: METRICS[name].score(prediction, truth) for name in COLUMNS}
 
 
@@ -172,7 +178,7 @@ def row_of(name: str, each: list[dict[str, float]], rooms: list[str]) -> dict[st
         mean, low, high = interval(np.array([one[column] for one in each]), rooms)
         unit = METRICS[column].unit if column in METRICS else "dB"
         own = [round(one[column], 4) for one in each]
-        metrics[column] = {"value": mean, "low": low, "high": high, "unit": unit, "each": own}
+        metrics[column] = {"value": mean, "interval_95": [low, high], "unit": unit, "each": own}
     return {"method": name, "split": "validation", "n": len(each), "rooms": rooms, "metrics": metrics}
 
 
@@ -181,34 +187,35 @@ def slug(name: str) -> str:
     return name.replace(",", "").replace(" ", "_")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--runs", type=Path, required=True, help="folder for the variants' checkpoints")
     parser.add_argument("--steps", type=int, default=300)
     parser.add_argument("--rooms", type=int, default=48, help="to train in")
     parser.add_argument("--most", type=int, default=16, help="rooms to be judged in")
     parser.add_argument("--only", nargs="*", default=[*VARIANTS, *BESIDE], help="rows")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    unknown = [name for name in arguments.only if name not in VARIANTS and name not in BESIDE]
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    unknown = [name for name in options.only if name not in VARIANTS and name not in BESIDE]
     if unknown:
         raise InputError(f"unknown rows {', '.join(unknown)}; known: {', '.join([*VARIANTS, *BESIDE])}")
     torch.set_num_threads(1)
     recipe = TrainingRecipe(
-        steps=arguments.steps, warm_up_steps=arguments.steps // 10, validate_every=max(arguments.steps // 3, 1)
+        steps=options.steps, warm_up_steps=options.steps // 10, validate_every=max(options.steps // 3, 1)
     )
-    material = AblationMaterial.of(arguments.data, arguments.rooms, arguments.most)
-    about = {"data_plan": read_plan(arguments.data), "recipe": asdict(recipe), "train_rooms": len(material.train)}
+    material = AblationMaterial.of(options.data, options.rooms, options.most)
+    about = {"data_plan": read_plan(options.data), "recipe": asdict(recipe), "train_rooms": len(material.train)}
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in material.cases]
-    for name in arguments.only:
-        kept = RoomCache(arguments.runs / "scores", {**about, "row": name, "plan": plan_text(arguments.data)})
-        judge = _judge(name, material, arguments.runs, recipe)
+    for name in options.only:
+        kept = RoomCache(options.runs / "scores", {**about, "row": name, "plan": plan_text(options.data)})
+        judge = _judge(name, material, options.runs, recipe)
         each = [kept.figures(f"{case.room.folder.name}_{case.index}", partial(judge, case)) for case in material.cases]
         row = row_of(name, each, rooms)
-        write_result(arguments.out, experiment="weaver_ablation", method=slug(name), config=about, rows=[row])
+        rows = complete_rows([row], dataset=dataset_of(options.data), seeds=[0], unknown=UNKNOWN)
+        run.write("ablation", slug(name), config=about, rows=rows)
         figures = (f"{column} {metric['value']:.3f}" for column, metric in row["metrics"].items())
-        print(f"{name:32}", *figures, flush=True)  # noqa: T201
+        print(f"{name:32}", *figures, flush=True)
 
 
 def _judge(
@@ -226,7 +233,3 @@ def _judge(
         return scores(made[0], lambda one: photo_of(one, variant, material.generic), case)
 
     return judge
-
-
-if __name__ == "__main__":
-    main()

@@ -1,6 +1,6 @@
 """How well the activity network recognises in rooms, layouts and people it has not seen.
 
-    python -m studies.network.activity_accuracy --data DATASET --weights ACTIVITY --out results
+    python -m studies run activity_accuracy --data DATASET --weights ACTIVITY
 
 Twelve classes; intervals are over rooms. Floors: chance, and always saying the commonest activity of the split.
 """
@@ -18,8 +18,10 @@ from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
 from mmweaver.models.weights import load_into
 from mmweaver.training.activity_examples import ActivityExamples, activity_examples
 from mmweaver.training.activity_training import scores_of
-from studies.network.learned_table import interval
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.network.learned_scores import interval
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 SPLITS = ("test_room", "test_layout", "test_person")
 
@@ -31,37 +33,36 @@ def row_of(network: ActivityNetwork, examples: ActivityExamples, split: str) -> 
     counts = np.bincount(label, minlength=len(ACTIVITY_NAMES))
     confusion = np.zeros((len(ACTIVITY_NAMES), len(ACTIVITY_NAMES)), int)
     np.add.at(confusion, (label, answers), 1)
-    floor = {"chance": 1 / len(ACTIVITY_NAMES), "commonest": float(counts.max() / counts.sum())}
+    baseline = {"chance": 1 / len(ACTIVITY_NAMES), "commonest": float(counts.max() / counts.sum())}
     return {
         "split": split, "n": len(label), "num_rooms": len(set(examples.room)), "num_people": len(set(examples.person)),
         "num_activities": int((counts > 0).sum()), "confusion": confusion.tolist(),
-        "metrics": {"accuracy": {"value": mean, "low": low, "high": high, "unit": "1", "floor": floor}},
+        "metrics": {"accuracy": {"value": mean, "interval_95": [low, high], "unit": "1", "baseline": baseline}},
     }  # fmt: skip
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, required=True, help="of recipe activity")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, required=True, help="of recipe activity")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     torch.set_num_threads(1)
-    network = ActivityNetwork(read_radar(arguments.data))
-    card = load_into(network, arguments.weights, recipe="activity")
+    network = ActivityNetwork(read_radar(options.data))
+    card = load_into(network, options.weights, recipe="activity")
     rows = []
     for split in SPLITS:
         try:
-            rows.append(row_of(network, activity_examples(arguments.data, (split,)), split))
+            rows.append(row_of(network, activity_examples(options.data, (split,)), split))
         except InputError:
             continue
         metric = rows[-1]["metrics"]["accuracy"]
-        print(f"{split:12} {metric['value']:.3f} ({metric['low']:.3f} to {metric['high']:.3f})")  # noqa: T201
-    write_result(
-        arguments.out, experiment="activity_accuracy", method="activity",
-        config={"weights": card.__dict__, "data_plan": read_plan(arguments.data), "activities": ACTIVITY_NAMES},
+        print(f"{split:12} {metric['value']:.3f} {metric['interval_95']}")
+    rows = complete_rows(
+        rows, dataset=dataset_of(options.data), seeds=[0], unknown={"seconds": "see the manifest: all rows together"}
+    )
+    run.write(
+        "activity_accuracy", "activity",
+        config={"weights": card.__dict__, "data_plan": read_plan(options.data), "activities": ACTIVITY_NAMES},
         rows=rows,
     )  # fmt: skip
-
-
-if __name__ == "__main__":
-    main()

@@ -1,6 +1,6 @@
 """What generated data is worth: a recogniser of activities in a room that nobody has recorded.
 
-    python -m studies.network.activity_gain --data DATASET --weights WEAVER --judge JUDGE/weights.safetensors \\
+    python -m studies run activity_gain --data DATASET --weights WEAVER --judge JUDGE/weights.safetensors \\
         --rooms 40 --runs RUNS --out results
 
 The recogniser (`mmweaver train activity`) has seen other rooms. For each room of an unseen kind its head is trained on,
@@ -32,21 +32,23 @@ from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.make_room import pose_of
+from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.paper_method import load_paper, paper_field
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.activity_examples import activity_examples, maps_of
 from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS
-from studies.network.learned_table import TWIN, empty_room, interval
+from studies.manifest import StudyRun
+from studies.network.learned_scores import OTHER, empty_room, interval
 from studies.network.room_cache import RoomCache, digest
-from studies.report.result_files import write_result
+from studies.paper.paper_method import load_paper, paper_field
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 # chosen on rooms of the validation kind
 STEPS, OTHERS, OWN, LEARNING_RATE = 200, 24, 8, 3e-4
@@ -103,7 +105,7 @@ def motions_in(room: UnseenRoom, each: int, seed: int) -> list[tuple[str, PoseSe
                 pose = pose_of(spec, room.photographed, room.room.config, room.room.joints_m.shape[1])
             except InputError:
                 continue
-            motions.append((activity, replace(pose, subject=TWIN + spec.person)))
+            motions.append((activity, replace(pose, subject=OTHER + spec.person)))
     return motions
 
 
@@ -132,9 +134,9 @@ def with_generated(
 
     def method(room: UnseenRoom) -> Maker:
         config, num_frames = room.room.config, room.room.joints_m.shape[1]
-        empty = empty_room(room.true_scene(room.room), config, num_frames, TWIN) if recorded else None
-        woven = LearnedRoom(network, scene_of(room), config, room_seed=1, empty=empty)
-        return lambda pose, seed: woven.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
+        empty = empty_room(room.true_scene(room.room), config, num_frames, OTHER) if recorded else None
+        learned = LearnedRoom(network, scene_of(room), config, room_seed=1, empty=empty)
+        return lambda pose, seed: learned.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
 
     return method
 
@@ -184,7 +186,7 @@ def seen(network: ActivityNetwork, doppler: Tensor, angle: Tensor) -> Tensor:
 
 
 @dataclass(frozen=True)
-class Study:
+class GainStudy:
     """A recogniser, recordings of other rooms as it sees them, and whether its head begins anew."""
 
     network: ActivityNetwork
@@ -201,7 +203,7 @@ class Study:
         return head
 
 
-def judged(study: Study, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
+def judged(study: GainStudy, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
     """Accuracy and log loss on test sequences once the head has been trained on; a quarter of a batch is the room's."""
     torch.manual_seed(seed)
     head, rng = study.head(), stream(seed, "activity gain head")
@@ -231,7 +233,7 @@ Found = dict[str, list[float]]  # {method: accuracy, log loss} in one room
 
 
 def gained(
-    study: Study, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
+    study: GainStudy, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
 ) -> Found:
     """What each method's data are worth in one room; besides, the head trained on with nothing generated."""
     network = study.network
@@ -249,7 +251,7 @@ def gained(
 
 
 def gains(
-    study: Study,
+    study: GainStudy,
     rooms: list[UnseenRoom],
     methods: dict[str, Method],
     *,
@@ -280,13 +282,13 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[
         metrics = {}
         for metric, (each, unit) in columns.items():
             mean, low, high = interval(each, names)
-            metrics[metric] = {"value": mean, "low": low, "high": high, "unit": unit}
-        metrics["accuracy"]["floor"] = 1 / len(ACTIVITY_NAMES)
-        rows.append({"method": method, "num_rooms": len(names), "metrics": metrics})
+            metrics[metric] = {"value": mean, "interval_95": [low, high], "unit": unit}
+        metrics["accuracy"]["baseline"] = {"chance": 1 / len(ACTIVITY_NAMES)}
+        rows.append({"method": method, "n": len(names), "num_rooms": len(names), "metrics": metrics})
     return rows
 
 
-def studied(judge_file: Path, data: Path, recordings: int | None) -> Study:
+def studied(judge_file: Path, data: Path, recordings: int | None) -> GainStudy:
     """The recogniser and what it has seen elsewhere: all that it was trained on, or so many recordings of it."""
     if recordings is None:
         examples = activity_examples(data, TRAIN_SPLITS, judge_file.parent / TRAIN_MAPS, keep=False)
@@ -294,7 +296,7 @@ def studied(judge_file: Path, data: Path, recordings: int | None) -> Study:
         examples = activity_examples(data, TRAIN_SPLITS, pick=partial(few_of, count=recordings))
     judge = load_activity(judge_file, examples.config)
     base = Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label)
-    return Study(judge, base, begins_anew=recordings is not None)
+    return GainStudy(judge, base, begins_anew=recordings is not None)
 
 
 def few_of(label: np.ndarray, count: int) -> np.ndarray:
@@ -312,7 +314,7 @@ def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
     """Whose data is tried."""
     methods: dict[str, Method] = {
         "weaver": with_generated(weaver, lambda room: room.photographed),
-        "weaver_with_empty_room": with_generated(weaver, lambda room: room.photographed, recorded=True),
+        "weaver_with_background": with_generated(weaver, lambda room: room.photographed, recorded=True),
         "wrong_photo": with_generated(weaver, lambda room: reconstruct(room.other.photo)),
         "generic_room_physics": simulated_in(lambda room: room.true_scene(room.generic), micro_seed=1),
         "physics_in_photographed_room": simulated_in(lambda room: room.photographed, micro_seed=1),
@@ -321,45 +323,44 @@ def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
     return methods if paper is None else {**methods, "paper": paper_in(paper)}
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
-    parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
-    parser.add_argument("--paper", type=Path, help="of recipe paper")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--judge", type=Path, action=Reads, required=True, help="of recipe activity")
+    parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper")
     parser.add_argument("--rooms", type=int, default=40)
     parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
     parser.add_argument("--recordings", type=int, help="of other rooms, for a head that begins anew")
     parser.add_argument("--only", nargs="*", help="methods (default: all)")
     parser.add_argument("--runs", type=Path, help="folder for rooms that are done")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     torch.set_num_threads(1)
-    plan, weights = read_plan(arguments.data), arguments.weights or shipped_weights()
-    rooms = unseen_rooms(read_rooms(arguments.data), plan, arguments.rooms)
+    plan, weights = read_plan(options.data), options.weights or shipped_weights()
+    rooms = unseen_rooms(read_rooms(options.data), plan, options.rooms)
     weaver, card = load_weights(weights)
-    study = studied(arguments.judge, arguments.data, arguments.recordings)
-    methods = methods_of(weaver, arguments.paper)
-    methods = {name: methods[name] for name in arguments.only or methods}
+    study = studied(options.judge, options.data, options.recordings)
+    methods = methods_of(weaver, options.paper)
+    methods = {name: methods[name] for name in options.only or methods}
     about = {
-        "weights": asdict(card), "data_plan": plan, "each": arguments.each, "steps": STEPS,
-        "recordings": arguments.recordings,
+        "weights": asdict(card), "data_plan": plan, "each": options.each, "steps": STEPS,
+        "recordings": options.recordings,
     }  # fmt: skip
-    files = [digest(file) for file in (weights, arguments.judge, arguments.paper) if file is not None]
-    kept = RoomCache(arguments.runs, {**about, "files": files, "methods": list(methods)})
-    name = "test_room" if arguments.recordings is None else f"recordings_{arguments.recordings}"
+    files = [digest(file) for file in (weights, options.judge, options.paper) if file is not None]
+    kept = RoomCache(options.runs, {**about, "files": files, "methods": list(methods)})
+    name = "test_room" if options.recordings is None else f"recordings_{options.recordings}"
 
     def write(found: dict[str, np.ndarray]) -> None:
-        write_result(
-            arguments.out, experiment="activity_gain", method=name, config=about, rows=rows_of(found, rooms)
+        rows = complete_rows(
+            rows_of(found, rooms), dataset={**dataset_of(options.data), "split": "test_room"}, baselines=(ALONE,),
+            oracles=("true_room",), seeds=list(range(len(found[ALONE]))),
+            unknown={"seconds": "see the manifest: all rows together"},
         )  # fmt: skip
+        run.write("activity_gain", name, config=about, rows=rows)
         room = rooms[len(found[ALONE]) - 1].name
-        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)  # noqa: T201
+        print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)
 
-    for row in rows_of(gains(study, rooms, methods, each=arguments.each, kept=kept, after=write), rooms):
-        values = (f"{name} {m['value']:.3f} ({m['low']:.3f} to {m['high']:.3f})" for name, m in row["metrics"].items())
-        print(f"{row['method']:30}", *values)  # noqa: T201
-
-
-if __name__ == "__main__":
-    main()
+    for row in rows_of(gains(study, rooms, methods, each=options.each, kept=kept, after=write), rooms):
+        values = (f"{name} {m['value']:.3f} {m['interval_95']}" for name, m in row["metrics"].items())
+        print(f"{row['method']:30}", *values)

@@ -1,6 +1,6 @@
 """What a recording of the empty room is worth, to look at: truth, the network from the photo alone, and with it.
 
-    python -m studies.network.background_rooms --out docs/images/weaver_empty_room.png
+    python -m studies run background_rooms --out docs/images/weaver_empty_room.png
 
 Made-up rooms of kinds that the network never saw. The simulator in the true room is the truth and, with nobody there,
 the recording; motion and person are the same in all three, skin is not. Scores: `weaver_table`.
@@ -17,10 +17,12 @@ from mmweaver.dsp.points import point_cloud
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_azimuth_standing, draw_photo
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Room, Weaver
+from mmweaver.generate import Weaver
+from mmweaver.generation import Room
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small
 
 TEXT = "a person walks to the left"
@@ -37,7 +39,7 @@ def views_of(kind: str, *, frames: int = 20) -> list[FigureData]:
     recording = radar_cube(true_room.run((), num_frames=frames, seed=1).adc)
     room = Room(scene=reconstruct(made_room.photo()), inputs={}, seconds={})
     weaver = Weaver("weaver", AWR1843)
-    found = [weaver.generate(one, TEXT, frames=frames) for one in (room, room.with_empty_recording(recording))]
+    found = [weaver.generate(one, TEXT, frames=frames) for one in (room, room.with_background(recording))]
     person = replace(found[0].motion, subject=found[0].motion.subject + OTHER_SKIN)
     truth = radar_cube(true_room.run(person, num_frames=frames, seed=2).adc)
     cubes = (truth, *(one.cube for one in found))
@@ -68,11 +70,9 @@ def draw_rooms(path: Path, rooms: Sequence[Sequence[FigureData]]) -> None:
         save_small(figure, path)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, default=Path("docs/images/weaver_empty_room.png"))
-    draw_rooms(parser.parse_args().out, [views_of(kind) for kind in KINDS])
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    draw_rooms(options.out, [views_of(kind) for kind in KINDS])

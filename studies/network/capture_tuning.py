@@ -1,13 +1,13 @@
 """What fine-tuning on a few captures of one's own room gains, on other sequences of that room.
 
-    python -m studies.network.capture_tuning --data DATASET --weights FILE --work DIR --out results
+    python -m studies run capture_tuning --data DATASET --weights FILE --work DIR
 
 Rooms are of kinds that the weights never saw. Of each, a few sequences are written as capture folders, as a user would
 have them, and what `mmweaver train weaver --captures` runs is run on them; scored are other sequences of the room.
-`captures_as_empty_room` takes the same captures, with people in them, for `--empty-room`, and tunes nothing.
-`captures_mean` repeats the mean of the captures: it knows the room with its phases, and nobody in it. `twin`, where the
-data set is of this version's motion library, is the simulator in the true room with other phases. Intervals: bootstrap
-over rooms. It goes on where it was stopped.
+`captures_as_background` takes the same captures, with people in them, for `--background`, and tunes nothing.
+`captures_mean` repeats the mean of the captures: it knows the room with its phases, and nobody in it. `realization`,
+where the data set is of this version's motion library, is the simulator in the true room with other phases (an oracle).
+Intervals: bootstrap over rooms. A stopped run continues where it was.
 """
 
 import argparse
@@ -25,7 +25,7 @@ from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.make_room import make_sequence
+from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
@@ -35,9 +35,12 @@ from mmweaver.recordings.captures import read_capture
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.capture_training import recipe_for, tune
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "chamfer_m")
+REALIZATION = "realization"  # the simulator in the true room with other phases
 SAME_M = 1e-4
 OTHER = 1000  # added to a person's number for other skin
 Method = Callable[[int], RadarCube]
@@ -89,19 +92,19 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
         recipe = recipe_for(captures, **({} if arguments.steps is None else {"steps": arguments.steps}))
         tuned = tune(captures, work / name / "run", recipe, start=start.state_dict())
         networks[name] = getattr(tuned.trainer.learner, "network")  # noqa: B009 - any learner of this recipe has one
-        print(f"{work.name} {name}: {tuned.loss_before:.3f} -> {tuned.trainer.best.value:.3f}", flush=True)  # noqa: T201
+        print(f"{work.name} {name}: {tuned.loss_before:.3f} -> {tuned.trainer.best.value:.3f}", flush=True)
     scene = reconstruct(read_capture(work / "tuned_with_joints" / "take0").photo)
-    methods: dict[str, Method] = {name: _woven(LearnedRoom(network, scene, room.config, room_seed=1), room)
+    methods: dict[str, Method] = {name: _learned(LearnedRoom(network, scene, room.config, room_seed=1), room)
                                   for name, network in networks.items()}  # fmt: skip
     takes = _together([read_capture(work / "tuned_with_joints" / f"take{k}").cube for k in range(len(given))])
-    methods["captures_as_empty_room"] = _woven(LearnedRoom(start, scene, room.config, empty=takes), room)
+    methods["captures_as_background"] = _learned(LearnedRoom(start, scene, room.config, empty=takes), room)
     methods["captures_mean"] = _mean(room, given)
-    twin = _twin(room, plan_seed)
+    realization = _realization(room, plan_seed)
     try:
-        twin(int(asked[0]))
-        methods["twin"] = twin
+        realization(int(asked[0]))
+        methods[REALIZATION] = realization
     except InputError as error:
-        print(f"{work.name}: no twin, {error}", flush=True)  # noqa: T201
+        print(f"{work.name}: no other realization, {error}", flush=True)
     scores: dict[str, list[dict[str, float]]] = {}
     for index in asked:
         truth = room.cube(int(index))
@@ -109,19 +112,18 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
             card = scorecard(method(int(index)), truth)
             scores.setdefault(name, []).append({column: card.prediction[column] for column in COLUMNS})
             if name == "untuned":
-                for floor in ("zeros",):
-                    values = {column: card.floors[floor][column] for column in COLUMNS}
-                    scores.setdefault(floor, []).append(values)
+                zeros = {column: card.baselines["zeros"][column] for column in COLUMNS}
+                scores.setdefault("zeros", []).append(zeros)
     return scores
 
 
-def _woven(woven: LearnedRoom, room: StoredRoom) -> Method:
+def _learned(learned: LearnedRoom, room: StoredRoom) -> Method:
     def method(index: int) -> RadarCube:
         motion = FrameMotion(
             joints_m=room.joints_m[index], velocity_mps=room.joint_velocity_mps[index],
             subject=OTHER + int(room.person[index]),
         )  # fmt: skip
-        return woven.cube([motion], seed=index)
+        return learned.cube([motion], seed=index)
 
     return method
 
@@ -144,7 +146,7 @@ def _mean(room: StoredRoom, given: np.ndarray) -> Method:
     return method
 
 
-def _twin(room: StoredRoom, plan_seed: int) -> Method:
+def _realization(room: StoredRoom, plan_seed: int) -> Method:
     scene = make_room(room.kind, room.layout, plan_seed).scene(room.lighting)
     simulator = Simulator(scene, room.config, micro_seed=1)
 
@@ -152,7 +154,9 @@ def _twin(room: StoredRoom, plan_seed: int) -> Method:
         spec = SequenceSpec(index=index, person=int(room.person[index]), activity=room.activity[index],
                             text=room.text[index], seed=int(room.seed[index]), split="")  # fmt: skip
         frames = room.joints_m.shape[1]
-        made = make_sequence(spec, scene, simulator, frames, subject=spec.person + OTHER, noise_seed=spec.seed + OTHER)
+        made = generate_sequence(
+            spec, scene, simulator, frames, subject=spec.person + OTHER, noise_seed=spec.seed + OTHER
+        )
         if np.abs(made.joints_m - room.joints_m[index]).max() > SAME_M:
             raise InputError("the data set's people move otherwise in this version; make it again")
         return made.cube
@@ -171,43 +175,43 @@ def rows_of(scores: list[dict[str, list[dict[str, float]]]]) -> list[dict[str, A
             each = np.array([np.nanmean([case[column] for case in room[name]]) for room in scores])
             means = each[draw].mean(axis=1)
             metrics[column] = {
-                "value": float(each.mean()), "low": float(np.percentile(means, 2.5)),
-                "high": float(np.percentile(means, 97.5)), "unit": METRICS[column].unit,
+                "value": float(each.mean()), "unit": METRICS[column].unit,
+                "interval_95": np.percentile(means, (2.5, 97.5)).tolist(),
             }  # fmt: skip
         n = sum(len(room[name]) for room in scores)
         rows.append({"method": name, "n": n, "num_rooms": len(scores), "metrics": metrics})
     return rows
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, required=True)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, required=True)
     parser.add_argument("--work", type=Path, required=True, help="an empty folder for captures and runs")
     parser.add_argument("--rooms", type=int, default=6)
     parser.add_argument("--captures", type=int, default=4, help="of each room; the last is kept aside")
     parser.add_argument("--each", type=int, default=4, help="other sequences that are scored")
     parser.add_argument("--steps", type=int)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    plan = read_plan(arguments.data)
-    rooms = [room for room in read_rooms(arguments.data) if "test_room" in room.split]
-    order = stream(0, "capture tuning").permutation(len(rooms))[: arguments.rooms]
-    scores = [one_room(rooms[int(which)], arguments, plan["seed"]) for which in order]
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    plan = read_plan(options.data)
+    rooms = [room for room in read_rooms(options.data) if "test_room" in room.split]
+    order = stream(0, "capture tuning").permutation(len(rooms))[: options.rooms]
+    scores = [one_room(rooms[int(which)], options, plan["seed"]) for which in order]
     rows = rows_of(scores)
-    card: WeightsCard = load_weights(arguments.weights)[1]
-    write_result(
-        arguments.out, experiment="capture_tuning", method="test_room",
+    card: WeightsCard = load_weights(options.weights)[1]
+    complete = complete_rows(
+        rows, dataset={**dataset_of(options.data), "split": "test_room"}, seeds=[0], baselines=("zeros",),
+        oracles=(REALIZATION,), unknown={"seconds": "see the manifest: all rows together"},
+    )  # fmt: skip
+    run.write(
+        "capture_tuning", "test_room",
         config={
-            "weights": asdict(card), "data_plan": plan, "captures": arguments.captures, "each": arguments.each,
-            "rooms": [rooms[int(which)].folder.name for which in order], "steps": arguments.steps,
+            "weights": asdict(card), "data_plan": plan, "captures": options.captures, "each": options.each,
+            "rooms": [rooms[int(which)].folder.name for which in order], "steps": options.steps,
         },
-        rows=rows,
+        rows=complete,
     )  # fmt: skip
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
-        print(f"{row['method']:22}", *values, flush=True)  # noqa: T201
-
-
-if __name__ == "__main__":
-    main()
+        print(f"{row['method']:22}", *values, flush=True)

@@ -1,9 +1,9 @@
 """An activity that training withheld, after tuning on a few sequences of it.
 
-    python -m studies.network.few_shot --data DATASET --weights FILE --runs RUNS --out results
+    python -m studies run few_shot --data DATASET --weights FILE --runs RUNS
 
 Jumping is withheld. The network is tuned on 0, 5 and 20 jumps in half of the rooms and judged on jumps in the other
-half. `twin`: the simulator in the true room with other micro-phases.
+half. `realization`: the simulator in the true room with other micro-phases.
 """
 
 import argparse
@@ -15,15 +15,17 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.training.network_examples import RoomExamples
 from mmweaver.training.network_training import NetworkLearner, TrainingRecipe, drawing
 from mmweaver.training.trainer import Trainer
+from studies.manifest import StudyRun
 from studies.network.ablation import COLUMNS
-from studies.network.learned_table import TWIN, Case, Method, cases_of, interval, simulated, woven
-from studies.report.result_files import write_result
+from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 ACTIVITY, SPLIT = "jumping", "test_activity"
 SHOTS = (0, 5, 20)
@@ -70,44 +72,44 @@ def judged(method: Method, cases: list[Case]) -> dict[str, dict[str, float | str
     """{column: mean and interval over rooms}."""
     values: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for case in cases:
-        truth, prediction = Views(case.room.cube(case.index)), Views(method(case))
+        truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))
         for name in COLUMNS:
             values[name].append(METRICS[name].score(prediction, truth))
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in cases]
     out = {}
     for name, each in values.items():
         mean, low, high = interval(np.array(each), rooms)
-        out[name] = {"value": mean, "low": low, "high": high, "unit": METRICS[name].unit}
+        out[name] = {"value": mean, "interval_95": [low, high], "unit": METRICS[name].unit}
     return out
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, required=True)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, required=True)
     parser.add_argument("--runs", type=Path, required=True, help="folder for the checkpoints")
     parser.add_argument("--most", type=int, default=30, help="rooms to be judged in")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    rooms, plan = read_rooms(arguments.data), read_plan(arguments.data)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    rooms, plan = read_rooms(options.data), read_plan(options.data)
     own, others = halves(rooms, 0)
     known = {room.folder for room in others}
     every = [case for case in cases_of(rooms, SPLIT, 100, plan, 0) if case.room.folder in known]
-    cases = [case for case in every if case.room.activity[case.index] == ACTIVITY][: arguments.most]
+    cases = [case for case in every if case.room.activity[case.index] == ACTIVITY][: options.most]
     rows = []
     for shots in SHOTS:
-        network = tuned(arguments.weights, own, shots, arguments.runs / f"shots_{shots}", 0)
-        metrics = judged(woven(network, lambda case: case.room), cases)
+        network = tuned(options.weights, own, shots, options.runs / f"shots_{shots}", 0)
+        metrics = judged(learned(network, lambda case: case.room), cases)
         rows.append({"method": f"{shots} jumps", "split": SPLIT, "n": len(cases), "metrics": metrics})
-    twin = simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1)
-    rows.append({"method": "twin", "split": SPLIT, "n": len(cases), "metrics": judged(twin, cases)})
+    twin = simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1)
+    rows.append({"method": "realization", "split": SPLIT, "n": len(cases), "metrics": judged(twin, cases)})
     for row in rows:
-        print(row["method"], *(f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items()), flush=True)  # noqa: T201
-    write_result(
-        arguments.out, experiment="weaver_few_shot", method=ACTIVITY,
+        print(row["method"], *(f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items()), flush=True)
+    rows = complete_rows(
+        rows, dataset=dataset_of(options.data), seeds=[0], baselines=("0 jumps",), oracles=("realization",),
+        unknown={"seconds": "see the manifest: all rows together"},
+    )  # fmt: skip
+    run.write(
+        "few_shot", ACTIVITY,
         config={"data_plan": plan, "shots": list(SHOTS), "steps": RECIPE.steps}, rows=rows,
     )  # fmt: skip
-
-
-if __name__ == "__main__":
-    main()

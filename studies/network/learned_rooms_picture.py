@@ -1,6 +1,6 @@
 """Real rooms through both methods, side by side: what physics and the network make of the same photo and sentence.
 
-    python -m studies.network.learned_rooms_picture --rooms /path/to/rooms --out docs/images/weaver_rooms.png
+    python -m studies run learned_rooms_picture --rooms /path/to/rooms --out docs/images/weaver_rooms.png
 
 Nobody knows what a radar in these rooms would have recorded; the picture is for looking, not for scores.
 """
@@ -13,7 +13,9 @@ from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_azimuth_standing, draw_doppler_time, draw_photo
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
+from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small
+from studies.study import Reads
 
 TEXT = "a person walks towards the radar, then waves with the left hand"
 METHODS = ("physics", "weaver")
@@ -54,13 +56,12 @@ def draw_rooms(path: Path, rooms: Sequence[dict[str, FigureData]]) -> None:
         save_small(figure, path)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rooms", type=Path, required=True, help="folders with rgb.png, depth.png and camera.json")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--rooms", type=Path, action=Reads, required=True, help="folders with rgb.png, depth.png and camera.json"
+    )
     parser.add_argument("--out", type=Path, default=Path("docs/images/weaver_rooms.png"))
-    given = parser.parse_args()
-    draw_rooms(given.out, [views_of(folder) for folder in sorted(given.rooms.iterdir()) if folder.is_dir()])
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    draw_rooms(options.out, [views_of(folder) for folder in sorted(options.rooms.iterdir()) if folder.is_dir()])

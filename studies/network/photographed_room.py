@@ -1,16 +1,14 @@
 """How much of a room's own echoes can be told from its photo, and which parts of them cannot.
 
-    python -m studies.network.photographed_room --out results
+    python -m studies run photographed_room
 
 Empty rooms of the nine kinds that training may see, in layouts that no data set holds. Truth is the simulator in the
-true room; judged are the range-azimuth pictures of one frame without noise. `twin` is the true room with other
+true room; judged are the range-azimuth pictures of one frame without noise. `realization` is the true room with other
 micro-phases of its rough surfaces: the best that anyone can do. The rows between give the photographed room one kind
 of the true room's echoes, those of mirrors with random phases. Intervals: bootstrap over rooms.
 """
 
 import argparse
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,9 +24,15 @@ from mmweaver.paths.static_paths import RayTracedRoom, static_adc
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.reconstruction import reconstruct
-from studies.network.learned_table import interval
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.network.learned_scores import interval
+from studies.result_rows import complete_rows
 
+REALIZATION = "realization"  # the true room with other micro-phases
+UNKNOWN = {
+    "dataset.sha256": "rendered anew in every run",
+    "seconds": "see the manifest: all rows together",
+}
 LAYOUTS = (30, 31, 32, 33)
 METRICS = {
     "ra_ssim": ("1", "SSIM of 50 dB range-azimuth pictures over cells that either shows"),
@@ -52,7 +56,7 @@ def judged(kind: str, layout: int, seed: int = 0) -> Scores:
         "photo, true mirrors": sum((own | {"specular": mirrors}).values()),
         "photo, true edges": sum((own | {"edges": true["edges"]}).values()),
         "photo, true surfaces": sum((own | {"diffuse": true["diffuse"]}).values()),
-        "twin": twin.adc,
+        REALIZATION: twin.adc,
     }
     azimuth = azimuth_axis_rad()
 
@@ -86,18 +90,21 @@ def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> di
     return found
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--layouts", type=int, nargs="+", default=list(LAYOUTS))
-    given = parser.parse_args()
-    rooms = [(kind, layout) for kind in KINDS if kind not in HeldOut().test_kinds for layout in given.layouts]
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    rooms = [(kind, layout) for kind in KINDS if kind not in HeldOut().test_kinds for layout in options.layouts]
     scores = [judged(kind, layout) for kind, layout in rooms]
     names = [f"{kind}_{layout}" for kind, layout in rooms]
     rows = [_row(method, scores, names) for method in scores[0]]
-    settings = {"layouts": given.layouts, "kinds": sorted({kind for kind, _ in rooms}), "radar": "awr1843"}
-    path = write_result(given.out, experiment="photographed_room", method="echoes", config=settings, rows=rows)
-    sys.stdout.write(f"{path}\n")
+    settings = {"layouts": options.layouts, "kinds": sorted({kind for kind, _ in rooms}), "radar": "awr1843"}
+    dataset = {"name": "procedural rooms, nobody in them", "split": "layouts of no data set"}
+    rows = complete_rows(
+        rows, dataset=dataset, seeds=[0], baselines=("zeros",), oracles=(REALIZATION,), unknown=UNKNOWN
+    )
+    run.write("photographed_room", "echoes", config=settings, rows=rows)
 
 
 def _row(method: str, scores: list[Scores], rooms: list[str]) -> dict[str, Any]:
@@ -105,12 +112,7 @@ def _row(method: str, scores: list[Scores], rooms: list[str]) -> dict[str, Any]:
     for name, (unit, definition) in METRICS.items():
         mean, low, high = interval(np.array([score[method][name] for score in scores]), rooms)
         metrics[name] = {
-            "value": mean, "low": low, "high": high, "unit": unit,
+            "value": mean, "interval_95": [low, high], "unit": unit,
             "definition": definition, "version": 1,
-            "floor": {"zeros": float(np.mean([score["zeros"][name] for score in scores]))},
         }  # fmt: skip
     return {"method": method, "n": len(scores), "num_rooms": len(scores), "metrics": metrics}
-
-
-if __name__ == "__main__":
-    main()

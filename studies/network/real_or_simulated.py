@@ -1,11 +1,11 @@
-"""Can one tell generated cubes from true ones? A recogniser's accuracy in rooms it was not trained on; 0.5 is perfect.
+"""Can a classifier distinguish generated cubes from simulated ground truth? Accuracy in unseen rooms; 0.5 is chance.
 
-    python -m studies.network.real_or_simulated --data DATASET --weights WEAVER --judge ACTIVITY --out results
+    python -m studies run real_or_simulated --data DATASET --weights WEAVER --judge ACTIVITY
 
-Truth and generated share rooms and exact joints (cases of `weaver_table`, unseen kinds of rooms). For each method trees
-learn the difference from `cube_statistics` of four fifths of the rooms and are judged in the last fifth, in turn.
-`twin` is the simulator with other micro-phases, the ceiling: it should not be told apart. `generic_room_physics` is the
-floor.
+Ground truth and generated cubes share rooms and joints (cases of `learned_scores`, unseen kinds of rooms). For each
+method, trees learn the difference from `cube_statistics` of four fifths of the rooms and are evaluated in the last
+fifth, in turn. `realization`, the simulator with other micro-phases, is the oracle: it should be indistinguishable.
+`generic_room_physics` is the baseline.
 """
 
 import argparse
@@ -20,15 +20,17 @@ import torch
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.models.activity_network import load_activity
-from mmweaver.models.paper_method import paper_method
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
+from studies.manifest import StudyRun
 from studies.network.cube_statistics import cube_statistics
-from studies.network.learned_table import TWIN, Case, Method, cases_of, interval, simulated, woven
+from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned, simulated
 from studies.network.room_cache import RoomCache, digest
-from studies.report.result_files import write_result
+from studies.paper.paper_method import paper_method
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
 
 FOLDS = 5
 SETTINGS = ClassifierSettings(num_trees=300, boosting_rounds=80, leaf_size=2)
@@ -77,57 +79,57 @@ def rows_of(
     for name in methods:
         made = np.array([one[name] for one in each])
         mean, low, high = interval(real_or_simulated_scores(true, made, rooms), rooms)
-        metric = {"value": mean, "low": low, "high": high, "unit": "1", "perfect": 0.5}
+        metric = {"value": mean, "interval_95": [low, high], "unit": "1", "oracle": {"indistinguishable": 0.5}}
         rows.append({"method": name, "n": len(cases), "num_rooms": len(set(rooms)), "metrics": {"accuracy": metric}})
         tell(f"{name:30} {mean:.3f} ({low:.3f} to {high:.3f})")
     return rows
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True)
-    parser.add_argument("--weights", type=Path, help="of recipe weaver (default: those that come along)")
-    parser.add_argument("--judge", type=Path, required=True, help="of recipe activity")
-    parser.add_argument("--paper", type=Path, help="of recipe paper")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--judge", type=Path, action=Reads, required=True, help="of recipe activity")
+    parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=4, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     torch.set_num_threads(1)
-    rooms, plan = read_rooms(arguments.data), read_plan(arguments.data)
-    weights = arguments.weights or shipped_weights()
+    rooms, plan = read_rooms(options.data), read_plan(options.data)
+    weights = options.weights or shipped_weights()
     network, card = load_weights(weights)
-    judge = load_activity(arguments.judge, rooms[0].config)
-    cases = cases_of(rooms, arguments.split, arguments.each, plan, 0, arguments.most)
+    judge = load_activity(options.judge, rooms[0].config)
+    cases = cases_of(rooms, options.split, options.each, plan, 0, options.most)
     generic = next(room for room in rooms if "train" in room.split)
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods: dict[str, Method] = {
-        "weaver": woven(network, _own_room),
-        "weaver_with_empty_room": woven(network, _own_room, recorded=True),
-        "generic_room_physics": simulated(lambda case: generic_scene, skin=TWIN, micro_seed=1),
-        "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=TWIN, micro_seed=1),
-        "twin": simulated(lambda case: case.true_scene, skin=TWIN, micro_seed=1),
+        "weaver": learned(network, _own_room),
+        "weaver_with_background": learned(network, _own_room, recorded=True),
+        "generic_room_physics": simulated(lambda case: generic_scene, skin=OTHER, micro_seed=1),
+        "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=OTHER, micro_seed=1),
+        "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
     }
-    if arguments.paper is not None:
-        methods["paper"] = paper_method(arguments.paper)
-    files = [digest(file) for file in (weights, arguments.judge, arguments.paper) if file is not None]
-    kept = RoomCache(arguments.runs, {"data_plan": plan, "files": files, "methods": list(methods)})
+    if options.paper is not None:
+        methods["paper"] = paper_method(options.paper)
+    files = [digest(file) for file in (weights, options.judge, options.paper) if file is not None]
+    kept = RoomCache(options.runs, {"data_plan": plan, "files": files, "methods": list(methods)})
     rows = rows_of(cases, methods, lambda cube: cube_statistics(cube, judge), kept, _tell)
-    write_result(
-        arguments.out, experiment="real_or_generated", method=arguments.split,
-        config={"weights": card.__dict__, "data_plan": plan, "each": arguments.each}, rows=rows,
+    rows = complete_rows(
+        rows, dataset={**dataset_of(options.data), "split": options.split}, seeds=[0],
+        baselines=("generic_room_physics",), unknown={"seconds": "see the manifest: all rows together"},
+    )  # fmt: skip
+    run.write(
+        "real_or_simulated", options.split,
+        config={"weights": card.__dict__, "data_plan": plan, "each": options.each}, rows=rows,
     )  # fmt: skip
 
 
 def _tell(line: str) -> None:
-    print(line, flush=True)  # noqa: T201
+    print(line, flush=True)
 
 
 def _own_room(case: Case) -> StoredRoom:
     return case.room
-
-
-if __name__ == "__main__":
-    main()

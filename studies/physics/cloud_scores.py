@@ -53,7 +53,7 @@ class CloudScores:
                 "unit": METRICS[name][0],
                 "definition": METRICS[name][1],
                 "version": 1,
-                "floor": {"floor_centroid": round(floor.values[name], 4)} if name in floor.values else None,
+                "baseline": {"centroid": round(floor.values[name], 4)} if name in floor.values else None,
             }
             for name, value in self.values.items()
         }

@@ -5,7 +5,7 @@ are not known and are estimated on `validate`: the radar's place in the Kinect's
 CFAR's threshold and the person's height. That clutter removal was on and peak grouping off is what the recordings show
 by themselves. `test` is only scored.
 
-    python -m studies.physics.mars --data shared/data/pointclouds/mars/subject1 --out results
+    python -m studies run mars --data shared/data/pointclouds/mars/subject1
 """
 
 import argparse
@@ -32,11 +32,13 @@ from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
+from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room
 from studies.physics.joint_scatterers import run_joints
 from studies.physics.mars_data import MarsStretch, as_published, body_height_m, cut, read_mars
-from studies.report.result_files import write_result
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 PIECE_FRAMES, PIECES = 20, 20
 HEIGHTS_M = (0.2, 0.0, 0.1, 0.3, 0.4, 0.5, 0.6)  # the first is where the estimation begins
@@ -265,7 +267,7 @@ def _points(place_m: np.ndarray) -> PointCloud:
 
 
 # the experiment -----------------------------------------------------------------------------------------------------
-def run(data: Path, out: Path, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
+def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
     """Estimates on `validate`, scores everything on `test`, and writes results/mars/*.json. Returns the scores."""
     validate, test = read_mars(data, "validate"), read_mars(data, "test")
     began = time.perf_counter()
@@ -286,7 +288,7 @@ def run(data: Path, out: Path, report: Callable[[str], object] = print) -> dict[
         started = time.perf_counter() if name != "simulator" else began
         scores[name] = score(way(), real)
         report(f"{name:28s} {scores[name].line()}")
-        _write(out, name, setup, data, scores, seconds=time.perf_counter() - started)
+        _write(run, name, setup, data, scores, seconds=time.perf_counter() - started)
     return scores
 
 
@@ -294,7 +296,9 @@ def _simulated(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) ->
     return detect(simulate(pieces, setup, variant), pieces, setup, variant)
 
 
-def _write(out: Path, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float) -> None:
+def _write(
+    run: StudyRun, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float
+) -> None:
     files = sorted(data.glob("*_test.csv"))
     row: dict[str, Any] = {
         "dataset": {
@@ -303,22 +307,17 @@ def _write(out: Path, name: str, setup: Setup, data: Path, scores: dict[str, Clo
         },
         "n": scores[name].num_frames,
         "seeds": [0],
-        "seconds": round(seconds, 1),
+        "seconds": {"all": round(seconds, 1)},
         "metrics": scores[name].metrics(floor=scores["floor_centroid"]),
     }
     variant = asdict(VARIANTS[name]) if name in VARIANTS else None
     config = {"estimated_on_validate": asdict(setup), "variant": variant, "frames_a_piece": PIECE_FRAMES}
-    write_result(out, experiment="mars", method=name, config=config, rows=[row])
+    run.write("mars", name, config=config, rows=complete_rows([row]))
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description="MARS recordings beside simulated point clouds")
-    parser.add_argument("--data", type=Path, required=True, help="folder of a MARS subject")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    run(arguments.data, arguments.out)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True, help="folder of a MARS subject")
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(options.data, run)

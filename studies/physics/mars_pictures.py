@@ -1,6 +1,6 @@
 """Real beside simulated: point clouds of MARS from the front, of `validate`, with the joints that drove ours.
 
-python -m studies.physics.mars_pictures --data shared/data/pointclouds/mars/subject1 --out docs/images
+python -m studies run mars_pictures --data shared/data/pointclouds/mars/subject1 --out docs/images
 
 The settings are those that results/mars/simulator.json holds.
 """
@@ -15,8 +15,10 @@ import numpy as np
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import PointCloud
 from mmweaver.core.skeleton import BONES
+from studies.manifest import StudyRun
 from studies.physics.mars import Clouds, MarsVariant, Setup, detect, simulate
 from studies.physics.mars_data import MarsStretch, cut, read_mars
+from studies.study import Reads
 
 SHOWN, FRAMES = 6, 5  # so many pieces, so many frames of each together
 PIECE_FRAMES = 20
@@ -72,19 +74,15 @@ def _joined(clouds: tuple[PointCloud, ...], name: str) -> np.ndarray:
     return np.concatenate([getattr(cloud, name) for cloud in clouds])
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description="pictures of recorded point clouds beside simulated ones")
-    parser.add_argument("--data", type=Path, required=True, help="folder of a MARS subject")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True, help="folder of a MARS subject")
     parser.add_argument("--results", type=Path, default=Path("results"))
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    given = parser.parse_args()
-    setup = setup_of(given.results / "mars" / "simulator.json")
-    pieces = cut(read_mars(given.data, "validate"), PIECE_FRAMES, SHOWN)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    setup = setup_of(options.results / "mars" / "simulator.json")
+    pieces = cut(read_mars(options.data, "validate"), PIECE_FRAMES, SHOWN)
     ours = detect(simulate(pieces, setup, MarsVariant()), pieces, setup, MarsVariant())
     real: Clouds = [piece.clouds for piece in pieces]
-    draw(pieces, real, ours, setup, given.out / "mars.png")
-
-
-if __name__ == "__main__":
-    main()
+    draw(pieces, real, ours, setup, options.out / "mars.png")

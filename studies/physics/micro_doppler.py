@@ -1,6 +1,6 @@
 """Micro-Doppler of recorded people (CMU motion capture) beside that of the library's motions, through one simulator.
 
-python -m studies.physics.micro_doppler --mocap <folder with cmu_joints_m_120fps.npz> --out results \\
+python -m studies run micro_doppler --mocap <folder with cmu_joints_m_120fps.npz> \\
     --picture docs/images/micro_doppler.png
 
 Every recorded clip has library motions of its gait, length, speed, leg length and skin; both pass the same smoothing,
@@ -35,6 +35,7 @@ from mmweaver.motion.mocap.clip_resampling import resampled_clip
 from mmweaver.motion.mocap.joint_arrays import clips_of
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.paths.ray_traced import Simulator
+from studies.manifest import StudyRun
 from studies.motion.motion_realism import LEAP_M, RATE_HZ, SPEEDS, cadence_hz, is_steady, speed_of
 from studies.physics.empty_room_cube import empty_room
 from studies.physics.micro_doppler_measures import (
@@ -47,7 +48,8 @@ from studies.physics.micro_doppler_measures import (
     kinematic_figures,
     spread_figures,
 )
-from studies.report.result_files import write_result
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 Array = np.ndarray
 
@@ -234,6 +236,9 @@ def figures(motion: RecordedMotion, activity: str, shown_by: Simulator, seed: in
     return {**found, **kinematic_figures(motion.joints_m, RATE_HZ)}, towards
 
 
+UNKNOWN = {"seconds": "see the manifest: all rows together"}
+
+
 # Results -------------------------------------------------------------------------------------------------------------
 def summary(found: list[Figures], rigid: list[Figures], recordings: list[Figures] | None) -> dict[str, dict[str, Any]]:
     """Each figure's median, its interval and percentiles over clips; for ours also whether it lies inside theirs."""
@@ -243,12 +248,12 @@ def summary(found: list[Figures], rigid: list[Figures], recordings: list[Figures
         unit, definition = DEFINITIONS[name]
         row = {
             "value": _rounded(np.median(values)),
-            "interval": [_rounded(edge) for edge in _interval(values)],
+            "interval_95": [_rounded(edge) for edge in _interval(values)],
             "percentiles_5_95": [_rounded(edge) for edge in np.percentile(values, (5, 95))],
             "unit": unit,
             "definition": definition,
             "version": VERSION,
-            "floor": {"frozen": _rounded(np.median([one[name] for one in rigid]))} if name in rigid[0] else None,
+            "baseline": {"frozen": _rounded(np.median([one[name] for one in rigid]))} if name in rigid[0] else None,
         }
         if recordings:
             low, middle, high = np.percentile([one[name] for one in recordings], (5, 50, 95))
@@ -270,7 +275,7 @@ def _interval(values: Float[Array, " clip"]) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def run(out: Path, folder: Path, picture: Path | None = None, most: int = MOST_CLIPS) -> tuple[Path, Path]:
+def measure(run: StudyRun, folder: Path, picture: Path | None = None, most: int = MOST_CLIPS) -> tuple[Path, Path]:
     """Writes recorded.json and library.json, one row a gait; a picture where one is asked for."""
     path = folder / FILE
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
@@ -301,8 +306,8 @@ def run(out: Path, folder: Path, picture: Path | None = None, most: int = MOST_C
         "radar": RADAR.name, "room": "concrete floor 1 m below the radar", "nearest_m": NEAREST_M,
         "longest_s": LONGEST_S, "jump_s": JUMP_S, "gate_m": GATE_M,
     }  # fmt: skip
-    first = write_result(out, experiment=EXPERIMENT, method="recorded", config=config, rows=theirs_rows)
-    return first, write_result(out, experiment=EXPERIMENT, method="library", config=config, rows=our_rows)
+    first = run.write(EXPERIMENT, "recorded", config=config, rows=complete_rows(theirs_rows, unknown=UNKNOWN))
+    return first, run.write(EXPERIMENT, "library", config=config, rows=complete_rows(our_rows, unknown=UNKNOWN))
 
 
 def spread_of_frozen(motion: RecordedMotion, shown_by: Simulator, seed: int) -> Figures:
@@ -317,14 +322,10 @@ def _typical(found: list[Figures]) -> int:
     return int(np.abs(spread - np.median(spread)).argmin())
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--mocap", type=Path, required=True, help=f"folder with {FILE}")
-    parser.add_argument("--out", type=Path, default=Path("results"))
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--mocap", type=Path, action=Reads, required=True, help=f"folder with {FILE}")
     parser.add_argument("--picture", type=Path, help="a .png of spectrograms, recorded above and library below")
-    arguments = parser.parse_args()
-    run(arguments.out, arguments.mocap, arguments.picture)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(run, options.mocap, options.picture)

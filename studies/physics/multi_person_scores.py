@@ -1,6 +1,6 @@
 """Mutual shadowing against plain superposition: what is lost by adding up people who were made one by one.
 
-python -m studies.physics.multi_person_scores --out results --picture docs/images/several_people.png
+python -m studies run multi_person_scores --picture docs/images/several_people.png
 
 Two people in the sample room, at given places; the truth is the simulator with mutual shadows, the prediction the sum
 of the two made alone, with the same receiver noise. Beside it the floor (the second person left out) and two
@@ -21,13 +21,14 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.dsp.cube import radar_cube, remove_static
 from mmweaver.dsp.points import point_cloud
-from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.paths.ray_traced import Simulator
 from studies.fields.field_signals import OTHER_SKIN, sample_scene
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
 
 SENTENCES = (
     "a person waves with the left hand", "someone does jumping jacks", "a man claps", "a woman squats",
@@ -40,6 +41,12 @@ ARRANGEMENTS: dict[str, tuple[Place, Place]] = {
     "one behind the other": ((-0.1, 1.35), (-0.15, 2.2)),
 }
 SHOWN = ("nmse_active_db", "nmse_moving_db", "rd_ssim", "ra_ssim", "chamfer_m", "hausdorff_m")
+BASELINES, ORACLES = ("without_second",), ("mutual", "other_noise", "realization")
+UNKNOWN = {
+    "dataset.sha256": "simulated anew in every run",
+    "seconds": "see the manifest: all rows together",
+}
+CONFIG = {"radar": AWR1843.name, "intervals": "95 % of the mean over pairs of people, bootstrap"}
 NUM_FRAMES = 20
 SEEDS = tuple(range(16))
 NEAR_M = 0.5  # a point so near to a pelvis, on the floor, is that person's
@@ -55,7 +62,7 @@ class Pair:
     plain: RadarCube
     without_second: RadarCube
     other_noise: RadarCube
-    twin: RadarCube
+    realization: RadarCube
     second_alone: RadarCube
     empty: RadarCube
 
@@ -76,18 +83,19 @@ def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> P
     skins = [replace(pose, subject=pose.subject + OTHER_SKIN) for pose in (one, two)]
     return Pair(
         poses=(one, two), mutual=cube(one, two), plain=cube(one, two, mutual=False), without_second=cube(one),
-        other_noise=cube(one, two, noise=seed + OTHER_SKIN), twin=cube(*skins), second_alone=cube(two), empty=cube(),
+        other_noise=cube(one, two, noise=seed + OTHER_SKIN), realization=cube(*skins),
+        second_alone=cube(two), empty=cube(),
     )  # fmt: skip
 
 
 def scores_of(pair: Pair) -> dict[str, dict[str, float]]:
-    """{metric: {superposition, without_second, other_noise, twin}} against mutual shadowing; then what it is about."""
-    truth = Views(pair.mutual)
+    """{metric: {superposition, without_second, ...}} against mutual occlusion; and its effects."""
+    truth = Representations(pair.mutual)
     predictions = {
         "superposition": pair.plain, "without_second": pair.without_second, "other_noise": pair.other_noise,
-        "twin": pair.twin,
+        "realization": pair.realization,
     }  # fmt: skip
-    views = {name: Views(cube) for name, cube in predictions.items()}
+    views = {name: Representations(cube) for name, cube in predictions.items()}
     scores = {name: {who: METRICS[name].score(seen, truth) for who, seen in views.items()} for name in SHOWN}
     scores["second_dimmed_db"] = {"superposition": dimming_db(pair)}
     second = pair.poses[1]
@@ -124,15 +132,15 @@ def row_of(
         columns = {who: [scores[metric][who] for scores in runs] for who in runs[0][metric]}
         value, interval = _mean(columns.pop("superposition"))
         metrics[metric] = {
-            "value": value, "interval": interval, **_meaning(metric),
-            "beside": {who: _mean(values)[0] for who, values in columns.items()},
+            "value": value, "interval_95": interval, **_meaning(metric),
+            "baseline": {who: _mean(columns[who])[0] for who in BASELINES if who in columns} or None,
+            "oracle": {who: _mean(columns[who])[0] for who in ORACLES if who in columns},
         }  # fmt: skip
     return {
         "dataset": {"name": name, "places_m": places, "room": "bundled sample", "sentences": list(SENTENCES)},
         "n": len(every),
         "seeds": list(every),
         "refused_for_lack_of_room": refused,
-        "interval": "95 % of the mean over pairs of people, bootstrap",
         "metrics": metrics,
     }
 
@@ -155,7 +163,7 @@ def _mean(values: list[float]) -> tuple[float, list[float]]:
     return round(float(all_values.mean()), 4), [round(float(low), 4), round(float(high), 4)]
 
 
-def run(out: Path, picture: Path | None = None, seeds: tuple[int, ...] = SEEDS) -> Path:
+def measure(run: StudyRun, picture: Path | None = None, seeds: tuple[int, ...] = SEEDS) -> Path:
     """All arrangements; one row each."""
     simulator = Simulator(sample_scene(), AWR1843)
     rows, shown = [], []
@@ -172,9 +180,8 @@ def run(out: Path, picture: Path | None = None, seeds: tuple[int, ...] = SEEDS) 
         rows.append(row_of(name, places, every, refused=len(seeds) - len(every)))
     if picture is not None:
         draw(shown, picture)
-    return write_result(
-        out, experiment="several_people", method="superposition", config={"radar": AWR1843.name}, rows=rows
-    )
+    rows = complete_rows(rows, unknown=UNKNOWN)
+    return run.write("multi_person_scores", "superposition", config=CONFIG, rows=rows)
 
 
 def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
@@ -216,13 +223,9 @@ def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
         figure.savefig(path)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--picture", type=Path, default=None)
-    arguments = parser.parse_args()
-    run(arguments.out, arguments.picture)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(run, options.picture)

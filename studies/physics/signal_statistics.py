@@ -1,6 +1,6 @@
 """Recorded frames beside simulated ones of the same kind and radar: where the energy is, how deep the noise lies.
 
-python -m studies.physics.signal_statistics --data <recordings> --out results
+python -m studies run signal_statistics --data <recordings>
 
 The person who moves is simulated where one of the recorded ones is; the resting room is the sample room, so there
 only the kind of number can agree; the breathing person stands with the chest where the recorded one is. How far real
@@ -27,8 +27,10 @@ from mmweaver.formats.mmwave_studio import read_mmwave_studio
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.paths.ray_traced import Simulator
 from studies.fields.field_signals import pose_of, sample_scene, two_people_radar
+from studies.manifest import StudyRun
 from studies.physics.empty_room_cube import empty_room
-from studies.report.result_files import write_result
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 EXPERIMENT = "signal_statistics"
 VERSION = 2
@@ -202,7 +204,7 @@ def _row(
         metrics[key] = {"value": round(value, 4), "unit": unit, "definition": definition, "version": VERSION}
         metrics[key]["quarters"] = [round(edge, 4) for edge in parts[key]]
         if spread:
-            metrics[key]["interval"] = [round(edge, 4) for edge in spread[key]]
+            metrics[key]["lowest_highest"] = [round(edge, 4) for edge in spread[key]]
     return {
         "dataset": {"name": name, "origin": origin},
         "n": max(len(seeds), 1),
@@ -211,6 +213,11 @@ def _row(
     }
 
 
+UNKNOWN = {
+    "dataset.sha256": "recordings are hashed in the manifest",
+    "seconds": "see the manifest: all rows together",
+    "metrics.*.baseline": "statistics of a signal; the simulated rows are compared with the recorded ones",
+}
 RECORDINGS: tuple[tuple[str, Callable[[Path], AdcCube], Callable[[RadarConfig, int], AdcCube]], ...] = (
     ("people who move", recorded_people, walker),
     ("a room in which nothing moves", recorded_hall, sample_room),
@@ -218,25 +225,18 @@ RECORDINGS: tuple[tuple[str, Callable[[Path], AdcCube], Callable[[RadarConfig, i
 )
 
 
-def run(out: Path, data: Path, seeds: tuple[int, ...] = tuple(range(10))) -> Path:
+def measure(run: StudyRun, data: Path, seeds: tuple[int, ...] = tuple(range(10))) -> Path:
     """All recordings, each with simulated frames of the same radar."""
     found = [row for name, read, simulate in RECORDINGS for row in rows(name, read(data), simulate, seeds)]
-    return write_result(
-        out,
-        experiment=EXPERIMENT,
-        method="physics",
-        config={"rooms": "a floor and a wall at 5.2 m; bundled sample; a floor", "quarters": QUARTERS},
-        rows=found,
+    config = {"rooms": "a floor and a wall at 5.2 m; bundled sample; a floor", "quarters": QUARTERS}
+    return run.write(EXPERIMENT, "physics", config=config, rows=complete_rows(found, unknown=UNKNOWN))
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--data", type=Path, action=Reads, required=True, help="folder of recordings (with radar/ in it)"
     )
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    parser.add_argument("--data", type=Path, required=True, help="folder of recordings (with radar/ in it)")
-    arguments = parser.parse_args()
-    run(arguments.out, arguments.data)
-
-
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(run, options.data)

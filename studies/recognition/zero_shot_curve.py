@@ -1,6 +1,6 @@
 """What generated data saves: accuracy against the number of real recordings of each activity, with and without it.
 
-    python -m studies.recognition.zero_shot_curve --recordings shared/data/pointclouds/radhar --out results
+    python -m studies run zero_shot_curve --recordings shared/data/pointclouds/radhar
 
 Recordings are drawn anew for each seed; all others are the test. Real windows together weigh as much as generated ones.
 Trees are grown once each, not as often as in what is frozen.
@@ -20,8 +20,9 @@ from mmweaver.recognition.frozen_activity import Frozen, load_frozen
 from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.window_features import feature_matrix
+from studies.manifest import StudyRun
 from studies.recognition.zero_shot_scores import digest
-from studies.report.result_files import write_result
+from studies.study import Reads
 
 RECORDINGS = (0, 1, 5, 20)
 SEEDS = (0, 1, 2)
@@ -50,7 +51,7 @@ def accuracy(
     return balanced_accuracy(np.searchsorted(np.array(model.classes), labels[~is_training]), guess)
 
 
-def run(name: str, recordings: Path, out: Path) -> Path:
+def measure(name: str, recordings: Path, run: StudyRun) -> Path:
     """Writes results/zero_shot/curve.json."""
     frozen = load_frozen(name)
     people = read_recordings(recordings, frozen.labels)
@@ -72,7 +73,7 @@ def run(name: str, recordings: Path, out: Path) -> Path:
                 scores.append(accuracy(frozen, features, labels, is_training, generated=generated))
             rows.append(_row(scores, each, generated, recordings, seeds, time.process_time() - began))
     config = {"frozen": name, **frozen.provenance, "classifier": asdict(frozen.classifier)}
-    return write_result(out, experiment="zero_shot", method="curve", config=config, rows=rows)
+    return run.write("zero_shot", "curve", config=config, rows=rows)
 
 
 def _row(scores: list[float], each: int, generated: bool, folder: Path, seeds: tuple[int, ...], seconds: float) -> dict:
@@ -82,10 +83,10 @@ def _row(scores: list[float], each: int, generated: bool, folder: Path, seeds: t
         "generated": generated,
         "n": len(scores),
         "seeds": list(seeds),
-        "seconds": round(seconds, 1),
+        "seconds": {"all": round(seconds, 1)},
         "metrics": {
             "window": {
-                "value": round(float(np.mean(scores)), 4), "unit": "share", "version": 1, "floor": 0.2,
+                "value": round(float(np.mean(scores)), 4), "unit": "share", "version": 1, "baseline": {"chance": 0.2},
                 "definition": "balanced accuracy of windows of 2 s, mean over draws of the recordings that train",
                 "lowest": round(min(scores), 4), "highest": round(max(scores), 4),
             }
@@ -93,15 +94,10 @@ def _row(scores: list[float], each: int, generated: bool, folder: Path, seeds: t
     }  # fmt: skip
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description="accuracy against the number of real recordings")
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--frozen", default="development")
-    parser.add_argument("--recordings", type=Path, required=True)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    given = parser.parse_args()
-    run(given.frozen, given.recordings, given.out)
+    parser.add_argument("--recordings", type=Path, action=Reads, required=True)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(options.frozen, options.recordings, run)

@@ -1,6 +1,6 @@
 """How bright arms and legs should be, asked of RadHAR: trained on windows of faint, middling and bright limbs.
 
-python -m studies.recognition.zero_shot_limbs --cache windows/ --each 200 --seed 8 --recordings RADHAR --out results
+python -m studies run zero_shot_limbs --cache windows/ --each 200 --seed 8 --recordings RADHAR
 
 The simulator's arms and legs were read off another data set, MARS: this says whether they are wrong in another room.
 Each third of the windows, by how bright a limb was drawn, trains alone and is scored on all recordings.
@@ -19,8 +19,9 @@ from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.scoring import evaluate_recogniser, report
 from mmweaver.recognition.variation import VariationSample
 from mmweaver.recognition.zero_shot import measured
+from studies.manifest import StudyRun
 from studies.recognition.zero_shot_scores import digest, first_draws, read_cache
-from studies.report.result_files import write_result
+from studies.study import Reads
 
 LIMBS = ("arms_db", "legs_db")
 THIRDS = ("faintest", "middle", "brightest")
@@ -44,7 +45,7 @@ def drawn(
     return np.array([getattr(draws[at], limb) for at in index])
 
 
-def run(cache: Path, each: int, seed: int, recordings: Path, out: Path) -> Path:
+def measure(cache: Path, each: int, seed: int, recordings: Path, run: StudyRun) -> Path:
     """Writes results/zero_shot/limbs.json."""
     recipe = radhar_recipe()
     windows, source = read_cache(cache)
@@ -60,29 +61,24 @@ def run(cache: Path, each: int, seed: int, recordings: Path, out: Path) -> Path:
             found = report(evaluate_recogniser(model, people, recipe.window_s))["window"]
             rows.append({
                 "dataset": {"name": f"RadHAR, {limb[:4]}, {word} third", "sha256": digest(recordings)},
-                "n": int(own.sum()), "seeds": [seed], "seconds": round(time.process_time() - began, 1),
+                "n": int(own.sum()), "seeds": [seed], "seconds": {"all": round(time.process_time() - began, 1)},
                 "limb": limb, "from_db": round(float(value[own].min()), 1), "to_db": round(float(value[own].max()), 1),
                 "metrics": {"window": {
-                    "value": found["balanced_accuracy"], "unit": "share", "version": 1, "floor": 0.2,
+                    "value": found["balanced_accuracy"], "unit": "share", "version": 1, "baseline": {"chance": 0.2},
                     "interval_95": found["interval_95"],
                     "definition": "balanced accuracy of windows of 2 s, trained on that third of the windows alone",
                 }},
             })  # fmt: skip
     config = {key: held for key, held in source.items() if key != "recipe"}
-    return write_result(out, experiment="zero_shot", method="limbs", config=config, rows=rows)
+    return run.write("zero_shot", "limbs", config=config, rows=rows)
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description="how bright arms and legs should be, asked of RadHAR")
-    parser.add_argument("--cache", type=Path, required=True)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--cache", type=Path, action=Reads, required=True)
     parser.add_argument("--each", type=int, default=200)
     parser.add_argument("--seed", type=int, default=8)
-    parser.add_argument("--recordings", type=Path, required=True)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    given = parser.parse_args()
-    run(given.cache, given.each, given.seed, given.recordings, given.out)
+    parser.add_argument("--recordings", type=Path, action=Reads, required=True)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(options.cache, options.each, options.seed, options.recordings, run)

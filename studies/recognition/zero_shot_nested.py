@@ -1,6 +1,6 @@
 """What choosing settings by scores on real recordings is worth: chosen on one half of them, scored on the other.
 
-    python -m studies.recognition.zero_shot_nested --caches windows/ --recordings RADHAR --out results
+    python -m studies run zero_shot_nested --caches windows/ --recordings RADHAR
 
 RadHAR's two groups of names are the halves. Each candidate (which features, how many disturbed copies, which trees)
 trains on the same generated windows. The recipe itself was developed on both halves: what that is worth is not in here.
@@ -22,8 +22,9 @@ from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.window_features import STILL_MPS, feature_matrix, window_features
 from mmweaver.recognition.zero_shot import COPIES, measured
+from studies.manifest import StudyRun
 from studies.recognition.zero_shot_scores import digest, in_first_half, read_cache
-from studies.report.result_files import write_result
+from studies.study import Reads
 
 TREES = {
     "many leaves": ClassifierSettings(num_trees=200),
@@ -83,7 +84,7 @@ def nested(
     return chosen
 
 
-def run(caches: list[Path], recordings: Path, out: Path) -> Path:
+def measure(caches: list[Path], recordings: Path, run: StudyRun) -> Path:
     """Writes results/zero_shot/nested.json."""
     began = time.process_time()
     read = [read_cache(cache) for cache in caches]
@@ -100,9 +101,7 @@ def run(caches: list[Path], recordings: Path, out: Path) -> Path:
         for half, (best, on_it, other) in enumerate(chosen)
     ]
     sources = [_without_recipe(source) for _, source in read]
-    return write_result(
-        out, experiment="zero_shot", method="nested", config={"candidates": len(found), "sources": sources}, rows=rows
-    )
+    return run.write("zero_shot", "nested", config={"candidates": len(found), "sources": sources}, rows=rows)
 
 
 def _without_recipe(source: dict[str, Any]) -> dict[str, Any]:
@@ -115,26 +114,22 @@ def _row(
 ) -> dict[str, Any]:
     return {
         "dataset": {"name": f"RadHAR, chosen on the {half} half, scored on the other", "sha256": digest(folder)},
-        "n": n, "seeds": [0], "seconds": round(seconds, 1),
+        "n": n, "seeds": [0], "seconds": {"all": round(seconds, 1)},
         "chosen": {"features": best.features, "copies": best.copies, "trees": best.trees},
         "metrics": {
             "window": {
-                "value": round(other, 4), "unit": "share", "version": 1, "floor": 0.2, "chosen_on": round(on_it, 4),
+                "value": round(other, 4), "unit": "share", "version": 1, "baseline": {"chance": 0.2},
+                "chosen_on": round(on_it, 4),
                 "definition": "balanced accuracy of windows of 2 s on the half that had no say",
             }
         },
     }  # fmt: skip
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description="settings chosen on one half of the recordings, scored on the other")
-    parser.add_argument("--caches", type=Path, nargs="+", required=True)
-    parser.add_argument("--recordings", type=Path, required=True)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    given = parser.parse_args()
-    run(given.caches, given.recordings, given.out)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--caches", type=Path, action=Reads, nargs="+", required=True)
+    parser.add_argument("--recordings", type=Path, action=Reads, required=True)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    measure(options.caches, options.recordings, run)

@@ -1,6 +1,6 @@
 """Real beside generated: the moving points of one window of each activity, range over time, coloured by velocity.
 
-python -m studies.recognition.zero_shot_pictures --recordings shared/data/pointclouds/radhar --out docs/images
+python -m studies run zero_shot_pictures --recordings shared/data/pointclouds/radhar --out docs/images
 """
 
 import argparse
@@ -14,6 +14,8 @@ from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.radhar import radhar_recipe
 from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.window_features import STILL_MPS
+from studies.manifest import StudyRun
+from studies.study import Reads
 
 SHOWN_MPS = 2.5
 SECONDS = 4.0
@@ -50,24 +52,20 @@ def draw(real: dict[str, PointRecording], made: dict[str, PointRecording], path:
         figure.savefig(temporary, format="png")
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description="pictures of real recordings beside generated ones")
-    parser.add_argument("--recordings", type=Path, required=True)
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--recordings", type=Path, action=Reads, required=True)
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
     parser.add_argument("--seed", type=int, default=0)
-    given = parser.parse_args()
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     from dataclasses import replace
 
     recipe = replace(radhar_recipe(), window_s=SECONDS)
-    people = read_recordings(given.recordings, recipe.activities)
+    people = read_recordings(options.recordings, recipe.activities)
     real = {}
     for label in recipe.activities:
         own = [one for one in people if one.label == label]
         real[label] = own[0].windows(SECONDS)[1]
-    made = {label: generate_window(recipe, label, given.seed, 7) for label in recipe.activities}
-    draw(real, made, given.out / "zero_shot.png")
-
-
-if __name__ == "__main__":
-    main()
+    made = {label: generate_window(recipe, label, options.seed, 7) for label in recipe.activities}
+    draw(real, made, options.out / "zero_shot.png")

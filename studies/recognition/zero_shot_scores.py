@@ -1,9 +1,9 @@
 """Trained on generated data alone, tested on real people: RadHAR's five activities.
 
-python -m studies.recognition.zero_shot_scores generate --cache FOLDER --each 300 --seed 1      # resumable
-python -m studies.recognition.zero_shot_scores validate --cache FOLDER --each 300 --seed 1      # generated data alone
-python -m studies.recognition.zero_shot_scores freeze NAME --cache FOLDER --each 300 --seed 1
-python -m studies.recognition.zero_shot_scores score NAME --recordings shared/data/pointclouds/radhar --out results
+python -m studies run zero_shot_scores generate --cache FOLDER --each 300 --seed 1      # resumable
+python -m studies run zero_shot_scores validate --cache FOLDER --each 300 --seed 1      # generated data alone
+python -m studies run zero_shot_scores freeze NAME --cache FOLDER --each 300 --seed 1
+python -m studies run zero_shot_scores score NAME --recordings shared/data/pointclouds/radhar
 """
 
 import argparse
@@ -27,7 +27,9 @@ from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.scoring import Evaluation, balanced_accuracy, evaluate_recogniser, report
 from mmweaver.recognition.variation import VariationSample, draw
 from mmweaver.recognition.zero_shot import TrainingSet, measured, own_cache, training_set
-from studies.report.result_files import commit, write_result
+from studies.manifest import StudyRun
+from studies.provenance import provenance
+from studies.study import Reads
 
 SETTINGS = ClassifierSettings(repetitions=3)  # of what is frozen
 METRICS = {
@@ -72,7 +74,7 @@ def first_draws(recipe: GenerationRecipe, each: int, seed: int) -> list[Variatio
     ]
 
 
-def score(name: str, recordings: Path, out: Path) -> Path:
+def score(name: str, recordings: Path, run: StudyRun) -> Path:
     """Scores a frozen recogniser on recordings of real people and writes results/zero_shot/NAME.json.
 
     One row for all recordings, one each for the two halves by name.
@@ -93,7 +95,7 @@ def score(name: str, recordings: Path, out: Path) -> Path:
         if which.any()
     ]
     config = {"frozen": name, **frozen.provenance, "classifier": asdict(frozen.classifier)}
-    return write_result(out, experiment="zero_shot", method=name, config=config, rows=rows)
+    return run.write("zero_shot", name, config=config, rows=rows)
 
 
 def in_first_half(name: str) -> bool:
@@ -112,13 +114,13 @@ def result_row(judged: Evaluation, recordings: Path, which: str, *, seconds: flo
         "dataset": {"name": f"RadHAR, {which}", "recordings": found["recordings"], "sha256": digest(recordings)},
         "n": found["window"]["n"],
         "seeds": [0],
-        "seconds": round(seconds, 1),
+        "seconds": {"all": round(seconds, 1)},
         "classes": found["classes"],
         "metrics": {
             key: {
                 "value": found[key]["balanced_accuracy"], "unit": "share", "definition": words, "version": 1,
-                "interval_95": found[key]["interval_95"], "floor": found[key]["floor"], "n": found[key]["n"],
-                "confusion": found[key]["confusion"],
+                "interval_95": found[key]["interval_95"], "baseline": {"chance": found[key]["floor"]},
+                "n": found[key]["n"], "confusion": found[key]["confusion"],
             }
             for key, words in METRICS.items()
         },
@@ -134,7 +136,7 @@ def digest(folder: Path) -> str:
     return total.hexdigest()
 
 
-def freeze(name: str, caches: list[Path], out: Path) -> Path:
+def freeze(name: str, caches: list[Path], run: StudyRun) -> Path:
     """Pools all windows of the caches and writes the frozen files of the package, with where each came from.
 
     results/zero_shot/frozen.json says the same, with the digest of the features.
@@ -148,7 +150,7 @@ def freeze(name: str, caches: list[Path], out: Path) -> Path:
         names=made[0].names,
     )
     save_frozen(name, pooled, {"classifier": asdict(SETTINGS), "sources": sources})
-    return tell_frozen(name, out)
+    return describe_frozen(name, run)
 
 
 def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
@@ -166,18 +168,18 @@ def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
     return windows, source
 
 
-def tell_frozen(name: str, out: Path) -> Path:
+def describe_frozen(name: str, run: StudyRun) -> Path:
     """results/zero_shot/frozen.json: settings and sources of a frozen recogniser, and the digest of its features."""
     settings = json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))
     features = hashlib.sha256((FOLDER / f"{name}.npz").read_bytes()).hexdigest()
     config = {"frozen": name, "features_sha256": features, **settings}
-    return write_result(out, experiment="zero_shot", method="frozen", config=config, rows=[])
+    return run.write("zero_shot", "frozen", config=config, rows=[])
 
 
 def generate(recipe: GenerationRecipe, cache: Path, *, each: int, seed: int, part: int = 0, parts: int = 1) -> None:
     """Fills a cache; several processes may share one, each with its part. Says in it what made it."""
     own_cache(cache, recipe)
-    (cache / "commit.txt").write_text(f"{commit()}\n", encoding="utf-8")
+    (cache / "commit.txt").write_text(f"{_commit_text()}\n", encoding="utf-8")
     note = cache / f"seconds_{part}.txt"
     spent_s = float(note.read_text(encoding="utf-8")) if note.exists() else 0.0
     for index in range(part, each, parts):
@@ -190,34 +192,35 @@ def generate(recipe: GenerationRecipe, cache: Path, *, each: int, seed: int, par
                 note.write_text(f"{spent_s:.1f}\n", encoding="utf-8")
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(description="activities recognised from generated data alone")
+def _commit_text() -> str:
+    """The commit, with "+" where files differ from it."""
+    source = provenance()
+    return f"{source['commit']}{'+' if source['dirty'] else ''}"
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("what", choices=("generate", "validate", "freeze", "score"))
     parser.add_argument("name", nargs="?", default="development", help="name of the frozen recogniser")
     parser.add_argument("--cache", type=Path, help="folder of generated windows")
-    parser.add_argument("--caches", type=Path, nargs="+", help="folders to freeze together")
+    parser.add_argument("--caches", type=Path, action=Reads, nargs="+", help="folders to freeze together")
     parser.add_argument("--each", type=int, default=300, help="windows of each activity")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--part", type=int, default=0)
     parser.add_argument("--parts", type=int, default=1)
-    parser.add_argument("--recordings", type=Path)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    given = parser.parse_args()
+    parser.add_argument("--recordings", type=Path, action=Reads)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     recipe = radhar_recipe()
-    if given.what == "score":
-        score(given.name, given.recordings, given.out)
+    if options.what == "score":
+        score(options.name, options.recordings, run)
         return
-    if given.what == "generate":
-        generate(recipe, given.cache, each=given.each, seed=given.seed, part=given.part, parts=given.parts)
+    if options.what == "generate":
+        generate(recipe, options.cache, each=options.each, seed=options.seed, part=options.part, parts=options.parts)
         return
-    if given.what == "freeze":
-        freeze(given.name, given.caches, given.out)
+    if options.what == "freeze":
+        freeze(options.name, options.caches, run)
         return
-    made = training_set(recipe, each=given.each, seed=given.seed, cache=given.cache)
-    for split, value in validate(made, first_draws(recipe, given.each, given.seed)).items():
-        print(f"{split:24s} {value:.3f}")  # noqa: T201
-
-
-if __name__ == "__main__":
-    main()
+    made = training_set(recipe, each=options.each, seed=options.seed, cache=options.cache)
+    for split, value in validate(made, first_draws(recipe, options.each, options.seed)).items():
+        print(f"{split:24s} {value:.3f}")

@@ -1,10 +1,9 @@
 """The table of docs/reality.md, from results/mars/*.json.
 
-python -m studies.report.mars_table results
+python -m studies tables
 """
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +50,3 @@ def _cell(metrics: dict[str, Any], key: str) -> str:
         low, high = metrics[key]["interval_95"]
         text += f" ({low:.{digits}f} to {high:.{digits}f})"
     return text
-
-
-if __name__ == "__main__":
-    sys.stdout.write(mars_table(Path(sys.argv[1])) + "\n")

@@ -1,14 +1,12 @@
 """Markdown tables of results/, for the documentation; a test keeps the two alike.
 
-python -m studies.report.tables results README.md docs/*.md
+python -m studies tables
 """
 
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
-from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from studies.report.benchmark_tables import dataset_cost_table, weaver_speed_table
 from studies.report.capture_tuning_table import capture_tuning_table
@@ -57,7 +55,6 @@ PHYSICS = (
     ("synthesis_error_at_3_mps_db", "up to 3 m/s and 30 m/s2 on each axis", "{:.1f} dB"),
 )
 OURS = ("mmw", "mmw_keep_noise")  # what the rivals are measured against
-BEGIN, END = "<!-- table: {} -->", "<!-- end -->"
 
 
 def fidelity_table(folder: Path) -> str:
@@ -432,20 +429,6 @@ TABLES = {
 }  # fmt: skip
 
 
-def with_tables(text: str, folder: Path) -> str:
-    """The document with each of its marked tables made anew. Raises InputError where a mark has no end."""
-    for name, make in TABLES.items():
-        begin = BEGIN.format(name)
-        if begin not in text:
-            continue
-        before, _, rest = text.partition(begin)
-        _, end, after = rest.partition(END)
-        if not end:
-            raise InputError(f"the mark {begin} has no {END} after it")
-        text = f"{before}{begin}\n{make(folder)}\n{END}{after}"
-    return text
-
-
 def _records(folder: Path) -> list[dict[str, Any]]:
     records = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))]
     if not records:
@@ -462,15 +445,3 @@ def _number(value: float | None) -> str:
         return "-"
     text = f"{value:.2f}" if abs(value) < 10 else f"{value:.1f}"
     return text.removeprefix("-") if float(text) == 0 else text
-
-
-def main() -> None:
-    folder = Path(sys.argv[1])
-    for document in map(Path, sys.argv[2:]):
-        text = with_tables(document.read_text(encoding="utf-8"), folder)
-        with atomic_file(document) as temporary:
-            temporary.write_text(text, encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

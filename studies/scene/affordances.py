@@ -1,6 +1,6 @@
 """Are seats, tables, doors, windows and the floor found, and does nobody walk or sit inside furniture?
 
-python -m studies.scene.affordances --out results --rooms /path/to/rooms
+python -m studies run affordances --rooms /path/to/rooms
 
 200 procedural rooms with noisy depth whose truth is known, of kinds that no threshold was chosen on (develop: the other
 kinds, fewer rooms), from depth alone and with the true class mask; and the real rooms, whose truth was written down
@@ -24,6 +24,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Scene, Seat
 from mmweaver.core.seeding import stream
+from mmweaver.geometry.pinhole import project
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.scene.procedural.ground_truth import RadarFrame
@@ -31,8 +32,10 @@ from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
 from studies.scene.room_contact import contact
+from studies.study import Reads
 
 DEVELOP = ("office", "living_room", "bedroom", "dining_room", "corridor", "workshop")
 REPORT = ("kitchen", "lab", "library", "meeting_room", "classroom", "gym")
@@ -128,18 +131,19 @@ def _is_findable(room: ProceduralRoom, seat: Seat) -> bool:
 
 
 def _is_seen(room: ProceduralRoom, points: np.ndarray) -> np.ndarray:
-    lens, camera = room.intrinsics, points @ room.radar_from_camera
-    column, row = lens.fx * camera[:, 0] / camera[:, 2] + lens.cx, lens.fy * camera[:, 1] / camera[:, 2] + lens.cy
-    inside = (camera[:, 2] > 0.3) & (column > 0) & (column < lens.width - 1) & (row > 0) & (row < lens.height - 1)
-    depth = room.true_depth_m[np.where(inside, row, 0).astype(int), np.where(inside, column, 0).astype(int)]
-    return inside & (depth > camera[:, 2] - 0.06)
+    pixels, depth_m = project(points @ room.radar_from_camera, room.intrinsics)
+    column, row = pixels.T
+    width, height = room.intrinsics.width, room.intrinsics.height
+    inside = (depth_m > 0.3) & (column > 0) & (column < width - 1) & (row > 0) & (row < height - 1)
+    surface_m = room.true_depth_m[np.where(inside, row, 0).astype(int), np.where(inside, column, 0).astype(int)]
+    return inside & (surface_m > depth_m - 0.06)
 
 
 def _is_in_view(room: ProceduralRoom, mark: Landmark) -> bool:
     """Its middle within the picture's width, and near enough to be gone to."""
-    lens, camera = room.intrinsics, mark.position_m @ room.radar_from_camera
-    column = lens.fx * camera[0] / max(camera[2], 1e-6) + lens.cx
-    return bool(camera[2] > 0.3 and 20 < column < lens.width - 20 and np.hypot(*mark.position_m[:2]) < 4.0)
+    pixel, depth_m = project(mark.position_m @ room.radar_from_camera, room.intrinsics)
+    in_width = 20 < pixel[0] < room.intrinsics.width - 20
+    return bool(depth_m > 0.3 and in_width and np.hypot(*mark.position_m[:2]) < 4.0)
 
 
 def _measure_marks(
@@ -247,6 +251,9 @@ def real_row(folder: Path) -> dict[str, Any]:
     return _row(folder.name, "judged by eye from the photo", 1, tally)
 
 
+UNKNOWN = {"dataset.sha256": "rendered anew in every run; photos are hashed in the manifest"}
+
+
 # Rows -----------------------------------------------------------------------------------------------------------------
 def _row(name: str, split: str, number: int, tally: Tally) -> dict[str, Any]:
     floor = np.array(tally.floor_error_m)
@@ -289,11 +296,11 @@ def share_of(name: str, values: list[bool], definition: str) -> dict[str, Any]:
     draws = stream(0, "affordances", name).integers(len(counted), size=(1000, len(counted)))
     low, high = np.percentile(counted[draws].mean(axis=1), [2.5, 97.5])
     metric = _metric(float(counted.mean()), "share", definition)
-    return {**metric, "of": len(values), "interval": [round(float(low), 4), round(float(high), 4)]}
+    return {**metric, "of": len(values), "interval_95": [round(float(low), 4), round(float(high), 4)]}
 
 
-def run(
-    out: Path, folders: list[Path], number: int, methods: tuple[str, ...] = METHODS, workers: int = 1
+def measure(
+    run: StudyRun, folders: list[Path], number: int, methods: tuple[str, ...] = METHODS, workers: int = 1
 ) -> list[Path]:
     """A file each: depth alone (with the real rooms and placements), and with the true mask."""
     written = []
@@ -307,27 +314,23 @@ def run(
         ]
         rows += [] if with_mask else [real_row(folder) for folder in folders]
         config = {"sentences": list(SENTENCES), "seconds": SECONDS, "range_window_m": list(RANGE_WINDOW_M)}
-        written.append(write_result(out, experiment="affordances", method=method, config=config, rows=rows))
+        written.append(run.write("affordances", method, config=config, rows=complete_rows(rows, unknown=UNKNOWN)))
     return written
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    parser.add_argument("--rooms", type=Path, default=None, help="folder of the real rooms")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--rooms", type=Path, action=Reads, default=None, help="folder of the real rooms")
     parser.add_argument("--number", type=int, default=200, help="how many rooms to report on")
     parser.add_argument("--workers", type=int, default=1, help="processes")
     parser.add_argument("--methods", nargs="*", choices=METHODS, default=METHODS)
-    arguments = parser.parse_args()
-    folders = [] if arguments.rooms is None else sorted(arguments.rooms.iterdir())
-    run(
-        arguments.out,
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    folders = [] if options.rooms is None else sorted(options.rooms.iterdir())
+    measure(
+        run,
         [folder for folder in folders if (folder / "camera.json").is_file()],
-        arguments.number,
-        tuple(arguments.methods),
-        arguments.workers,
+        options.number,
+        tuple(options.methods),
+        options.workers,
     )
-
-
-if __name__ == "__main__":
-    main()

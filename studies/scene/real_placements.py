@@ -1,6 +1,6 @@
 """The four real rooms: is the floor at its height, and does nobody get into what the photo measured?
 
-python -m studies.scene.real_placements --rooms /path/to/rooms --out results
+python -m studies run real_placements --rooms /path/to/rooms
 
 The floor against places in the photo that a person marked as floor (real_rooms_classes.json). Bodies against the
 measured points themselves, for what stands in a real room is known from them alone: no limb may be within its own
@@ -25,10 +25,12 @@ from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
 from studies.scene.affordances import RANGE_WINDOW_M, SECONDS, share_of
 from studies.scene.room_contact import ALLOWED_M, ON_SEAT_M, sampled
 from studies.scene.room_sentences import SENTENCES
+from studies.study import Reads
 
 SEEDS = range(10)
 MARKS = Path(__file__).with_name("real_rooms_classes.json")
@@ -110,29 +112,31 @@ def room_row(folder: Path) -> dict[str, Any]:
             body_m, arms_m = deepest_m(tree, motion.pose, _seat_of(motion))
             clear.append(body_m <= 0)
             arms_clear.append(arms_m <= 0)
-    floor = {"value": round(error_m, 4), "unit": "m", "version": 1, "of": num_marks,
+    floor_error = {"value": round(error_m, 4), "unit": "m", "version": 1, "of": num_marks,
              "definition": "found floor against the median height of places marked as floor by hand"}  # fmt: skip
     clearness = "no measured point 3 cm inside trunk, legs or head"
     return {
         "dataset": {"name": folder.name, "split": "all four rooms were looked at while placements were made"},
         "n": len(clear), "seeds": list(SEEDS), "refused": refused,
         "metrics": {
-            "floor_error_m": floor,
+            "floor_error_m": floor_error,
             "placements_clear": share_of("placements_clear", clear, clearness),
             "arms_clear": share_of("arms_clear", arms_clear, "the same of the arms"),
         },
     }  # fmt: skip
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rooms", type=Path, required=True, help="folder of the real rooms")
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    arguments = parser.parse_args()
-    rows = [room_row(arguments.rooms / name) for name in SENTENCES]
+UNKNOWN = {
+    "dataset.sha256": "photos are hashed in the manifest",
+    "seconds": "see the manifest: all rows together",
+}
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--rooms", type=Path, action=Reads, required=True, help="folder of the real rooms")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    rows = [room_row(options.rooms / name) for name in SENTENCES]
     config = {"sentences": SENTENCES, "seconds": SECONDS, "range_window_m": list(RANGE_WINDOW_M)}
-    write_result(arguments.out, experiment="real_placements", method="depth", config=config, rows=rows)
-
-
-if __name__ == "__main__":
-    main()
+    run.write("real_placements", "depth", config=config, rows=complete_rows(rows, unknown=UNKNOWN))

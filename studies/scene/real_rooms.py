@@ -1,6 +1,6 @@
 """Does the radar see the person where the skeleton is? Sentences in photographed rooms, frame by frame.
 
-python -m studies.scene.real_rooms --rooms <folder of rooms> --out results
+python -m studies run real_rooms --rooms <folder of rooms>
 
 A frame has motion where some joint moves faster than one Doppler bin towards or from the radar. It counts as right if
 the strongest moving range bin lies within the body's extent. Floor: a bin drawn at random from the window.
@@ -16,8 +16,11 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
-from mmweaver.generate import Generation, Room, Weaver
-from studies.report.result_files import write_result
+from mmweaver.generate import Weaver
+from mmweaver.generation import Generation, Room
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
+from studies.study import Reads
 
 SKIN_M = 0.2  # joints lie inside the body
 SENTENCES = (
@@ -30,6 +33,10 @@ SENTENCES = (
     "he claps",
 )
 SEEDS = (0, 1, 2)
+UNKNOWN = {
+    "dataset.sha256": "photos are hashed in the manifest",
+    "seconds": "see the manifest: all rows together",
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,32 +90,33 @@ def room_row(name: str, weaver: Weaver, room: Room) -> dict[str, Any]:
                 "unit": "share of frames with motion",
                 "definition": "strongest moving range bin within the joints' extent and 0.2 m of skin",
                 "version": 1,
-                "floor": {"random_bin": round(chance, 4)},
+                "baseline": {"random_bin": round(chance, 4)},
             }
         },
     }
 
 
-def run(out: Path, folders: list[Path]) -> Path:
+def measure(run: StudyRun, folders: list[Path]) -> Path:
     """One row a room, the bundled sample first."""
     weaver = Weaver("physics")
     rows = [room_row("bundled sample", weaver, weaver.sample_room())]
     for folder in folders:
         room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
         rows.append(room_row(folder.name, weaver, room))
-    return write_result(out, experiment="real_rooms", method="physics", config={"radar": weaver.radar.name}, rows=rows)
+    rows = complete_rows(rows, unknown=UNKNOWN)
+    return run.write("real_rooms", "physics", config={"radar": weaver.radar.name}, rows=rows)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
+def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--rooms", type=Path, default=None, help="folder of folders with rgb.png, depth.png, camera.json"
+        "--rooms",
+        type=Path,
+        action=Reads,
+        default=None,
+        help="folder of folders with rgb.png, depth.png, camera.json",
     )
-    arguments = parser.parse_args()
-    folders = [] if arguments.rooms is None else sorted(arguments.rooms.iterdir())
-    run(arguments.out, [folder for folder in folders if (folder / "camera.json").is_file()])
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    folders = [] if options.rooms is None else sorted(options.rooms.iterdir())
+    measure(run, [folder for folder in folders if (folder / "camera.json").is_file()])

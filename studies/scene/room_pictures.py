@@ -1,6 +1,6 @@
 """Rooms to look at: a sheet of all kinds, and what is found in rooms beside what is there.
 
-python -m studies.scene.room_pictures --rooms /path/to/rooms --out docs/images
+python -m studies run room_pictures --rooms /path/to/rooms --out docs/images
 """
 
 import argparse
@@ -17,7 +17,9 @@ from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
+from studies.manifest import StudyRun
 from studies.scene.top_view import draw_top
+from studies.study import Reads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -111,26 +113,23 @@ def save_small(figure: "Figure", path: Path, most_bytes: int = 300_000) -> None:
         temporary.write_bytes(buffer.getvalue())
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rooms", type=Path, default=None, help="folder of the real rooms")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--rooms", type=Path, action=Reads, default=None, help="folder of the real rooms")
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    arguments = parser.parse_args()
-    draw_sheet(arguments.out / "rooms_procedural.png")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    draw_sheet(options.out / "rooms_procedural.png")
     made = [(make_room(*key), f"{key[0]}, noisy depth alone") for key in SHOWN]
     found = []
     for index, (room, name) in enumerate(made):
         photo = room.photo(list(LIGHTINGS)[index % 4], noise=True)
         unnamed = type(photo)(rgb=photo.rgb, depth_m=photo.depth_m, intrinsics=photo.intrinsics)
         found.append((name, reconstruct(unnamed), room.scene()))
-    draw_found(arguments.out / "rooms_found_procedural.png", found)
-    if arguments.rooms is not None:
+    draw_found(options.out / "rooms_found_procedural.png", found)
+    if options.rooms is not None:
         real = []
-        for folder in sorted(path for path in arguments.rooms.iterdir() if (path / "camera.json").is_file()):
+        for folder in sorted(path for path in options.rooms.iterdir() if (path / "camera.json").is_file()):
             photo, _ = read_photo(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
             real.append((folder.name, reconstruct(photo), None))
-        draw_found(arguments.out / "rooms_found_real.png", real)
-
-
-if __name__ == "__main__":
-    main()
+        draw_found(options.out / "rooms_found_real.png", real)

@@ -1,6 +1,6 @@
 """Six sentences in each photographed room, to look at: skeleton in the photo, top view, spectrograms.
 
-python -m studies.scene.room_sentences --rooms /path/to/rooms --out docs/images
+python -m studies run room_sentences --rooms /path/to/rooms --out docs/images
 """
 
 import argparse
@@ -13,9 +13,12 @@ from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_doppler_time, draw_range_time
 from mmweaver.figures.skeleton_drawing import SkeletonInPhoto
 from mmweaver.figures.theme import STYLE
-from mmweaver.generate import Generation, Room, Weaver
+from mmweaver.generate import Weaver
+from mmweaver.generation import Generation, Room
+from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small, small
 from studies.scene.top_view import draw_top
+from studies.study import Reads
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,17 +105,14 @@ def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
     draw_doppler_time(row[3], view)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--rooms", type=Path, required=True, help="folder of the four real rooms")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--rooms", type=Path, action=Reads, required=True, help="folder of the four real rooms")
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    arguments = parser.parse_args()
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     weaver = Weaver("physics")
     for name, sentences in SENTENCES.items():
-        folder = arguments.rooms / name
+        folder = options.rooms / name
         room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
-        draw_room(arguments.out / f"rooms_{name}.png", name, weaver, room, sentences)
-
-
-if __name__ == "__main__":
-    main()
+        draw_room(options.out / f"rooms_{name}.png", name, weaver, room, sentences)

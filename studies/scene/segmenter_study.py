@@ -1,6 +1,6 @@
 """How good the built-in segmenter is: rooms of kinds it never saw, real photographs, and what its mask does for seats.
 
-python -m studies.scene.segmenter_study --out results --rooms /path/to/rooms --picture docs/images/segmenter.png
+python -m studies run segmenter_study --rooms /path/to/rooms --picture docs/images/segmenter.png
 
 In the real rooms places were marked in the photos by hand before any prediction was looked at
 (real_rooms_classes.json). Floors: heights and slopes alone; depth without any mask. Ceiling: the true mask.
@@ -29,14 +29,20 @@ from mmweaver.scene.segmentation.builtin_segmenter import (
     load_network,
     segment_builtin,
 )
-from mmweaver.scene.segmentation.segmenter_features import EVERY, grid_features
+from mmweaver.scene.segmentation.segmenter_features import STRIDE, grid_features
 from mmweaver.training.segmenter_data import SegmenterExample, make_examples
 from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
 from mmweaver.training.segmenter_training import TEST_KINDS, TEST_SEED
-from studies.report.result_files import write_result
+from studies.manifest import StudyRun
+from studies.result_rows import complete_rows
 from studies.scene.affordances import Tally, measure_scene, share_of
+from studies.study import Reads
 
 REAL_TRUTH = Path(__file__).with_name("real_rooms_classes.json")
+UNKNOWN = {
+    "dataset.sha256": "rendered anew in every run; photos are hashed in the manifest",
+    "seconds": "see the manifest: all rows together",
+}
 Guess = Callable[[np.ndarray], np.ndarray]
 
 
@@ -138,7 +144,7 @@ def _metric(value: float, definition: str) -> dict[str, Any]:
     return {"value": round(value, 4), "unit": "share", "definition": definition, "version": 1}
 
 
-def run(out: Path, folders: list[Path], per_kind: int, number: int) -> Path:
+def measure(run: StudyRun, folders: list[Path], per_kind: int, number: int) -> Path:
     """Writes one file of all rows."""
     network = load_network()
     guesses: dict[str, Guess] = {
@@ -149,23 +155,19 @@ def run(out: Path, folders: list[Path], per_kind: int, number: int) -> Path:
     for name, guess in guesses.items():
         rows += real_rows(name, guess, folders)
     rows += [affordance_row(name, number) for name in ("none", "network", "true")]
-    config = {"kinds": list(TEST_KINDS), "every": EVERY}
-    return write_result(out, experiment="segmenter", method="builtin", config=config, rows=rows)
+    config = {"kinds": list(TEST_KINDS), "every": STRIDE}
+    return run.write("segmenter", "builtin", config=config, rows=complete_rows(rows, seconds=None, unknown=UNKNOWN))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, default=Path("results"))
-    parser.add_argument("--rooms", type=Path, required=True, help="folder of the real rooms")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--rooms", type=Path, action=Reads, required=True, help="folder of the real rooms")
     parser.add_argument("--per-kind", type=int, default=12)
     parser.add_argument("--number", type=int, default=60, help="rooms for the affordances")
     parser.add_argument("--picture", type=Path, default=None)
-    arguments = parser.parse_args()
-    folders = sorted(one for one in arguments.rooms.iterdir() if (one / "camera.json").is_file())
-    run(arguments.out, folders, arguments.per_kind, arguments.number)
-    if arguments.picture is not None:
-        draw(arguments.picture, folders)
 
 
-if __name__ == "__main__":
-    main()
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    folders = sorted(one for one in options.rooms.iterdir() if (one / "camera.json").is_file())
+    measure(run, folders, options.per_kind, options.number)
+    if options.picture is not None:
+        draw(options.picture, folders)

@@ -3,11 +3,16 @@
 import ast
 from pathlib import Path
 
+import jaxtyping
 import numpy as np
 import pytest
+from beartype import beartype
+from jaxtyping import Float32, TypeCheckError
+from threadpoolctl import threadpool_info
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
+from tests.shape_checks import FIRST_CALLS, next_test
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = sorted((ROOT / "src" / "mmweaver").rglob("*.py"))
@@ -57,6 +62,27 @@ def test_shapes_are_checked_in_tests():
     """The canary: were the jaxtyping hook off, a wrong shape would pass."""
     with pytest.raises(Exception, match="samples"):
         AdcCube(samples=np.zeros((2, 3), np.complex64), config=AWR1843, scale=1.0)
+
+
+def test_shapes_are_checked_in_the_first_calls_of_every_test():
+    """In inner loops only those: see tests/shape_checks.py."""
+    calls: list[object] = []
+
+    def kept(values: Float32[np.ndarray, "row 3"]) -> None:
+        calls.append(values)
+
+    check = jaxtyping.jaxtyped(kept, typechecker=beartype)
+    for _ in range(2):
+        next_test()
+        with pytest.raises(TypeCheckError):
+            check(np.zeros((3, 2), np.float32))
+        for _ in range(2 * FIRST_CALLS):
+            check(np.zeros((2, 3), np.float32))
+    assert len(calls) == 4 * FIRST_CALLS
+
+
+def test_tests_run_on_one_thread():
+    assert {library["num_threads"] for library in threadpool_info()} == {1}
 
 
 def test_no_pickle_is_loaded():

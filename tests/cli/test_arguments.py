@@ -4,20 +4,28 @@ import argparse
 
 import pytest
 
-from mmweaver.cli.arguments import Parser, glued, number, place, told, turns, whole
+from mmweaver.cli.arguments import Parser, glued, landmark, number, place, transmitters, whole
 from mmweaver.core.errors import InputError
 
 
 def test_values():
     assert place("-0.5,2") == (-0.5, 2.0)
-    assert turns("0,2,1") == (0, 2, 1)
-    assert told("door=-0.9,2.8") == ("door", (-0.9, 2.8))
+    assert transmitters("0,2,1") == (0, 2, 1)
+    assert landmark("door=-0.9,2.8") == ("door", (-0.9, 2.8))
     assert (whole("7"), number("2.5")) == (7, 2.5)
 
 
 @pytest.mark.parametrize(
     ("kind", "word"),
-    [(place, "1"), (place, "1,2,3"), (place, "a,b"), (turns, "0;2"), (told, "door"), (whole, "1.5"), (number, "x")],
+    [
+        (place, "1"),
+        (place, "1,2,3"),
+        (place, "a,b"),
+        (transmitters, "0;2"),
+        (landmark, "door"),
+        (whole, "1.5"),
+        (number, "x"),
+    ],
 )
 def test_a_bad_word_is_named(kind, word: str):
     with pytest.raises(argparse.ArgumentTypeError, match=word):

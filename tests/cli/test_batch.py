@@ -53,14 +53,14 @@ def test_what_an_earlier_run_made_otherwise_is_not_touched(
     assert json.loads((tmp_path / "set" / "0001" / "meta.json").read_text())["method"] == "physics"
 
 
-def test_a_sentence_without_a_place_is_left_out_and_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_a_sentence_without_a_place_is_skipped_and_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     file = tmp_path / "sentences.txt"
     file.write_text("a person stands\na person walks to the door\n")  # there is none in the sample
     words = ["generate", "--demo", "--no-pictures", "--texts", str(file), "--out", str(tmp_path / "set")]
     assert main(words) == 0
-    told = capsys.readouterr().out
-    assert told.startswith("1 sequence in ")
-    assert "left out 0001, 'a person walks to the door'" in told
+    shown = capsys.readouterr().out
+    assert shown.startswith("1 sequence in ")
+    assert "skipped 0001, 'a person walks to the door'" in shown
     assert not (tmp_path / "set" / "0001").exists()
     file.write_text("a person walks to the door\n")
     assert main([*words[:-1], str(tmp_path / "none")]) == 2

@@ -9,9 +9,9 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.data.test_generate import contents
 
 from mmweaver.cli.main import main
+from tests.datasets.test_generate_rooms import contents
 
 pytest.importorskip("zarr")
 REFERENCE = "office,living_room,lab,kitchen,library,bedroom,dining_room,meeting_room,classroom,workshop"

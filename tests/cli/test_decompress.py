@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import main
-from mmweaver.compression.mmw_codec import compressed
+from mmweaver.compression.mmw_codec import compress_cube
 from mmweaver.formats.npz_files import read_radar_npz
 from tests.fields.echoes import crowd, error_db
 
@@ -12,7 +12,7 @@ from tests.fields.echoes import crowd, error_db
 @pytest.fixture(scope="module")
 def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("mmw") / "a.mmw"
-    path.write_bytes(compressed(crowd(), num_bytes=4000))
+    path.write_bytes(compress_cube(crowd(), num_bytes=4000))
     return path
 
 

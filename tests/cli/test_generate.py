@@ -47,6 +47,13 @@ def test_the_demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytes
     assert capsys.readouterr().out == ""
 
 
+def test_a_demo_too_short_for_its_sentence_takes_a_shorter_one(tmp_path: Path):
+    assert (
+        main(["generate", "--demo", "--frames", "2", "--no-pictures", "--quiet", "--out", str(tmp_path / "out")]) == 0
+    )
+    assert json.loads((tmp_path / "out" / "meta.json").read_text())["text"] == WALK
+
+
 def test_the_photo_of_a_capture_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     photo, _ = sample_photo()
     write_camera(tmp_path / "realsense", photo.intrinsics, [photo.depth_m] * 2, [photo.rgb] * 2)
@@ -201,8 +208,8 @@ PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json
         ([*PICTURES, "--radar", "nope"], "awr1843"),
         ([*PICTURES, "--radar", "lines.cfg"], "lines.cfg"),
         ([*PICTURES, "--radar", "missing.json"], "missing.json"),
-        ([*PICTURES, "--empty-room", "nowhere"], "radar.npz"),
-        ([*PICTURES, "--empty-room", ".", "--bin"], "--empty-room is for the network"),
+        ([*PICTURES, "--background", "nowhere"], "radar.npz"),
+        ([*PICTURES, "--background", ".", "--bin"], "--background is for the network"),
         ([*PICTURES, "--method", "magic"], "physics"),
         ([*PICTURES, "--tx-order", "0,1"], "tx_order"),
         ([*PICTURES, "--out", "full"], "--overwrite"),

@@ -4,13 +4,13 @@ from pathlib import Path
 import pytest
 
 from mmweaver.cli.main import main
-from mmweaver.compression.mmw_codec import compressed
+from mmweaver.compression.mmw_codec import compress_cube
 from tests.fields.echoes import crowd
 
 
 def test_what_a_file_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     path = tmp_path / "a.mmw"
-    path.write_bytes(compressed(crowd(num_frames=2), num_bytes=2500))
+    path.write_bytes(compress_cube(crowd(num_frames=2), num_bytes=2500))
     assert main(["info", str(path)]) == 0
     text = capsys.readouterr().out
     for word in ("2 x 24 x 16 x 12", "scatterers", "12 antennas", "every checksum right"):

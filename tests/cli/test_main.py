@@ -54,7 +54,7 @@ def test_a_bad_command_line_is_one_line(argv: list[str], capsys: pytest.CaptureF
     assert captured.out == ""
 
 
-def test_no_verb_shows_the_help(capsys: pytest.CaptureFixture[str]):
+def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]):
     assert main([]) == 2
     assert "generate" in capsys.readouterr().out
 
@@ -98,3 +98,19 @@ def test_a_reader_that_leaves_is_no_error():
     os.close(writing)
     assert done.returncode == 141
     assert done.stderr == b""
+
+
+def test_rare_options_are_in_the_full_help_alone(capsys: pytest.CaptureFixture[str]):
+    texts = []
+    for option in ("--help", "--help-all", "--help"):
+        with pytest.raises(SystemExit) as ended:
+            main(["generate", option])
+        assert ended.value.code == 0
+        texts.append(capsys.readouterr().out)
+    assert texts[0] == texts[2]
+    for group in ("input:", "motion:", "radar:", "output:", "advanced:"):
+        assert f"\n{group}\n" in texts[0]
+    assert "--segmenter" not in texts[0]
+    assert "more options: mmweaver generate --help-all" in texts[0]
+    assert "--segmenter" in texts[1]
+    assert "--empty-room" not in texts[1]

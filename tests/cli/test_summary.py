@@ -5,6 +5,7 @@ import json
 import pytest
 
 from mmweaver.cli.summary import print_summary, summary_lines
+from mmweaver.core.assumptions import UsualAssumption
 
 META = {
     "files": {"radar.npz": "the cube", "preview.png": "pictures"},
@@ -39,3 +40,13 @@ def test_machines_read_json(capsys: pytest.CaptureFixture[str]):
 def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]):
     print_summary("walk", META, as_json=False, quiet=True)
     assert capsys.readouterr().out == ""
+
+
+def test_usual_assumptions_are_for_verbose():
+    meta = META | {"assumed": ["a stool", UsualAssumption("the radar is level")]}
+    short, long = ("\n".join(summary_lines("walk", meta, verbose=verbose)) for verbose in (False, True))
+    assert "assumed: a stool" in short
+    assert "level" not in short
+    assert "assumed: 1 usual things more (--verbose prints them)" in short
+    assert "assumed: the radar is level" in long
+    assert "--verbose" not in long

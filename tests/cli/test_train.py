@@ -21,10 +21,8 @@ from mmweaver.models.weights import WeightsCard, save_weights
 pytest.importorskip("zarr")
 
 
-def test_train_then_generate(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data, run, out = str(tmp_path / "data"), tmp_path / "run", tmp_path / "woven"
-    rooms = ["--rooms", "office,dining_room", "--layouts", "1", "--sequences", "3", "--frames", "3", "--quiet"]
-    assert main(["dataset", data, *rooms]) == 0
+def test_train_then_generate(tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    data, run, out = str(tiny_signals), tmp_path / "run", tmp_path / "woven"
     assert main(["train", "weaver", "--data", data, "--out", str(run), "--steps", "2", "--batch", "1", "--json"]) == 0
     weights = json.loads(capsys.readouterr().out)["weights"]
     words = ["generate", "--demo", "--method", "weaver", "--weights", weights, "--frames", "16", "--out", str(out)]
@@ -59,15 +57,14 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert not (tmp_path / "g").exists()
 
 
-def test_killed_and_called_again_it_ends_with_the_same_bits(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_killed_and_called_again_it_ends_with_the_same_bits(
+    tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
     """A process that is killed with no chance to say good-bye."""
     from safetensors.torch import load_file
 
-    data = str(tmp_path / "data")
-    rooms = ["--rooms", "office,dining_room", "--layouts", "1", "--sequences", "2", "--frames", "3", "--quiet"]
-    assert main(["dataset", data, *rooms]) == 0
-    words = ["train", "weaver", "--data", data, "--steps", "6", "--batch", "1", "--save-every", "0", "--json"]
-    words += ["--validate-every", "3"]
+    words = ["train", "weaver", "--data", str(tiny_signals), "--steps", "6", "--batch", "1", "--save-every", "0"]
+    words += ["--validate-every", "3", "--json"]
     assert main([*words, "--out", str(tmp_path / "whole")]) == 0
     whole = json.loads(capsys.readouterr().out)
     out = tmp_path / "killed"

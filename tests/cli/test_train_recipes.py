@@ -1,4 +1,4 @@
-"""mmweaver train activity, then paper with its features."""
+"""mmweaver train activity."""
 
 import json
 import os
@@ -13,37 +13,29 @@ import torch
 from safetensors.torch import load_file
 
 from mmweaver.cli.main import main
-from mmweaver.models.weights import load_into
-from tests.training.tiny_data import tiny_data
+from mmweaver.core.presets import AWR1843
+from mmweaver.models.activity_network import ActivityNetwork
+from mmweaver.models.weights import load_into, shipped_weights
 
 pytest.importorskip("zarr")
 
 
-def test_activity_then_paper(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data = str(tmp_path / "data")
-    rooms = ["--rooms", "office,dining_room", "--layouts", "1", "--sequences", "3", "--frames", "3", "--quiet"]
-    assert main(["dataset", data, *rooms]) == 0
-    few = ["--data", data, "--steps", "2", "--batch", "1", "--json"]
+def test_activity_writes_weights_and_their_page(tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    few = ["--data", str(tiny_signals), "--steps", "2", "--batch", "1", "--json"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
-    weights = json.loads(capsys.readouterr().out)["weights"]
-    assert main(["train", "paper", "--out", str(tmp_path / "p"), "--features", weights, *few]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["steps"] == 2
-    assert {"zeros_loss", "nmse", "energy"} <= set(summary["validation"])
-    assert (tmp_path / "p" / "README.md").is_file()
-    assert list((tmp_path / "p" / "pictures").glob("*.png"))
-    from mmweaver.models.paper_network import PaperNetwork
-
-    assert load_into(PaperNetwork(), Path(summary["weights"]), recipe="paper").steps == 2
+    assert "wrong" in summary["validation"]
+    assert (tmp_path / "a" / "README.md").is_file()
+    assert list((tmp_path / "a" / "pictures").glob("*.png"))
+    assert load_into(ActivityNetwork(AWR1843), Path(summary["weights"]), recipe="activity").steps == 2
 
 
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     data = ["--data", str(tmp_path), "--out", str(tmp_path / "o")]
     for words, told in (
         (["train", "activity", *data], "no data set"),
-        (["train", "paper", *data], "--features"),
         (["train", "activity", *data, "--from", "w", "--captures", "c"], "recipe weaver"),
-        (["train", "weaver", *data, "--features", "w"], "recipe paper"),
     ):
         assert main(words) == 2
         error = capsys.readouterr().err.strip()
@@ -52,26 +44,22 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert not (tmp_path / "o").exists()
 
 
-def test_it_goes_on_from_weights_of_its_own_recipe_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data = str(tiny_data(tmp_path / "data"))
-    few = ["--data", data, "--steps", "1", "--batch", "1", "--json"]
+def test_it_goes_on_from_weights_of_its_own_recipe_alone(
+    tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    few = ["--data", str(tiny_signals), "--steps", "1", "--batch", "1", "--json"]
     assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
-    weights = json.loads(capsys.readouterr().out)["weights"]
     assert main(["train", "activity", "--out", str(tmp_path / "b"), "--from", str(tmp_path / "a"), *few]) == 0
     capsys.readouterr()
-    words = ["train", "paper", "--out", str(tmp_path / "c"), "--features", weights, "--from", str(tmp_path / "a"), *few]
+    words = ["train", "activity", "--out", str(tmp_path / "c"), "--from", str(shipped_weights()), *few]
     assert main(words) == 2
-    assert "mmweaver train paper" in capsys.readouterr().err
+    assert "mmweaver train activity" in capsys.readouterr().err
 
 
-@pytest.fixture(scope="module")
-def light(tmp_path_factory: pytest.TempPathFactory) -> str:
-    return str(tiny_data(tmp_path_factory.mktemp("light") / "data", geometry_only=True))
-
-
-def test_two_processes_that_were_killed_end_as_two_that_were_not(light: str, tmp_path: Path):
+def test_two_processes_that_were_killed_end_as_two_that_were_not(tiny_geometry: Path, tmp_path: Path):
     pytest.importorskip("accelerate")
-    words = ["train", "activity", "--data", light, "--steps", "16", "--batch", "2", "--save-every", "0", "--out"]
+    words = ["train", "activity", "--data", str(tiny_geometry), "--steps", "16", "--batch", "2", "--save-every", "0"]
+    words.append("--out")
     out = tmp_path / "killed"
     kill_when(out / "checkpoint.pt", two_processes([*words, str(out)]))
     assert 1 <= torch.load(out / "checkpoint.pt", weights_only=True)["done"] < 16
@@ -79,18 +67,6 @@ def test_two_processes_that_were_killed_end_as_two_that_were_not(light: str, tmp
         assert finished([*words, str(run), "--json"])["steps"] == 16
     one, other = load_file(out / "weights.safetensors"), load_file(tmp_path / "whole" / "weights.safetensors")
     assert all(torch.equal(tensor, other[name]) for name, tensor in one.items())
-
-
-def test_two_processes_train_the_papers_network(light: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    pytest.importorskip("accelerate")
-    words = ["--data", light, "--steps", "2", "--batch", "2"]
-    assert main(["train", "activity", "--out", str(tmp_path / "a"), *words, "--quiet"]) == 0
-    judge = str(tmp_path / "a" / "weights.safetensors")
-    capsys.readouterr()
-    summary = finished(["train", "paper", "--out", str(tmp_path / "p"), "--features", judge, *words, "--json"])
-    rows = [json.loads(line) for line in (tmp_path / "p" / "log.jsonl").read_text().splitlines()]
-    assert [row["step"] for row in rows] == [2]  # one process wrote
-    assert rows[0]["validation"] == summary["validation_loss"]
 
 
 def two_processes(words: list[str]) -> list[subprocess.Popen[str]]:

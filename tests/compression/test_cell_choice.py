@@ -1,6 +1,6 @@
 import numpy as np
 
-from mmweaver.compression.cell_choice import active_cells, chosen_cells, rounded, still_joined
+from mmweaver.compression.cell_choice import active_cells, choose_cells, round_levels, share_static_frames
 from mmweaver.compression.cell_coder import CLOSED, COARSE, FINE
 from mmweaver.core.seeding import stream
 
@@ -25,7 +25,7 @@ def test_bins_that_nobody_kept_do_not_count():
 def test_cells_at_rest_are_active_together():
     is_active = np.zeros((3, 4, 8), bool)
     is_active[1, 2, 4] = is_active[1, 2, 7] = True
-    joined = still_joined(is_active)
+    joined = share_static_frames(is_active)
     assert joined[:, 2, 4].all()
     assert joined[:, 2, 7].tolist() == [False, True, False]
 
@@ -37,8 +37,8 @@ def test_cells_open_where_it_pays():
     parts[:, :, 0, 1] = 0.3
     parts[:, :, 0, 2] = 40.0
     is_active = np.array([[[True, False], [True, False], [True, False]]])
-    assert chosen_cells(parts, is_active)[0].tolist() == [[FINE, CLOSED], [CLOSED, CLOSED], [FINE, COARSE]]
+    assert choose_cells(parts, is_active)[0].tolist() == [[FINE, CLOSED], [CLOSED, CLOSED], [FINE, COARSE]]
 
 
 def test_rounding_keeps_signs_and_drops_the_small():
-    assert rounded(np.array([-2.9, -0.5, 0.5, 0.9, 1.1])).tolist() == [-3, 0, 0, 1, 1]
+    assert round_levels(np.array([-2.9, -0.5, 0.5, 0.9, 1.1])).tolist() == [-3, 0, 0, 1, 1]

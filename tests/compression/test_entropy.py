@@ -1,25 +1,25 @@
 import numpy as np
 import pytest
 
-from mmweaver.compression.entropy import BitModel, LadderModel, Mixture, NumberModel, Reader, Writer
+from mmweaver.compression.entropy import BitModel, Decoder, Encoder, LadderModel, Mixture, NumberModel
 from mmweaver.core.seeding import stream
 
 
 def test_bits_and_numbers_come_back_and_cost_what_they_should():
     rng = stream(0, "bits")
-    chance = rng.uniform(0.001, 0.2, 20_000)
-    bits = (rng.random(20_000) < chance).astype(np.int64)
+    probability = rng.uniform(0.001, 0.2, 20_000)
+    bits = (rng.random(20_000) < probability).astype(np.int64)
     sizes = rng.integers(1, 3000, 500)
     numbers = (rng.random(500) * sizes).astype(np.int64)
-    writer = Writer()
-    writer.bits(chance, bits)
-    writer.even(sizes, numbers)
-    data = writer.finished()
-    ideal = -np.sum(np.log2(np.where(bits, chance, 1 - chance))) + np.sum(np.log2(sizes))
+    writer = Encoder()
+    writer.bits(probability, bits)
+    writer.uniform(sizes, numbers)
+    data = writer.to_bytes()
+    ideal = -np.sum(np.log2(np.where(bits, probability, 1 - probability))) + np.sum(np.log2(sizes))
     assert 8 * len(data) < 1.005 * ideal + 64
-    reader = Reader(data)
-    assert np.array_equal(reader.bits(chance, np.zeros_like(bits)), bits)
-    assert np.array_equal(reader.even(sizes, np.zeros_like(sizes)), numbers)
+    reader = Decoder(data)
+    assert np.array_equal(reader.bits(probability, np.zeros_like(bits)), bits)
+    assert np.array_equal(reader.uniform(sizes, np.zeros_like(sizes)), numbers)
 
 
 def test_a_mixture_learns_which_side_knows():
@@ -27,13 +27,13 @@ def test_a_mixture_learns_which_side_knows():
     rng = stream(1, "bits")
     sizes = []
     for told in (True, False):
-        writer = Writer()
+        writer = Encoder()
         mixture = Mixture([BitModel(2), BitModel(2)])
         for _ in range(60):
             bits = rng.integers(0, 2, 100)
             other = rng.integers(0, 2, 100)
             mixture.code(writer, [bits if told else other, other], bits)
-        sizes.append(len(writer.finished()) * 8 / 6000)
+        sizes.append(len(writer.to_bytes()) * 8 / 6000)
     assert sizes[0] < 0.1
     assert sizes[1] == pytest.approx(1.0, abs=0.05)
 
@@ -41,32 +41,32 @@ def test_a_mixture_learns_which_side_knows():
 def test_whole_numbers_of_any_size():
     numbers = np.array([0, 1, 2, 3, 5, 8, 200, 70_000, 0, 12])
     context = np.array([0, 1, 0, 1, 0, 1, 0, 1, 0, 1])
-    writer = Writer()
+    writer = Encoder()
     NumberModel(2, 4).code(writer, context, numbers)
-    data = writer.finished()
-    again = NumberModel(2, 4).code(Reader(data), context, np.zeros_like(numbers))
+    data = writer.to_bytes()
+    again = NumberModel(2, 4).code(Decoder(data), context, np.zeros_like(numbers))
     assert np.array_equal(again, numbers)
 
 
 def test_a_ladder_holds_any_number_and_is_cheap_where_numbers_are_even():
     numbers = np.concatenate([np.arange(70), [1000, 70_000, 2**27]])
     contexts = [numbers % 3, numbers % 2]
-    writer = Writer()
+    writer = Encoder()
     LadderModel([3, 2]).code(writer, contexts, numbers)
-    again = LadderModel([3, 2]).code(Reader(writer.finished()), contexts, np.zeros_like(numbers))
+    again = LadderModel([3, 2]).code(Decoder(writer.to_bytes()), contexts, np.zeros_like(numbers))
     assert np.array_equal(again, numbers)
     rng = stream(3, "ladder")
-    writer, model, bits = Writer(), LadderModel([1]), 0.0
+    writer, model, bits = Encoder(), LadderModel([1]), 0.0
     for _ in range(40):
         numbers = rng.geometric(0.02, 200) - 1
         model.code(writer, [np.zeros(200, np.int64)], numbers)
         bits -= float(np.sum(np.log2(0.02 * 0.98**numbers)))
-    assert 8 * len(writer.finished()) < 1.05 * bits
+    assert 8 * len(writer.to_bytes()) < 1.05 * bits
 
 
 def test_a_damaged_stream_ends():
     noise = stream(2, "damage").integers(0, 256, 400).astype(np.uint8).tobytes()
-    reader = Reader(noise)
+    reader = Decoder(noise)
     with pytest.raises((ValueError, AssertionError)):
         for _ in range(1000):
             NumberModel(1, 2, 0.99).code(reader, np.zeros(500, np.int64), np.zeros(500, np.int64))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mmweaver.compression import mmw_codec
-from mmweaver.compression.mmw_codec import compressed, described, errors_db, read_cube
+from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, errors_db, read_cube
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid, RadarCube
@@ -26,7 +26,7 @@ def in_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("num_bytes", [1500, 4000, 9000])
 def test_the_size_asked_for_is_met_from_below(num_bytes: int, tmp_path: Path):
     cube = crowd()
-    data = compressed(cube, num_bytes=num_bytes)
+    data = compress_cube(cube, num_bytes=num_bytes)
     assert 0.9 * num_bytes <= len(data) <= num_bytes
     (tmp_path / "a.mmw").write_bytes(data)
     again = read_cube(tmp_path / "a.mmw")
@@ -38,7 +38,7 @@ def test_the_size_asked_for_is_met_from_below(num_bytes: int, tmp_path: Path):
 
 def test_the_quality_asked_for_is_met(tmp_path: Path):
     cube = crowd()
-    (tmp_path / "a.mmw").write_bytes(compressed(cube, quality_db=25.0))
+    (tmp_path / "a.mmw").write_bytes(compress_cube(cube, quality_db=25.0))
     again = read_cube(tmp_path / "a.mmw")
     power = np.mean(np.abs(cube.values) ** 2, axis=-1)
     active = power > np.median(power) * 10**1.2
@@ -48,13 +48,13 @@ def test_the_quality_asked_for_is_met(tmp_path: Path):
 def test_noise_is_kept_where_asked(tmp_path: Path):
     """Signal gets the bytes unless noise is wanted too; both say what they did."""
     cube = crowd()
-    plain, even = (errors_db(compressed(cube, num_bytes=9000, keep_noise=keep), cube) for keep in (False, True))
+    plain, even = (errors_db(compress_cube(cube, num_bytes=9000, keep_noise=keep), cube) for keep in (False, True))
     assert plain["signal_error_db"] < even["signal_error_db"] - 1
     power = np.mean(np.abs(cube.values) ** 2, axis=-1)
     noise = power <= np.median(power) * 10**1.2
     left = []
     for keep in (False, True):
-        (tmp_path / "a.mmw").write_bytes(compressed(cube, num_bytes=9000, keep_noise=keep))
+        (tmp_path / "a.mmw").write_bytes(compress_cube(cube, num_bytes=9000, keep_noise=keep))
         left.append(error_db(read_cube(tmp_path / "a.mmw").values[noise], cube.values[noise]))
     assert left[1] < left[0] - 1
 
@@ -64,13 +64,13 @@ def test_files_of_version_1_are_still_read():
     path = Path(__file__).with_name("version_1.mmw")
     assert path.read_bytes()[4] == 1
     assert error_db(read_cube(path).values, crowd().values) < -10
-    assert described(path)["chunks"][0]["scatterers"] > 10
+    assert describe_mmw(path)["chunks"][0]["scatterers"] > 10
 
 
 @pytest.mark.usefixtures("in_chunks")
 def test_frames_are_read_without_the_others(long_cube: RadarCube, tmp_path: Path):
     path = tmp_path / "a.mmw"
-    data = compressed(long_cube, num_bytes=8000)
+    data = compress_cube(long_cube, num_bytes=8000)
     path.write_bytes(data)
     whole = read_cube(path)
     assert error_db(whole.values, long_cube.values) < -20
@@ -88,12 +88,12 @@ def test_frames_are_read_without_the_others(long_cube: RadarCube, tmp_path: Path
 
 
 def test_the_same_cube_gives_the_same_bytes():
-    assert compressed(crowd(), num_bytes=2000) == compressed(crowd(), num_bytes=2000)
+    assert compress_cube(crowd(), num_bytes=2000) == compress_cube(crowd(), num_bytes=2000)
 
 
 def test_a_file_says_what_is_in_it(long_cube: RadarCube, tmp_path: Path):
-    (tmp_path / "a.mmw").write_bytes(compressed(long_cube, num_bytes=5000))
-    facts = described(tmp_path / "a.mmw")
+    (tmp_path / "a.mmw").write_bytes(compress_cube(long_cube, num_bytes=5000))
+    facts = describe_mmw(tmp_path / "a.mmw")
     assert facts["shape"] == [5, 24, 16, 12]
     assert facts["chunks"][0]["scatterers"] > 10
     assert facts["first_frame_s"] == pytest.approx(2.0)
@@ -112,7 +112,7 @@ def test_a_file_says_what_is_in_it(long_cube: RadarCube, tmp_path: Path):
 )
 def test_impossible_wishes(wish: dict, word: str):
     with pytest.raises(InputError, match=word):
-        compressed(crowd(num_frames=1), **wish)
+        compress_cube(crowd(num_frames=1), **wish)
 
 
 def test_cubes_that_cannot_be_written():
@@ -123,10 +123,10 @@ def test_cubes_that_cannot_be_written():
     other = CubeGrid.of(AWR1843, 1)
     for bad, word in (
         (replace(cube, values=empty), "all zeros"),
-        (replace(cube, values=broken), "no numbers"),
+        (replace(cube, values=broken), "not finite"),
         (replace(cube, values=cube.values[:, :9]), "shape"),
         (replace(cube, grid=replace(cube.grid, range_m=other.range_m[:24] + 1.0)), "range_m"),
     ):
         with pytest.raises(InputError, match=word):
-            compressed(bad, num_bytes=2000)
+            compress_cube(bad, num_bytes=2000)
     assert SMALL.num_range_bins == 24

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from mmweaver.compression.mmw_container import MmwFile, MmwHeader, packed_mmw, write_mmw
+from mmweaver.compression.mmw_container import MmwFile, MmwHeader, pack_mmw, write_mmw
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843, BGT60
 
@@ -34,12 +34,12 @@ def test_uneven_times_and_an_unknown_scale(tmp_path: Path):
 
 
 def test_the_header_is_short():
-    assert len(packed_mmw(header(), CHUNKS)) < sum(map(len, CHUNKS)) + 110
-    assert len(packed_mmw(header(replace(AWR1843, name="mine", num_loops=16)), CHUNKS)) < 600
+    assert len(pack_mmw(header(), CHUNKS)) < sum(map(len, CHUNKS)) + 110
+    assert len(pack_mmw(header(replace(AWR1843, name="mine", num_loops=16)), CHUNKS)) < 600
 
 
 def test_any_changed_byte_is_noticed(tmp_path: Path):
-    data = packed_mmw(header(), CHUNKS)
+    data = pack_mmw(header(), CHUNKS)
     path = tmp_path / "a.mmw"
     for at in range(len(data)):
         for flip in (0x01, 0x80, 0xFF):
@@ -49,7 +49,7 @@ def test_any_changed_byte_is_noticed(tmp_path: Path):
 
 
 def test_any_cut_and_anything_added_is_noticed(tmp_path: Path):
-    data = packed_mmw(header(), CHUNKS)
+    data = pack_mmw(header(), CHUNKS)
     path = tmp_path / "a.mmw"
     for at in range(len(data)):
         path.write_bytes(data[:at])
@@ -68,7 +68,7 @@ def test_foreign_and_missing_files_have_one_clear_line(tmp_path: Path):
         MmwFile(tmp_path / "none.mmw")
     with pytest.raises(InputError, match="cannot read"):
         MmwFile(tmp_path)
-    newer = packed_mmw(header(), CHUNKS)
+    newer = pack_mmw(header(), CHUNKS)
     (tmp_path / "a.mmw").write_bytes(newer[:4] + b"\x09" + newer[5:])
     with pytest.raises(InputError, match="version 9"):
         MmwFile(tmp_path / "a.mmw")

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.compression.entropy import Reader, Writer
-from mmweaver.compression.point_coder import CodedPoints, PointCoder, PointSteps, nearness, points_of, quantised
+from mmweaver.compression.entropy import Decoder, Encoder
+from mmweaver.compression.point_coder import CodedPoints, PointCoder, PointSteps, dequantize, nearness, quantize
 from mmweaver.fields.scatterers.layers import no_points
 from tests.fields.echoes import SMALL
 from tests.fields.scatterers.test_refinement import AXES, RESPONSE, drawn
@@ -15,15 +15,15 @@ SHAPE = (3, 24, 16)
 
 def coded_at(step: float, num_points: int = 25) -> tuple[CodedPoints, PointSteps]:
     steps = PointSteps.of(step, RESPONSE, AXES)
-    return quantised(drawn(num_points, num_frames=3), steps, AXES, 2, 1), steps
+    return quantize(drawn(num_points, num_frames=3), steps, AXES, 2, 1), steps
 
 
 @pytest.mark.parametrize("step", [0.5, 0.05, 1e-4])
 def test_whole_numbers_come_back(step: float):
     coded, steps = coded_at(step)
-    writer = Writer()
+    writer = Encoder()
     PointCoder(SHAPE, steps, 2, 300).code(writer, coded)
-    again = PointCoder(SHAPE, steps, 2, 300).code(Reader(writer.finished()), None)
+    again = PointCoder(SHAPE, steps, 2, 300).code(Decoder(writer.to_bytes()), None)
     for field in fields(CodedPoints):
         if field.name not in ("size", "phase", "range_part", "doppler_part", "direction"):
             assert np.array_equal(getattr(again, field.name), getattr(coded, field.name)), field.name
@@ -40,7 +40,7 @@ def test_every_parameter_is_as_fine_as_the_step_asks():
     errors = []
     for step in (0.02, 0.002):
         steps = PointSteps.of(step, RESPONSE, AXES)
-        again = points_of(quantised(points, steps, AXES, 2, 1), 3, steps, AXES, 2)
+        again = dequantize(quantize(points, steps, AXES, 2, 1), 3, steps, AXES, 2)
         energy = float((RESPONSE.render(again, AXES) - truth).abs().square().sum())
         errors.append(np.sqrt(energy / 30) / step)  # a scatterer, in steps
     assert all(0.2 < error < 2.0 for error in errors)
@@ -48,11 +48,11 @@ def test_every_parameter_is_as_fine_as_the_step_asks():
 
 def test_small_ones_are_left_out():
     coded, steps = coded_at(0.05)
-    fewer = quantised(drawn(25, num_frames=3), steps, AXES, 2, int(np.median(coded.size)))
+    fewer = quantize(drawn(25, num_frames=3), steps, AXES, 2, int(np.median(coded.size)))
     assert 0 < len(fewer) < len(coded)
-    none = quantised(no_points(3), steps, AXES, 2, 1)
+    none = quantize(no_points(3), steps, AXES, 2, 1)
     assert len(none) == 0
-    assert points_of(none, 3, steps, AXES, 2).amplitude.shape == (3, 0)
+    assert dequantize(none, 3, steps, AXES, 2).amplitude.shape == (3, 0)
 
 
 def test_nearness_shows_where_scatterers_are():
@@ -67,10 +67,10 @@ def test_an_array_without_directions_spends_nothing_on_them():
     steps = PointSteps.of(0.01, RESPONSE, AXES)
     sizes = []
     for num_directions in (0, 1, 2):
-        writer = Writer()
-        coded = quantised(drawn(25, num_frames=3), steps, AXES, num_directions, 1)
+        writer = Encoder()
+        coded = quantize(drawn(25, num_frames=3), steps, AXES, num_directions, 1)
         PointCoder(SHAPE, steps, num_directions, 0).code(writer, coded)
-        sizes.append(len(writer.finished()))
+        sizes.append(len(writer.to_bytes()))
     assert sizes[0] < sizes[1] < sizes[2]
     assert SMALL.num_antennas == 12
-    assert torch.all(points_of(coded, 3, steps, AXES, 0).direction == 0)
+    assert torch.all(dequantize(coded, 3, steps, AXES, 0).direction == 0)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from mmweaver.compression.entropy import Reader, Writer
+from mmweaver.compression.entropy import Decoder, Encoder
 from mmweaver.compression.residual_coder import ResidualCoder
 from mmweaver.core.seeding import stream
 
@@ -21,26 +21,26 @@ def test_numbers_come_back(shape: tuple[int, ...]):
     levels = clusters(shape)
     levels[0, 0, 0, 0, 0] = -70_000  # far beyond the learned steps
     near = stream(1, "near").integers(0, 9, shape[2:])
-    writer = Writer()
+    writer = Encoder()
     ResidualCoder(shape[1:]).code(writer, levels.copy(), near)
     again = np.zeros_like(levels)
-    ResidualCoder(shape[1:]).code(Reader(writer.finished()), again, near)
+    ResidualCoder(shape[1:]).code(Decoder(writer.to_bytes()), again, near)
     assert np.array_equal(again, levels)
 
 
 def test_clusters_cost_less_than_their_own_entropy():
     """Neighbours must help: fewer bits than the order-0 entropy of the same numbers."""
     levels = clusters((2, 8, 4, 64, 32))
-    writer = Writer()
+    writer = Encoder()
     ResidualCoder(levels.shape[1:]).code(writer, levels.copy(), np.zeros(levels.shape[2:], np.int64))
     _, counts = np.unique(levels, return_counts=True)
     share = counts / counts.sum()
     entropy_bits = -levels.size * np.sum(share * np.log2(share))
-    assert 8 * len(writer.finished()) < 0.8 * entropy_bits
+    assert 8 * len(writer.to_bytes()) < 0.8 * entropy_bits
 
 
 def test_nothing_costs_nothing():
     levels = np.zeros((2, 12, 20, 64, 32), np.int64)
-    writer = Writer()
+    writer = Encoder()
     ResidualCoder(levels.shape[1:]).code(writer, levels, np.zeros(levels.shape[2:], np.int64))
-    assert len(writer.finished()) < 200
+    assert len(writer.to_bytes()) < 200

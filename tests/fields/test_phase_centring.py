@@ -6,7 +6,7 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.fields.phase_centring import centred, centring_turn, centring_turn_at, uncentred
+from mmweaver.fields.phase_centring import centred, centring_phasor, centring_phasor_at, uncentred
 from tests.cubes import SMALL, point_adc, point_cube
 
 
@@ -60,6 +60,6 @@ def test_tdm_compensation_leaves_a_small_slope_across_the_doppler_lobe():
 
 def test_turns_at_points_are_those_of_the_grid():
     grid = CubeGrid.of(SMALL, 2)
-    turn = centring_turn(SMALL, grid)
+    turn = centring_phasor(SMALL, grid)
     coordinates = np.array([[0.0, 3.0, 5.0, 1.0], [1.0, 31.0, 0.0, 2.0]])
-    assert np.allclose(centring_turn_at(SMALL, grid, coordinates), [turn[3, 5], turn[31, 0]], atol=1e-5)
+    assert np.allclose(centring_phasor_at(SMALL, grid, coordinates), [turn[3, 5], turn[31, 0]], atol=1e-5)

@@ -10,7 +10,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.formats.peer_arrays import read_hupr, read_mmmesh, read_rf_genesis, recognised
 from mmweaver.paths.exact import exact_frame
-from mmweaver.recordings.recording import read_any_cube
+from mmweaver.recordings.read_recording import read_recording
 from tests.fields.echoes import direction_of, middle_s
 
 
@@ -57,7 +57,7 @@ def test_hupr_angle_spectra_are_undone(hupr_frame: Path):
 
 
 def test_a_hupr_frame_shows_the_point_where_it_is(hupr_frame: Path):
-    cube = read_any_cube(hupr_frame)
+    cube = read_recording(hupr_frame).cube
     assert cube.config == HUPR
     power = np.sum(np.abs(cube.values[0]) ** 2, axis=-1)
     r, d = np.unravel_index(power.argmax(), power.shape)
@@ -73,9 +73,9 @@ def test_a_hupr_frame_shows_the_point_where_it_is(hupr_frame: Path):
 def test_a_folder_of_hupr_frames(tmp_path: Path):
     for frame, angle in enumerate((0.1, 0.4)):
         np.save(tmp_path / f"{frame:09d}.npy", hupr_array(simulated_frame(azimuth_rad=angle)))
-    cube = read_any_cube(tmp_path)
+    cube = read_recording(tmp_path).cube
     assert cube.grid.frame_time_s.tolist() == [0.0, pytest.approx(0.1)]
-    assert np.array_equal(cube.values[1], read_any_cube(tmp_path / "000000001.npy", "hupr").values[0])
+    assert np.array_equal(cube.values[1], read_recording(tmp_path / "000000001.npy", "hupr").cube.values[0])
 
 
 def test_mmmesh_samples_in_either_shape(tmp_path: Path):
@@ -87,7 +87,7 @@ def test_mmmesh_samples_in_either_shape(tmp_path: Path):
     assert np.array_equal(two.samples[1:], one.samples)
     # the second to fire is transmitter 2
     assert np.array_equal(one.samples[0, :, 2], frames[1, 1].transpose(1, 0, 2))
-    assert read_any_cube(tmp_path / "one.npy", layout="mmmesh").values.shape == (1, 101, 128, 12)
+    assert read_recording(tmp_path / "one.npy", layout="mmmesh").cube.values.shape == (1, 101, 128, 12)
 
 
 def test_rf_genesis_has_its_own_timing(tmp_path: Path):
@@ -103,7 +103,7 @@ def test_rf_genesis_has_its_own_timing(tmp_path: Path):
     np.save(tmp_path / "radar_frames.npy", lag[None, :, :, None, None] * beat[None, None, None])
     adc = read_rf_genesis(tmp_path / "radar_frames.npy", RF_GENESIS)
     assert adc.config.loop_period_s == pytest.approx(0.1 / 128)
-    cube = read_any_cube(tmp_path / "radar_frames.npy", layout="rf_genesis")
+    cube = read_recording(tmp_path / "radar_frames.npy", layout="rf_genesis").cube
     power = np.sum(np.abs(cube.values[0]) ** 2, axis=-1)
     r, d = np.unravel_index(power.argmax(), power.shape)
     assert cube.grid.range_m[r] == pytest.approx(2.5, abs=config.range_resolution_m)
@@ -129,9 +129,9 @@ def test_refusals_are_clear(tmp_path: Path, hupr_frame: Path):
         (lambda: recognised(saved("d.npy", np.zeros((40, 6)))), "points of a cloud"),
         (lambda: recognised(saved("e.npy", np.zeros((4, 5)))), "--axes"),
         (lambda: read_mmmesh(saved("f.npy", np.zeros((3, 4, 7, 256), complex)), MMMESH), "shape"),
-        (lambda: read_any_cube(hupr_frame, layout="hupr", axes="loop,tx,rx,sample"), "not both"),
-        (lambda: read_any_cube(hupr_frame, layout="nobody"), "not both"),
-        (lambda: read_any_cube(tmp_path / "adc_data.bin"), "--radar"),
+        (lambda: read_recording(hupr_frame, layout="hupr", axes="loop,tx,rx,sample"), "not both"),
+        (lambda: read_recording(hupr_frame, layout="nobody"), "not both"),
+        (lambda: read_recording(tmp_path / "adc_data.bin"), "does not exist"),
     ):
         with pytest.raises(InputError, match=word):
             call()

@@ -15,15 +15,10 @@ from mmweaver.training.activity_examples import activity_examples
 from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityLearner, ActivityRecipe, train_activity
 from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.trainer import Progress
-from tests.training.tiny_data import StoppedError, tiny_data
+from tests.training.tiny_data import StoppedError
 
 pytest.importorskip("zarr")
 RECIPE = ActivityRecipe(steps=4, batch_size=2, validate_every=2)
-
-
-@pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tiny_data(tmp_path_factory.mktemp("data") / "set", geometry_only=True)
 
 
 def stop_at_three(progress: Progress) -> None:
@@ -31,11 +26,11 @@ def stop_at_three(progress: Progress) -> None:
         raise StoppedError
 
 
-def test_it_goes_on_where_it_stopped(data: Path, tmp_path: Path):
-    whole = train_activity(data, tmp_path / "whole", RECIPE, save_every_s=0.0)
+def test_it_goes_on_where_it_stopped(tiny_geometry: Path, tmp_path: Path):
+    whole = train_activity(tiny_geometry, tmp_path / "whole", RECIPE, save_every_s=0.0)
     with pytest.raises(StoppedError):
-        train_activity(data, tmp_path / "parts", RECIPE, listener=stop_at_three, save_every_s=0.0)
-    parts = train_activity(data, tmp_path / "parts", RECIPE, save_every_s=0.0)
+        train_activity(tiny_geometry, tmp_path / "parts", RECIPE, listener=stop_at_three, save_every_s=0.0)
+    parts = train_activity(tiny_geometry, tmp_path / "parts", RECIPE, save_every_s=0.0)
     for (name, one), two in zip(whole.learner.state_dict().items(), parts.learner.state_dict().values(), strict=True):
         assert torch.equal(one, two), name
     assert whole.best.figures == parts.best.figures
@@ -45,30 +40,31 @@ def test_it_goes_on_where_it_stopped(data: Path, tmp_path: Path):
     assert len(list((tmp_path / "whole" / "pictures").glob("*.png"))) == 2
 
 
-def test_maps_are_made_once_for_a_data_set(data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    train_activity(data, tmp_path, replace(RECIPE, steps=1))
+def test_maps_are_made_once_for_a_data_set(
+    tiny_geometry: Path, tiny_signals: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=1))
 
     def none_more(*words: object) -> None:
         raise AssertionError("made again")
 
     monkeypatch.setattr("mmweaver.training.activity_examples.maps_of", none_more)
-    again = train_activity(data, tmp_path, replace(RECIPE, steps=1))
+    again = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=1))
     assert again.step == 1
-    other = tiny_data(tmp_path / "other")
     (tmp_path / "checkpoint.pt").unlink()
     with pytest.raises(AssertionError, match="made again"):
-        train_activity(other, tmp_path, replace(RECIPE, steps=1))
+        train_activity(tiny_signals, tmp_path, replace(RECIPE, steps=1))
 
 
-def test_some_sequences_can_be_picked_by_what_they_show(data: Path):
-    every = activity_examples(data, TRAIN_SPLITS)
-    some = activity_examples(data, TRAIN_SPLITS, pick=lambda label: np.flatnonzero(label == label[0]))
+def test_some_sequences_can_be_picked_by_what_they_show(tiny_geometry: Path):
+    every = activity_examples(tiny_geometry, TRAIN_SPLITS)
+    some = activity_examples(tiny_geometry, TRAIN_SPLITS, pick=lambda label: np.flatnonzero(label == label[0]))
     assert set(some.label.tolist()) == {int(every.label[0])}
     assert torch.equal(some.doppler[0], every.doppler[0])
 
 
-def test_two_shares_have_the_gradient_of_the_whole(data: Path, tmp_path: Path):
-    drawn = train_activity(data, tmp_path, replace(RECIPE, steps=0, batch_size=4))
+def test_two_shares_have_the_gradient_of_the_whole(tiny_geometry: Path, tmp_path: Path):
+    drawn = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=0, batch_size=4))
     learner = drawn.learner.eval()  # nothing dropped by chance
     gradients = []
     for shares in ([(0, 1)], [(0, 2), (1, 2)]):
@@ -80,8 +76,8 @@ def test_two_shares_have_the_gradient_of_the_whole(data: Path, tmp_path: Path):
     assert torch.allclose(*gradients, atol=1e-6)
 
 
-def test_bf16_and_another_device_take_part(data: Path, tmp_path: Path):
-    trainer = train_activity(data, tmp_path, RECIPE, workplace=ComputeDevice(precision="bf16"))
+def test_bf16_and_another_device_take_part(tiny_geometry: Path, tmp_path: Path):
+    trainer = train_activity(tiny_geometry, tmp_path, RECIPE, workplace=ComputeDevice(precision="bf16"))
     assert torch.isfinite(torch.tensor(trainer.best.value))
     learner = ActivityLearner(ActivityNetwork(AWR1843)).to("meta")
     terms = learner(moved(trainer._train(0, (0, 1)), torch.device("meta")))
@@ -89,9 +85,9 @@ def test_bf16_and_another_device_take_part(data: Path, tmp_path: Path):
     assert {parameter.grad.device.type for parameter in learner.parameters() if parameter.grad is not None} == {"meta"}
 
 
-def test_other_settings_and_folders_without_data_are_refused(data: Path, tmp_path: Path):
-    train_activity(data, tmp_path / "a", replace(RECIPE, steps=1))
+def test_other_settings_and_folders_without_data_are_refused(tiny_geometry: Path, tmp_path: Path):
+    train_activity(tiny_geometry, tmp_path / "a", replace(RECIPE, steps=1))
     with pytest.raises(InputError, match="other settings"):
-        train_activity(data, tmp_path / "a", replace(RECIPE, steps=2))
+        train_activity(tiny_geometry, tmp_path / "a", replace(RECIPE, steps=2))
     with pytest.raises(InputError, match="no data set"):
         train_activity(tmp_path, tmp_path / "out", RECIPE)

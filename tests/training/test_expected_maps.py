@@ -6,10 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
-from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
-from mmweaver.datasets.generate_rooms import generate
 from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import examples, power_maps
 
@@ -19,23 +16,12 @@ FRAMES = np.array([0, 2])
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("data")
-    plan = DatasetPlan(
-        kinds=("office", "dining_room"), lightings=("day",), num_layouts=3, sequences_a_room=3, num_frames=4,
-        geometry_only=True,
-    )  # fmt: skip
-    generate(folder, plan, AWR1843)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def room(folder: Path) -> StoredRoom:
-    return read_rooms(folder)[0]
+def room(tiny_geometry: Path) -> StoredRoom:
+    return read_rooms(tiny_geometry)[0]
 
 
 def _mean(room: StoredRoom, index: int, name: str) -> torch.Tensor:
-    drawn = [power_maps(room.cube(index, FRAMES, twin=1 + draw).values, room.config) for draw in range(DRAWS)]
+    drawn = [power_maps(room.cube(index, FRAMES, realization=1 + draw).values, room.config) for draw in range(DRAWS)]
     return torch.stack([getattr(maps, name) for maps in drawn]).mean(dim=0)
 
 
@@ -67,8 +53,8 @@ def test_all_power_is_there(room: StoredRoom, name: str):
     assert 10 * torch.log10(expected.sum() / drawn.sum()) == pytest.approx(0, abs=1.0)
 
 
-def test_they_are_what_training_gets(folder: Path):
-    one = examples(folder, "train")[0]
+def test_they_are_what_training_gets(tiny_geometry: Path):
+    one = examples(tiny_geometry, "train")[0]
     expected = ExpectedMaps(one.room)
     assert torch.equal(one.empty.range_azimuth, expected.empty.range_azimuth)
     index = one.indices[0]

@@ -6,60 +6,46 @@ import pytest
 import torch
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.presets import AWR1843
-from mmweaver.datasets.dataset_plan import DatasetPlan
-from mmweaver.datasets.generate_rooms import generate
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.network_examples import examples, sample_batch
 from mmweaver.training.network_training import NetworkLearner, TrainingRecipe, train, write_weights
+from tests.training.tiny_data import StoppedError
 
 pytest.importorskip("zarr")
 RECIPE = TrainingRecipe(steps=4, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
 
 
-@pytest.fixture(scope="module")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("data") / "set"
-    plan = DatasetPlan(
-        kinds=("office", "dining_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4
-    )
-    generate(folder, plan, AWR1843)
-    return folder
-
-
-class StoppedError(Exception):
-    pass
-
-
-def test_interrupted_training_ends_where_the_other_does(data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_interrupted_training_ends_where_the_other_does(
+    tiny_signals: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
     monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)
-    whole = train(data, tmp_path / "whole", RECIPE)
+    whole = train(tiny_signals, tmp_path / "whole", RECIPE)
 
     def stop(progress):
         if progress.step == 3:
             raise StoppedError
 
     with pytest.raises(StoppedError):
-        train(data, tmp_path / "parts", RECIPE, listener=stop)
+        train(tiny_signals, tmp_path / "parts", RECIPE, listener=stop)
     steps: list[int] = []
-    parts = train(data, tmp_path / "parts", RECIPE, listener=lambda progress: steps.append(progress.step))
+    parts = train(tiny_signals, tmp_path / "parts", RECIPE, listener=lambda progress: steps.append(progress.step))
     assert steps == [3, 4]  # the step that was not saved is done again
     for (name, one), two in zip(whole.learner.state_dict().items(), parts.learner.state_dict().values(), strict=True):
         assert torch.equal(one, two), name
     assert whole.best.value == parts.best.value
-    network, card = load_weights(write_weights(tmp_path / "whole", data, whole))
+    network, card = load_weights(write_weights(tmp_path / "whole", tiny_signals, whole))
     assert card.steps == 4
     assert torch.allclose(network.part, whole.learner.network.part, atol=1e-3)
 
 
-def test_other_settings_do_not_go_on_from_a_checkpoint(data: Path, tmp_path: Path):
+def test_other_settings_do_not_go_on_from_a_checkpoint(tiny_signals: Path, tmp_path: Path):
     from dataclasses import replace
 
-    train(data, tmp_path, replace(RECIPE, steps=1))
+    train(tiny_signals, tmp_path, replace(RECIPE, steps=1))
     with pytest.raises(InputError, match="other settings"):
-        train(data, tmp_path, replace(RECIPE, steps=2))
+        train(tiny_signals, tmp_path, replace(RECIPE, steps=2))
 
 
 def test_a_folder_without_data_is_refused(tmp_path: Path):
@@ -67,9 +53,9 @@ def test_a_folder_without_data_is_refused(tmp_path: Path):
         train(tmp_path, tmp_path / "out", RECIPE)
 
 
-def test_everything_moves_to_the_device_that_was_chosen(data: Path):
+def test_everything_moves_to_the_device_that_was_chosen(tiny_signals: Path):
     """The meta device computes nothing and refuses to meet tensors of the CPU, as a GPU would."""
-    rooms = examples(data, "train")
+    rooms = examples(tiny_signals, "train")
     batch = sample_batch(rooms, 0, 0, size=1, frames=2)
     learner = NetworkLearner(WeaverNetwork(), rooms[0].room.config).to("meta")
     terms = learner(moved(batch, torch.device("meta")))
@@ -77,8 +63,8 @@ def test_everything_moves_to_the_device_that_was_chosen(data: Path):
     assert {parameter.grad.device.type for parameter in learner.parameters() if parameter.grad is not None} == {"meta"}
 
 
-def test_bf16_does_no_harm(data: Path):
-    rooms = examples(data, "train")
+def test_bf16_does_no_harm(tiny_signals: Path):
+    rooms = examples(tiny_signals, "train")
     batch = sample_batch(rooms, 0, 0, size=1, frames=2)
     torch.manual_seed(0)
     learner = NetworkLearner(WeaverNetwork(), rooms[0].room.config).eval()
@@ -89,8 +75,8 @@ def test_bf16_does_no_harm(data: Path):
     assert sum(float(term) for term in mixed.values()) == pytest.approx(exact, rel=5e-3)
 
 
-def test_processes_share_a_batch(data: Path):
-    rooms = examples(data, "train")
+def test_processes_share_a_batch(tiny_signals: Path):
+    rooms = examples(tiny_signals, "train")
     whole = sample_batch(rooms, 0, 5, size=4, frames=2)
     parts = [sample_batch(rooms, 0, 5, size=4, frames=2, share=(rank, 2)) for rank in (0, 1)]
     for rank, part in enumerate(parts):

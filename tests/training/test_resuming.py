@@ -34,6 +34,23 @@ def test_going_on_is_as_never_stopped(tmp_path: Path):
     assert torch.equal(whole.weight, finished.weight)
 
 
+def test_it_goes_on_with_the_threads_it_began_with(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    run(tmp_path / "state.pt", 1)
+    state = torch.load(tmp_path / "state.pt", weights_only=True)
+    assert state["threads"] == torch.get_num_threads() == 1
+    torch.save(state | {"threads": 2}, tmp_path / "state.pt")
+    try:
+        run(tmp_path / "state.pt", 2)
+        assert torch.get_num_threads() == 2
+    finally:
+        torch.set_num_threads(1)
+    assert "goes on with 2" in caplog.text
+    del state["threads"]  # as an earlier version wrote it
+    torch.save(state, tmp_path / "state.pt")
+    run(tmp_path / "state.pt", 2)
+    assert torch.get_num_threads() == 1
+
+
 def test_a_state_of_something_else_is_refused(tmp_path: Path):
     (tmp_path / "state.pt").write_text("weights")
     with pytest.raises(InputError, match="delete it to begin anew"):

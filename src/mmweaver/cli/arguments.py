@@ -1,27 +1,63 @@
-"""How words of the command line become values; a bad one is an InputError like any other."""
+"""The command line's parser: words become values, rare options stay out of the short help, errors are one line."""
 
 import argparse
+from collections.abc import Callable
 from typing import Any, NoReturn
 
 from mmweaver.core.errors import InputError
 
 SIGNED = ("--at", "--heading", "--motion-up")  # options whose values may begin with a minus
+LOG_LEVELS = ("debug", "info", "warning", "error")
 Options = argparse.ArgumentParser | argparse._ArgumentGroup
 
 
+class Rare(str):
+    """The help of an option that only --help-all shows."""
+
+
 class Parser(argparse.ArgumentParser):
-    """argparse that raises InputError rather than print its usage and exit."""
+    """argparse that raises InputError instead of exiting, and has a short and a full help."""
 
     def __init__(self, **options: Any):
         options.setdefault("formatter_class", argparse.RawDescriptionHelpFormatter)
         super().__init__(**options, allow_abbrev=False)
+        self.register("action", "help_all", _HelpAllAction)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message} (see {self.prog} --help)")
 
+    def format_help(self) -> str:
+        """The help without rare options, and how to see these."""
+        rare = [action for action in self._actions if isinstance(action.help, Rare)]
+        texts = [action.help for action in rare]
+        for action in rare:
+            action.help = argparse.SUPPRESS
+        try:
+            shown = super().format_help()
+        finally:
+            for action, text in zip(rare, texts, strict=True):
+                action.help = text
+        return f"{shown}\n{len(rare)} more options: {self.prog} --help-all\n" if rare else shown
+
+    def format_help_all(self) -> str:
+        """The help with every option."""
+        return super().format_help()
+
+
+class _HelpAllAction(argparse.Action):
+    """Prints the full help and exits."""
+
+    def __init__(self, option_strings: list[str], dest: str, **options: Any):
+        super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=options["help"])
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        if isinstance(parser, Parser):
+            print(parser.format_help_all(), end="")
+        parser.exit()
+
 
 def glued(argv: list[str]) -> list[str]:
-    """Joins `--at -0.5,2` into one word: argparse would take the minus for an option (so with --heading, --motion-up).
+    """Joins `--at -0.5,2` into one word, because argparse would take the minus for an option.
 
     >>> glued(["generate", "--at", "-0.5,2", "--frames", "5"])
     ['generate', '--at=-0.5,2', '--frames', '5']
@@ -35,6 +71,7 @@ def glued(argv: list[str]) -> list[str]:
     return words
 
 
+# types of values ----------------------------------------------------------------------------------------------------
 def place(word: str) -> tuple[float, float]:
     """'0.5,2' -> (0.5, 2.0), metres."""
     try:
@@ -44,7 +81,7 @@ def place(word: str) -> tuple[float, float]:
     return x, y
 
 
-def told(word: str) -> tuple[str, tuple[float, float]]:
+def landmark(word: str) -> tuple[str, tuple[float, float]]:
     """'door=0.9,2.8' -> ("door", (0.9, 2.8))."""
     kind, equals, where = word.partition("=")
     if not equals:
@@ -52,7 +89,7 @@ def told(word: str) -> tuple[str, tuple[float, float]]:
     return kind.strip().lower(), place(where)
 
 
-def turns(word: str) -> tuple[int, ...]:
+def transmitters(word: str) -> tuple[int, ...]:
     """'0,2,1' -> (0, 2, 1)."""
     try:
         return tuple(int(part) for part in word.split(","))
@@ -78,27 +115,52 @@ def number(word: str) -> float:
         raise argparse.ArgumentTypeError(f"{word!r} is no number") from None
 
 
+def source(word: str) -> str:
+    """A file or folder, or a name that is known elsewhere: a preset, a model that comes along, a name on the Hub."""
+    return word
+
+
+# options that several commands share --------------------------------------------------------------------------------
+def help_of(is_rare: bool) -> Callable[[str], str]:
+    """Marks a help text as rare, or leaves it."""
+    return Rare if is_rare else str
+
+
 def add_output_options(parser: Options) -> None:
-    """The options that every writing verb shares."""
+    """The options of every command that writes a folder of results."""
     parser.add_argument("--overwrite", action="store_true", help="replace files of an earlier run in --out")
-    parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
+    parser.add_argument("--json", action="store_true", help="print a machine-readable summary on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
 
 
-def add_layout_options(parser: Options) -> None:
-    """The options that say how a DCA1000 .bin is laid out."""
-    parser.add_argument("--iq-order", choices=("iq", "qi"), help="I or Q first in the .bin (default iq)")
-    parser.add_argument(
-        "--tx-order", type=turns, metavar="N,N,N", help="transmitters in their turns (default: the radar's)"
+def add_general_options(parser: argparse.ArgumentParser) -> None:
+    """The options of every command."""
+    general = parser.add_argument_group("general")
+    general.add_argument("-v", "--verbose", action="store_true", help="print every assumption, and log each stage")
+    general.add_argument(
+        "--log-level", choices=LOG_LEVELS, help=Rare("what is logged on stderr (default warning; with -v info)")
     )
+    general.add_argument(
+        "--config", metavar="TOML", help="read options from a file, such as the request.toml of an earlier run; options"
+        " of the command line go first",
+    )  # fmt: skip
+    general.add_argument("--help-all", action="help_all", help="show this help with all options and exit")
+
+
+def add_layout_options(parser: Options, *, rare: bool = False) -> None:
+    """The options that say how a DCA1000 .bin is laid out."""
+    shown = help_of(rare)
+    parser.add_argument("--iq-order", choices=("iq", "qi"), help=shown("I or Q first in the .bin (default iq)"))
+    parser.add_argument(
+        "--tx-order", type=transmitters, metavar="N,N,N",
+        help=shown("order in which the transmitters fire (default: the radar's)"),
+    )  # fmt: skip
 
 
 def add_points_option(parser: Options) -> None:
     """The option that chooses the point cloud."""
     parser.add_argument(
-        "--points",
-        choices=("cfar", "firmware"),
-        default="cfar",
+        "--points", choices=("cfar", "firmware"), default="cfar",
         help="point cloud: cfar, ours (default), or firmware, as TI's out-of-box demo would report it with the"
         " cfarCfg, peakGrouping, clutterRemoval and multiObjBeamForming of the radar's .cfg",
-    )
+    )  # fmt: skip

@@ -2,32 +2,120 @@
 
 import argparse
 import json
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.cli.config_file import REQUEST_FILE
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
-    from mmweaver.core.radar_config import RadarConfig
-    from mmweaver.generate import Room, Weaver
+    from mmweaver.generate import Weaver
+    from mmweaver.generation import Room
+    from mmweaver.request import Request
 
 LIST = "sequences.json"
 MOST = 100_000  # sequences
-ONE_MOTION = ("text", "motion", "motion_model", "at", "height")  # of a single sequence
+FOR_ONE_SEQUENCE = ("text", "motion", "motion_model", "at", "height")
 
 
 @dataclass(frozen=True, kw_only=True)
-class BatchRequest:
-    """One sequence to be made."""
+class BatchSequence:
+    """One sequence of a batch."""
 
     folder: Path
     text: str
     seed: int
 
 
+@dataclass(frozen=True, kw_only=True)
+class Batch:
+    """What all sequences of a batch share."""
+
+    weaver: "Weaver"
+    room: "Room"
+    requests: "dict[str, Request]"  # by text; the seed is each sequence's own
+    output: dict[str, Any]  # arguments of Generation.save
+    request_toml: Callable[[BatchSequence], str]
+    overwrite: bool
+    quiet: bool
+
+    def run(self, sequences: list[BatchSequence]) -> dict[str, Any]:
+        """Generates the missing sequences and returns a summary of all of them.
+
+        A sentence for which the room has no place is skipped and listed as such. Raises InputError where nothing could
+        be generated, or, before anything is, where a folder holds something else.
+        """
+        from tqdm import tqdm
+
+        from mmweaver.core.atomic_files import atomic_file
+
+        out = sequences[0].folder.parent
+        finished = set() if self.overwrite else {one.folder for one in sequences if self._is_finished(one)}
+        made: list[dict[str, Any]] = []
+        refused: list[dict[str, Any]] = []
+        for one in tqdm(sequences, unit="sequence", delay=2, disable=self.quiet or None):
+            entry: dict[str, Any] = {"folder": one.folder.name, "text": one.text, "seed": one.seed}
+            try:
+                if one.folder not in finished:
+                    self._generate(one)
+            except _NoPlaceError as error:
+                refused.append({**entry, "why": str(error)})
+                continue
+            made.append(entry)
+        if not made:
+            raise InputError(f"none of {len(sequences)} sequences could be made; the first: {refused[0]['why']}")
+        summary = {"out": str(out), "sequences": made, "refused": refused}
+        with atomic_file(out / LIST) as partial:
+            partial.write_text(json.dumps(summary, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        return summary
+
+    def _generate(self, one: BatchSequence) -> None:
+        try:
+            result = self.weaver.carry_out(replace(self.requests[one.text], seed=one.seed), self.room)
+        except InputError as error:
+            raise _NoPlaceError(str(error)) from None
+        result.save(one.folder, overwrite=self.overwrite, extra={REQUEST_FILE: self.request_toml(one)}, **self.output)
+
+    def _is_finished(self, one: BatchSequence) -> bool:
+        """Whether an earlier run made this sequence, by its meta.json. Raises InputError where it made another."""
+        if not one.folder.exists():
+            return False
+        try:
+            found = json.loads((one.folder / "meta.json").read_text(encoding="utf-8"))
+            expected = {**self._expected_meta(), "text": one.text, "seed": one.seed}
+            is_same = self._expected_files() <= set(found["files"])
+            is_same = is_same and all(found[name] == value for name, value in expected.items())
+        except (OSError, ValueError, KeyError, TypeError):
+            is_same = False
+        if not is_same:
+            raise InputError(f"{one.folder} holds something else; choose another --out or allow it with --overwrite")
+        return True
+
+    def _expected_meta(self) -> dict[str, Any]:
+        from mmweaver.methods import DEFAULT_METHOD
+        from mmweaver.result_folder import plain, radar_meta
+
+        request = next(iter(self.requests.values()))
+        weaver = self.weaver
+        same = {
+            "frames": request.frames, "points": weaver.points, "weights": weaver.weights, "inputs": self.room.inputs,
+        }  # fmt: skip
+        method = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
+        return plain({**same, **method, **radar_meta(request.config)})
+
+    def _expected_files(self) -> set[str]:
+        files = {"adc_data.bin": self.output["adc_data_bin"], "preview.png": self.output["pictures"]}
+        return {name for name, is_wanted in files.items() if is_wanted}
+
+
+class _NoPlaceError(Exception):
+    """The room has no place for a sentence."""
+
+
 def read_texts(file: Path) -> list[str]:
-    """Sentences, one a line; empty lines and those that begin with # count for nothing. Raises InputError."""
+    """Sentences, one a line; empty lines and those that begin with # are skipped. Raises InputError."""
     try:
         lines = [line.strip() for line in file.read_text(encoding="utf-8").splitlines()]
     except (OSError, UnicodeDecodeError) as error:
@@ -38,107 +126,38 @@ def read_texts(file: Path) -> list[str]:
     return texts
 
 
-def asked_of(arguments: argparse.Namespace, out: Path) -> list[BatchRequest]:
-    """All sentences --repeat times, each with a seed of its own. Raises InputError for what goes with one sequence."""
-    for name in ONE_MOTION:
+def sequences_of(arguments: argparse.Namespace, out: Path) -> list[BatchSequence]:
+    """All sentences --repeat times, each with its own seed. Raises InputError for options of a single sequence."""
+    for name in FOR_ONE_SEQUENCE:
         if getattr(arguments, name) is not None:
             raise InputError(f"--texts makes many sequences; leave out --{name.replace('_', '-')}, or --texts")
     texts = read_texts(arguments.texts)
     if not 1 <= arguments.repeat <= MOST // len(texts):
         raise InputError(f"--repeat must be 1 to {MOST // len(texts)} for {len(texts)} sentences")
-    every = texts * arguments.repeat  # so that a larger --repeat goes on where a smaller one ended
+    every = texts * arguments.repeat  # in this order, so that a larger --repeat continues a smaller one
     digits = max(4, len(str(len(every) - 1)))
     return [
-        BatchRequest(folder=out / f"{number:0{digits}d}", text=text, seed=arguments.seed + number)
+        BatchSequence(folder=out / f"{number:0{digits}d}", text=text, seed=arguments.seed + number)
         for number, text in enumerate(every)
     ]
 
 
-def check_texts(weaver: "Weaver", asked: list[BatchRequest], request: dict[str, Any], file: Path) -> "RadarConfig":
-    """The radar at the frame rate asked for. Raises InputError for a sentence that cannot be acted out in the time."""
-    from mmweaver.generate import check_request
-
-    config = weaver.radar
-    for text in dict.fromkeys(one.text for one in asked):
+def parse_texts(
+    weaver: "Weaver", sequences: list[BatchSequence], settings: dict[str, Any], file: Path
+) -> "dict[str, Request]":
+    """The parsed request of each distinct sentence. Raises InputError for one that cannot be acted out in the time."""
+    requests = {}
+    for text in dict.fromkeys(one.text for one in sequences):
         try:
-            config = check_request(weaver.radar, text=text, **request)
+            requests[text] = weaver.request(text, **settings)
         except InputError as error:
             raise InputError(f"{file}, {text[:60]!r}: {error}") from None
-    return config
+    return requests
 
 
-def make_many(
-    weaver: "Weaver", room: "Room", asked: list[BatchRequest], request: dict[str, Any], config: "RadarConfig",
-    arguments: argparse.Namespace,
-) -> dict[str, Any]:  # fmt: skip
-    """Makes what is not there yet and tells what there is; a sentence for which the room has no place is left out.
-
-    Raises InputError where nothing could be made, or, before anything is made, where a folder holds something else.
-    """
-    from tqdm import tqdm
-
-    from mmweaver.core.atomic_files import atomic_file
-
-    out = asked[0].folder.parent
-    wanted = _wanted(weaver, room, request, config, arguments)
-    there = set() if arguments.overwrite else {one.folder for one in asked if _is_there(one, *wanted)}
-    made: list[dict[str, Any]] = []
-    refused: list[dict[str, Any]] = []
-    for one in tqdm(asked, unit="sequence", delay=2, disable=arguments.quiet or None):
-        entry: dict[str, Any] = {"folder": one.folder.name, "text": one.text, "seed": one.seed}
-        if one.folder in there:
-            made.append(entry)
-            continue
-        try:
-            result = weaver.generate(room, one.text, **{**request, "seed": one.seed})
-        except InputError as error:
-            refused.append({**entry, "why": str(error)})
-            continue
-        result.save(
-            one.folder, overwrite=arguments.overwrite, adc_data_bin=arguments.bin, iq_order=arguments.iq_order or "iq",
-            pictures=not arguments.no_pictures,
-        )  # fmt: skip
-        made.append(entry)
-    if not made:
-        raise InputError(f"none of {len(asked)} sequences could be made; the first: {refused[0]['why']}")
-    summary = {"out": str(out), "sequences": made, "refused": refused}
-    with atomic_file(out / LIST) as partial:
-        partial.write_text(json.dumps(summary, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    return summary
-
-
-def told(summary: dict[str, Any]) -> str:
+def summary_text(summary: dict[str, Any]) -> str:
     """The summary for people."""
     count = len(summary["sequences"])
     lines = [f"{count} sequence{'s' if count > 1 else ''} in {summary['out']}, listed in {LIST}"]
-    lines += [f"left out {one['folder']}, {one['text']!r}: {one['why']}" for one in summary["refused"]]
+    lines += [f"skipped {one['folder']}, {one['text']!r}: {one['why']}" for one in summary["refused"]]
     return "\n".join(lines)
-
-
-def _wanted(
-    weaver: "Weaver", room: "Room", request: dict[str, Any], config: "RadarConfig", arguments: argparse.Namespace
-) -> tuple[dict[str, Any], set[str]]:
-    """What meta.json says of all that is asked for, and the files that not every run writes."""
-    from mmweaver.methods import DEFAULT_METHOD
-    from mmweaver.result_folder import plain, radar_meta
-
-    same = {"frames": request["frames"], "points": weaver.points, "weights": weaver.weights, "inputs": room.inputs}
-    method = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
-    files = {"adc_data.bin": arguments.bin, "preview.png": not arguments.no_pictures}
-    return plain({**same, **method, **radar_meta(config)}), {name for name, is_asked in files.items() if is_asked}
-
-
-def _is_there(one: BatchRequest, said: dict[str, Any], files: set[str]) -> bool:
-    """Whether an earlier run made just this, as its meta.json says. Raises InputError where it made something else."""
-    meta = one.folder / "meta.json"
-    if not one.folder.exists():
-        return False
-    try:
-        found = json.loads(meta.read_text(encoding="utf-8"))
-        wanted = {**said, "text": one.text, "seed": one.seed}
-        is_same = files <= set(found["files"]) and all(found[name] == value for name, value in wanted.items())
-    except (OSError, ValueError, KeyError, TypeError):
-        is_same = False
-    if not is_same:
-        raise InputError(f"{one.folder} holds something else; choose another --out or allow it with --overwrite")
-    return True

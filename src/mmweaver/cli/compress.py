@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_layout_options, number, whole
+from mmweaver.cli.arguments import add_layout_options, number, source, whole
 from mmweaver.core.errors import InputError
 
 NUM_STAGES = 4
@@ -19,17 +19,18 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "compress", help="store a recording in few bytes", epilog=EXAMPLES,
         description="Stores a radar cube as moving scatterers, a static layer and what they leave, in a .mmw file.",
     )  # fmt: skip
     parser.add_argument(
         "file",
         type=Path,
-        metavar="FILE",
-        help="radar.npz, adc_data.bin of a DCA1000, raw ADC samples as .npy, or a HuPR, mmMesh or RF-Genesis array",
+        metavar="FILE|DIR",
+        help="radar.npz or its folder, adc_data.bin of a DCA1000, raw ADC samples as .npy, a HuPR, mmMesh or RF-Genesis"
+        " array, or a capture folder of mmwave-capture-std",
     )
     parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the .mmw file to write")
     rate = parser.add_mutually_exclusive_group(required=True)
@@ -39,7 +40,7 @@ def add_verb(verbs: Any) -> None:
         "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
     )
     parser.add_argument(
-        "--radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: that beside .npz)"
+        "--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: that beside .npz)"
     )
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
     parser.add_argument(
@@ -50,6 +51,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -61,15 +63,15 @@ def run(arguments: argparse.Namespace) -> int:
     start = time.monotonic()
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read the recording")
-        from mmweaver.recordings.recording import read_any_cube
+        from mmweaver.recordings.read_recording import read_recording
 
-        cube = read_any_cube(
+        cube = read_recording(
             arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
-            iq_order=arguments.iq_order or "iq", tx_order=arguments.tx_order,
-        )  # fmt: skip
-        from mmweaver.compression.mmw_codec import compressed, errors_db
+            iq_order=arguments.iq_order, tx_order=arguments.tx_order,
+        ).cube  # fmt: skip
+        from mmweaver.compression.mmw_codec import compress_cube, errors_db
 
-        data = compressed(
+        data = compress_cube(
             cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise, progress=bar
         )
         bar("check")

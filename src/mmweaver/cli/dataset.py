@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import whole
+from mmweaver.cli.arguments import source, whole
 from mmweaver.core.errors import InputError
 
 EXAMPLES = """examples:
@@ -17,9 +17,9 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "dataset",
         help="make a data set of rooms, motions and radar signals",
         epilog=EXAMPLES,
@@ -32,7 +32,9 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--layouts", type=whole, default=10, help="rearrangements of each kind (default 10)")
     parser.add_argument("--sequences", type=whole, default=120, help="sequences in each room (default 120)")
     parser.add_argument("--frames", type=whole, default=20, help="radar frames of each sequence (default 20)")
-    parser.add_argument("--radar", default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
+    parser.add_argument(
+        "--radar", type=source, default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json"
+    )
     parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     parser.add_argument(
         "--geometry-only", action="store_true",
@@ -45,6 +47,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -55,9 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
-    from mmweaver.datasets.dataset_cost import check_for_space, cost_of
+    from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
     from mmweaver.datasets.dataset_plan import DatasetPlan, check_for_leaks
-    from mmweaver.datasets.generate_rooms import generate
     from mmweaver.formats.radar_file import load_radar
 
     config = load_radar(arguments.radar)
@@ -68,16 +70,16 @@ def run(arguments: argparse.Namespace) -> int:
     )  # fmt: skip
     workers = max(1, arguments.workers)
     check_for_leaks(plan.rooms())
-    cost = cost_of(plan, config, arguments.out)
+    cost = estimate_cost(plan, config, arguments.out)
     if arguments.dry_run:
-        print(json.dumps(asdict(cost)) if arguments.json else cost.told(workers))
+        print(json.dumps(asdict(cost)) if arguments.json else cost.summary(workers))
         return 0
     if not (arguments.quiet or arguments.json):
-        print(cost.told(workers), file=sys.stderr)
+        print(cost.summary(workers), file=sys.stderr)
     check_for_space(cost, arguments.out)
     total = len(plan.kinds) * plan.num_layouts
     with tqdm(total=total, unit="room", disable=arguments.quiet or None) as bar:
-        reports = generate(
+        reports = generate_dataset(
             arguments.out, plan, config, workers=workers, ray_address=arguments.ray_address,
             listener=lambda report: bar.update(),
         )  # fmt: skip

@@ -14,9 +14,9 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "decompress", help="read a .mmw file back into radar.npz", epilog=EXAMPLES,
         description="Reads a .mmw file back; with --frames only the chunks that hold them are read.",
     )  # fmt: skip
@@ -31,6 +31,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--overwrite", action="store_true", help="replace files that exist")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -15,9 +15,9 @@ jack, jump, squats, walk. For other radars and activities: docs/zero_shot.md.
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "evaluate", help="score what was trained on generated data on real recordings", epilog=EXAMPLES,
         description="Trains on generated data alone and scores on recordings of real people.",
     )  # fmt: skip
@@ -29,6 +29,7 @@ def add_verb(verbs: Any) -> None:
     )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print the scores for machines")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

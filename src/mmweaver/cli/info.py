@@ -11,22 +11,23 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "info", help="print what a .mmw file holds", epilog=EXAMPLES,
         description="Reads all of a .mmw file, checks it, and says what is in it.",
     )  # fmt: skip
     parser.add_argument("file", type=Path, metavar="FILE", help="a .mmw file")
     parser.add_argument("--json", action="store_true", help="print it for machines")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the description on stdout. Raises InputError where the file is damaged."""
-    from mmweaver.compression.mmw_codec import described
+    from mmweaver.compression.mmw_codec import describe_mmw
 
-    facts = described(arguments.file)
+    facts = describe_mmw(arguments.file)
     print(json.dumps(facts, indent=2) if arguments.json else "\n".join(_lines(facts)))
     return 0
 

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 
 from mmweaver.cli import (
+    completion,
     compress,
     dataset,
     decompress,
@@ -18,7 +19,9 @@ from mmweaver.cli import (
     rooms,
     train,
 )
-from mmweaver.cli.arguments import Parser, glued
+from mmweaver.cli.arguments import Parser, add_general_options, glued
+from mmweaver.cli.config_file import with_config
+from mmweaver.cli.log import set_up_log
 from mmweaver.core.errors import InputError
 from mmweaver.core.version import __version__
 
@@ -57,23 +60,31 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def build_parser() -> Parser:
     """The whole command line."""
+    return _parser_and_commands()[0]
+
+
+def _parser_and_commands() -> tuple[Parser, dict[str, Parser]]:
     parser = Parser(prog="mmweaver", description=DESCRIPTION, epilog=EXAMPLES)
     parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB", title="verbs")
-    verbs_in_order = (
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands")
+    modules_in_order = (
         generate, process, radar, compress, decompress, info, rooms, motions, motion, evaluate, dataset, train,
+        completion,
     )  # fmt: skip
-    for module in verbs_in_order:
-        module.add_verb(verbs)
-    return parser
+    for module in modules_in_order:
+        command = module.add_command(commands)
+        add_general_options(command)
+        command.set_defaults(parser=command, whole_parser=parser)
+    return parser, commands.choices
 
 
 def _run(argv: list[str]) -> int:
-    parser = build_parser()
-    arguments = parser.parse_args(glued(argv))
-    if arguments.verb is None:
+    parser, commands = _parser_and_commands()
+    arguments = parser.parse_args(with_config(glued(argv), commands))
+    if arguments.command is None:
         parser.print_help()
         return BAD_INPUT
+    set_up_log(arguments.log_level, verbose=arguments.verbose)
     return arguments.run(arguments)
 
 

@@ -13,9 +13,9 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "motion", help="try a sentence: how it is read, and the moving skeleton on an empty floor", epilog=EXAMPLES,
         description="Reads a sentence and acts it out on an empty floor, without a photo and without a radar.",
     )  # fmt: skip
@@ -27,6 +27,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the skeleton at ten instants")
     parser.add_argument("--json", action="store_true", help="print the reading for machines")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -10,14 +10,15 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "motions", help="list what a person can do, with example sentences", epilog=EXAMPLES,
         description="Lists every activity that a sentence may name, with an example and its natural time.",
     )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="print them for machines")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

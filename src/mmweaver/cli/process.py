@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option
+from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, source
+from mmweaver.cli.config_file import REQUEST_FILE, request_toml
 from mmweaver.core.errors import InputError
 
 NUM_STAGES = 6
@@ -15,26 +16,31 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "process", help="take a recording through the same processing", epilog=EXAMPLES,
         description="Takes raw ADC samples of a real radar through range, Doppler, angle and CFAR.",
     )  # fmt: skip
     parser.add_argument(
-        "file", type=Path, metavar="FILE|DIR",
-        help="adc_data.bin of a DCA1000, raw ADC samples as .npy, or a capture folder of mmwave-capture-std"
-        " (radar.cfg, dca.pcap)",
+        "file", type=Path, nargs="?", metavar="FILE|DIR",
+        help="adc_data.bin of a DCA1000, raw ADC samples as .npy, radar.npz, a HuPR, mmMesh or RF-Genesis array, or a"
+        " capture folder of mmwave-capture-std (radar.cfg, dca.pcap)",
     )  # fmt: skip
     parser.add_argument(
-        "--radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (a capture folder brings its own)"
-    )
+        "--radar", type=source, metavar="NAME|FILE",
+        help="preset, TI .cfg or radar.json (a capture folder brings its own)",
+    )  # fmt: skip
     parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
+    parser.add_argument(
+        "--layout", metavar="NAME", help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis"
+    )
     add_points_option(parser)
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     add_layout_options(parser)
     add_output_options(parser)
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -43,29 +49,18 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.summary import print_summary
     from mmweaver.core.atomic_files import check_output_folder
 
+    if arguments.file is None:
+        raise InputError("which recording? give a file or a capture folder (see mmweaver process --help)")
     check_output_folder(arguments.out, overwrite=arguments.overwrite)
-    with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
+    with StageBar(NUM_STAGES, quiet=arguments.quiet or arguments.verbose) as bar:
         from mmweaver.core.stages import Stages
-        from mmweaver.formats.capture_std import is_capture
-        from mmweaver.recordings.recording import process_capture, process_recording
+        from mmweaver.recordings.processing import process_recording
 
-        if is_capture(arguments.file):
-            _check_capture(arguments)
-            recording = process_capture(arguments.file, points=arguments.points, stages=Stages(bar))
-        else:
-            recording = process_recording(
-                arguments.file, arguments.radar, iq_order=arguments.iq_order or "iq", tx_order=arguments.tx_order,
-                axes=arguments.axes, points=arguments.points, stages=Stages(bar),
-            )  # fmt: skip
-        meta = recording.save(arguments.out, overwrite=arguments.overwrite)
-    print_summary(arguments.out, meta, as_json=arguments.json, quiet=arguments.quiet)
+        recording = process_recording(
+            arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
+            iq_order=arguments.iq_order, tx_order=arguments.tx_order, points=arguments.points, stages=Stages(bar),
+        )  # fmt: skip
+        written = {REQUEST_FILE: request_toml(arguments.parser, arguments)}
+        meta = recording.save(arguments.out, overwrite=arguments.overwrite, extra=written)
+    print_summary(arguments.out, meta, as_json=arguments.json, quiet=arguments.quiet, verbose=arguments.verbose)
     return 0
-
-
-def _check_capture(arguments: argparse.Namespace) -> None:
-    """A capture folder says all that these options would."""
-    given = {"--radar": arguments.radar, "--axes": arguments.axes, "--tx-order": arguments.tx_order}
-    given["--iq-order"] = arguments.iq_order
-    named = [name for name, value in given.items() if value is not None]
-    if named:
-        raise InputError(f"{arguments.file} is a capture folder, whose radar.cfg says it all; leave out {named[0]}")

@@ -9,15 +9,16 @@ EXAMPLES = """examples:
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "radar", help="print a radar's chirp, resolutions and limits", epilog=EXAMPLES,
         description="Prints the chirp, the resolutions and the limits of a radar.",
     )  # fmt: skip
     parser.add_argument("radar", metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
     parser.add_argument("--json", action="store_true", help="print the RadarConfig that --radar reads back")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

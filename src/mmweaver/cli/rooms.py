@@ -17,9 +17,9 @@ EXAMPLES = """examples:
 MOST_ROOMS = 10_000
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "rooms", help="make furnished rooms with photo, depth and truth", epilog=EXAMPLES,
         description="Makes furnished rooms from a seed. Each is a folder: rgb.png, depth.png and camera.json, which"
         " generate reads; classes.png with its names in classes.json (COCO-Stuff); truth.json with the floor, seats,"
@@ -35,6 +35,7 @@ def add_verb(verbs: Any) -> None:
     parser.add_argument("--noise", action="store_true", help="depth with the errors and holes of a stereo camera")
     add_output_options(parser)
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

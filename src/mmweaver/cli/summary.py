@@ -1,18 +1,20 @@
-"""What a person, or a machine, is told at the end."""
+"""The summary that a command prints at the end, for people or machines."""
 
 import json
 from pathlib import Path
 from typing import Any
 
+from mmweaver.core.assumptions import UsualAssumption
+
 MADE_BY = {"weaver": "weaver, the network", "physics": "physics"}
 
 
-def print_summary(out: str | Path, meta: dict[str, Any], *, as_json: bool, quiet: bool) -> None:
-    """Where the files are, what was assumed and how long it took, on stdout."""
+def print_summary(out: str | Path, meta: dict[str, Any], *, as_json: bool, quiet: bool, verbose: bool = False) -> None:
+    """Prints where the files are, what was assumed and how long it took."""
     if as_json:
         print(json.dumps(machine_summary(out, meta), indent=2, ensure_ascii=False))
     elif not quiet:
-        print("\n".join(summary_lines(out, meta)))
+        print("\n".join(summary_lines(out, meta, verbose=verbose)))
 
 
 def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
@@ -22,8 +24,8 @@ def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
     return {"out": str(out), "files": files, **method, "assumed": meta["assumed"], "seconds": meta["seconds"]}
 
 
-def summary_lines(out: str | Path, meta: dict[str, Any]) -> list[str]:
-    """A line each for the files, then for the radar, the person and every assumption."""
+def summary_lines(out: str | Path, meta: dict[str, Any], *, verbose: bool = False) -> list[str]:
+    """A line each for the files, the radar, the people and the assumptions; the usual of these only if `verbose`."""
     lines = [f"wrote {Path(out)} in {sum(meta['seconds'].values()):.1f} s"]
     paths = {name: str(Path(out) / name) for name in meta["files"]}
     width = max(map(len, paths.values()))
@@ -32,7 +34,10 @@ def summary_lines(out: str | Path, meta: dict[str, Any]) -> list[str]:
     lines.append(_radar_line(meta))
     people = [meta["person"]] if "person" in meta else meta.get("people", [])
     lines += [_person_line(person) for person in people]
-    lines += [f"assumed: {sentence}" for sentence in meta["assumed"]]
+    shown = [one for one in meta["assumed"] if verbose or not isinstance(one, UsualAssumption)]
+    lines += [f"assumed: {sentence}" for sentence in shown]
+    if hidden := len(meta["assumed"]) - len(shown):
+        lines.append(f"assumed: {hidden} usual things{' more' if shown else ''} (--verbose prints them)")
     return lines
 
 
@@ -50,5 +55,5 @@ def _person_line(person: dict[str, Any]) -> str:
     start, end = (f"({x:.2f}, {y:.2f})" for x, y in (person["starts_at_m"], person["ends_at_m"]))
     return (
         f"person:  {person['height_m']:.2f} m tall, from {start} to {end} m (right, ahead),"
-        f" {person['path_length_m']:.2f} m along its way"
+        f" {person['path_length_m']:.2f} m along the path"
     )

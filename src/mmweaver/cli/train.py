@@ -19,15 +19,14 @@ EXAMPLES = """examples:
   mmweaver train weaver --data data/ --out run/ --tensorboard
   mmweaver train weaver --from run/ --captures take1/ take2/ take3/ --out tuned/
   torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
-  mmweaver train activity --data data/ --out judge/
-  mmweaver train paper --data data/ --out paper/ --features judge/weights.safetensors
+  mmweaver train activity --data data/ --out activity/
   mmweaver generate --demo --weights run/ --out woven/
 """
 
 
-def add_verb(verbs: Any) -> None:
-    """Declares the verb and its options."""
-    parser = verbs.add_parser(
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
         "train",
         help="train the network on a data set",
         epilog=EXAMPLES,
@@ -36,8 +35,8 @@ def add_verb(verbs: Any) -> None:
         "learned is drawn beside the truth in OUT/pictures at every validation.",
     )
     parser.add_argument(
-        "recipe", choices=("weaver", "activity", "paper"),
-        help="what is trained: the network, a recogniser of twelve activities, or the paper's network",
+        "recipe", choices=("weaver", "activity"),
+        help="what is trained: the network, or a recogniser of twelve activities",
     )  # fmt: skip
     parser.add_argument("--data", type=Path, metavar="DIR", help="a data set of mmweaver dataset")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for checkpoint, log and weights")
@@ -48,7 +47,6 @@ def add_verb(verbs: Any) -> None:
         metavar="FILE|DIR|HUB",
         help="weights of the same recipe to go on from (default: from nothing)",
     )
-    parser.add_argument("--features", type=Path, metavar="FILE", help="weights of recipe activity, for recipe paper")
     own = parser.add_argument_group("your own recordings instead of --data (needs --from)")
     own.add_argument(
         "--captures", type=Path, nargs="+", metavar="DIR",
@@ -63,17 +61,15 @@ def add_verb(verbs: Any) -> None:
     loop.add_argument(
         "--batch",
         type=whole,
-        help="sequences a step, of all processes together (default 3; activity 16, paper 4, captures 2)",
+        help="sequences a step, of all processes together (default 3; activity 16, captures 2)",
     )
     loop.add_argument(
         "--learning-rate",
         type=number,
-        help="of Adam, at its highest (default 1e-3; activity 2e-3, paper 1e-4, captures 2e-4, without joints 5e-3)",
+        help="of Adam, at its highest (default 1e-3; activity 2e-3, captures 2e-4, without joints 5e-3)",
     )
     loop.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
-    loop.add_argument(
-        "--validate-every", type=whole, metavar="STEPS", help="(default 250; activity 100, paper 200, captures 25)"
-    )
+    loop.add_argument("--validate-every", type=whole, metavar="STEPS", help="(default 250; activity 100, captures 25)")
     loop.add_argument("--save-every", type=number, default=60.0, metavar="S", help="seconds between checkpoints (60)")
     place = parser.add_argument_group("where")
     place.add_argument("--device", default="auto", help="cpu, cuda, cuda:1 ... (default auto: a GPU if there is one)")
@@ -85,6 +81,7 @@ def add_verb(verbs: Any) -> None:
     output.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
     output.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
+    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -110,8 +107,6 @@ def run(arguments: argparse.Namespace) -> int:
 def _check(arguments: argparse.Namespace) -> None:
     if arguments.recipe != "weaver":
         train_recipes.check(arguments)
-    elif arguments.features is not None:
-        raise InputError("--features is for recipe paper")
     if (arguments.data is None) == (arguments.captures is None):
         raise InputError(
             "what to train on? give --data, a data set of mmweaver dataset, or --captures, your recordings"
@@ -143,12 +138,13 @@ def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bo
 
 
 def _on_data_otherwise(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
-    from mmweaver.training.recipe_weights import write_recipe_weights
+    from mmweaver.training.activity_training import ActivityRecipe
+    from mmweaver.training.recipe_weights import write_activity_weights
 
-    recipe = train_recipes.recipe_of(arguments.recipe, _given(arguments))
-    with _bar(recipe.steps, is_quiet) as told:
-        trainer = train_recipes.on_data(arguments, recipe, told, place, _options(arguments))
-    file = write_recipe_weights(arguments.out, arguments.data, trainer) if place.is_first else None
+    given = _given(arguments)
+    with _bar(ActivityRecipe(**given).steps, is_quiet) as told:
+        trainer = train_recipes.train_on_data(arguments, given, told, place, _options(arguments))
+    file = write_activity_weights(arguments.out, arguments.data, trainer) if place.is_first else None
     return {
         "weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value,
         "validation": trainer.best.figures,

@@ -1,7 +1,7 @@
-"""Entropy coding with models that learn while they code; the same code path writes and reads.
+"""Adaptive entropy coding; encoder and decoder share one code path.
 
-Probabilities are ratios of counts: additions and divisions of IEEE doubles, the same on every machine, so what one
-machine writes every other reads.
+Probabilities are ratios of counts: additions and divisions of IEEE doubles, identical on every machine, so a file
+written on one machine decodes on every other.
 """
 
 from abc import ABC, abstractmethod
@@ -9,107 +9,107 @@ from typing import Any
 
 import numpy as np
 
-# called tens of thousands of times a cube: shapes are said, not checked, here
-Whole = np.ndarray  # (n,) int64
-Chance = np.ndarray  # (n,) float64
+# called tens of thousands of times per cube: shapes are documented, not checked, here
+Integers = np.ndarray  # (n,) int64
+Probability = np.ndarray  # (n,) float64
 
-LEAST_CHANCE = 2.0**-14
+MIN_PROBABILITY = 2.0**-14
 MOST_OCTAVES = 30
-MOST_EVEN = 2**23
+LARGEST_UNIFORM = 2**23
 LAST_SINGLE = 3
 RUNGS = np.array([0, 1, 2, 3, *(2**octave * half // 2 for octave in range(2, 30) for half in (2, 3))])
 MOST_RUNGS = len(RUNGS) - 2
 
 
 class BitStream(ABC):
-    """Writes what it is given, or gives what was written."""
+    """Common interface of encoder and decoder: codes given values, or returns decoded ones."""
 
     @abstractmethod
-    def bits(self, chance: Chance, values: Whole) -> Whole:
-        """Bits of which each is 1 with its chance. A reader ignores `values` (but for their number)."""
+    def bits(self, probability: Probability, values: Integers) -> Integers:
+        """Codes bits, each 1 with its probability. A decoder uses only the length of `values`."""
 
-    def even(self, sizes: Whole, values: Whole) -> Whole:
-        """Numbers of which each is any of 0 ... size - 1. Sizes beyond 2^23 must be multiples of 2^16."""
-        huge = sizes > MOST_EVEN
+    def uniform(self, sizes: Integers, values: Integers) -> Integers:
+        """Codes integers uniform on 0 ... size - 1. Sizes beyond 2^23 must be multiples of 2^16."""
+        huge = sizes > LARGEST_UNIFORM
         if not huge.any():
-            return self._even_small(sizes, values)
-        out = self._even_small(np.where(huge, sizes >> 16, sizes), np.where(huge, values >> 16, values))
-        low = self._even_small(np.where(huge, 1 << 16, 1), values & 0xFFFF)
+            return self._uniform_small(sizes, values)
+        out = self._uniform_small(np.where(huge, sizes >> 16, sizes), np.where(huge, values >> 16, values))
+        low = self._uniform_small(np.where(huge, 1 << 16, 1), values & 0xFFFF)
         return np.where(huge, (out << 16) + low, out)
 
     @abstractmethod
-    def _even_small(self, sizes: Whole, values: Whole) -> Whole:
-        """The same for sizes of at most 2^23, which is what the coder's precision allows."""
+    def _uniform_small(self, sizes: Integers, values: Integers) -> Integers:
+        """As `uniform`, for sizes of at most 2^23, the limit of the coder's precision."""
 
 
 def _constriction() -> tuple[Any, Any]:
-    """Its models and coders; the package keeps them in a module that has no name to import from."""
+    """Models and range coders of the package, whose submodules cannot be imported by name."""
     import constriction
 
     stream: Any = constriction.stream  # pyright: ignore[reportAttributeAccessIssue]
     return stream.model, stream.queue
 
 
-class Writer(BitStream):
-    """A BitStream that writes; `finished` gives the bytes."""
+class Encoder(BitStream):
+    """A BitStream that encodes; `to_bytes` returns the stream."""
 
     def __init__(self) -> None:
         model, queue = _constriction()
 
         self._coder = queue.RangeEncoder()
-        self._bit, self._even = model.Bernoulli(perfect=False), model.Uniform()
+        self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()
 
-    def bits(self, chance: Chance, values: Whole) -> Whole:
+    def bits(self, probability: Probability, values: Integers) -> Integers:
         if len(values):
-            self._coder.encode(values.astype(np.int32), self._bit, chance)
+            self._coder.encode(values.astype(np.int32), self._bit, probability)
         return values
 
-    def _even_small(self, sizes: Whole, values: Whole) -> Whole:
+    def _uniform_small(self, sizes: Integers, values: Integers) -> Integers:
         wide = sizes > 1
         if wide.any():
-            self._coder.encode(values[wide].astype(np.int32), self._even, sizes[wide].astype(np.int32))
+            self._coder.encode(values[wide].astype(np.int32), self._uniform_model, sizes[wide].astype(np.int32))
         return values
 
-    def finished(self) -> bytes:
+    def to_bytes(self) -> bytes:
         return self._coder.get_compressed().astype("<u4").tobytes()
 
 
-class Reader(BitStream):
-    """A BitStream that reads what a Writer wrote."""
+class Decoder(BitStream):
+    """A BitStream that decodes the bytes of an Encoder."""
 
     def __init__(self, data: bytes) -> None:
         model, queue = _constriction()
 
         self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4").astype(np.uint32))
-        self._bit, self._even = model.Bernoulli(perfect=False), model.Uniform()
+        self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()
 
-    def bits(self, chance: Chance, values: Whole) -> Whole:
+    def bits(self, probability: Probability, values: Integers) -> Integers:
         if not len(values):
             return values
-        return np.asarray(self._coder.decode(self._bit, chance)).astype(np.int64)
+        return np.asarray(self._coder.decode(self._bit, probability)).astype(np.int64)
 
-    def _even_small(self, sizes: Whole, values: Whole) -> Whole:
+    def _uniform_small(self, sizes: Integers, values: Integers) -> Integers:
         out = np.zeros(len(sizes), np.int64)
         wide = sizes > 1
         if wide.any():
-            out[wide] = self._coder.decode(self._even, sizes[wide].astype(np.int32))
+            out[wide] = self._coder.decode(self._uniform_model, sizes[wide].astype(np.int32))
         return out
 
 
 class BitModel:
-    """Chance of a 1 in each of several contexts, learned from what was coded in it."""
+    """Adaptive probability of a 1 in each of several contexts."""
 
-    def __init__(self, num_contexts: int, chance: float = 0.5, weight: float = 1.0, memory: float = 400.0):
-        self.ones = np.full(num_contexts, chance * weight)
+    def __init__(self, num_contexts: int, probability: float = 0.5, weight: float = 1.0, memory: float = 400.0):
+        self.ones = np.full(num_contexts, probability * weight)
         self.total = np.full(num_contexts, weight)
         self.memory = memory
 
-    def chance(self, context: Whole) -> tuple[Chance, Chance]:
-        """Chance of a 1, and how many bits of experience stand behind it."""
+    def probability(self, context: Integers) -> tuple[Probability, Probability]:
+        """Probability of a 1, and the number of bits it is estimated from."""
         total = self.total[context]
         return self.ones[context] / total, total
 
-    def learn(self, context: Whole, bits: Whole) -> None:
+    def learn(self, context: Integers, bits: Integers) -> None:
         num = len(self.total)
         self.ones += np.bincount(context, weights=bits, minlength=num)
         self.total += np.bincount(context, minlength=num)
@@ -119,87 +119,89 @@ class BitModel:
 
 
 class Mixture:
-    """Several BitModels that look at the same bit from several sides; the surer one has more say."""
+    """Mixes BitModels of different contexts; the more confident model has more weight."""
 
     def __init__(self, models: list[BitModel]):
         self.models = models
 
-    def code(self, stream: BitStream, contexts: list[Whole], values: Whole) -> Whole:
-        """Codes bits, one context of each model a bit, then learns."""
+    def code(self, stream: BitStream, contexts: list[Integers], values: Integers) -> Integers:
+        """Codes bits given one context per model and bit, then updates the models."""
         above = np.zeros(len(values))
         below = np.full(len(values), 1e-9)
         for model, context in zip(self.models, contexts, strict=True):
-            chance, seen = model.chance(context)
-            # experience counts up to a point; a chance near 0 or 1 says more than one near a half
-            say = np.minimum(seen, 60.0) / (chance * (1 - chance) + 0.002)
-            above += say * chance
-            below += say
-        chance = np.clip(above / below, LEAST_CHANCE, 1 - LEAST_CHANCE)
-        bits = stream.bits(chance, values)
+            probability, seen = model.probability(context)
+            # confidence grows with the count up to a limit, and towards probabilities of 0 and 1
+            weight = np.minimum(seen, 60.0) / (probability * (1 - probability) + 0.002)
+            above += weight * probability
+            below += weight
+        probability = np.clip(above / below, MIN_PROBABILITY, 1 - MIN_PROBABILITY)
+        bits = stream.bits(probability, values)
         for model, context in zip(self.models, contexts, strict=True):
             model.learn(context, bits)
         return bits
 
 
 class NumberModel:
-    """Whole numbers from 0: a learned chance for each step up, then for each octave of the rest, then even bits."""
+    """Non-negative integers: adaptive unary steps, then adaptive octaves of the rest, then uniform bits."""
 
-    def __init__(self, num_contexts: int, steps: int, chance: float = 0.4):
+    def __init__(self, num_contexts: int, steps: int, probability: float = 0.4):
         self.steps = steps
-        self.models = [Mixture([BitModel(num_contexts, chance, 2.0)]) for _ in range(steps)]
+        self.models = [Mixture([BitModel(num_contexts, probability, 2.0)]) for _ in range(steps)]
         self.octaves = [Mixture([BitModel(num_contexts, 0.5, 2.0)]) for _ in range(MOST_OCTAVES)]
 
-    def code(self, stream: BitStream, context: Whole, values: Whole) -> Whole:
-        out = _climbed(stream, self.models, context, values)
+    def code(self, stream: BitStream, context: Integers, values: Integers) -> Integers:
+        out = _unary(stream, self.models, context, values)
         rest = np.flatnonzero(out == self.steps)
         if len(rest):
             more = values[rest] - self.steps + 1
             wanted = np.frexp(np.maximum(more, 1).astype(np.float64))[1].astype(np.int64) - 1
-            octave = _climbed(stream, self.octaves, context[rest], wanted)
+            octave = _unary(stream, self.octaves, context[rest], wanted)
             if octave.max() >= MOST_OCTAVES:
                 raise ValueError("a number too large: the stream is damaged")
             size = 2**octave
-            out[rest] += size - 1 + stream.even(size, more - size)
+            out[rest] += size - 1 + stream.uniform(size, more - size)
         return out
 
 
-def _climbed(stream: BitStream, models: list[Mixture], context: Whole, values: Whole) -> Whole:
-    """How many models in turn say "further", at most all of them."""
+def _unary(stream: BitStream, models: list[Mixture], context: Integers, values: Integers) -> Integers:
+    """Unary code: the number of models in turn whose bit is 1, at most all of them."""
     out = np.zeros(len(values), np.int64)
-    open_ = np.arange(len(values))
+    active = np.arange(len(values))
     for step, model in enumerate(models):
-        if not len(open_):
+        if not len(active):
             break
-        more = model.code(stream, [context[open_]], (values[open_] > step).astype(np.int64))
-        open_ = open_[more > 0]
-        out[open_] = step + 1
+        more = model.code(stream, [context[active]], (values[active] > step).astype(np.int64))
+        active = active[more > 0]
+        out[active] = step + 1
     return out
 
 
 class LadderModel:
-    """Whole numbers from 0, seen from several sides: a learned chance for each rung of a ladder, then even bits.
+    """Non-negative integers with mixed contexts: an adaptive bit for each rung of a ladder, then uniform bits.
 
     Rungs are 0, 1, 2, 3, then two to an octave: 4-5, 6-7, 8-11, 12-15, 16-23, ...
     """
 
-    def __init__(self, num_contexts: list[int], chance: float = 0.4):
-        self.rungs = [Mixture([BitModel(num, chance, 2.0) for num in num_contexts]) for _ in range(MOST_RUNGS)]
+    def __init__(self, num_contexts: list[int], probability: float = 0.4):
+        self.rungs = [Mixture([BitModel(num, probability, 2.0) for num in num_contexts]) for _ in range(MOST_RUNGS)]
 
-    def code(self, stream: BitStream, contexts: list[Whole], values: Whole) -> Whole:
-        """One context of each side a number."""
+    def code(self, stream: BitStream, contexts: list[Integers], values: Integers) -> Integers:
+        """Codes numbers given one context per model and number."""
         wanted = np.searchsorted(RUNGS, values, side="right") - 1
         rung = np.zeros(len(values), np.int64)
-        open_ = np.arange(len(values))
+        active = np.arange(len(values))
         for step, model in enumerate(self.rungs):
-            if not len(open_):
+            if not len(active):
                 break
-            more = model.code(stream, [context[open_] for context in contexts], (wanted[open_] > step).astype(np.int64))
-            open_ = open_[more > 0]
-            rung[open_] = step + 1
-        if len(open_):
+            more = model.code(
+                stream, [context[active] for context in contexts], (wanted[active] > step).astype(np.int64)
+            )
+            active = active[more > 0]
+            rung[active] = step + 1
+        if len(active):
             raise ValueError("a number too large: the stream is damaged")
         out = RUNGS[rung]
         wide = np.flatnonzero(rung > LAST_SINGLE)
         if len(wide):
-            out[wide] += stream.even(RUNGS[rung[wide] + 1] - out[wide], values[wide] - out[wide])
+            out[wide] += stream.uniform(RUNGS[rung[wide] + 1] - out[wide], values[wide] - out[wide])
         return out

@@ -1,4 +1,4 @@
-"""A radar cube <-> a .mmw file: chunks of frames, one step for all, found so that size or error is as asked."""
+"""Compresses a radar cube into a .mmw file and back; one step for all chunks meets a given size or error."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from mmweaver.compression.cell_choice import active_cells
-from mmweaver.compression.chunk import ChunkEncoder, Decoded, decoded
-from mmweaver.compression.mmw_container import MmwFile, MmwHeader, packed_mmw, unpacked_mmw
+from mmweaver.compression.chunk import ChunkEncoder, DecodedChunk, decode_chunk
+from mmweaver.compression.mmw_container import MmwFile, MmwHeader, pack_mmw, unpack_mmw
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
@@ -18,22 +18,22 @@ from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 
 CHUNK_FRAMES = 20
-BYTES_A_POINT = 6.0  # fewer and well fitted ones say more than many: what is left has a coder of its own
+BYTES_A_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
 POINTS_A_FRAME = 50
 FIT_STAGES, LEAST_GAIN = 20, 12.0
 LEAST_BYTES = 256
 FINEST_STEP, COARSEST_STEP = 1e-7, 0.5
 TRIALS = 9
-BENT = 0.1  # trials whose sizes (as logarithms) are nearer than this are joined by a line
+BENT = 0.1  # trials whose log sizes differ by less are interpolated linearly
 CLOSE_ENOUGH = 0.97  # of the bytes allowed
-# a first guess: the step that suits 500 bytes a frame, and how it falls with more of them
+# first guess: the step that suits 500 bytes per frame, and its slope over the logarithm of the size
 FIRST_STEP, FIRST_SLOPE, USUAL_BYTES = 3e-3, 1.2, 500
 CLOSE_ENOUGH_DB = 0.1
 
 Progress = Callable[[str], None]
 
 
-def compressed(
+def compress_cube(
     cube: RadarCube,
     *,
     num_bytes: int | None = None,
@@ -41,22 +41,21 @@ def compressed(
     keep_noise: bool = False,
     progress: Progress = lambda _: None,
 ) -> bytes:
-    """The bytes of a .mmw file: at most `num_bytes`, or with the active cells right to `quality_db` dB.
+    """The bytes of a .mmw file: at most `num_bytes`, or with a signal-to-error ratio of `quality_db` in active cells.
 
-    Cells that hold no signal (less than 12 dB over the median power) may err 12 dB more, and are left empty where
-    they hold less than that; with `keep_noise` all cells err alike.
-    Raises InputError where the cube cannot be written (no numbers, other axes than its radar's) or the wish cannot
-    be met.
+    Cells without signal (less than 12 dB above the median power) may have 12 dB more error, and stay empty where they
+    hold less than that; with `keep_noise` all cells have the same error. Raises InputError where the cube cannot be
+    stored (values that are not finite, other axes than its radar's) or the request cannot be met.
     """
     if (num_bytes is None) == (quality_db is None):
-        raise InputError("say either how many bytes or what quality, not both")
+        raise InputError("give either a number of bytes or a quality, not both")
     if num_bytes is not None and num_bytes < LEAST_BYTES:
         raise InputError(f"{num_bytes} bytes are too few; a .mmw file needs at least {LEAST_BYTES}")
     if quality_db is not None and not 1 <= quality_db <= 90:
         raise InputError(f"a quality of {quality_db:g} dB is not possible; choose 1 to 90")
     check_writable(cube)
     peak = float(np.abs(cube.values).max())
-    parts = _parts(len(cube.values))
+    parts = _chunks(len(cube.values))
     wanted = None if num_bytes is None else num_bytes / len(parts)
     encoders = []
     for number, part in enumerate(parts):
@@ -69,23 +68,23 @@ def compressed(
     progress("writing")
 
     def written(step: float) -> list[bytes]:
-        return [encoder.encoded(step) for encoder in encoders]
+        return [encoder.encode(step) for encoder in encoders]
 
     if num_bytes is not None:
         return _within_bytes(written, header, num_bytes)
-    return packed_mmw(header, _within_error(written, cube, float(quality_db or 0)))
+    return pack_mmw(header, _within_error(written, cube, float(quality_db or 0)))
 
 
 def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: bool = True) -> RadarCube:
-    """A .mmw file, or some of its frames, as a cube; only the chunks that are needed are read.
+    """Reads a .mmw file, or some of its frames, as a cube; only the required chunks are decoded.
 
-    Raises InputError where the file is damaged or none of its frames is asked for.
+    Raises InputError where the file is damaged or `frames` selects none of its frames.
     """
     file = MmwFile(path)
     header = file.header
     wanted = range(sum(header.chunk_frames))[frames]
     if not wanted:
-        raise InputError(f"{path} has {sum(header.chunk_frames)} frames, and none of them is asked for")
+        raise InputError(f"{path} has {sum(header.chunk_frames)} frames, and none of them is selected")
     values, first = [], 0
     for index, count in enumerate(header.chunk_frames):
         own = [frame - first for frame in wanted if first <= frame < first + count]
@@ -100,9 +99,9 @@ def read_cube(path: Path | str, frames: slice = slice(None), *, with_residual: b
 
 
 def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
-    """Error over signal, dB, of a file's bytes against the cube they were made of: cells with signal, and all cells."""
-    header, chunks = unpacked_mmw(data)
-    again = np.concatenate([decoded(chunk, header.config).cube_values() for chunk in chunks])
+    """Error-to-signal ratio in dB of a compressed cube against the original: in active cells, and in all cells."""
+    header, chunks = unpack_mmw(data)
+    again = np.concatenate([decode_chunk(chunk, header.config).cube_values() for chunk in chunks])
     is_active = active_cells(cube.values)
     return {
         "signal_error_db": round(_error_db(cube.values, again, is_active), 2),
@@ -110,16 +109,16 @@ def errors_db(data: bytes, cube: RadarCube) -> dict[str, float]:
     }
 
 
-def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> Decoded:
-    """One chunk of a file. Raises InputError where it is damaged."""
-    chunk = decoded(file.chunk(index), file.header.config, with_residual=with_residual)
-    if chunk.stretch.num_frames != file.header.chunk_frames[index]:
-        raise InputError(f"{file.path} is damaged: chunk {index} has another number of frames; compress it again")
+def read_chunk(file: MmwFile, index: int, *, with_residual: bool = True) -> DecodedChunk:
+    """Decodes one chunk of a file. Raises InputError where it is damaged."""
+    chunk = decode_chunk(file.chunk(index), file.header.config, with_residual=with_residual)
+    if chunk.fit_window.num_frames != file.header.chunk_frames[index]:
+        raise InputError(f"{file.path} is damaged: chunk {index} has a wrong number of frames; compress it again")
     return chunk
 
 
-def described(path: Path | str) -> dict[str, Any]:
-    """What a file holds, plain values only; every chunk is read and checked. Raises InputError where it is damaged."""
+def describe_mmw(path: Path | str) -> dict[str, Any]:
+    """Describes a file by plain values; every chunk is decoded and checked. Raises InputError where it is damaged."""
     file = MmwFile(path)
     header, config = file.header, file.header.config
     chunks = []
@@ -127,7 +126,7 @@ def described(path: Path | str) -> dict[str, Any]:
         chunk = read_chunk(file, index)
         chunks.append(
             {
-                "frames": chunk.stretch.num_frames,
+                "frames": chunk.fit_window.num_frames,
                 "bytes": size,
                 "scatterers": int(chunk.layers.counts().sum()),
                 "has_static": bool((chunk.layers.static != 0).any()),
@@ -176,12 +175,12 @@ def check_writable(cube: RadarCube) -> None:
                 f"the cube's {name} is not that of radar {cube.config.name!r}; give the radar that made it"
             )
     if not np.isfinite(cube.values).all():
-        raise InputError("the cube holds values that are no numbers; mend the recording")
+        raise InputError("the cube holds values that are not finite; repair the recording")
     if not np.any(cube.values):
         raise InputError("the cube is all zeros: there is nothing to compress")
 
 
-def _parts(num_frames: int) -> list[range]:
+def _chunks(num_frames: int) -> list[range]:
     return [range(first, min(first + CHUNK_FRAMES, num_frames)) for first in range(0, num_frames, CHUNK_FRAMES)]
 
 
@@ -193,26 +192,26 @@ def _some_frames(cube: RadarCube, part: Sequence[int]) -> RadarCube:
 
 def _encoder(cube: RadarCube, peak: float, wanted: float | None, keep_noise: bool) -> ChunkEncoder:
     frames = len(cube.values)
-    stretch = FitWindow.of(cube.config, frames, overlap_hop(cube))
-    target = stretch.working(cube.values / np.float32(peak))
+    fit_window = FitWindow.of(cube.config, frames, overlap_hop(cube))
+    target = fit_window.working(cube.values / np.float32(peak))
     most = POINTS_A_FRAME * frames
     num_points = most if wanted is None else min(most, int(wanted / BYTES_A_POINT))
-    # one frame cannot tell what stands still from what moves slowly
+    # a single frame cannot separate static clutter from slow motion
     recipe = FitRecipe(
         num_points=num_points, with_static=frames > 1, with_calibration=True, stages=FIT_STAGES, least_gain=LEAST_GAIN
     )
-    return ChunkEncoder(target, stretch, fitted(target, stretch, recipe), peak, keep_noise=keep_noise)
+    return ChunkEncoder(target, fit_window, fitted(target, fit_window, recipe), peak, keep_noise=keep_noise)
 
 
 def _within_bytes(written: Callable[[float], list[bytes]], header: MmwHeader, num_bytes: int) -> bytes:
-    """The finest step whose file fits: the size falls about as a power of the step, so guess and narrow down."""
+    """The finest step whose file fits: the size is roughly a power of the step, so interpolate and narrow down."""
     low, high = math.log(FINEST_STEP), math.log(COARSEST_STEP)
     best: bytes | None = None
     seen: list[tuple[float, float]] = []
     ample = num_bytes / (sum(header.chunk_frames) * USUAL_BYTES)
     guess = min(max(math.log(FIRST_STEP) - FIRST_SLOPE * math.log(ample), low), high)
     for _ in range(TRIALS):
-        data = packed_mmw(header, written(math.exp(guess)))
+        data = pack_mmw(header, written(math.exp(guess)))
         seen.append((guess, math.log(len(data) / num_bytes)))
         if len(data) <= num_bytes:
             best, high = data if best is None or len(data) > len(best) else best, guess
@@ -222,23 +221,23 @@ def _within_bytes(written: Callable[[float], list[bytes]], header: MmwHeader, nu
             low = guess
         guess = _next_guess(seen, low, high)
     if best is None:
-        best = packed_mmw(header, written(COARSEST_STEP))
+        best = pack_mmw(header, written(COARSEST_STEP))
     if len(best) > num_bytes:
         raise InputError(f"{num_bytes} bytes are too few for this recording; give at least {len(best)}")
     return best
 
 
 def _next_guess(seen: list[tuple[float, float]], low: float, high: float) -> float:
-    """Where the line between the trials on either side of zero crosses it, or the middle where that is slow.
+    """Next step (log) to try: regula falsi between the trials on either side of zero, or bisection where it is slow.
 
-    A little below zero is aimed at. Trials on one side alone: the line through the last two, or of the usual slope.
+    Aims slightly below zero. With trials on one side only: the line through the last two, or of the usual slope.
     """
     above = [trial for trial in seen if trial[1] > 0]
     below = [trial for trial in seen if trial[1] <= 0]
     if above and below:
         first, second = max(above), min(below)
         if min(first[1], -second[1]) > BENT and (seen[-1][1] > 0) == (seen[-2][1] > 0):
-            return (first[0] + second[0]) / 2  # one side alone moves: the curve is bent
+            return (first[0] + second[0]) / 2  # only one side moves: the curve is bent
     elif len(seen) > 1:
         first, second = seen[-2:]
     else:
@@ -250,7 +249,7 @@ def _next_guess(seen: list[tuple[float, float]], low: float, high: float) -> flo
 
 
 def _within_error(written: Callable[[float], list[bytes]], cube: RadarCube, quality_db: float) -> list[bytes]:
-    """The coarsest step whose error on active cells is at most -quality_db."""
+    """The coarsest step whose error-to-signal ratio in active cells is at most -quality_db."""
     is_active = active_cells(cube.values)
     low, high = math.log(FINEST_STEP), math.log(COARSEST_STEP)
     best: list[bytes] | None = None
@@ -258,9 +257,9 @@ def _within_error(written: Callable[[float], list[bytes]], cube: RadarCube, qual
     guess = math.log(0.02)
     for _ in range(TRIALS):
         data = written(math.exp(guess))
-        again = np.concatenate([decoded(chunk, cube.config).cube_values() for chunk in data])
+        again = np.concatenate([decode_chunk(chunk, cube.config).cube_values() for chunk in data])
         error_db = _error_db(cube.values, again, is_active)
-        # as if it were the size: too good is too large
+        # treated like the size: too good is too large
         seen.append((guess, -(error_db + quality_db) / 10))
         if error_db <= -quality_db:
             best, low = data, guess

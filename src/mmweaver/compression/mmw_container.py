@@ -1,4 +1,4 @@
-"""The .mmw container: a header that says what is inside, and chunks of a few frames each, every byte checked.
+"""The .mmw container: a header and chunks of a few frames each, all covered by checksums.
 
     "MMWV" | version u8 | length of header u16 | header | chunk, chunk, ... ; all little-endian
     header: JSON (UTF-8), deflated with a dictionary | CRC-32 of all before it
@@ -22,9 +22,9 @@ from mmweaver.core.radar_config import RadarConfig
 
 MAGIC, VERSION = b"MMWV", 2
 READABLE = (1, 2)  # 2 may hold residuals with a map of open cells
-FRONT = struct.Struct("<4sBH")
+PREFIX = struct.Struct("<4sBH")
 CHECK = struct.Struct("<I")
-# What headers have in common; part of the format, so it may never change.
+# Deflate dictionary of header text; part of the format, so it must never change.
 WORDS = (
     b'{"chunks":[[20,],"frame_period_s":,"frame_start_s":,"frame_time_s":,"radar":{"schema_version":1,"name":"",'
     b'"start_frequency_hz":77000000000.0,"chirp_slope_hz_per_s":60012000000000.0,"idle_time_s":7e-06,'
@@ -38,7 +38,7 @@ WORDS = (
 
 @dataclass(frozen=True, kw_only=True)
 class MmwHeader:
-    """What a .mmw file says about itself. `frame_time_s` counts from the recording's start; `scale` as in RadarCube."""
+    """Header of a .mmw file. `frame_time_s` counts from the start of the recording; `scale` as in RadarCube."""
 
     config: RadarConfig
     scale: float
@@ -47,17 +47,17 @@ class MmwHeader:
     chunk_bytes: tuple[int, ...] = ()
 
 
-def packed_mmw(header: MmwHeader, chunks: list[bytes]) -> bytes:
-    """The bytes of a file; the chunks' lengths in the header are filled in."""
+def pack_mmw(header: MmwHeader, chunks: list[bytes]) -> bytes:
+    """The bytes of a file; fills in the chunk lengths in the header."""
     front = _packed_header(header, [len(chunk) for chunk in chunks])
     return front + b"".join(chunk + CHECK.pack(zlib.crc32(chunk)) for chunk in chunks)
 
 
-def unpacked_mmw(data: bytes) -> tuple[MmwHeader, list[bytes]]:
-    """Header and chunks of bytes that `packed_mmw` made a moment ago; nothing is checked."""
-    _, _, size = FRONT.unpack_from(data)
-    header = _header_of(json.loads(_inflated(data[FRONT.size : FRONT.size + size])))
-    chunks, at = [], FRONT.size + size + CHECK.size
+def unpack_mmw(data: bytes) -> tuple[MmwHeader, list[bytes]]:
+    """Header and chunks of bytes from `pack_mmw`; nothing is checked."""
+    _, _, size = PREFIX.unpack_from(data)
+    header = _header_of(json.loads(_inflated(data[PREFIX.size : PREFIX.size + size])))
+    chunks, at = [], PREFIX.size + size + CHECK.size
     for length in header.chunk_bytes:
         chunks.append(data[at : at + length])
         at += length + CHECK.size
@@ -65,39 +65,39 @@ def unpacked_mmw(data: bytes) -> tuple[MmwHeader, list[bytes]]:
 
 
 def write_mmw(path: Path | str, header: MmwHeader, chunks: list[bytes]) -> int:
-    """Writes the file, whole or not at all, and gives its size. Raises InputError where it cannot be written."""
-    data = packed_mmw(header, chunks)
+    """Writes the file atomically and returns its size. Raises InputError where it cannot be written."""
+    data = pack_mmw(header, chunks)
     with atomic_file(Path(path)) as temporary:
         temporary.write_bytes(data)
     return len(data)
 
 
 class MmwFile:
-    """A .mmw file, its header read and checked; chunks are read, and checked, when asked for."""
+    """A .mmw file: the header is read and checked at once, chunks on demand."""
 
     def __init__(self, path: Path | str):
-        """Raises InputError where the file cannot be read, is no .mmw, is cut off, or its header is damaged."""
+        """Raises InputError where the file is unreadable, not a .mmw file, truncated, or its header is damaged."""
         self.path = Path(path)
         try:
             self.num_bytes = self.path.stat().st_size
             with self.path.open("rb") as stream:
-                front = stream.read(FRONT.size)
+                front = stream.read(PREFIX.size)
                 size = self._header_size(front)
                 body = stream.read(size + CHECK.size)
         except OSError as error:
             raise InputError(f"cannot read {path}: {error.strerror or error}") from None
         if len(body) < size + CHECK.size:
-            raise self._damaged("it is cut off")
+            raise self._damaged("it is truncated")
         if CHECK.unpack(body[size:])[0] != zlib.crc32(front + body[:size]):
             raise self._damaged("its header fails its checksum")
         try:
             self.header = _header_of(json.loads(_inflated(body[:size])))
         except (zlib.error, ValueError, KeyError, TypeError, IndexError) as error:
-            raise self._damaged(f"its header makes no sense ({error})") from None
-        self._first = FRONT.size + size + CHECK.size
+            raise self._damaged(f"its header is malformed ({error})") from None
+        self._first = PREFIX.size + size + CHECK.size
         expected = self._first + sum(self.header.chunk_bytes) + CHECK.size * len(self.header.chunk_bytes)
         if self.num_bytes != expected:
-            raise self._damaged(f"it has {self.num_bytes} bytes where its header tells of {expected}")
+            raise self._damaged(f"it has {self.num_bytes} bytes where its header promises {expected}")
 
     def chunk(self, index: int) -> bytes:
         """One chunk's payload. Raises InputError where it fails its checksum."""
@@ -115,11 +115,11 @@ class MmwFile:
         return payload
 
     def _header_size(self, front: bytes) -> int:
-        if len(front) < FRONT.size or front[:4] != MAGIC:
+        if len(front) < PREFIX.size or front[:4] != MAGIC:
             raise InputError(
                 f"{self.path} is no .mmw file; make one with: mmweaver compress capture.npz -o capture.mmw"
             )
-        _, version, size = FRONT.unpack(front)
+        _, version, size = PREFIX.unpack(front)
         if version not in READABLE:
             raise InputError(
                 f"{self.path} is a .mmw file of version {version}, or damaged; this program reads versions"
@@ -128,7 +128,7 @@ class MmwFile:
         return size
 
     def _damaged(self, why: str) -> InputError:
-        return InputError(f"{self.path} is damaged: {why}; fetch it again or compress the recording again")
+        return InputError(f"{self.path} is damaged: {why}; copy it again or compress the recording again")
 
 
 def _packed_header(header: MmwHeader, sizes: list[int]) -> bytes:
@@ -143,13 +143,13 @@ def _packed_header(header: MmwHeader, sizes: list[int]) -> bytes:
     packer = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zlib.Z_DEFAULT_STRATEGY, WORDS)
     body = packer.compress(text) + packer.flush()
     if len(body) > 0xFFFF:
-        raise InputError("the header grows too long: cut the recording into shorter files")
-    front = FRONT.pack(MAGIC, VERSION, len(body)) + body
+        raise InputError("the header is too long; split the recording into shorter files")
+    front = PREFIX.pack(MAGIC, VERSION, len(body)) + body
     return front + CHECK.pack(zlib.crc32(front))
 
 
 def _times(time_s: tuple[float, ...]) -> dict[str, Any]:
-    """Start and step where they say it all."""
+    """Start and period of evenly spaced frames, or all frame times."""
     if len(time_s) > 1:
         step_s = (time_s[-1] - time_s[0]) / (len(time_s) - 1)
         if all(abs(t - time_s[0] - k * step_s) < 1e-9 for k, t in enumerate(time_s)):

@@ -1,4 +1,4 @@
-"""A .mmw file as a field: sampled anywhere, its chunks read when their time is asked for."""
+"""A .mmw file as a signal field; its chunks are decoded when their frames are sampled."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from jaxtyping import Complex
 
-from mmweaver.compression.chunk import Decoded
+from mmweaver.compression.chunk import DecodedChunk
 from mmweaver.compression.mmw_codec import grid_of_header, read_chunk
 from mmweaver.compression.mmw_container import MmwFile
 from mmweaver.core.records import CubeGrid
@@ -21,7 +21,7 @@ CHUNKS_KEPT = 4
 
 
 class MmwField(SignalField):
-    """Scatterers and static layer as ScattererField has them; the residual, known at cells, by straight lines between.
+    """Scatterers and static layer as in ScattererField, plus the residual, interpolated linearly between cells.
 
     Raises InputError where the file, or a chunk when it is read, is damaged.
     """
@@ -35,11 +35,11 @@ class MmwField(SignalField):
 
     @property
     def num_values(self) -> int:
-        """Numbers of the layers and of the residual that are not zero; reads the whole file."""
+        """Real numbers of the layers plus non-zero residual values; decodes the whole file."""
         total = 0
         for index in range(len(self._starts) - 1):
             chunk = read_chunk(self.file, index)
-            total += chunk.layers.num_values(chunk.stretch.response)
+            total += chunk.layers.num_values(chunk.fit_window.response)
             if chunk.residual is not None:
                 total += chunk.num_residual_values
         return total
@@ -57,7 +57,7 @@ class MmwField(SignalField):
                 place = local.copy()
                 place[:, 0] = np.clip(np.rint(place[:, 0]), 0, len(residual) - 1)
                 parts = [map_coordinates(part, place.T, order=1) for part in (np.real(residual), np.imag(residual))]
-                values = values + (parts[0] + 1j * parts[1]) * self._turn_at(local)
+                values = values + (parts[0] + 1j * parts[1]) * self._phasor_at(local)
             out[chosen] = values
         return out
 
@@ -66,7 +66,7 @@ class MmwField(SignalField):
         out = np.empty(grid.shape, np.complex64)
         axes = coordinates_on(self.grid, grid)
         response = PointResponse(self.config)
-        turn = response.turn(response.axes(grid)).numpy()
+        phasor = response.turn(response.axes(grid)).numpy()
         for index, chosen in self._by_chunk(axes[0]):
             field, residual = self._part(index)
             values = field.on_grid(replace(grid, frame_time_s=grid.frame_time_s[chosen]))
@@ -75,12 +75,12 @@ class MmwField(SignalField):
                 part = residual[nearest]
                 for axis in (1, 2, 3):
                     part = np.moveaxis(np.tensordot(_lines(axes[axis], part.shape[axis]), part, (1, axis)), 0, axis)
-                values = values + part * turn
+                values = values + part * phasor
             out[chosen] = values
         return out
 
     def _by_chunk(self, frame: np.ndarray) -> list[tuple[int, np.ndarray]]:
-        """(chunk, which of the frames asked for are nearest to it)."""
+        """Pairs of a chunk and the indices of the given frames that belong to it."""
         last = self._starts[-1] - 1
         index = np.searchsorted(self._starts, np.clip(np.rint(frame), 0, last), side="right") - 1
         return [(int(chunk), np.flatnonzero(index == chunk)) for chunk in np.unique(index)]
@@ -90,11 +90,11 @@ class MmwField(SignalField):
         chunk = read_chunk(self.file, index)
         frames = slice(self._starts[index], self._starts[index + 1])
         grid = replace(self.grid, frame_time_s=self.grid.frame_time_s[frames])
-        field = ScattererField(chunk.layers, chunk.stretch, grid, self.scale, chunk.peak)
+        field = ScattererField(chunk.layers, chunk.fit_window, grid, self.scale, chunk.peak)
         return field, _centred_residual(chunk)
 
-    def _turn_at(self, coordinates: Coordinates) -> np.ndarray:
-        """The cube's phase at each coordinate, off its centred one."""
+    def _phasor_at(self, coordinates: Coordinates) -> np.ndarray:
+        """Phasor (point,) from centred phase to the cube's phase at each coordinate."""
         response = PointResponse(self.config)
         axes = response.axes()
         range_bin = float(axes.range_bin[0]) + coordinates[:, 1]
@@ -103,16 +103,16 @@ class MmwField(SignalField):
         return np.exp(-1j * np.pi * (range_bin + doppler_bin) - 2j * np.pi * doppler_bin * delay)
 
 
-def _centred_residual(chunk: Decoded) -> np.ndarray | None:
+def _centred_residual(chunk: DecodedChunk) -> np.ndarray | None:
     if chunk.residual is None:
         return None
-    values = chunk.stretch.cube_values(chunk.residual * chunk.peak)
-    response = PointResponse(chunk.stretch.config)
+    values = chunk.fit_window.cube_values(chunk.residual * chunk.peak)
+    response = PointResponse(chunk.fit_window.config)
     return values * response.turn(response.axes()).numpy().conj()
 
 
 def _lines(cell: np.ndarray, num: int) -> np.ndarray:
-    """Weights (asked, cell) of straight lines; beyond the ends the value of the end."""
+    """Weights (sample, cell) of linear interpolation, clamped at the ends."""
     inside = np.clip(cell, 0, num - 1)
     return np.maximum(1 - np.abs(inside[:, None] - np.arange(num)), 0)
 

@@ -1,7 +1,7 @@
-"""Scatterers as whole numbers, each parameter as fine as its scatterer is strong, and their bits.
+"""Quantisation and entropy coding of scatterers: stronger scatterers get finer parameters.
 
 An error of one step of any parameter leaves about the same energy in the cube as an error of one step of a residual
-cell, so one step serves all: a scatterer of size k (amplitude in steps) gets 2 pi k phases and about k places a bin.
+cell, so one step serves all: a scatterer of amplitude k steps gets 2 pi k phases and about k positions per bin.
 """
 
 import math
@@ -14,10 +14,10 @@ from jaxtyping import Float, Int
 from mmweaver.compression.entropy import BitModel, BitStream, Mixture, NumberModel
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
-Whole = Int[np.ndarray, "_"]
+Integers = Int[np.ndarray, "_"]
 Counts = Int[np.ndarray, "frame range doppler"]
 
-COARSE = 16  # cells of a direction cosine that have chances of their own
+COARSE = 16  # cells of a direction cosine with adaptive probabilities
 OCTAVES = 24
 NUM_AROUND, NUM_NEAR = 8, 6
 AROUND_BOUNDS = np.array([1, 2, 3, 4, 6, 8, 12])
@@ -26,9 +26,9 @@ SIXTEENTHS = 16
 
 @dataclass(frozen=True, kw_only=True)
 class PointSteps:
-    """How fine the parameters of a scatterer are: amplitude of one size step, and places a bin for size 1.
+    """Quantisation steps: the amplitude of one step, and the positions per bin of a scatterer of one step.
 
-    The last three are in sixteenths, whole, so that every machine counts the same.
+    The last three are integers in sixteenths, so that every machine computes the same.
     """
 
     amplitude: float
@@ -38,7 +38,7 @@ class PointSteps:
 
     @classmethod
     def of(cls, step: float, response: PointResponse, axes: Axes) -> "PointSteps":
-        """Steps that leave as much error as a step `step` in every cell of the cube."""
+        """Steps that leave as much error as a step of `step` in every cell of the cube."""
         energy = len(axes.place)
         sharpness = []
         for kernel in (response.range_kernel, response.doppler_kernel):
@@ -56,23 +56,23 @@ class PointSteps:
 
 @dataclass(frozen=True, kw_only=True)
 class CodedPoints:
-    """Scatterers in whole numbers, one row a scatterer, in the order of frame, range cell, Doppler cell."""
+    """Quantised scatterers, one row each, sorted by frame, range cell and Doppler cell."""
 
-    frame: Whole
-    range_cell: Whole
-    doppler_cell: Whole
-    size: Whole  # from 1
-    phase: Whole
-    range_part: Whole  # place within the cell
-    doppler_part: Whole
+    frame: Integers
+    range_cell: Integers
+    doppler_cell: Integers
+    size: Integers  # amplitude in steps, at least 1
+    phase: Integers
+    range_part: Integers  # position within the cell
+    doppler_part: Integers
     direction: Int[np.ndarray, "_ 2"]
 
     def __len__(self) -> int:
         return len(self.frame)
 
 
-def quantised(points: Points, steps: PointSteps, axes: Axes, num_directions: int, least_size: int) -> CodedPoints:
-    """Scatterers in whole numbers; those smaller than `least_size` steps are left out."""
+def quantize(points: Points, steps: PointSteps, axes: Axes, num_directions: int, least_size: int) -> CodedPoints:
+    """Quantises scatterers (frame, point); those smaller than `least_size` steps are dropped."""
     amplitude = points.amplitude.numpy()
     size = np.rint(np.abs(amplitude) / steps.amplitude).astype(np.int64)
     frame, slot = np.nonzero(size >= max(1, least_size))
@@ -101,8 +101,8 @@ def quantised(points: Points, steps: PointSteps, axes: Axes, num_directions: int
     )  # fmt: skip
 
 
-def points_of(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes, num_directions: int) -> Points:
-    """The scatterers that the whole numbers stand for, (frame, point), padded."""
+def dequantize(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes, num_directions: int) -> Points:
+    """Scatterers (frame, point) from their quantised form, padded with amplitude zero."""
     counts = np.bincount(coded.frame, minlength=num_frames)
     slot = np.arange(len(coded)) - np.repeat(np.cumsum(counts) - counts, counts)
     shape = (num_frames, int(counts.max(initial=0)))
@@ -112,7 +112,7 @@ def points_of(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes
         out[coded.frame, slot] = values
         return torch.from_numpy(out)
 
-    def bins(cell: Whole, part: Whole, first: float, sharpness: int) -> Float[np.ndarray, "_"]:
+    def bins(cell: Integers, part: Integers, first: float, sharpness: int) -> Float[np.ndarray, "_"]:
         within = (part + 0.5) / _parts(coded.size, sharpness)
         return (first + cell - 0.5 + within).astype(np.float32)
 
@@ -131,7 +131,7 @@ def points_of(coded: CodedPoints, num_frames: int, steps: PointSteps, axes: Axes
 
 
 def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
-    """How strong a scatterer is near each cell: 0 none, then by every second octave, at most 5."""
+    """Strength of the strongest scatterer near each cell: 0 none, then one level per two octaves, at most 5."""
     out = np.zeros(shape, np.int64)
     level = 1 + _octave(coded.size) // 2
     for off_range in (-1, 0, 1):
@@ -143,7 +143,7 @@ def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
 
 
 class PointCoder:
-    """The models of one cube's scatterers. `moves`: range cells that a Doppler cell moves on a frame, times 256."""
+    """Adaptive models of one cube's scatterers. `moves`: range cells moved per Doppler cell and frame, times 256."""
 
     def __init__(self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int, moves: int):
         self.shape, self.steps, self.num_directions, self.moves = shape, steps, num_directions, moves
@@ -156,26 +156,28 @@ class PointCoder:
         self.coarse = [[BitModel(COARSE, 0.5, 2.0) for _ in range(4)] for _ in range(2)]
 
     def code(self, stream: BitStream, coded: CodedPoints | None) -> CodedPoints:
-        """Writes `coded`, or reads it where it is None."""
+        """Encodes `coded`, or decodes where it is None."""
         frames, num_range, num_doppler = self.shape
         wanted = np.zeros(self.shape, np.int64)
         if coded is not None:
             np.add.at(wanted, (coded.frame, coded.range_cell, coded.doppler_cell), 1)
         counts = np.zeros(self.shape, np.int64)
         for frame in range(frames):
-            before = self._carried_on(counts[frame - 1]) if frame else np.zeros((num_range, num_doppler), np.int64)
+            before = (
+                self._predicted_counts(counts[frame - 1]) if frame else np.zeros((num_range, num_doppler), np.int64)
+            )
             for row in range(num_range):
                 self._code_row(stream, wanted[frame, row], counts[frame], row, before)
         cells = np.repeat(np.stack(np.nonzero(counts)), counts[counts > 0], axis=1)
         return self._details(stream, cells, coded)
 
-    def _carried_on(self, counts: np.ndarray) -> np.ndarray:
-        """Where the scatterers of the frame before should be now, and around."""
+    def _predicted_counts(self, counts: np.ndarray) -> np.ndarray:
+        """Scatterer counts of the previous frame, moved by their velocity and smoothed over the neighbours."""
         num_range, num_doppler = counts.shape
-        still = num_doppler // 2
+        static = num_doppler // 2
         out = np.zeros((num_range + 2, num_doppler + 2), np.int64)
         r, d = np.nonzero(counts)
-        to = np.clip(r + ((d - still) * self.moves + 128) // 256, 0, num_range - 1)
+        to = np.clip(r + ((d - static) * self.moves + 128) // 256, 0, num_range - 1)
         np.add.at(out, (to + 1, d + 1), 2 * counts[r, d])
         near = out.copy()
         near[1:] += out[:-1] // 2
@@ -201,14 +203,14 @@ class PointCoder:
             total = np.searchsorted(AROUND_BOUNDS, around + before[row, d], side="right")
             contexts = [(around * NUM_AROUND + earlier) * 2 + first, total * NUM_AROUND + earlier, d]
             value = np.zeros(len(d), np.int64)
-            open_ = np.arange(len(d))
+            active = np.arange(len(d))
             step = 0
-            while len(open_):
+            while len(active):
                 model = self.more[min(step, len(self.more) - 1)]
-                chosen = [context[open_] for context in contexts]
-                more = model.code(stream, chosen, (wanted[d[open_]] > step).astype(np.int64))
-                open_ = open_[more > 0]
-                value[open_] += 1
+                chosen = [context[active] for context in contexts]
+                more = model.code(stream, chosen, (wanted[d[active]] > step).astype(np.int64))
+                active = active[more > 0]
+                value[active] += 1
                 step += 1
                 if step > 10_000:
                     raise ValueError("too many scatterers in one cell: the stream is damaged")
@@ -220,13 +222,13 @@ class PointCoder:
         nothing = np.zeros(num, np.int64)
         given = {name: getattr(coded, name) if coded is not None else nothing for name in ("size", "phase")}
         size = self._sizes(stream, cells, given["size"])
-        phase = stream.even(_phases(size), given["phase"])
+        phase = stream.uniform(_phases(size), given["phase"])
         parts = []
         for name, sharpness in (
             ("range_part", self.steps.range_sixteenths), ("doppler_part", self.steps.doppler_sixteenths)
         ):  # fmt: skip
             values = getattr(coded, name) if coded is not None else nothing
-            parts.append(stream.even(_parts(size, sharpness), values))
+            parts.append(stream.uniform(_parts(size, sharpness), values))
         direction = np.zeros((num, 2), np.int64)
         for side in range(self.num_directions):
             values = coded.direction[:, side] if coded is not None else nothing
@@ -236,8 +238,8 @@ class PointCoder:
             range_part=parts[0], doppler_part=parts[1], direction=direction,
         )  # fmt: skip
 
-    def _sizes(self, stream: BitStream, cells: np.ndarray, wanted: Whole) -> Whole:
-        """Octave by octave of the scatterers, frame by frame, then what is within an octave."""
+    def _sizes(self, stream: BitStream, cells: np.ndarray, wanted: Integers) -> Integers:
+        """Codes the octave of each amplitude frame by frame, then its position within the octave."""
         num = cells.shape[1]
         octave = np.zeros(num, np.int64)
         expected = np.zeros(num, np.int64)
@@ -250,10 +252,10 @@ class PointCoder:
             octave[own] = self.octave.code(stream, expected[own], _octave(np.maximum(wanted[own], 1)))
             strongest = self._strongest(r, d, octave[own], strongest)
         within = 2**octave
-        return within + stream.even(within, wanted - within)
+        return within + stream.uniform(within, wanted - within)
 
     def _strongest(self, r: np.ndarray, d: np.ndarray, octave: np.ndarray, before: np.ndarray) -> np.ndarray:
-        """Octave to expect in the next frame: the strongest of a block of cells, carried on where there was none."""
+        """Octave expected in the next frame: the strongest of a block of cells, kept where there was none."""
         block = 4
         shape = (-(-self.shape[1] // block), -(-self.shape[2] // block))
         coarse = np.full(shape, -1, np.int64)
@@ -261,33 +263,33 @@ class PointCoder:
         full = np.repeat(np.repeat(coarse, block, 0), block, 1)[: self.shape[1], : self.shape[2]]
         return np.minimum(np.where(full >= 0, full, before), OCTAVES - 1)
 
-    def _direction(self, stream: BitStream, side: int, size: Whole, wanted: Whole) -> Whole:
+    def _direction(self, stream: BitStream, side: int, size: Integers, wanted: Integers) -> Integers:
         parts = _direction_parts(size, self.steps.direction_sixteenths[side])
         cell = wanted * COARSE // parts
         found = np.zeros(len(size), np.int64)
         for bit, model in enumerate(self.coarse[side]):
             context = found + 2**bit - 1
-            chance = np.clip(model.chance(context)[0], 0.02, 0.98)
-            bits = stream.bits(chance, (cell >> (3 - bit)) & 1)
+            probability = np.clip(model.probability(context)[0], 0.02, 0.98)
+            bits = stream.bits(probability, (cell >> (3 - bit)) & 1)
             model.learn(context, bits)
             found = found * 2 + bits
         first = -(-found * parts // COARSE)
         count = -(-(found + 1) * parts // COARSE) - first
-        return first + stream.even(np.maximum(count, 1), wanted - first)
+        return first + stream.uniform(np.maximum(count, 1), wanted - first)
 
 
-def _octave(size: Whole) -> Whole:
+def _octave(size: Integers) -> Integers:
     """floor(log2(size)), exactly."""
     return (np.frexp(np.maximum(size, 1).astype(np.float64))[1] - 1).astype(np.int64)
 
 
-def _phases(size: Whole) -> Whole:
+def _phases(size: Integers) -> Integers:
     return np.maximum((size * 201 + 31) // 32, 4)
 
 
-def _parts(size: Whole, sixteenths: int) -> Whole:
+def _parts(size: Integers, sixteenths: int) -> Integers:
     return np.maximum((size * sixteenths + SIXTEENTHS - 1) // SIXTEENTHS, 1)
 
 
-def _direction_parts(size: Whole, sixteenths: int) -> Whole:
+def _direction_parts(size: Integers, sixteenths: int) -> Integers:
     return np.maximum((2 * size * sixteenths + SIXTEENTHS - 1) // SIXTEENTHS, COARSE)

@@ -1,9 +1,9 @@
-"""Whole numbers on (beam, frame, range, doppler), real and imaginary, that are mostly zero and come in clusters.
+"""Entropy coding of integer levels (beam, frame, range, doppler), real and imaginary, mostly zero and clustered.
 
-Coded beam by beam, in blocks of range rows, all frames at once; in a block first the cells of even row and even
-Doppler bin, then those between them along Doppler, then the odd rows the same way. What is likely is judged by the
-neighbours that are already known, by the beams before, and by whether a scatterer is near. The windows of the
-transforms make neighbours alike in sign, too: their weighted sum says which sign comes.
+Levels are coded beam by beam in blocks of range rows, all frames together; within a block the cells of even row and
+even Doppler bin come first, then those between them along Doppler, then the odd rows in the same order. Contexts are
+the neighbours already coded, the preceding beams, and whether a scatterer is near. The FFT windows correlate
+neighbouring cells, signs included, so a weighted sum of the neighbours predicts the sign.
 """
 
 import numpy as np
@@ -20,14 +20,14 @@ TREND_BOUNDS = np.array([1, 4, 7, 11, 16, 23, 33, 49, 73, 110, 180, 300, 500, 90
 NUM_SUMS, NUM_TRENDS = len(SUM_BOUNDS) + 1, len(TREND_BOUNDS) + 1
 NUM_NEAR = 6
 CAP = 4000
-FAR = 160  # eighths; where the trend is so strong, what is coded is the way from it
+FAR = 160  # eighths of a level; from this predicted magnitude on, the deviation from the prediction is coded
 MARGIN = 2
 BLOCK_ROWS = 16
 STEPS = 14
 
 
 class ResidualCoder:
-    """The models of one cube. `code` writes `levels`, or fills them where the stream reads."""
+    """Adaptive models of one cube: `code` encodes `levels`, or fills them in when decoding."""
 
     def __init__(self, shape: tuple[int, int, int, int]):
         self.shape = shape
@@ -44,13 +44,13 @@ class ResidualCoder:
         )
         self.sign = Mixture([BitModel(2 * t, 0.5, 4.0)])
         self.size = NumberModel(n * t * 2, STEPS, 0.3)
-        self.way = NumberModel(n, STEPS, 0.8)
+        self.deviation = NumberModel(n, STEPS, 0.8)
 
     def code(self, stream: BitStream, levels: Levels, near: Nearness) -> None:
-        """Levels (part, beam, frame, range, doppler), changed in place by a reader."""
+        """Levels (part, beam, frame, range, doppler), changed in place when decoding. `near`: see `nearness`."""
         beams, frames, num_range, num_doppler = self.shape
         padded = np.zeros((2, beams, frames, num_range + 2 * MARGIN, num_doppler + 2 * MARGIN), np.int64)
-        before = np.zeros(padded.shape[2:], np.int64)  # sizes of the beams before, weighted
+        before = np.zeros(padded.shape[2:], np.int64)  # weighted magnitudes of the preceding beams
         inside = slice(MARGIN, -MARGIN)
         for beam in range(beams):
             plane = padded[:, beam]
@@ -71,10 +71,10 @@ class ResidualCoder:
         within = (slice(None), *np.ix_(rows, bins))
         at = (slice(None), *np.ix_(rows + MARGIN, bins + MARGIN))
         around = _around(size, rows + MARGIN, bins + MARGIN)
-        beside = other[at]
+        other_beams = other[at]
         by_around = np.searchsorted(SUM_BOUNDS, around.ravel(), side="right")
-        by_beside = np.searchsorted(SUM_BOUNDS, beside.ravel(), side="right")
-        by_total = np.searchsorted(SUM_BOUNDS, ((around + beside + 1) // 2).ravel(), side="right")
+        by_other_beams = np.searchsorted(SUM_BOUNDS, other_beams.ravel(), side="right")
+        by_total = np.searchsorted(SUM_BOUNDS, ((around + other_beams + 1) // 2).ravel(), side="right")
         by_near = np.minimum(near[within], NUM_NEAR - 1).ravel()
         shape = (frames, len(rows), len(bins))
         at_bin = np.broadcast_to(beam * num_doppler + bins, shape).ravel()
@@ -86,7 +86,7 @@ class ResidualCoder:
             t = NUM_TRENDS
             contexts = [
                 ((part * 4 + phase) * NUM_SUMS + by_around) * t + by_trend,
-                (by_beside * NUM_NEAR + by_near) * t + by_trend,
+                (by_other_beams * NUM_NEAR + by_near) * t + by_trend,
                 (by_total * 3 + np.minimum(known, 2)) * t + by_trend,
                 at_bin,
                 at_row * NUM_NEAR + by_near,
@@ -111,10 +111,10 @@ class ResidualCoder:
 
     def _far(self, stream, by_total, trend, wanted) -> np.ndarray:
         expected = (trend + 4) // 8
-        way = wanted - expected
-        size = self.way.code(stream, by_total, np.abs(way))
+        deviation = wanted - expected
+        size = self.deviation.code(stream, by_total, np.abs(deviation))
         some = np.flatnonzero(size)
-        size[some] *= 1 - 2 * stream.bits(np.full(len(some), 0.5), (way[some] < 0).astype(np.int64))
+        size[some] *= 1 - 2 * stream.bits(np.full(len(some), 0.5), (deviation[some] < 0).astype(np.int64))
         return expected + size
 
     def _near(self, stream, contexts, by_total, by_trend, trend, part, wanted) -> np.ndarray:
@@ -131,7 +131,7 @@ class ResidualCoder:
 
 
 def _at(values: np.ndarray, rows: np.ndarray, bins: np.ndarray, off_row: int, off_bin: int) -> np.ndarray:
-    """The neighbours so far away (frame, row, bin)."""
+    """Values at an offset from the given rows and bins (frame, row, bin)."""
     return values[:, (rows + off_row)[:, None], bins + off_bin]
 
 
@@ -147,14 +147,14 @@ def _corners(values: np.ndarray, rows: np.ndarray, bins: np.ndarray) -> np.ndarr
 
 
 def _around(size: np.ndarray, rows: np.ndarray, bins: np.ndarray) -> np.ndarray:
-    """Weighted sizes of the known neighbours (frame, row, bin); what is not known yet is zero."""
+    """Weighted magnitudes of the known neighbours (frame, row, bin); cells not decoded yet are zero."""
     along, across = _cross(size, rows, bins)
     further, wider = _cross(size, rows, bins, 2)
     return 2 * (along + across) + _corners(size, rows, bins) + further + wider
 
 
 def _trend(plane: np.ndarray, rows: np.ndarray, bins: np.ndarray, phase: int) -> np.ndarray:
-    """What the windows' colour makes of the neighbours, in eighths of a level (frame, row, bin)."""
+    """Level predicted from the neighbours by the windows' correlation, in eighths of a level (frame, row, bin)."""
     if phase == 0:
         return 6 * _at(plane, rows, bins, -1, 0) - 2 * _at(plane, rows, bins, -2, 0)
     along, across = _cross(plane, rows, bins)
@@ -164,7 +164,7 @@ def _trend(plane: np.ndarray, rows: np.ndarray, bins: np.ndarray, phase: int) ->
 
 
 def spread(before: np.ndarray) -> np.ndarray:
-    """Sizes at and around each cell, in the frame, its neighbours in range, Doppler and time."""
+    """Magnitudes (frame, range, doppler) smoothed over the neighbours in range, Doppler and time."""
     out = 2 * before
     out[:, 1:] += before[:, :-1]
     out[:, :-1] += before[:, 1:]

@@ -1,8 +1,11 @@
 """What is being done, and how long each part of it took."""
 
+import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import perf_counter
+
+_LOG = logging.getLogger(__name__)
 
 
 class Stages:
@@ -34,4 +37,6 @@ class Stages:
             with threadpool_limits(limits=1, user_api="blas"):
                 yield
         finally:
-            self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - start
+            seconds = perf_counter() - start
+            self.seconds[name] = self.seconds.get(name, 0.0) + seconds
+            _LOG.info("%s: %.3f s", name, seconds)

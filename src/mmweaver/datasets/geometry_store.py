@@ -18,7 +18,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.datasets.make_room import RoomGeometry, TracedSequence
+from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points

@@ -8,7 +8,7 @@ from mmweaver.core.virtual_array import SAME_PLACE_WAVELENGTHS
 
 
 def beams_of(config: RadarConfig) -> Complex[np.ndarray, "beam antenna"]:
-    """Each row of the array by its own DFT, straight ahead in the middle; rows from low to high, unitary."""
+    """Unitary beamforming matrix: a DFT per row of the array, boresight in the middle, rows from low to high."""
     position_m = config.antenna_position_m
     height = np.round(position_m[:, 2] / (SAME_PLACE_WAVELENGTHS * config.wavelength_m))
     beams = np.zeros((config.num_antennas, config.num_antennas), complex)
@@ -17,7 +17,7 @@ def beams_of(config: RadarConfig) -> Complex[np.ndarray, "beam antenna"]:
         row = np.flatnonzero(height == level)
         row = row[np.argsort(position_m[row, 0], kind="stable")]
         num = len(row)
-        turns = np.outer(np.arange(num) - num // 2, np.arange(num)) / num
-        beams[first : first + num, row] = np.exp(-2j * np.pi * turns) / np.sqrt(num)
+        cycles = np.outer(np.arange(num) - num // 2, np.arange(num)) / num
+        beams[first : first + num, row] = np.exp(-2j * np.pi * cycles) / np.sqrt(num)
         first += num
     return beams

@@ -1,4 +1,4 @@
-"""What every field is: a radar sequence as a function of continuous coordinates."""
+"""The interface of all fields: a radar sequence as a function of continuous coordinates."""
 
 from abc import ABC, abstractmethod
 
@@ -16,10 +16,10 @@ CHUNK_POINTS = 1 << 18
 class SignalField(ABC):
     """One radar sequence, f(frame, range, doppler, antenna) -> I + jQ, in the phase and scale of a RadarCube.
 
-    Coordinates count cells of the field's own grid (`grid`) and may lie between them: (frame, range bin, Doppler
-    bin, antenna), the first cell of each axis at 0. `grid`, `config` and `scale` are those of the cube that the field
-    stands for. Between the bins it gives what the same radar's Fourier transforms would show there (windows, TDM
-    compensation and all); phase-centring is an inner matter of a field and never seen from outside.
+    Coordinates are in cells of the native grid (`grid`), fractions included: (frame, range bin, Doppler bin, antenna),
+    the first cell of each axis at 0. `grid`, `config` and `scale` are those of the represented cube. Between bins, a
+    field approximates the same radar's Fourier transforms there, windows and TDM compensation included; phase-centring
+    is internal to a field.
     """
 
     config: RadarConfig
@@ -29,7 +29,7 @@ class SignalField(ABC):
     @property
     @abstractmethod
     def num_values(self) -> int:
-        """How many real numbers the field stores for this sequence (a complex number counts twice)."""
+        """Number of real parameters stored for this sequence (a complex number counts twice)."""
 
     @abstractmethod
     def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
@@ -38,8 +38,8 @@ class SignalField(ABC):
     def on_grid(self, grid: CubeGrid) -> CubeValues:
         """Values at the cells of any grid, complex64 (frame, range, doppler, antenna).
 
-        Raises InputError where an antenna of the grid lies off the line that joins the field's antennas. Fields
-        that can do better than point by point override this.
+        Raises InputError where an antenna of the grid lies off the line through the field's antennas. Fields with a
+        faster way than point by point override this.
         """
         axes = coordinates_on(self.grid, grid)
         values = np.empty(grid.shape, np.complex64)
@@ -51,7 +51,7 @@ class SignalField(ABC):
         return values
 
     def cube(self, grid: CubeGrid | None = None) -> RadarCube:
-        """The field as a record, on its own grid or on another."""
+        """The field as a RadarCube, on its native grid or on another."""
         grid = self.grid if grid is None else grid
         return RadarCube(values=self.on_grid(grid), grid=grid, config=self.config, scale=self.scale)
 

@@ -1,13 +1,13 @@
-"""Phase-centring: a turn of each range and Doppler bin that makes a cube smooth along both axes.
+"""Phase-centring: a phase rotation of each range and Doppler bin that makes a cube smooth along both axes.
 
-The DFT of a window that is centred on sample N/2 turns by -pi from one bin to the next: along range and Doppler a raw
-cube sits at the highest frequency its grid can hold, where nothing learns and nothing interpolates. Counted from the
-middle of the window instead, the response of a scatterer is real, and the cube is smooth.
+The phase of the DFT of a window centred on sample N/2 rotates by -pi per bin: along range and Doppler a raw cube sits
+at its grid's Nyquist frequency, where neither learning nor interpolation works. Referred to the middle of the window
+instead, the response of a scatterer is real, and the cube is smooth.
 
-`dsp.cube` windows with the *periodic* Hann, which is symmetric about sample N/2 exactly, so the turn is
-exp(+j pi r) exp(+j pi (d - M/2)). A symmetric window has its middle at (N - 1)/2, which gives the paper's issue text
-(N - 1)/N; with a periodic window that would leave a slope of 180/N degrees a bin. r counts range bins of the radar,
-not of the kept part, and d from zero Doppler, so cubes of radars with one centre frequency agree after centring.
+`dsp.cube` uses the *periodic* Hann window, which is exactly symmetric about sample N/2, so the phasor is
+exp(+j pi r) exp(+j pi (d - M/2)). A symmetric window is centred on (N - 1)/2, which gives a factor (N - 1)/N; with a
+periodic window that would leave a slope of 180/N degrees per bin. r counts range bins of the radar's full transform,
+and d from zero Doppler, so cubes of radars with the same centre frequency agree after centring.
 """
 
 from dataclasses import replace
@@ -20,27 +20,27 @@ from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.fields.sampling import Coordinates
 
 
-def centring_turn(config: RadarConfig, grid: CubeGrid) -> Complex[np.ndarray, "range doppler"]:
-    """exp(+j pi r) exp(+j pi d) at the cells of a grid, r and d in bins of the radar's own transforms, zero at zero."""
+def centring_phasor(config: RadarConfig, grid: CubeGrid) -> Complex[np.ndarray, "range doppler"]:
+    """exp(+j pi r) exp(+j pi d) at the cells of a grid, with r and d in bins of the radar's own transforms."""
     range_bin = grid.range_m / config.range_resolution_m
     doppler_bin = grid.radial_velocity_mps / config.velocity_resolution_mps
     return np.exp(1j * np.pi * (range_bin[:, None] + doppler_bin[None, :])).astype(np.complex64)
 
 
-def centring_turn_at(config: RadarConfig, grid: CubeGrid, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
-    """The same at coordinates that count cells of `grid`, the radar's own."""
+def centring_phasor_at(config: RadarConfig, grid: CubeGrid, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
+    """The same phasor at coordinates in cells of `grid`, the radar's native grid."""
     range_bin = grid.range_m[0] / config.range_resolution_m + coordinates[:, 1]
     doppler_bin = grid.radial_velocity_mps[0] / config.velocity_resolution_mps + coordinates[:, 2]
     return np.exp(1j * np.pi * (range_bin + doppler_bin)).astype(np.complex64)
 
 
 def centred(cube: RadarCube) -> RadarCube:
-    """The cube with its phase counted from the middle of the chirp and of the frame; unitary, so nothing is lost."""
-    turn = centring_turn(cube.config, cube.grid)
-    return replace(cube, values=cube.values * turn[None, :, :, None])
+    """The cube with its phase referred to the middle of the chirp and of the frame; lossless."""
+    phasor = centring_phasor(cube.config, cube.grid)
+    return replace(cube, values=cube.values * phasor[None, :, :, None])
 
 
 def uncentred(cube: RadarCube) -> RadarCube:
     """The inverse of `centred`."""
-    turn = centring_turn(cube.config, cube.grid).conj()
-    return replace(cube, values=cube.values * turn[None, :, :, None])
+    phasor = centring_phasor(cube.config, cube.grid).conj()
+    return replace(cube, values=cube.values * phasor[None, :, :, None])

@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float
 from mmweaver.core.records import RgbdPhoto
 from mmweaver.core.shapes import Array, Points, Rotation
 from mmweaver.core.skeleton import BONES, joint
+from mmweaver.geometry import pinhole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,13 +25,9 @@ def project(points_m: Points, photo: RgbdPhoto, radar_from_camera: Rotation) -> 
 
     Reference: docs/conventions.md, "Camera".
     """
-    camera_m = points_m @ radar_from_camera  # rotating back: R^T p, for rows
-    depth_m = camera_m[:, 2]
-    ahead = depth_m > NEAREST_M
-    z = np.where(ahead, depth_m, 1.0)
-    lens = photo.intrinsics
-    column, row = lens.fx * camera_m[:, 0] / z + lens.cx, lens.fy * camera_m[:, 1] / z + lens.cy
-    return np.where(ahead[:, None], np.stack([column, row, depth_m], axis=1), np.nan)
+    # Points are rows, so the inverse rotation, R^T p, is p R.
+    pixels, depth_m = pinhole.project(points_m @ radar_from_camera, photo.intrinsics)
+    return np.where(depth_m[:, None] > NEAREST_M, np.column_stack([pixels, depth_m]), np.nan)
 
 
 def is_hidden(pixels: Float[Array, "point 3"], photo: RgbdPhoto) -> Bool[Array, " point"]:

@@ -73,12 +73,13 @@ def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
     return network, load_into(network, file)
 
 
-def load_into(network: nn.Module, file: Path, *, recipe: str | None = None) -> WeightsCard:
+def load_into(network: nn.Module, file: Path, *, recipe: str | None = None, made_by: str | None = None) -> WeightsCard:
     """Reads weights into any network and makes it ready to use. Raises InputError for files that do not fit it, and
-    for those of another recipe than the one named."""
+    for those of another recipe than the one named. `made_by`: the command that makes them, for that error."""
     card, tensors = _read(file)
+    command = f"mmweaver train {recipe}"
     if recipe is not None and card.recipe != recipe:
-        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train {recipe}")
+        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: {made_by or command}")
     wanted = network.state_dict()
     wrong = [name for name in wanted if name not in tensors or tensors[name].shape != wanted[name].shape]
     wrong += [name for name in tensors if name not in wanted]

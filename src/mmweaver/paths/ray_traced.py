@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
@@ -21,7 +22,7 @@ from mmweaver.paths.visibility import Visibility
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
 
-ASSUMPTIONS = (
+_SENTENCES = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
     " makers' documents; they are not calibrated against a recording",
     "the body is made of capsules with a wrinkled skin that glints where it faces the radar (reflectivity 0.14, slope"
@@ -29,6 +30,7 @@ ASSUMPTIONS = (
     "who stands or sits still sways, trembles and breathes by typical amounts",
     "nothing passes through furniture, and waves do not bend around edges",
 )
+ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
 SEVERAL_PEOPLE = (
     "people hide each other, but no wave goes from one person over another to the radar (see docs/several_people.md)"
 )

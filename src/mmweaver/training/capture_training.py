@@ -125,7 +125,7 @@ def tune(
     gain = 1.0
     if not all(room.is_calibrated for room in rooms):
         gain = gain_of(network, [room for room in rooms if not room.is_calibrated])
-        rooms = [room if room.is_calibrated else room.times(gain) for room in rooms]
+        rooms = [room if room.is_calibrated else room.calibrated(gain) for room in rooms]
     noise = float(np.median([room.noise_power for room in rooms]))
     held_out = rooms[-1] if len(rooms) > 1 else None
     used = rooms[:-1] if held_out is not None else rooms

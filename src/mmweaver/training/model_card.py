@@ -58,32 +58,20 @@ weaver = Weaver.from_pretrained(".")  # this folder, its weights.safetensors, or
     limits="""- What the photo does not show is not there. Phases of surfaces and skin are drawn, not known.
 - One radar ({radar}); others are rendered from the same echoes and have not been judged.""",
 )
-PAGES = {
-    "activity": Page(
-        unit="",
-        about="""A recogniser of mmWeaver: which of twelve activities 20 frames of a radar show, from range-Doppler and
-range-azimuth pictures in decibels above the receiver's noise. Judge of generated data, and features of the paper's
-perceptual loss.
-
-    mmweaver train paper --data data/ --out paper/ --features weights.safetensors""",
-        limits="- One radar ({radar}); its pictures are scaled by that radar's constants, and no other's weights fit.",
-    ),
-    "paper": Page(
-        unit="",
-        about="""The paper's own network as the paper trains it, kept for comparison: a photo of a room with depth and a
-person's joints in, the weights of an implicit representation of the complex signal out. For use take recipe weaver.
-
-    python -m studies.network.paper_rows --data data/ --weights weights.safetensors""",
-        limits="- Where its loss is that of all zeros it has collapsed: its signals hold hardly any energy.\n"
-        "- One radar ({radar}).",
-    ),
-}
+ACTIVITY = Page(
+    unit="",
+    about="""A recogniser of mmWeaver: which of twelve activities 20 frames of a radar show, from range-Doppler and
+range-azimuth pictures in decibels above the receiver's noise. It evaluates generated data, and its features are those
+of the paper's perceptual loss.""",
+    limits="- One radar ({radar}); its pictures are scaled by that radar's constants, and no other's weights fit.",
+)
 
 
-def model_card(card: WeightsCard, file: Path, *, data: str, judged_on: str, figures: Figures) -> str:
-    """The page as Markdown with a front matter. `data`, `judged_on`: sentences; `figures`: rows of scores, in dB those
-    of the weaver."""
-    page = PAGES.get(card.recipe, WEAVER)
+def model_card(
+    card: WeightsCard, file: Path, *, data: str, judged_on: str, figures: Figures, page: Page = WEAVER
+) -> str:
+    """The page as Markdown with a front matter. `data`, `judged_on`: sentences; `figures`: rows of scores, in
+    `page.unit`."""
     lines = [
         FRONT.format(
             licence=card.licence.lower(), title=f"mmweaver {card.recipe}", about=page.about

@@ -1,4 +1,4 @@
-"""What recipes `activity` and `paper` leave: weights with what one must know about them, and their page."""
+"""Weights of a recipe other than `weaver`, with what one must know about them, and their page."""
 
 import hashlib
 from dataclasses import asdict
@@ -12,15 +12,26 @@ from mmweaver.datasets.dataset_store import plan_text, read_radar, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
 from mmweaver.training.activity_training import TRAIN_SPLITS
-from mmweaver.training.model_card import Figures, model_card
+from mmweaver.training.model_card import ACTIVITY, Figures, Page, model_card
 from mmweaver.training.trainer import Trainer
 
 CARD_FILE = "README.md"
-SPLITS = {"activity": TRAIN_SPLITS, "paper": ("train",)}
 
 
-def write_recipe_weights(out: Path, data: Path, trainer: Trainer) -> Path:
-    """Writes `out`/weights.safetensors and its README.md; gives the weights' path."""
+def write_activity_weights(out: Path, data: Path, trainer: Trainer) -> Path:
+    """Writes weights and page of recipe `activity`; returns the path of the weights."""
+    accuracy, chance = 1 - trainer.best.figures["wrong"], 1 / len(ACTIVITY_NAMES)
+    figures = {"this network": {"accuracy": accuracy}, "chance": {"accuracy": chance}}
+    return write_recipe_weights(out, data, trainer, splits=TRAIN_SPLITS, page=ACTIVITY, figures=figures)
+
+
+def write_recipe_weights(
+    out: Path, data: Path, trainer: Trainer, *, splits: tuple[str, ...], page: Page, figures: Figures
+) -> Path:
+    """Writes `out`/weights.safetensors and its README.md; returns the path of the weights.
+
+    `splits`: those of the data set that the network was trained on. `figures`: the best validation and its baselines.
+    """
     recipe, network = trainer.recipe, getattr(trainer.learner, "network", None)
     assert isinstance(network, nn.Module), "a learner of one network"
     card = WeightsCard(
@@ -30,26 +41,15 @@ def write_recipe_weights(out: Path, data: Path, trainer: Trainer) -> Path:
     )  # fmt: skip
     file = out / WEIGHTS_FILE
     save_weights(file, network, card)
-    sequences, rooms = _counted(data, SPLITS[recipe.name])
+    sequences, rooms = _counted(data, splits)
     unseen, unseen_rooms = _counted(data, ("validation",))
     passes = trainer.step * recipe.batch_size / sequences
     told = f"Made up by `mmweaver dataset`: {sequences:,} sequences of {rooms} rooms, {passes:.1f} passes through them."
     judged = f"{unseen:,} sequences of {unseen_rooms} rooms of kinds not trained on, the weights that were best there."
-    page = model_card(card, file, data=told, judged_on=judged, figures=_figures(trainer))
+    text = model_card(card, file, data=told, judged_on=judged, figures=figures, page=page)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(page)
+        partial.write_text(text)
     return file
-
-
-def _figures(trainer: Trainer) -> Figures:
-    """The best validation beside its floor."""
-    own = trainer.best.figures
-    if trainer.recipe.name == "activity":
-        floor = 1 / len(ACTIVITY_NAMES)
-        return {"this network": {"accuracy": 1 - own["wrong"]}, "chance": {"accuracy": floor}}
-    row = {"loss": trainer.best.value, "squared_error_over_energy": own["nmse"], "energy_over_true": own["energy"]}
-    nothing = {"loss": own["zeros_loss"], "squared_error_over_energy": 1.0, "energy_over_true": 0.0}
-    return {"this network": row, "all zeros": nothing}
 
 
 def _counted(data: Path, splits: tuple[str, ...]) -> tuple[int, int]:

@@ -1,5 +1,6 @@
 """Long trainings that may be interrupted: saved now and then, and gone on with from there."""
 
+import logging
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,6 +12,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 
 SAVE_EVERY_S, REPORT_EVERY = 60.0, 50
+log = logging.getLogger(__name__)
 
 
 class Stateful(Protocol):
@@ -29,7 +31,8 @@ class Resumable:
     """Counts steps, saves what is named in `parts` every minute, and starts where a saved run stopped.
 
     Without a file nothing is kept. `history` holds a row of figures every 50 steps. `every_s` is another time between
-    saves. Of several processes all read, and only the one that `writes` saves.
+    saves. Of several processes all read, and only the one that `writes` saves. A run goes on with as many threads as it
+    began with, for sums of other threads differ in their last bits (decision 140).
     """
 
     def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):
@@ -66,7 +69,8 @@ class Resumable:
             return
         states = {name: part.state_dict() for name, part in self.parts.items()}
         with atomic_file(self.file) as temporary:
-            torch.save({"done": self.done, "cpu_s": self.cpu_s, "history": self.history, "parts": states}, temporary)
+            state = {"done": self.done, "cpu_s": self.cpu_s, "history": self.history, "parts": states}
+            torch.save(state | {"threads": torch.get_num_threads()}, temporary)
 
     def _load(self, file: Path) -> None:
         try:
@@ -78,3 +82,10 @@ class Resumable:
                 f"{file} cannot be gone on with ({str(error).splitlines()[0][:80]}); delete it to begin anew"
             ) from None
         self.done, self.cpu_s, self.history = kept["done"], kept["cpu_s"], kept["history"]
+        _go_on_with(int(kept.get("threads", torch.get_num_threads())), file)  # older files do not name it
+
+
+def _go_on_with(threads: int, file: Path) -> None:
+    if threads != torch.get_num_threads():
+        log.warning("%s was written with %d threads; training goes on with %d", file, threads, threads)
+        torch.set_num_threads(threads)

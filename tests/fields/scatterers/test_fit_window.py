@@ -27,22 +27,24 @@ def overlapping(hop: int = 3, num_frames: int = 6) -> RadarCube:
 def test_overlapping_windows_are_one_long_frame_and_come_back(hop: int):
     cube = overlapping(hop)
     assert overlap_hop(cube) == hop
-    stretch = FitWindow.of(SMALL, 6, hop)
-    working = stretch.working(cube.values)
+    fit_window = FitWindow.of(SMALL, 6, hop)
+    working = fit_window.working(cube.values)
     assert working.shape == (1, 24, 16 + 5 * hop, 12)
-    assert error_db(stretch.cube_values(working), cube.values) < -100
+    assert error_db(fit_window.cube_values(working), cube.values) < -100
 
 
 def test_an_error_in_the_long_frame_has_the_energy_it_has_in_the_cube():
     """So the fitter minimises the cube's own error: the ratio of two errors is the same on both sides."""
-    stretch = FitWindow.of(SMALL, 6, 3)
+    fit_window = FitWindow.of(SMALL, 6, 3)
     rng = stream(2, "errors")
     energy = []
     for _ in range(3):
         parts = rng.normal(size=(2, 1, 24, 31, 12))
         # loops at which the long window is zero hold nothing
-        error = stretch.working(stretch.cube_values(torch.from_numpy(parts[0] + 1j * parts[1]).to(torch.complex64)))
-        cube = stretch.cube_values(error)
+        error = fit_window.working(
+            fit_window.cube_values(torch.from_numpy(parts[0] + 1j * parts[1]).to(torch.complex64))
+        )
+        cube = fit_window.cube_values(error)
         energy.append(float(error.abs().square().sum()) / float(np.sum(np.abs(cube) ** 2)))
     assert np.ptp(energy) < 1e-4 * energy[0]
 
@@ -58,7 +60,7 @@ def test_frames_that_do_not_share_chirps_stay_alone():
 
 def test_without_overlap_the_working_frames_are_the_cube_turned():
     cube = crowd(num_frames=2)
-    stretch = FitWindow.of(SMALL, 2, 0)
-    working = stretch.working(cube.values)
+    fit_window = FitWindow.of(SMALL, 2, 0)
+    working = fit_window.working(cube.values)
     assert np.allclose(np.abs(working.numpy()), np.abs(cube.values), rtol=1e-5, atol=1e-9)
-    assert error_db(stretch.cube_values(working), cube.values) < -100
+    assert error_db(fit_window.cube_values(working), cube.values) < -100

@@ -7,32 +7,32 @@ from mmweaver.fields.scatterers.layers import rendered, static_cells
 from tests.fields.echoes import SMALL, crowd
 
 
-def left_db(working: torch.Tensor, stretch: FitWindow, recipe: FitRecipe) -> tuple[float, torch.Tensor]:
-    layers = fitted(working, stretch, recipe)
-    left = working - rendered(layers, stretch.response, stretch.axes)
+def left_db(working: torch.Tensor, fit_window: FitWindow, recipe: FitRecipe) -> tuple[float, torch.Tensor]:
+    layers = fitted(working, fit_window, recipe)
+    left = working - rendered(layers, fit_window.response, fit_window.axes)
     error = 10 * torch.log10(left.abs().square().sum() / working.abs().square().sum())
     return float(error), layers.counts()
 
 
 def test_a_crowd_is_found_down_to_its_noise():
     cube = crowd()
-    stretch = FitWindow.of(SMALL, 3, 0)
-    working = stretch.working(cube.values)
+    fit_window = FitWindow.of(SMALL, 3, 0)
+    working = fit_window.working(cube.values)
     noise_db = 10 * torch.log10(torch.tensor(2 * 2e-4**2) / working.abs().square().mean())
-    error, counts = left_db(working, stretch, FitRecipe(num_points=90, stages=10))
+    error, counts = left_db(working, fit_window, FitRecipe(num_points=90, stages=10))
     assert error < -30
     assert error > noise_db - 1.0
-    fewer, _ = left_db(working, stretch, FitRecipe(num_points=20, stages=10))
+    fewer, _ = left_db(working, fit_window, FitRecipe(num_points=20, stages=10))
     assert fewer > error + 3
     assert counts.sum() <= 90
 
 
 def test_swapping_the_weakest_helps_or_does_no_harm():
     cube = crowd()
-    stretch = FitWindow.of(SMALL, 3, 0)
-    working = stretch.working(cube.values)
-    plain, _ = left_db(working, stretch, FitRecipe(num_points=30, stages=5))
-    swapped, _ = left_db(working, stretch, FitRecipe(num_points=30, stages=5, swaps=2))
+    fit_window = FitWindow.of(SMALL, 3, 0)
+    working = fit_window.working(cube.values)
+    plain, _ = left_db(working, fit_window, FitRecipe(num_points=30, stages=5))
+    swapped, _ = left_db(working, fit_window, FitRecipe(num_points=30, stages=5, swaps=2))
     assert swapped < plain + 0.5
 
 
@@ -49,12 +49,12 @@ def test_gains_of_the_antennas_are_learned():
     cube = crowd(num_points=20)
     gain = torch.ones(12, dtype=torch.complex64)
     gain[3], gain[7] = 1.2, torch.polar(torch.tensor(1.0), torch.tensor(0.3))
-    stretch = FitWindow.of(SMALL, 3, 0)
-    working = stretch.working(cube.values) * gain
+    fit_window = FitWindow.of(SMALL, 3, 0)
+    working = fit_window.working(cube.values) * gain
     recipe = FitRecipe(num_points=80, stages=10, last_steps=12)
-    plain, _ = left_db(working, stretch, recipe)
-    layers = fitted(working, stretch, FitRecipe(num_points=80, stages=10, last_steps=12, with_calibration=True))
-    left = working - rendered(layers, stretch.response, stretch.axes)
+    plain, _ = left_db(working, fit_window, recipe)
+    layers = fitted(working, fit_window, FitRecipe(num_points=80, stages=10, last_steps=12, with_calibration=True))
+    left = working - rendered(layers, fit_window.response, fit_window.axes)
     error = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
     assert error < plain - 1
     assert abs(layers.calibration[3] / layers.calibration[4]) > 1.1
@@ -62,20 +62,20 @@ def test_gains_of_the_antennas_are_learned():
 
 def test_so_many_numbers_are_not_exceeded_and_static_beams_worth_nothing_go():
     """A wall straight ahead beside a crowd: few beams keep it, and the points get the rest."""
-    stretch = FitWindow.of(SMALL, 3, 0)
+    fit_window = FitWindow.of(SMALL, 3, 0)
     wall = torch.zeros(24, 12, dtype=torch.complex64)
     wall[6:10] = 0.3
-    working = stretch.working(crowd().values) + static_cells(wall, stretch.response, stretch.axes)
+    working = fit_window.working(crowd().values) + static_cells(wall, fit_window.response, fit_window.axes)
     kept_db = {}
     for most in (600, 1200):
-        layers = fitted(working, stretch, FitRecipe(num_points=999, num_values=most, stages=10))
-        assert 0.9 * most < layers.num_values(stretch.response) <= most
-        kept = layers.kept_beams
+        layers = fitted(working, fit_window, FitRecipe(num_points=999, num_values=most, stages=10))
+        assert 0.9 * most < layers.num_values(fit_window.response) <= most
+        kept = layers.active_beams
         assert kept is not None
         assert 6 < int(kept.sum()) < 0.7 * kept.numel()
         beams = layers.static @ torch.from_numpy(beams_of(SMALL)).to(layers.static.dtype).T
         assert float(beams[~kept].abs().max()) < 1e-5
-        left = working - rendered(layers, stretch.response, stretch.axes)
+        left = working - rendered(layers, fit_window.response, fit_window.axes)
         kept_db[most] = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
     assert kept_db[1200] < kept_db[600] - 2
     assert kept_db[1200] < -30

@@ -7,10 +7,10 @@ from tests.fields.echoes import SMALL, direction_of, exact_point
 
 
 def test_the_first_scatterer_is_within_a_cell_and_a_beam_of_the_truth():
-    stretch = FitWindow.of(SMALL, 1, 0)
+    fit_window = FitWindow.of(SMALL, 1, 0)
     towards = direction_of(0.35, 0.0)
-    target = stretch.working(exact_point(SMALL, 1.4, 1.1, towards)[None])
-    response, axes = stretch.response, stretch.axes
+    target = fit_window.working(exact_point(SMALL, 1.4, 1.1, towards)[None])
+    response, axes = fit_window.response, fit_window.axes
     points = next_points(target, response, axes, Beams.over(axes, 2), count=1, least=0.0)
     assert abs(float(points.range_bin[0, 0]) - 1.4 / response.range_a_bin_m) < 1.0
     assert abs(float(points.doppler_bin[0, 0]) - 1.1 / response.velocity_a_bin_mps) < 1.0
@@ -18,10 +18,10 @@ def test_the_first_scatterer_is_within_a_cell_and_a_beam_of_the_truth():
 
 
 def test_what_is_too_weak_is_left():
-    stretch = FitWindow.of(SMALL, 2, 0)
+    fit_window = FitWindow.of(SMALL, 2, 0)
     target = torch.zeros(2, 24, 16, 12, dtype=torch.complex64)
     target[1, 5, 5] = 1.0
-    response, axes = stretch.response, stretch.axes
+    response, axes = fit_window.response, fit_window.axes
     beams = Beams.over(axes, 2)
     power, _ = matched_power(target, response, beams)
     found = next_points(target, response, axes, beams, count=9, least=0.5 * float(power.max()))

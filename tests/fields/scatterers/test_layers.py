@@ -3,9 +3,9 @@ import torch
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.fields.scatterers.layers import (
     Layers,
-    at_rest,
     compact,
-    joined,
+    fit_static,
+    join_points,
     no_points,
     static_cells,
     static_values,
@@ -23,7 +23,7 @@ def test_padding_goes_to_the_end_and_no_more_of_it_than_needed():
     points = compact(some([[0.0, 0.3, 0.0, 0.1], [0.0, 0.0, 0.2, 0.0]]))
     assert points.amplitude.real.tolist() == torch.tensor([[0.3, 0.1], [0.2, 0.0]]).tolist()
     assert points.range_bin[0].tolist() == torch.tensor([3.0, 1.0]).tolist()
-    assert joined(points, no_points(2)).amplitude.shape == (2, 2)
+    assert join_points(points, no_points(2)).amplitude.shape == (2, 2)
 
 
 def test_the_strongest_are_kept_over_all_frames():
@@ -37,7 +37,7 @@ def test_a_static_layer_is_found_again():
     parts = torch.randn(2, 24, 12, generator=torch.Generator().manual_seed(0))
     static = torch.complex(parts[0], parts[1])
     cells = static_cells(static, response, axes).expand(3, -1, -1, -1)
-    assert torch.allclose(at_rest(cells, response, axes), static, atol=1e-5)
+    assert torch.allclose(fit_static(cells, response, axes), static, atol=1e-5)
 
 
 def test_values_are_counted():

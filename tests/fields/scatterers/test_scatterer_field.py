@@ -2,7 +2,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.fields.scatterers.test_stretch import overlapping
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
@@ -10,6 +9,7 @@ from mmweaver.fields.sampling import finer_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from tests.fields.echoes import SMALL, crowd, direction_of, error_db, exact_point
+from tests.fields.scatterers.test_fit_window import overlapping
 
 RECIPE = FitRecipe(num_points=90, stages=10)
 
@@ -81,7 +81,7 @@ def test_what_stands_still_is_seen_by_another_radar_too():
 
 
 def test_overlapping_windows_at_any_instant():
-    """Fitted once for the whole stretch; a window between two windows is that of the scatterers there."""
+    """Fitted once for the whole fit_window; a window between two windows is that of the scatterers there."""
     long = replace(SMALL, num_loops=64)
     whole = exact_point(long, 1.4, 0.6, direction_of(0.2, 0.0))
     cube = overlapping(hop=4, num_frames=5)
@@ -93,7 +93,7 @@ def test_overlapping_windows_at_any_instant():
     every = radar_cube(AdcCube(samples=windows, config=SMALL, scale=1.0))
     grid = replace(every.grid, frame_time_s=np.arange(10) * 4 * SMALL.loop_period_s)
     field = ScattererField.fit(replace(every, grid=grid), FitRecipe(num_points=3, stages=3, with_static=False))
-    assert field.stretch.hop == 4
+    assert field.fit_window.hop == 4
     assert error_db(field.native(), every.values) < -35
     halfway = replace(grid, frame_time_s=grid.frame_time_s[2:4] + 2 * SMALL.loop_period_s)
     late = np.stack([adc[2 + 2 + 4 * at : 18 + 2 + 4 * at] for at in (2, 3)])

@@ -2,15 +2,15 @@ import json
 from dataclasses import replace
 
 import pytest
-from mmweaver.experiments import field_fidelity
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from mmweaver.fields.paper_inr import InrField, InrShape, fresh_modulation
 from mmweaver.metrics.scorecard import METRICS
-from mmweaver.training.single_signal import PAPER
+from studies.fields import field_fidelity
 from studies.fields.field_signals import simulated
+from studies.paper.paper_inr import InrField, InrShape, fresh_modulation
+from studies.paper.single_signal import PAPER
 
 
 def test_every_row_has_its_floors_its_size_and_its_seconds(tmp_path, monkeypatch):
@@ -22,7 +22,7 @@ def test_every_row_has_its_floors_its_size_and_its_seconds(tmp_path, monkeypatch
     assert record["config"]["steps"] == 2
     (row,) = record["rows"]
     assert set(row["metrics"]) == set(METRICS)
-    assert all(set(entry["floor"]) == {"zeros", "static_mean"} for entry in row["metrics"].values())
+    assert all(set(entry["baseline"]) == {"zeros", "static_mean"} for entry in row["metrics"].values())
     assert row["seconds"]["fit"] >= 0
     assert row["dataset"]["sha256"] == signal.digest
     size = row["size"]

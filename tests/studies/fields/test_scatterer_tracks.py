@@ -19,8 +19,8 @@ def test_a_track_costs_less_than_its_points():
 def test_echoes_that_do_live_on_are_held_by_tracks():
     """Two points at constant velocity over two frames, the tracks starting a little off them."""
     config = replace(SMALL, frame_period_s=0.02)
-    stretch = FitWindow.of(config, 2, 0)
-    response = stretch.response
+    fit_window = FitWindow.of(config, 2, 0)
+    response = fit_window.response
     bins = response.velocity_a_bin_mps * config.frame_period_s / response.range_a_bin_m
     doppler = torch.tensor([[2.3, -3.1]])
     own = torch.tensor([[18.4, 25.7]])
@@ -30,10 +30,10 @@ def test_echoes_that_do_live_on_are_held_by_tracks():
         range_bin=own + response.coupling * doppler + at * bins * doppler, doppler_bin=doppler.expand(2, 2),
         direction=direction.expand(2, 2, 2), amplitude=torch.tensor([[1.0, 0.5j], [0.3 + 0.4j, -1.0]]),
     )  # fmt: skip
-    target = response.render(truth, stretch.axes)
+    target = response.render(truth, fit_window.axes)
     start = Points(
         range_bin=truth.range_bin[1:] + 0.1, doppler_bin=truth.doppler_bin[1:] - 0.1,
         direction=truth.direction[1:] + 0.02, amplitude=truth.amplitude[1:],
     )  # fmt: skip
-    left = fit_tracks(target, stretch, SHAPE, config.frame_period_s, start)
+    left = fit_tracks(target, fit_window, SHAPE, config.frame_period_s, start)
     assert 10 * np.log10(left) < -40

@@ -3,7 +3,8 @@
 import json
 
 import pytest
-from mmweaver.experiments import super_resolution
+
+from studies.fields import super_resolution
 
 
 @pytest.fixture(scope="module")

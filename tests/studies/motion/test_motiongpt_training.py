@@ -9,13 +9,12 @@ import pytest
 
 pytest.importorskip("transformers")
 
-from mmweaver.experiments import motiongpt_scores
-
 from mmweaver.motion.motiongpt.motiongpt import SMALL_FILE, MotionGPT
 from mmweaver.motion.motiongpt.motiongpt_weights import save_weights
 from mmweaver.motion.motiongpt.tokenizer import TokenizerConfig
 from mmweaver.training.motion_language import LanguageRecipe
 from mmweaver.training.motion_tokenizer import TokenizerRecipe
+from studies.motion import motiongpt_scores
 from studies.motion.motiongpt_data import ACTIVITIES, library_examples
 from studies.motion.motiongpt_pictures import draw_strips
 from studies.motion.motiongpt_training import MotiongptRecipe, statistics, train

@@ -20,15 +20,14 @@ from studies.network.ablation import (
     trained,
 )
 from studies.network.ablation_variants import VARIANTS, WHOLE, AblationVariant
-from tests.training.tiny_data import tiny_data
 
 pytest.importorskip("zarr")
 RECIPE = TrainingRecipe(steps=2, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
 
 
 @pytest.fixture(scope="module")
-def material(tmp_path_factory: pytest.TempPathFactory) -> AblationMaterial:
-    return AblationMaterial.of(tiny_data(tmp_path_factory.mktemp("data") / "set", geometry_only=True), 1, 1)
+def material(tiny_geometry: Path) -> AblationMaterial:
+    return AblationMaterial.of(tiny_geometry, 1, 1)
 
 
 def test_a_variant_is_trained_and_goes_on_as_it_was(material: AblationMaterial, tmp_path: Path):

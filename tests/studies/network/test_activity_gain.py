@@ -9,13 +9,13 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import ACTIVITIES, DatasetPlan
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.models.network import WeaverNetwork
 from studies.network.activity_gain import (
     ALONE,
+    GainStudy,
     Labelled,
-    Study,
     few_of,
     gains,
     judged,
@@ -36,7 +36,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     plan = DatasetPlan(
         kinds=("office", "living_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4
     )
-    generate(folder, plan, AWR1843)
+    generate_dataset(folder, plan, AWR1843)
     return folder
 
 
@@ -56,7 +56,7 @@ def test_rows_of_a_room(data: Path, tmp_path: Path):
     network = ActivityNetwork(AWR1843).eval()
     methods = {"true_room": simulated_in(lambda one: one.true_scene(one.room), micro_seed=0)}
     told: list[int] = []
-    study = Study(network, _base(2, network.head.first.in_features))
+    study = GainStudy(network, _base(2, network.head.first.in_features))
     kept = RoomCache(tmp_path, {})
     found = gains(study, [room], methods, each=1, kept=kept, after=lambda one: told.append(len(one[ALONE])))
     assert told == [1]
@@ -82,7 +82,7 @@ def test_data_of_the_room_helps_where_the_room_differs():
 
     elsewhere, here = centres, 3 * torch.randn(12, width)
     base, test = drawn(elsewhere, 4), drawn(here, 2)
-    study = Study(network, base)
+    study = GainStudy(network, base)
     alone, loss = judged(study, None, test, 0)
     helped, lower = judged(study, drawn(here, 4), test, 0)
     assert alone < 0.5
@@ -99,7 +99,7 @@ def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_know
     torch.manual_seed(0)
     network = ActivityNetwork(AWR1843)
     base = _base(1, network.head.first.in_features)
-    old, new = (Study(network, base, begins_anew=anew).head().state_dict() for anew in (False, True))
+    old, new = (GainStudy(network, base, begins_anew=anew).head().state_dict() for anew in (False, True))
     assert torch.equal(old["first.weight"], network.head.first.weight)
     assert not torch.equal(new["first.weight"], old["first.weight"])
 

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.experiments.test_mars_data import standing_kinect
 
 from mmweaver.core.presets import IWR1443_MARS
 from mmweaver.core.records import PoseSequence
@@ -15,6 +14,7 @@ from mmweaver.paths.receiver import Impairments
 from studies.physics.empty_room_cube import empty_room
 from studies.physics.joint_scatterers import run_joints
 from studies.physics.mars_data import joints_from_kinect
+from tests.studies.physics.test_mars_data import standing_kinect
 
 
 def test_the_body_is_where_its_joints_are():

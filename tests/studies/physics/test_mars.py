@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from mmweaver.experiments import mars
-from tests.experiments.test_mars_data import write_split
 
+from studies.physics import mars
 from studies.physics.cloud_scores import score
 from studies.physics.mars import MarsVariant, Setup, centroid_floor, detect, neighbour_ceiling, simulate, surface_floor
 from studies.physics.mars_data import MarsStretch, cut, read_mars
+from tests.studies.physics.test_mars_data import write_split
 
 HERE = Setup(shift_m=(0.0, 0.0, 0.2), height_m=1.75)
 

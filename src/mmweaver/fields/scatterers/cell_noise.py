@@ -1,7 +1,7 @@
-"""White noise as a radar's cells see it, drawn in the cells: no samples, no transforms.
+"""Receiver noise of a radar cube, sampled directly in its cells, without ADC samples or FFTs.
 
-The transform of white noise is white, and a Hann window, whose spectrum is 1/2 and twice -1/4, mixes each bin with its
-two neighbours. So it suffices to draw the kept bins and one more at either end.
+The transform of white noise is white, and the Hann window, whose spectrum is 1/2 and twice -1/4, mixes each bin with
+its two neighbours. So it suffices to sample the stored bins and one more at either end.
 """
 
 import numpy as np
@@ -14,17 +14,17 @@ MIXED_POWER = 1.5  # of 1, -1/2, -1/2
 
 
 def cell_noise(rng: np.random.Generator, config: RadarConfig, num_frames: int, hop: int) -> np.ndarray:
-    """Complex64 (frame, range, doppler, antenna) of power 1; frames `hop` loops apart share chirps, 0 = none."""
+    """Unit-power noise, complex64 (frame, range, doppler, antenna); frames `hop` loops apart share chirps (0: none)."""
     shape = (num_frames, config.num_range_bins, config.num_loops, config.num_antennas)
     if hop:
         return _of_shared_loops(rng, config, shape, hop)
     out = np.empty(shape, np.complex64)
-    drawn = torch.empty(_bins_drawn(config), config.num_loops, 2 * config.num_antennas)
-    generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # draws thrice as fast as numpy's
+    samples = torch.empty(_num_sampled_bins(config), config.num_loops, 2 * config.num_antennas)
+    generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times as fast as numpy's
     mixes_loops = config.num_loops > 1
     power = 2 * MIXED_POWER * (MIXED_POWER if mixes_loops else 1.0)
     for frame in out:  # one at a time stays in the cache
-        lines = _range_bins(drawn.normal_(generator=generator).numpy(), config)
+        lines = _range_bins(samples.normal_(generator=generator).numpy(), config)
         if mixes_loops:
             lines = lines - 0.5 * _neighbours(lines)
         np.multiply(lines, np.float32(power**-0.5), out=frame.view(np.float32))
@@ -32,7 +32,7 @@ def cell_noise(rng: np.random.Generator, config: RadarConfig, num_frames: int, h
 
 
 def _neighbours(lines: np.ndarray) -> np.ndarray:
-    """Both neighbours of each Doppler bin (range, doppler, value), which lie in a ring, together."""
+    """Sum of the two cyclic neighbours of each Doppler bin (range, doppler, value)."""
     out = np.empty_like(lines)
     np.add(lines[:, :-2], lines[:, 2:], out=out[:, 1:-1])
     np.add(lines[:, 1], lines[:, -1], out=out[:, 0])
@@ -42,20 +42,22 @@ def _neighbours(lines: np.ndarray) -> np.ndarray:
 
 def _of_shared_loops(rng: np.random.Generator, config: RadarConfig, shape: tuple[int, ...], hop: int) -> np.ndarray:
     frames, _, loops, antennas = shape
-    drawn = rng.standard_normal((_bins_drawn(config), loops + hop * (frames - 1), 2 * antennas), dtype=np.float32)
-    lines = np.ascontiguousarray(_range_bins(drawn, config)).view(np.complex64)
+    samples = rng.standard_normal(
+        (_num_sampled_bins(config), loops + hop * (frames - 1), 2 * antennas), dtype=np.float32
+    )
+    lines = np.ascontiguousarray(_range_bins(samples, config)).view(np.complex64)
     window = hann(loops)
     window = (window / np.sqrt(2 * MIXED_POWER * np.sum(window**2))).astype(np.float32)
     cut = np.stack([lines[:, hop * at :][:, :loops] for at in range(frames)])
     return np.fft.fft(cut * window[:, None], axis=2).astype(np.complex64)
 
 
-def _bins_drawn(config: RadarConfig) -> int:
+def _num_sampled_bins(config: RadarConfig) -> int:
     return min(config.num_range_bins + 2, config.num_samples)
 
 
-def _range_bins(drawn: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """White bins (drawn, ...) -> the kept ones as the range window mixes them, power 3/2 as high."""
-    if len(drawn) < config.num_range_bins + 2:  # all bins are kept, or all but one: they are neighbours in a ring
-        drawn = drawn[np.arange(-1, config.num_range_bins + 1) % config.num_samples]
-    return drawn[1:-1] - 0.5 * (drawn[:-2] + drawn[2:])
+def _range_bins(white: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """White bins (sampled, ...) -> the stored bins as the range window mixes them, with 3/2 of their power."""
+    if len(white) < config.num_range_bins + 2:  # all bins, or all but one, are stored: neighbours are cyclic
+        white = white[np.arange(-1, config.num_range_bins + 1) % config.num_samples]
+    return white[1:-1] - 0.5 * (white[:-2] + white[2:])

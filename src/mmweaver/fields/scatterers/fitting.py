@@ -1,4 +1,4 @@
-"""Fits scatterers to a cube: greedily where the most energy is left, then all together, and again."""
+"""Fits scatterers to a cube: alternates greedy selection with joint refinement."""
 
 from dataclasses import dataclass
 
@@ -10,8 +10,8 @@ from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.greedy import Beams, next_points
 from mmweaver.fields.scatterers.layers import (
     Layers,
-    at_rest,
-    joined,
+    fit_static,
+    join_points,
     no_points,
     static_cells,
     static_values,
@@ -20,18 +20,18 @@ from mmweaver.fields.scatterers.layers import (
 )
 from mmweaver.fields.scatterers.refinement import Damping, refined
 
-DENSE_SHARE = 0.5  # of the stages; then the static layer loses the beams that are not worth their numbers
-WEAK_SHARE = 0.05  # so many scatterers are weak
+DENSE_SHARE = 0.5  # share of the stages after which the static layer drops beams not worth their parameters
+WEAK_SHARE = 0.05  # quantile of amplitudes that counts as weak
 
 
 @dataclass(frozen=True, kw_only=True)
 class FitRecipe:
-    """How hard to try.
+    """Budget and effort of a fit.
 
-    `num_points` over all frames: where they are worth most, they go. A scatterer must take away `least_gain` times
-    the noise power of a cell to be kept in the running; so frames of noise get none. `num_values`: the most numbers
-    that points, static layer and gains may have together; the static layer then keeps only those of its beams that
-    are worth their numbers, and points get the rest.
+    `num_points` is shared by all frames, wherever points explain most energy. A new scatterer must explain at least
+    `least_gain` times the noise power of a cell, so frames of pure noise get none. `num_values` limits the parameters
+    of points, static layer and gains together; the static layer then keeps only the beams worth their parameters, and
+    points get the rest.
     """
 
     num_points: int
@@ -41,40 +41,40 @@ class FitRecipe:
     stages: int = 30
     steps_a_stage: int = 1
     last_steps: int = 8
-    swaps: int = 0  # times the weakest are replaced by new ones
+    swaps: int = 0  # rounds in which the weakest points are replaced
     swapped_share: float = 0.15
     largest_group: int = 160
     least_gain: float = 8.0
 
 
-def fitted(target: Tensor, stretch: FitWindow, recipe: FitRecipe) -> Layers:
-    """Layers whose rendering is close to the working frames `target`, in the least-squares sense."""
+def fitted(target: Tensor, fit_window: FitWindow, recipe: FitRecipe) -> Layers:
+    """Layers that approximate the working frames `target` (frame, range, doppler, antenna) in least squares."""
     with torch.no_grad():
-        return _Fit(target, stretch, recipe).run()
+        return _Fit(target, fit_window, recipe).run()
 
 
 class _Fit:
-    """State of one fit. `residual` is always target / calibration - static - points."""
+    """State of one fit; invariant: `residual` = target / calibration - static - points."""
 
-    def __init__(self, target: Tensor, stretch: FitWindow, recipe: FitRecipe):
-        self.target, self.recipe, self.stretch = target, recipe, stretch
-        self.response, self.axes = stretch.response, stretch.axes
-        self.to_beams = torch.from_numpy(beams_of(stretch.config)).to(target.dtype)
+    def __init__(self, target: Tensor, fit_window: FitWindow, recipe: FitRecipe):
+        self.target, self.recipe, self.fit_window = target, recipe, fit_window
+        self.response, self.axes = fit_window.response, fit_window.axes
+        self.to_beams = torch.from_numpy(beams_of(fit_window.config)).to(target.dtype)
         self.beams = Beams.over(self.axes, self.response.num_directions)
         self.calibration = torch.ones(target.shape[-1], dtype=target.dtype)
         self.points = no_points(len(target))
         self.damping = Damping.fresh(len(target))
         self.static = torch.zeros_like(target[0, :, 0])
-        self.kept_beams: Tensor | None = None  # (range, beam) of the static layer; None = all
+        self.active_beams: Tensor | None = None  # (range, beam) of the static layer; None = all
         self.residual = target.clone()
-        self._rest()
+        self._update_static()
 
     def run(self) -> Layers:
         recipe = self.recipe
         for stage in range(recipe.stages):
             if recipe.num_values is not None and stage >= DENSE_SHARE * recipe.stages:
-                self.kept_beams = self._worth_keeping()
-                self._rest()
+                self.active_beams = self._worthwhile_beams()
+                self._update_static()
             self._fill(round(self._most_points() * (stage + 1) / recipe.stages))
             self._refine(recipe.steps_a_stage)
         for _ in range(recipe.swaps):
@@ -86,11 +86,11 @@ class _Fit:
         self._refine(recipe.last_steps)
         return Layers(
             points=self.points, static=self.static, calibration=self.calibration, noise_power=self._noise_power(),
-            kept_beams=self.kept_beams,
+            active_beams=self.active_beams,
         )  # fmt: skip
 
     def _fill(self, wanted: int) -> None:
-        """As many scatterers as wanted: new ones, or without the weakest."""
+        """Adds new scatterers, or removes the weakest, up to the wanted number."""
         if int((self.points.amplitude != 0).sum()) > wanted:
             self.points = strongest(self.points, wanted)
             self.residual = self._without_static() - self.response.render(self.points, self.axes)
@@ -101,7 +101,7 @@ class _Fit:
         least = self.recipe.least_gain * self._noise_power()
         if wanted > have:
             new = next_points(self.residual, self.response, self.axes, self.beams, count=wanted - have, least=least)
-            self.points = joined(self.points, new)
+            self.points = join_points(self.points, new)
 
     def _refine(self, steps: int) -> None:
         if not self.points.amplitude.shape[1]:
@@ -112,51 +112,51 @@ class _Fit:
         )  # fmt: skip
         if self.recipe.with_calibration:
             self._calibrate()
-        self._rest()
+        self._update_static()
 
     def _without_static(self) -> Tensor:
         return self.target / self.calibration - static_cells(self.static, self.response, self.axes)
 
-    def _rest(self) -> None:
-        """What is left at rest goes to the static layer."""
+    def _update_static(self) -> None:
+        """Moves the static part of the residual into the static layer."""
         if not self.recipe.with_static:
             return
         before = self.static
-        self.static = before + at_rest(self.residual, self.response, self.axes)
-        if self.kept_beams is not None:
-            self.static = (self.static @ self.to_beams.T * self.kept_beams) @ self.to_beams.conj()
+        self.static = before + fit_static(self.residual, self.response, self.axes)
+        if self.active_beams is not None:
+            self.static = (self.static @ self.to_beams.T * self.active_beams) @ self.to_beams.conj()
         self.residual = self.residual - static_cells(self.static - before, self.response, self.axes)
 
-    def _worth_keeping(self) -> Tensor:
-        """Beams of the static layer that take away more energy for their two numbers than a weak scatterer for its."""
+    def _worthwhile_beams(self) -> Tensor:
+        """Beams (range, beam) that explain more energy per parameter than a weak scatterer does."""
         slow = float(self.response.doppler_kernel(self.axes.doppler_bin)[0].square().sum())
         fast = float(self.response.range_kernel(torch.arange(-2.0, 3.0))[0].square().sum())
         echo = self.points.amplitude.abs()
         echo = echo[echo > 0].square() * (len(self.calibration) * fast * slow)
         weak = float(echo.quantile(WEAK_SHARE)) if len(echo) else 0.0
         least = max(weak, self.recipe.least_gain * self._noise_power()) * 2 / values_of_point(self.response)
-        beams = (self.static + at_rest(self.residual, self.response, self.axes)) @ self.to_beams.T
+        beams = (self.static + fit_static(self.residual, self.response, self.axes)) @ self.to_beams.T
         return beams.abs().square() * (len(self.target) * slow) > least
 
     def _most_points(self) -> int:
         recipe = self.recipe
         if recipe.num_values is None:
             return recipe.num_points
-        static = static_values(self.kept_beams, self.static.numel()) if recipe.with_static else 0
+        static = static_values(self.active_beams, self.static.numel()) if recipe.with_static else 0
         gains = 2 * len(self.calibration) if recipe.with_calibration else 0
         return min(recipe.num_points, (recipe.num_values - static - gains - 1) // values_of_point(self.response))
 
     def _calibrate(self) -> None:
-        """Gain of each antenna that suits the points best; the mean gain stays 1."""
-        heard = self._without_static()
-        model = heard - self.residual
-        gain = (model.conj() * heard).sum((0, 1, 2)) / model.abs().square().sum((0, 1, 2)).clamp(min=1e-30)
+        """Least-squares gain of each antenna; the mean gain stays 1."""
+        received = self._without_static()
+        model = received - self.residual
+        gain = (model.conj() * received).sum((0, 1, 2)) / model.abs().square().sum((0, 1, 2)).clamp(min=1e-30)
         gain = gain / gain.abs().mean().clamp(min=1e-6)
         self.calibration = self.calibration * gain
         self.static = self.static / gain
         self.residual = self._without_static() - model
 
     def _noise_power(self) -> float:
-        """Of one cell: the median of a chi-squared with two degrees of freedom is ln 2 of its mean."""
+        """Noise power per cell, from the median of a chi-squared with two degrees of freedom (ln 2 of its mean)."""
         power = torch.view_as_real(self.residual).square().sum(-1)
         return float(power.flatten()[:: max(1, power.numel() // 100_000)].median()) / 0.6931

@@ -1,4 +1,4 @@
-"""Where a scatterer would explain most of what is left."""
+"""Greedy choice of new scatterers: matched-filter peaks of the residual."""
 
 from dataclasses import dataclass
 
@@ -8,20 +8,20 @@ from torch.nn.functional import max_pool2d
 
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
-BEAMS_A_WAVELENGTH = 2.2  # a little more than the array's own resolution
+BEAMS_A_WAVELENGTH = 2.2  # slightly denser than the array's resolution
 FRAMES_AT_ONCE = 4
 
 
 @dataclass(frozen=True, kw_only=True)
 class Beams:
-    """A grid of directions, (beam, 2), and what the array hears from each, (antenna, beam), of unit length."""
+    """Grid of direction cosines (beam, 2) and unit-norm steering vectors (antenna, beam)."""
 
     direction: Tensor
     steer: Tensor
 
     @classmethod
     def over(cls, axes: Axes, num_directions: int) -> "Beams":
-        """As dense as the array's aperture asks for; one zero direction where it cannot tell any."""
+        """As dense as the aperture requires; a single zero cosine along a side the array cannot resolve."""
         sides = []
         for side in range(2):
             if side >= num_directions:
@@ -37,7 +37,7 @@ class Beams:
 
 
 def matched_power(residual: Tensor, response: PointResponse, beams: Beams) -> tuple[Tensor, Tensor]:
-    """Energy that one scatterer in each cell would take away (frame, range, doppler), and its beam."""
+    """Energy (frame, range, doppler) that one scatterer per cell would explain, and the index of its beam."""
     smoothed = _along(_along(residual, response.range_kernel, 1), response.doppler_kernel, 2)
     power, beam = [], []
     for part in smoothed.split(FRAMES_AT_ONCE):
@@ -48,7 +48,7 @@ def matched_power(residual: Tensor, response: PointResponse, beams: Beams) -> tu
 
 
 def _along(values: Tensor, kernel, dim: int) -> Tensor:
-    """Inner product with the kernel at every cell, over its main lobe."""
+    """Matched filter along one axis with the main lobe of the kernel."""
     taps = kernel(torch.tensor([0.0, 1.0]))[0]
     taps = taps / (taps[0] ** 2 + 2 * taps[1] ** 2) ** 0.5
     out = taps[0] * values
@@ -61,9 +61,9 @@ def _along(values: Tensor, kernel, dim: int) -> Tensor:
 def next_points(
     residual: Tensor, response: PointResponse, axes: Axes, beams: Beams, *, count: int, least: float
 ) -> Points:
-    """The `count` best new scatterers over all frames, as (frame, point) padded with amplitude zero.
+    """The `count` best new scatterers over all frames, (frame, point), padded with amplitude zero.
 
-    Only local maxima over range and Doppler count, and only those that would take away more energy than `least`.
+    Candidates are local maxima over range and Doppler that explain more energy than `least`.
     """
     power, beam = matched_power(residual, response, beams)
     peak = power * (power >= max_pool2d(power, 3, stride=1, padding=1))
@@ -87,8 +87,8 @@ def next_points(
     points.range_bin[frame, slot] = axes.range_bin[place // num_doppler]
     points.doppler_bin[frame, slot] = axes.doppler_bin[place % num_doppler]
     points.direction[frame, slot] = beams.direction[beam.flatten()[chosen]]
-    heard = residual.flatten(0, 2)[chosen]
+    received = residual.flatten(0, 2)[chosen]
     steer = beams.steer.T[beam.flatten()[chosen]] / len(axes.place) ** 0.5
-    # half of what is there: neighbours share it, and the refinement soon finds the rest
-    points.amplitude[frame, slot] = 0.5 * (heard * steer).sum(-1)
+    # half of the peak: neighbours share its energy, and the refinement finds the rest
+    points.amplitude[frame, slot] = 0.5 * (received * steer).sum(-1)
     return points

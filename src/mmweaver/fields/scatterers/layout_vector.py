@@ -1,4 +1,4 @@
-"""Scatterers as one flat row of numbers of order 1, so that a network can write them."""
+"""Scatterers as one flat vector of values of order 1, suitable as a network's output."""
 
 from dataclasses import dataclass
 
@@ -12,10 +12,10 @@ PER_POINT = 6  # range, velocity, two direction cosines, real and imaginary ampl
 
 @dataclass(frozen=True, kw_only=True)
 class ScattererLayout:
-    """Where in a row (..., num_points * 6) what stands: for each scatterer range, velocity, x, z, re, im.
+    """Layout of a vector (..., num_points * 6): for each scatterer range, velocity, x, z, re, im.
 
-    Range and velocity run from -1 to 1 over the radar's cells, direction cosines are themselves, amplitudes are in
-    units of `peak`. All of it is differentiable; `packed` is the inverse of `points`.
+    Range and velocity run from -1 to 1 over the radar's cells, direction cosines are unscaled, amplitudes are in units
+    of `peak`. Both directions are differentiable; `packed` is the inverse of `points`.
     """
 
     num_points: int
@@ -28,7 +28,7 @@ class ScattererLayout:
 
     @classmethod
     def over(cls, axes: Axes, num_points: int) -> "ScattererLayout":
-        """For scatterers that lie on these axes."""
+        """The layout of scatterers within these axes."""
         ends = [(float(axis[0]), float(axis[-1])) for axis in (axes.range_bin, axes.doppler_bin)]
         middle = tuple((first + last) / 2 for first, last in ends)
         half = tuple(max((last - first) / 2, 0.5) for first, last in ends)
@@ -39,7 +39,7 @@ class ScattererLayout:
         return PER_POINT * self.num_points
 
     def points(self, values: Tensor) -> Points:
-        """Row (..., num_values) -> scatterers (..., point)."""
+        """Vector (..., num_values) -> scatterers (..., point)."""
         parts = values.unflatten(-1, (self.num_points, PER_POINT))
         return Points(
             range_bin=self.first_bin[0] + self.half_bins[0] * parts[..., 0],
@@ -49,7 +49,7 @@ class ScattererLayout:
         )
 
     def packed(self, points: Points) -> Tensor:
-        """Scatterers -> row; fewer than `num_points` are filled up with silent ones."""
+        """Scatterers (..., point) -> vector, padded to `num_points` with amplitude zero."""
         missing = self.num_points - points.amplitude.shape[-1]
         if missing < 0:
             raise ValueError(f"{points.amplitude.shape[-1]} scatterers do not fit into {self.num_points} places")

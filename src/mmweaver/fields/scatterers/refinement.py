@@ -1,7 +1,7 @@
-"""Levenberg-Marquardt over all scatterers of a frame at once, all frames side by side.
+"""Levenberg-Marquardt refinement of all scatterers of a frame jointly, batched over frames.
 
 A scatterer is a product of a range, a Doppler and an antenna factor, so the normal matrix of hundreds of scatterers
-is a product of three small Gram matrices, entry by entry: no Jacobian is ever formed.
+is the elementwise product of three small Gram matrices: no Jacobian is ever formed.
 """
 
 import math
@@ -11,15 +11,15 @@ import torch
 from torch import Tensor
 
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
-from mmweaver.fields.scatterers.layers import picked
+from mmweaver.fields.scatterers.layers import select_points
 
 LARGEST_STEP_BINS = 0.5
 LARGEST_STEP_DIRECTION = 0.25
 DAMPING_START, DAMPING_LEAST, DAMPING_MOST = 1e-3, 1e-5, 1e3
-HALO_BINS = 4  # a group of scatterers sees the residual so many range bins beyond its own
+HALO_BINS = 4  # range bins of the residual beyond those of a group of scatterers
 
 # parameter: range bin, Doppler bin, direction x, direction z, real and imaginary amplitude
-RANGE_FACTOR = (1, 0, 0, 0, 0, 0)  # 1 = the kernel's slope
+RANGE_FACTOR = (1, 0, 0, 0, 0, 0)  # 1 = slope of the kernel
 DOPPLER_FACTOR = (0, 1, 0, 0, 0, 0)
 ANTENNA_FACTOR = (0, 0, 1, 2, 3, 4)
 SIGN = (-1.0, -1.0, 1.0, 1.0, 1.0, 1.0)
@@ -27,16 +27,16 @@ SIGN = (-1.0, -1.0, 1.0, 1.0, 1.0, 1.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Groups:
-    """Scatterers that are solved for together, (frame, group, point) in shape, and the range bins they see."""
+    """Scatterers (frame, group, point) that are solved for jointly, and their range bins of the residual."""
 
     points: Points
-    first: Tensor  # (frame, group) index of the first range cell seen
+    first: Tensor  # (frame, group) index of the first range cell used
     num_cells: int
 
 
 @dataclass
 class Damping:
-    """One damping a frame."""
+    """Levenberg-Marquardt damping of each frame (frame,)."""
 
     value: Tensor
 
@@ -52,12 +52,11 @@ class Damping:
 def refined(
     points: Points, target: Tensor, response: PointResponse, axes: Axes, damping: Damping, *, steps: int, largest: int
 ) -> tuple[Points, Tensor]:
-    """The points (frame, point) after so many steps, and what they leave of the target.
+    """The points (frame, point) after `steps` steps, and the residual of the target.
 
-    The target is (frame, range, doppler, antenna) in centred phase.
-
-    Frames of more than `largest` scatterers are cut into groups of neighbours in range, solved in turn. A step that
-    would raise a frame's error is not taken. Padded points have amplitude zero and stay.
+    The target is (frame, range, doppler, antenna) in centred phase. Frames of more than `largest` scatterers are split
+    into groups of neighbours in range, solved in turn. A step that would raise a frame's error is rejected. Padded
+    points have amplitude zero and stay.
     """
     residual = target - response.render(points, axes)
     cost = _energy(residual)
@@ -68,15 +67,15 @@ def refined(
         for half in range(halves):
             points = _sorted_by_range(points) if num_groups > 1 else points
             groups = _grouped(points, num_groups, axes)
-            turn = slice(half, None, halves)  # neighbours in turn: each sees where the other went
-            moved = _stepped(_some(groups, turn), residual, response, axes, damping.value)
-            trial = _ungrouped(_put_back(groups.points, moved, turn), count)
-            left = target - response.render(trial, axes)
-            trial_cost = _energy(left)
+            own = slice(half, None, halves)  # alternate groups: each sees the updates of its neighbours
+            moved = _stepped(_some(groups, own), residual, response, axes, damping.value)
+            trial = _ungrouped(_put_back(groups.points, moved, own), count)
+            remainder = target - response.render(trial, axes)
+            trial_cost = _energy(remainder)
             is_better = trial_cost < cost
             damping.learn(is_better)
             points = _chosen(is_better, trial, points)
-            residual = torch.where(is_better[:, None, None, None], left, residual)
+            residual = torch.where(is_better[:, None, None, None], remainder, residual)
             cost = torch.where(is_better, trial_cost, cost)
     return points, residual
 
@@ -87,7 +86,7 @@ def _energy(residual: Tensor) -> Tensor:
 
 def _sorted_by_range(points: Points) -> Points:
     order = points.range_bin.argsort(dim=1)
-    return picked(points, order)
+    return select_points(points, order)
 
 
 def _grouped(points: Points, num_groups: int, axes: Axes) -> Groups:
@@ -161,7 +160,7 @@ def _chosen(mask: Tensor, yes: Points, no: Points) -> Points:
 
 
 def _stepped(groups: Groups, residual: Tensor, response: PointResponse, axes: Axes, damping: Tensor) -> Points:
-    """One damped Gauss-Newton step of every group."""
+    """Points of every group after one damped Gauss-Newton step."""
     points = groups.points
     cells = groups.first[..., None] + torch.arange(groups.num_cells)
     seen = residual[torch.arange(len(residual))[:, None, None], cells]  # frame, group, range, doppler, antenna
@@ -169,9 +168,9 @@ def _stepped(groups: Groups, residual: Tensor, response: PointResponse, axes: Ax
     factors = response.factors(points, local)
     vectors = _antenna_vectors(points, factors[4], axes)
     num = 4 + response.num_directions
-    kept = [*range(2 + response.num_directions), 4, 5]
-    gradient = _gradient(factors, vectors, seen)[..., kept, :].flatten(-2)
-    matrix = _normal_matrix(factors, vectors, kept)
+    free = [*range(2 + response.num_directions), 4, 5]
+    gradient = _gradient(factors, vectors, seen)[..., free, :].flatten(-2)
+    matrix = _normal_matrix(factors, vectors, free)
     scale = matrix.diagonal(dim1=-2, dim2=-1)
     least = 1e-6 * scale.amax(dim=-1, keepdim=True) + 1e-30
     # columns of unit length: parameters of several kinds, amplitudes of many decibels
@@ -189,9 +188,9 @@ def _moved(points: Points, step: Tensor, response: PointResponse) -> Points:
     bins = step[..., :2, :].clamp(-LARGEST_STEP_BINS, LARGEST_STEP_BINS)
     direction = points.direction
     if response.num_directions:
-        turn = step[..., 2:-2, :].clamp(-LARGEST_STEP_DIRECTION, LARGEST_STEP_DIRECTION).transpose(-1, -2)
+        change = step[..., 2:-2, :].clamp(-LARGEST_STEP_DIRECTION, LARGEST_STEP_DIRECTION).transpose(-1, -2)
         direction = direction.clone()
-        direction[..., : response.num_directions] += turn
+        direction[..., : response.num_directions] += change
         direction = direction.clamp(-1.0, 1.0)
     return Points(
         range_bin=points.range_bin + bins[..., 0, :],
@@ -202,26 +201,26 @@ def _moved(points: Points, step: Tensor, response: PointResponse) -> Points:
 
 
 def _antenna_vectors(points: Points, steer: Tensor, axes: Axes) -> Tensor:
-    """Real (..., kind, point, 2 antenna): echo, its two turns, and the two amplitudes' unit vectors."""
+    """Real (..., kind, point, 2 antenna): echo, its derivatives by direction, and by the two parts of amplitude."""
     echo = points.amplitude[..., None] * steer
-    turns = [echo * (-2j * math.pi * axes.place[:, side]) for side in (0, 1)]
-    stacked = torch.stack([echo, *turns, steer, 1j * steer], dim=-3)
+    slopes = [echo * (-2j * math.pi * axes.place[:, side]) for side in (0, 1)]
+    stacked = torch.stack([echo, *slopes, steer, 1j * steer], dim=-3)
     return torch.view_as_real(stacked).flatten(-2)
 
 
-def _normal_matrix(factors: tuple[Tensor, ...], vectors: Tensor, kept: list[int]) -> Tensor:
+def _normal_matrix(factors: tuple[Tensor, ...], vectors: Tensor, free: list[int]) -> Tensor:
     at_range, range_slope, at_doppler, doppler_slope, _ = factors
     by_range = _gram(torch.stack([at_range, range_slope], dim=-3))
     by_doppler = _gram(torch.stack([at_doppler, doppler_slope], dim=-3))
     by_antenna = _gram(vectors)
     rows = []
-    for i in kept:
+    for i in free:
         row = [
             by_range[..., RANGE_FACTOR[i], :, RANGE_FACTOR[j], :]
             * by_doppler[..., DOPPLER_FACTOR[i], :, DOPPLER_FACTOR[j], :]
             * by_antenna[..., ANTENNA_FACTOR[i], :, ANTENNA_FACTOR[j], :]
             * (SIGN[i] * SIGN[j])
-            for j in kept
+            for j in free
         ]
         rows.append(torch.cat(row, dim=-1))
     return torch.cat(rows, dim=-2)
@@ -235,7 +234,7 @@ def _gram(stack: Tensor) -> Tensor:
 
 
 def _gradient(factors: tuple[Tensor, ...], vectors: Tensor, seen: Tensor) -> Tensor:
-    """(..., parameter, point): inner products of the residual with every derivative."""
+    """(..., parameter, point): inner products of the residual with all derivatives."""
     at_range, range_slope, at_doppler, doppler_slope, _ = factors
     count = at_range.shape[-2]
     left = torch.cat([at_range, range_slope], dim=-2)

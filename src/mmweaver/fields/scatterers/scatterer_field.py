@@ -1,7 +1,7 @@
 """ScattererField: a radar sequence as point scatterers over a static layer. Read this file first.
 
-A frame's scatterers answer anywhere: between bins, between antennas, at another instant (each goes on at its own
-velocity, phase and all, until the next frame's take over), and in another radar (`for_radar`).
+Scatterers can be rendered anywhere: between bins, between antennas, at other instants (each is propagated with its own
+velocity and phase until the next frame's take over), and for another radar (`for_radar`).
 """
 
 import math
@@ -26,58 +26,58 @@ from mmweaver.fields.sampling import Coordinates, antenna_at, coordinates_on
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
-from mmweaver.fields.scatterers.interpolation import between, between_rows
+from mmweaver.fields.scatterers.interpolation import interpolate, interpolate_rows
 from mmweaver.fields.scatterers.layers import Layers, rendered
 
 POINTS_A_FRAME = 83  # of six values: about the 10,018 values of the paper's INR in 20 frames
-STATIC_POINTS = 200  # into which the static layer is turned for another radar
+STATIC_POINTS = 200  # scatterers that replace the static layer for another radar
 SAMPLES_AT_ONCE = 1 << 14
 
 
 class ScattererField(SignalField):
-    """Points and a static layer (`layers`), where they lie (`stretch`), and the amplitude of 1.0 (`peak`)."""
+    """Points and static layer (`layers`), their working frames (`fit_window`), and the amplitude of 1.0 (`peak`)."""
 
-    def __init__(self, layers: Layers, stretch: FitWindow, grid: CubeGrid, scale: float, peak: float):
-        self.layers, self.stretch = layers, stretch
-        self.config, self.grid, self.scale, self.peak = stretch.config, grid, scale, peak
+    def __init__(self, layers: Layers, fit_window: FitWindow, grid: CubeGrid, scale: float, peak: float):
+        self.layers, self.fit_window = layers, fit_window
+        self.config, self.grid, self.scale, self.peak = fit_window.config, grid, scale, peak
 
     @classmethod
     def fit(cls, cube: RadarCube, recipe: FitRecipe | None = None) -> "ScattererField":
-        """The scatterers that explain a cube. Raises InputError where the cube is empty or holds no numbers.
+        """Fits scatterers to a cube. Raises InputError where the cube is all zeros or not finite.
 
-        Without a recipe: 83 points a frame (scaled down where windows overlap) and a static layer.
+        Without a recipe: 83 points per frame and a static layer.
         """
         values = cube.values
         if not np.isfinite(values).all():
-            raise InputError("the cube holds values that are no numbers; mend the recording")
+            raise InputError("the cube holds values that are not finite; repair the recording")
         peak = float(np.abs(values).max(initial=0.0))
         if peak == 0.0:
             raise InputError("the cube is all zeros: there is nothing to fit")
-        stretch = FitWindow.of(cube.config, len(values), overlap_hop(cube))
-        working = stretch.working(values / np.float32(peak))
+        fit_window = FitWindow.of(cube.config, len(values), overlap_hop(cube))
+        working = fit_window.working(values / np.float32(peak))
         recipe = recipe or FitRecipe(num_points=POINTS_A_FRAME * len(values), with_static=len(values) > 1)
-        return cls(fitted(working, stretch, recipe), stretch, cube.grid, cube.scale, peak)
+        return cls(fitted(working, fit_window, recipe), fit_window, cube.grid, cube.scale, peak)
 
     @property
     def num_values(self) -> int:
-        return self.layers.num_values(self.stretch.response)
+        return self.layers.num_values(self.fit_window.response)
 
     def native(self, threads: int = 1) -> CubeValues:
-        """Values at the cells of the field's own grid; the quickest way. Frames are shared among `threads`."""
-        stretch = self.stretch
-        turn = stretch.turn * self.peak
-        if stretch.hop:
+        """Values on the native grid, complex64 (frame, range, doppler, antenna); frames are divided among `threads`."""
+        fit_window = self.fit_window
+        phasor = fit_window.phasor * self.peak
+        if fit_window.hop:
             with torch.inference_mode():
-                working = rendered(self.layers, stretch.response, stretch.axes)
-            return stretch.cube_values(working * self.peak)
-        out = np.empty((stretch.num_frames, *turn.shape), np.complex64)
-        parts = np.array_split(np.arange(stretch.num_frames), min(stretch.num_frames, max(4, threads)))
+                working = rendered(self.layers, fit_window.response, fit_window.axes)
+            return fit_window.cube_values(working * self.peak)
+        out = np.empty((fit_window.num_frames, *phasor.shape), np.complex64)
+        parts = np.array_split(np.arange(fit_window.num_frames), min(fit_window.num_frames, max(4, threads)))
 
         def fill(part: np.ndarray) -> None:
             with torch.inference_mode():
                 some = replace(self.layers, points=_frames(self.layers.points, int(part[0]), int(part[-1]) + 1))
-                cells = rendered(some, stretch.response, stretch.axes)
-                torch.mul(cells, turn, out=torch.from_numpy(out[part[0] : part[-1] + 1]))
+                cells = rendered(some, fit_window.response, fit_window.axes)
+                torch.mul(cells, phasor, out=torch.from_numpy(out[part[0] : part[-1] + 1]))
 
         if threads == 1:
             for part in parts:
@@ -99,12 +99,12 @@ class ScattererField(SignalField):
         frame, range_cell, _, antenna = coordinates_on(self.grid, grid)
         response = PointResponse(self.config)
         axes = response.axes(grid)
-        gains = between(self.layers.calibration, antenna)
-        still = between(between(self.layers.static, range_cell, is_signal=True).T, antenna).T
+        gains = interpolate(self.layers.calibration, antenna)
+        static = interpolate(interpolate(self.layers.static, range_cell, is_signal=True).T, antenna).T
         with torch.inference_mode():
             points = self._at(_frames_of(self.grid, frame), response)
             cells = torch.cat([response.render(part, axes) for part in _each(points)])
-            cells += still[:, None] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
+            cells += static[:, None] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
             return (cells * gains * response.turn(axes) * self.peak).numpy()
 
     def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
@@ -118,26 +118,26 @@ class ScattererField(SignalField):
         return out
 
     def with_noise(self, cube: RadarCube, seed: int) -> RadarCube:
-        """A rendered cube with the noise floor of the capture: white before the windows, so neighbours share it.
+        """A rendered cube plus receiver noise of the fitted power: white before windowing, so neighbours correlate.
 
-        Frames that overlap share the noise of their chirps too. Raises InputError where the cube is not on the field's
-        own cells.
+        Overlapping frames share the noise of their chirps. Raises InputError where the cube is not on the
+        native grid.
         """
         config, shape = self.config, cube.values.shape
         if shape != self.grid.shape:
             raise InputError(
-                f"noise is known on the field's own cells, {self.grid.shape}, not on {shape}; render with cube()"
+                f"noise is known on the native cells, {self.grid.shape}, not on {shape}; render with cube()"
             )
-        noise = cell_noise(stream(seed, "scatterer field noise"), config, shape[0], self.stretch.hop)
+        noise = cell_noise(stream(seed, "scatterer field noise"), config, shape[0], self.fit_window.hop)
         noise *= np.float32(self.peak * math.sqrt(self._cell_noise()))
         noise += cube.values
         return replace(cube, values=noise)
 
     def for_radar(self, config: RadarConfig, num_frames: int | None = None, *, first_frame_s: float = 0.0) -> RadarCube:
-        """What another radar (bandwidth, chirps, array) at the same place would have seen; nothing is fitted again.
+        """The cube of another radar (bandwidth, chirps, array) at the same place, without fitting again.
 
-        Its first frame starts `first_frame_s` after the field's. The static layer becomes points first. Learned gains
-        belong to this array and stay behind.
+        Its first frame starts `first_frame_s` after the field's. The static layer is converted to points first; learned
+        antenna gains belong to the fitted array and are dropped.
         """
         num_frames = num_frames or max(1, round(self._span_s() / config.frame_period_s))
         grid = CubeGrid.of(config, num_frames)
@@ -147,18 +147,18 @@ class ScattererField(SignalField):
         time_s = grid.frame_time_s - self.grid.frame_time_s[0]
         with torch.inference_mode():
             points = self._at(_frames_at(self.grid, time_s), response)
-            still = _carried(self._static_points(), self.stretch.response, response, torch.zeros(1))
-            cells = torch.cat([response.render(part, axes) for part in _each(points)]) + response.render(still, axes)
+            static = _propagated(self._static_points(), self.fit_window.response, response, torch.zeros(1))
+            cells = torch.cat([response.render(part, axes) for part in _each(points)]) + response.render(static, axes)
             values = (cells * response.turn(axes) * self.peak).numpy()
         return RadarCube(values=values, grid=grid, config=config, scale=self.scale)
 
     def _at(self, frame: np.ndarray, response: PointResponse) -> Points:
-        """Points (asked, point) at fractional frames, for another response."""
-        starts = np.arange(self.stretch.num_frames)
-        if self.stretch.hop:
+        """Points (sample, point) propagated to fractional frames, in units of another response."""
+        starts = np.arange(self.fit_window.num_frames)
+        if self.fit_window.hop:
             index = np.zeros(len(frame), int)
-            step_s = self.stretch.hop * self.config.loop_period_s
-            middle_s = self.stretch.response.num_loops * self.config.loop_period_s / 2
+            step_s = self.fit_window.hop * self.config.loop_period_s
+            middle_s = self.fit_window.response.num_loops * self.config.loop_period_s / 2
         else:
             index = np.abs(frame[:, None] - starts).argmin(axis=1)
             time_s = self.grid.frame_time_s
@@ -172,48 +172,48 @@ class ScattererField(SignalField):
             direction=points.direction[index],
             amplitude=points.amplitude[index],
         )
-        return _carried(chosen, self.stretch.response, response, torch.from_numpy(late_s))
+        return _propagated(chosen, self.fit_window.response, response, torch.from_numpy(late_s))
 
     def _scattered(self, coordinates: np.ndarray, frame: float) -> np.ndarray:
-        """Samples of one frame, cell by cell."""
+        """Values (point,) of one frame, cell by cell."""
         response = PointResponse(self.config)
         grid = self.grid
-        place_m = antenna_at(grid.antenna_position_m, coordinates[:, 3])
+        position_m = antenna_at(grid.antenna_position_m, coordinates[:, 3])
         cells = replace(
             grid,
             range_m=_along(grid.range_m, coordinates[:, 1]),
             radial_velocity_mps=_along(grid.radial_velocity_mps, coordinates[:, 2]),
-            antenna_position_m=place_m,
+            antenna_position_m=position_m,
         )
         axes = response.axes(cells)
         with torch.inference_mode():
             points = self._at(np.array([frame]), response)
             total = response.at_cells(points, axes)[0]
-            still = between(self.layers.static, coordinates[:, 1], is_signal=True)
-            still = between_rows(still, coordinates[:, 3])
-            total += still * response.doppler_kernel(axes.doppler_bin)[0]
-            total *= between(self.layers.calibration, coordinates[:, 3])
+            static = interpolate(self.layers.static, coordinates[:, 1], is_signal=True)
+            static = interpolate_rows(static, coordinates[:, 3])
+            total += static * response.doppler_kernel(axes.doppler_bin)[0]
+            total *= interpolate(self.layers.calibration, coordinates[:, 3])
             return (total * response.turn_at_cells(axes) * self.peak).numpy()
 
     def _static_points(self) -> Points:
-        """The static layer as points, (1, point)."""
-        response, axes = self.stretch.response, self.stretch.axes
-        still = self.layers.static[None, :, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
-        if not bool((still != 0).any()):
+        """The static layer as points (1, point)."""
+        response, axes = self.fit_window.response, self.fit_window.axes
+        static = self.layers.static[None, :, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
+        if not bool((static != 0).any()):
             return Points(
                 range_bin=torch.zeros(1, 0), doppler_bin=torch.zeros(1, 0), direction=torch.zeros(1, 0, 2),
                 amplitude=torch.zeros(1, 0, dtype=torch.complex64),
             )  # fmt: skip
-        one = replace(self.stretch, num_frames=1)
+        one = replace(self.fit_window, num_frames=1)
         recipe = FitRecipe(num_points=STATIC_POINTS, with_static=False, least_gain=0.0)
-        points = fitted(still, one, recipe).points
+        points = fitted(static, one, recipe).points
         return replace(points, doppler_bin=torch.zeros_like(points.doppler_bin))
 
     def _cell_noise(self) -> float:
-        """Noise power of a cell of the native grid, in units of peak squared."""
-        if not self.stretch.hop:
+        """Noise power per cell of the native grid, in units of peak squared."""
+        if not self.fit_window.hop:
             return self.layers.noise_power
-        window, long = hann(self.config.num_loops), self.stretch.long_window
+        window, long = hann(self.config.num_loops), self.fit_window.long_window
         return self.layers.noise_power * float(
             np.sum(window**2) / window.sum() ** 2 / (np.sum(long**2) / long.sum() ** 2)
         )
@@ -224,34 +224,34 @@ class ScattererField(SignalField):
         return float(time_s[-1] - time_s[0] + step_s)
 
 
-def _carried(points: Points, own: PointResponse, other: PointResponse, late_s: Tensor) -> Points:
-    """Points in units of another response, `late_s` (frame,) seconds after their own middle.
+def _propagated(points: Points, own: PointResponse, other: PointResponse, late_s: Tensor) -> Points:
+    """Points in units of another response, propagated by `late_s` (frame,) seconds from the middle of their frame.
 
-    Range and phase go on with the velocity; the phase is that of the other radar's carrier at that range.
+    Range and phase follow the velocity; the phase is that of the other radar's carrier at that range.
     """
     late_s = late_s[:, None].double()
     velocity_mps = points.doppler_bin.double() * own.velocity_a_bin_mps
     range_m = (points.range_bin.double() - own.coupling * points.doppler_bin) * own.range_a_bin_m
     later_m = range_m + velocity_mps * late_s
     before, after = own.config, other.config
-    turns = 2 * velocity_mps * late_s / after.wavelength_m
+    cycles = 2 * velocity_mps * late_s / after.wavelength_m
     if after is not before:
         delay_s = 2 * range_m / SPEED_OF_LIGHT_MPS
-        turns = turns + (after.centre_frequency_hz - before.centre_frequency_hz) * delay_s
-        turns = turns - (after.chirp_slope_hz_per_s - before.chirp_slope_hz_per_s) * delay_s**2 / 2
-    angle = 2 * math.pi * (turns - turns.round())
-    turned = torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
+        cycles = cycles + (after.centre_frequency_hz - before.centre_frequency_hz) * delay_s
+        cycles = cycles - (after.chirp_slope_hz_per_s - before.chirp_slope_hz_per_s) * delay_s**2 / 2
+    angle = 2 * math.pi * (cycles - cycles.round())
+    phasor = torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
     doppler_bin = velocity_mps / other.velocity_a_bin_mps
     return Points(
         range_bin=(later_m / other.range_a_bin_m + other.coupling * doppler_bin).float(),
         doppler_bin=doppler_bin.float(),
         direction=points.direction,
-        amplitude=points.amplitude * turned,
+        amplitude=points.amplitude * phasor,
     )
 
 
 def _each(points: Points) -> list[Points]:
-    """Frame by frame, which keeps memory small where frames are many."""
+    """Points frame by frame, which limits memory for many frames."""
     return [_frames(points, at, at + 1) for at in range(len(points.range_bin))]
 
 
@@ -270,7 +270,7 @@ def _frames_of(grid: CubeGrid, frame: np.ndarray) -> np.ndarray:
 
 
 def _frames_at(grid: CubeGrid, time_s: np.ndarray) -> np.ndarray:
-    """Fractional frames of times since the first frame."""
+    """Fractional frame indices of times since the first frame."""
     own_s = grid.frame_time_s
     return time_s / (own_s[1] - own_s[0]) if len(own_s) > 1 else np.zeros(len(time_s))
 

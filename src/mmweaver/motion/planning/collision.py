@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.geometry.body_capsules import capsule_between, part_of, scale_of
 from mmweaver.motion.planning.occluded_geometry import (
     below_tops,
@@ -89,11 +90,9 @@ class CollisionMap:
         """What was measured above the floor."""
         photo = self.scene.photo
         step = max(1, int(np.sqrt(photo.depth_m.size / _MOST_POINTS)))
-        # Every row, for a bed seen at a flat angle has few.
-        rows, columns = np.mgrid[0 : photo.depth_m.shape[0], 0 : photo.depth_m.shape[1] : step]
-        depth, lens = photo.depth_m[rows, columns], photo.intrinsics
-        camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
-        points = camera[np.isfinite(depth) & (depth > 0.3)] @ self.scene.radar_from_camera.T
+        # Every row: a bed seen at a flat angle has few.
+        points = AlignedPhoto.of(self.scene).points_m[:, ::step]
+        points = points[photo.depth_m[:, ::step] > 0.3]
         return points[points[:, 2] > self.scene.floor_z_m + _LOWEST_M]
 
     @cached_property

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.records import Scene
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 Array = np.ndarray
 Positions = Float[Array, "*shape 2"]
@@ -92,14 +93,12 @@ class FloorMap:
         return np.asarray(inside & ahead & self._in_picture(positions_m, z, margin=0.06, vertical=False))
 
     def _in_picture(self, positions_m: Positions, z: float, *, margin: float, vertical: bool) -> Bool[Array, "*shape"]:
-        lens = self.scene.photo.intrinsics
         points = np.concatenate([positions_m, np.full((*positions_m.shape[:-1], 1), z)], axis=-1)
-        camera = points @ self.scene.radar_from_camera  # its rows are the camera's axes: the inverse rotation
-        depth = np.maximum(camera[..., 2], 1e-3)
-        u = (lens.fx * camera[..., 0] / depth + lens.cx) / lens.width
-        inside = (camera[..., 2] > 0.1) & (u >= margin) & (u <= 1 - margin)
+        pixels, depth_m = AlignedPhoto.of(self.scene).project(points)
+        intrinsics = self.scene.photo.intrinsics
+        u, v = pixels[..., 0] / intrinsics.width, pixels[..., 1] / intrinsics.height
+        inside = (depth_m > 0.1) & (u >= margin) & (u <= 1 - margin)
         if vertical:
-            v = (lens.fy * camera[..., 1] / depth + lens.cy) / lens.height
             inside &= (v >= margin) & (v <= 1 - margin)
         return np.asarray(inside)
 

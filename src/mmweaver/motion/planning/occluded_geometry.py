@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import Plane, Scene
-from mmweaver.geometry.pinhole import project
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 Points = Float[np.ndarray, "point 3"]
 _FOOT_M, _FEET_DOWN_M, _SOLE_M = 0.24, (0.04, 0.08, 0.12, 0.16), 0.035
@@ -117,9 +117,8 @@ def _may_be(scene: Scene, leg: Points) -> bool:
 
 def _seen_through(scene: Scene, points: Points) -> np.ndarray:
     """Which points something was measured behind."""
-    behind = _behind_m(scene, points)
-    depth = (points @ scene.radar_from_camera)[:, 2]
-    return behind > _BEHIND_M + _BEHIND_PER_M2 * np.square(depth)
+    seen = AlignedPhoto.of(scene).look_up(points)
+    return _behind_m(scene, points) > _BEHIND_M + _BEHIND_PER_M2 * np.square(seen.depth_m)
 
 
 def occluded_share(scene: Scene, points: Points) -> float:
@@ -129,7 +128,7 @@ def occluded_share(scene: Scene, points: Points) -> float:
 
 def unseen_share(scene: Scene, points: Points) -> float:
     """Of places, the share that is hidden or outside the picture."""
-    return float(((_behind_m(scene, points) < -_BEFORE_M) | ~_in_picture(scene, points)[0]).mean())
+    return float(((_behind_m(scene, points) < -_BEFORE_M) | ~AlignedPhoto.of(scene).look_up(points).in_picture).mean())
 
 
 def occluded_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> Float[np.ndarray, "way place"]:
@@ -175,14 +174,5 @@ def below_tops(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
 
 def _behind_m(scene: Scene, points: Points) -> Float[np.ndarray, " point"]:
     """How far behind each point something was measured, negative before it; nan where nothing was."""
-    inside, row, column, depth = _in_picture(scene, points)
-    return np.where(inside, scene.photo.depth_m[row, column] - depth, np.nan)
-
-
-def _in_picture(scene: Scene, points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Which points are in the picture; their rows and columns there (0 where not), and their depths."""
-    pixels, depth = project(points @ scene.radar_from_camera, scene.photo.intrinsics)
-    rows, columns = scene.photo.depth_m.shape
-    column, row = np.nan_to_num(np.round(pixels), nan=-1.0).clip(-1, 1e6).astype(int).T
-    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows) & (depth > 0)
-    return inside, np.where(inside, row, 0), np.where(inside, column, 0), depth
+    seen = AlignedPhoto.of(scene).look_up(points)
+    return np.where(seen.in_picture, scene.photo.depth_m[seen.row, seen.column] - seen.depth_m, np.nan)

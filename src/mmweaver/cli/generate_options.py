@@ -1,0 +1,131 @@
+"""The options of `mmweaver generate`, in groups: input, motion, radar, output, advanced."""
+
+import argparse
+from pathlib import Path
+
+from mmweaver.cli.arguments import (
+    Options,
+    Rare,
+    add_layout_options,
+    add_output_options,
+    add_points_option,
+    landmark,
+    number,
+    place,
+    source,
+    whole,
+)
+from mmweaver.cli.motion_options import add_motion_options
+
+DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
+DEMO_TEXT_S = 1.6  # what this text needs
+SHORT_DEMO_TEXT = "a person walks towards the radar"  # for less
+DEMO_OUT = "demo"
+USAGE = """mmweaver generate --demo
+       mmweaver generate --rgb PNG --depth FILE --text TEXT --out DIR [options]
+       mmweaver generate --config request.toml --out DIR [options]"""
+
+
+def add_generate_options(parser: argparse.ArgumentParser) -> None:
+    """Declares all of them."""
+    _add_input_options(parser.add_argument_group("input"))
+    motion = parser.add_argument_group("motion")
+    _add_sentence_options(motion)
+    add_motion_options(motion)
+    _add_radar_options(parser.add_argument_group("radar"))
+    _add_result_options(parser.add_argument_group("output"))
+    advanced = parser.add_argument_group("advanced")
+    advanced.add_argument(
+        "--method", default="auto",
+        help="how the signal is made: weaver, the trained network; physics; or auto (default), weaver but for --bin,"
+        " --points firmware, several people and chirps of more than 40 ms a frame, which physics makes",
+    )  # fmt: skip
+    advanced.add_argument(
+        "--weights", type=source, metavar="FILE|DIR|HUB",
+        help="the network's weights: a file or folder of mmweaver train, or a name on the Hub",
+    )  # fmt: skip
+    add_layout_options(advanced, rare=True)
+
+
+def _add_input_options(room: Options) -> None:
+    room.add_argument("--demo", action="store_true", help=f"the bundled sample room (and --out {DEMO_OUT})")
+    room.add_argument("--rgb", type=Path, metavar="PNG", help="colour picture of the room")
+    room.add_argument(
+        "--depth", type=Path, metavar="FILE",
+        help="its depth: 16-bit PNG (mm, or camera.json's unit), .npy or float TIFF in metres",
+    )  # fmt: skip
+    room.add_argument(
+        "--camera", type=Path, metavar="JSON", help="fx, fy, cx, cy in pixels (default: a RealSense D455's)"
+    )
+    room.add_argument(
+        "--background", type=Path, metavar="DIR|NPZ",
+        help="a recording of this room by your radar with nobody present, a folder of mmweaver process or a capture"
+        " folder: its static clutter is used as it is, and the person is added",
+    )  # fmt: skip
+    room.add_argument("--empty-room", type=Path, dest="background", default=argparse.SUPPRESS, help=argparse.SUPPRESS)
+    room.add_argument(
+        "--depth-model", type=source, metavar="DIR|HUB",
+        help=Rare("where there is no --depth: a metric depth model that estimates it"),
+    )  # fmt: skip
+    room.add_argument(
+        "--classes", type=Path, metavar="PNG",
+        help=Rare("what each pixel shows (COCO-Stuff's numbers): materials follow from it"),
+    )  # fmt: skip
+    room.add_argument(
+        "--segmenter", type=source, metavar="builtin|DIR|HUB",
+        help=Rare("a model that finds the classes: builtin, or a SegFormer, MaskFormer, Mask2Former ... by folder or"
+        " Hub name"),
+    )  # fmt: skip
+    room.add_argument(
+        "--sam", type=source, metavar="DIR|HUB", help=Rare("a SAM model whose masks sharpen the segmenter's edges")
+    )
+    room.add_argument(
+        "--landmark", type=landmark, action="append", default=[], metavar="KIND=X,Y",
+        help=Rare("where a door, window, table, counter or bed is, if the photo does not show it well: metres right of"
+        " and ahead of the radar, for example door=0.9,2.8"),
+    )  # fmt: skip
+    room.add_argument(
+        "--capture", type=Path, metavar="DIR",
+        help=Rare("instead of --rgb: a capture folder of mmwave-capture-std; its RealSense's photo and depth"),
+    )  # fmt: skip
+    room.add_argument(
+        "--photo", type=whole, default=0, metavar="N", help=Rare("which photo of the capture (default 0)")
+    )
+
+
+def _add_sentence_options(person: Options) -> None:
+    person.add_argument(
+        "--text", action="append",
+        help=f"what the person does (with --demo: {DEMO_TEXT!r}); once more for each further person",
+    )  # fmt: skip
+    person.add_argument(
+        "--texts", type=Path, metavar="FILE",
+        help="many sequences, one sentence a line of this file, each in its own folder under --out; the room is"
+        " read once, and finished sequences are kept",
+    )  # fmt: skip
+    person.add_argument(
+        "--repeat", type=whole, default=1, metavar="N", help=Rare("with --texts: N of each, each with its own seed")
+    )
+    person.add_argument(
+        "--at", type=place, action="append", metavar="X,Y",
+        help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
+        " the first --at is the first one's",
+    )  # fmt: skip
+
+
+def _add_radar_options(radar: Options) -> None:
+    radar.add_argument(
+        "--radar", type=source, metavar="NAME|FILE",
+        help="preset, TI .cfg or radar.json (default awr1843, or what --background was recorded with)",
+    )  # fmt: skip
+    radar.add_argument("--frames", type=whole, default=20, help="number of frames (default 20)")
+    radar.add_argument("--fps", type=number, help="frames per second (default: the radar's own, 10 for awr1843)")
+    add_points_option(radar)
+
+
+def _add_result_options(output: Options) -> None:
+    output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
+    output.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
+    output.add_argument("--bin", action="store_true", help="also write adc_data.bin, raw samples as a DCA1000 does")
+    output.add_argument("--no-pictures", action="store_true", help="leave out preview.png and preview.gif")
+    add_output_options(output)

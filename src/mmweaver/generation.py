@@ -1,0 +1,107 @@
+"""What `Weaver` takes and returns: the room of a photo, and one generated sequence."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
+from mmweaver.core.stages import Stages
+from mmweaver.figures.figure_data import FigureData
+from mmweaver.result_folder import file_digest, save_results
+from mmweaver.scene.affordances.landmarks import with_given_landmarks
+
+
+@dataclass(frozen=True, kw_only=True)
+class Room:
+    """A photo, read and reconstructed; can be used for any number of sequences."""
+
+    scene: Scene
+    inputs: dict[str, Any]
+    seconds: dict[str, float]
+
+    def with_landmarks(self, *given: tuple[str, tuple[float, float]]) -> "Room":
+        """The room with landmarks at known places: `("door", (0.9, 2.8))`, metres right of and ahead of the radar.
+
+        They replace the detected ones of the same kind. Raises InputError for a kind that no sentence can go to.
+        """
+        inputs = self.inputs | {"landmarks": [[kind, *place] for kind, place in given]}
+        return replace(self, scene=with_given_landmarks(self.scene, given), inputs=inputs)
+
+    def with_background(self, source: str | Path | RadarCube, *, came_from: Path | None = None) -> "Room":
+        """The room with a background recording by your radar, nobody present: its static clutter is used as it is.
+
+        `source`: a folder of `mmweaver process`, its radar.npz, a capture folder, or the cube (`came_from`: its file or
+        folder, for meta.json). Raises InputError for what is no recording.
+        """
+        if not isinstance(source, RadarCube):
+            from mmweaver.recordings.read_recording import read_recording
+
+            came_from = Path(source)
+            source = read_recording(came_from).cube
+        inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
+        return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Generation:
+    """One generated sequence. `poses` hold each person's joints at the radar's frames, `motions` densely in time."""
+
+    cube: RadarCube
+    points: PointCloud
+    adc: AdcCube | None
+    poses: tuple[PoseSequence, ...]
+    motions: tuple[PoseSequence, ...]
+    scene: Scene
+    meta: dict[str, Any]
+    stages: Stages = field(repr=False)
+
+    @property
+    def pose(self) -> PoseSequence:
+        """The first person's joints at the radar's frames."""
+        return self.poses[0]
+
+    @property
+    def motion(self) -> PoseSequence:
+        """The first person's joints densely in time."""
+        return self.motions[0]
+
+    @property
+    def photo(self) -> RgbdPhoto:
+        return self.scene.photo
+
+    @property
+    def figure_data(self) -> FigureData:
+        """What the figures are drawn from."""
+        text = self.meta["text"]
+        title = text if isinstance(text, str) else " | ".join(text)
+        return FigureData(
+            title=f"{title}   ({self.cube.config.name}, seed {self.meta['seed']})",
+            cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
+            poses=self.poses, motions=self.motions,
+        )  # fmt: skip
+
+    def save(
+        self, out: str | Path, *, overwrite: bool = False, adc_data_bin: bool = False, iq_order: str = "iq",
+        pictures: bool = True, extra: dict[str, str] | None = None,
+    ) -> dict[str, Any]:  # fmt: skip
+        """Writes all files and pictures into a folder, or none of them; returns the content of meta.json.
+
+        Without `pictures` it is much quicker. `adc_data_bin` also writes the raw samples, as a DCA1000 does, with I or
+        Q first (`iq_order`: "iq" or "qi"). `extra`: text files to add, by name. Raises InputError where the folder
+        cannot be written, or holds other files and `overwrite` is not set.
+        """
+        if adc_data_bin and self.adc is None:
+            raise InputError(
+                "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
+            )
+        return save_results(
+            out, self.figure_data, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order,
+            overwrite=overwrite, stages=self.stages, pictures=pictures, extra=extra,
+        )  # fmt: skip
+
+
+def _recording_digest(place: Path) -> dict[str, str]:
+    """Path and, of a file or of a folder's radar.npz, sha256 of a recording."""
+    file = next((one for one in (place, place / "radar.npz") if one.is_file()), None)
+    return {"path": str(place)} if file is None else file_digest(file)

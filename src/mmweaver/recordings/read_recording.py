@@ -1,0 +1,155 @@
+"""The one reader of recordings: raw samples or a cube, in any of the files and folders that are understood.
+
+radar.npz, or a folder that holds one      a cube with its radar.json (mmweaver generate and process write both)
+capture folder of mmwave-capture-std       radar.cfg, dca.pcap
+adc_data.bin                               raw samples as a DCA1000 stores them
+.npy                                       raw samples with named axes, or the array of another project (layout)
+folder of .npy                             frames of HuPR
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.dsp.cube import radar_cube, tdm_compensation
+from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
+from mmweaver.formats.dca1000 import read_bin
+from mmweaver.formats.dca_packets import PacketCapture
+from mmweaver.formats.npz_files import read_radar_npz
+from mmweaver.formats.peer_arrays import LAYOUTS, read_hupr, read_mmmesh, read_rf_genesis, recognised
+from mmweaver.formats.radar_file import load_radar
+from mmweaver.formats.raw_npy import read_adc_npy
+
+CUBE = "radar.npz"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recording:
+    """One recording as it was read: its samples, or the cube where the file holds no samples."""
+
+    path: Path
+    files: dict[str, Path]  # what was read, named as in meta.json
+    config: RadarConfig
+    adc: AdcCube | None = None
+    stored_cube: RadarCube | None = None
+    compensate_tdm: bool = True  # False where all transmitters send at once
+    iq_order: str | None = None  # of files of int16 pairs
+    axes: str | None = None  # of a .npy, where they were given
+    radar_source: str | None = None  # preset or file that the radar came from
+    packets: PacketCapture | None = None  # of a capture folder
+
+    @cached_property
+    def cube(self) -> RadarCube:
+        """The range-Doppler cube (frame, range, doppler, antenna), computed at the first use."""
+        if self.stored_cube is not None:
+            return self.stored_cube
+        if self.adc is None:
+            raise ValueError("a recording needs samples or a cube")
+        return radar_cube(self.adc, compensate_tdm=self.compensate_tdm)
+
+
+def read_recording(
+    path: str | Path,
+    radar: str | Path | RadarConfig | None = None,
+    *,
+    layout: str | None = None,
+    axes: str | None = None,
+    iq_order: str | None = None,
+    tx_order: tuple[int, ...] | None = None,
+) -> Recording:
+    """Reads a recording; which kind it is follows from the path.
+
+    `radar`: a preset, a file that describes one, or its configuration; a capture folder brings its own, a radar.npz
+    its radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq" (default)
+    or "qi", `tx_order` the order in which transmitters fire (default: the radar's). A .npy needs its `axes`, such as
+    "frame,loop,tx,rx,sample", or a `layout`: "hupr" (recognised by its shape), "mmmesh" or "rf_genesis". Raises
+    InputError where the file cannot be read so.
+    """
+    path = Path(path)
+    if layout is not None and (layout not in LAYOUTS or axes is not None):
+        raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {axes!r}")
+    if not path.exists():
+        raise InputError(f"{path} does not exist; give a recording or a capture folder")
+    if path.is_dir() and layout is None:
+        given = {"--radar": radar, "--axes": axes, "--tx-order": tx_order, "--iq-order": iq_order}
+        found = _from_folder(path, radar, [name for name, value in given.items() if value is not None])
+        if found is not None:
+            return found
+    if path.suffix == ".npz":
+        return _from_cube(path, radar)
+    if (path.suffix == ".npy" or path.is_dir()) and axes is None:
+        layout = layout or recognised(path)
+    source = radar if radar is not None else layout
+    if source is None:
+        raise InputError(
+            f"{path}: which radar recorded it? give --radar, for example --radar awr1843; only a capture folder and"
+            f" {CUBE} bring their own"
+        )
+    config = as_config(source)
+    if tx_order is not None:
+        config = replace(config, tx_order=tx_order)
+    source = None if isinstance(source, RadarConfig) else str(source)
+    if layout is not None:
+        return _from_layout(path, config, layout, source)
+    files = {"recording": path}
+    if axes is not None:
+        adc = read_adc_npy(path, config, axes)
+        return Recording(path=path, files=files, config=config, adc=adc, axes=axes, radar_source=source)
+    order = iq_order or "iq"
+    adc = read_bin(path, config, iq_order=order)
+    return Recording(path=path, files=files, config=config, adc=adc, iq_order=order, radar_source=source)
+
+
+def as_config(radar: str | Path | RadarConfig) -> RadarConfig:
+    """A radar by its preset's name, its file or itself. Raises InputError."""
+    return radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
+
+
+def _from_folder(path: Path, radar: str | Path | RadarConfig | None, given: list[str]) -> Recording | None:
+    """A folder's recording; None for a folder of HuPR's frames. Raises InputError where it is none of them."""
+    if (path / CUBE).is_file():
+        return _from_cube(path / CUBE, radar)
+    if is_capture(path):
+        return _from_capture(path, given)
+    if any(path.glob("*.npy")):
+        return None
+    raise InputError(
+        f"{path} is no capture folder ({PACKETS}) and holds neither {CUBE} nor frames of HuPR (.npy); give a folder"
+        " that mmweaver process wrote"
+    )
+
+
+def _from_cube(path: Path, radar: str | Path | RadarConfig | None) -> Recording:
+    cube = read_radar_npz(path, None if radar is None else as_config(radar))
+    source = None if radar is None or isinstance(radar, RadarConfig) else str(radar)
+    return Recording(
+        path=path, files={"recording": path}, config=cube.config, stored_cube=cube, radar_source=source
+    )  # fmt: skip
+
+
+def _from_capture(path: Path, given: list[str]) -> Recording:
+    if given:
+        raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out {given[0]}")
+    capture = read_radar_capture(path)
+    return Recording(
+        path=capture.folder, files={"recording": capture.folder / PACKETS, "radar": capture.folder / RADAR},
+        config=capture.config, adc=capture.packets.adc, iq_order=capture.iq_order,
+        radar_source=str(capture.folder / RADAR), packets=capture.packets,
+    )  # fmt: skip
+
+
+def _from_layout(path: Path, config: RadarConfig, layout: str, source: str | None) -> Recording:
+    files = {"recording": path}
+    if layout == "hupr":
+        cube = read_hupr(path, config)
+        cube = replace(cube, values=np.asarray(cube.values * tdm_compensation(config)))
+        return Recording(path=path, files=files, config=cube.config, stored_cube=cube, radar_source=source)
+    adc = (read_mmmesh if layout == "mmmesh" else read_rf_genesis)(path, config)
+    return Recording(
+        path=path, files=files, config=adc.config, adc=adc, compensate_tdm=layout == "mmmesh", radar_source=source
+    )

@@ -1,0 +1,290 @@
+"""The network in rooms it has never seen, compared with baselines, the simulator and an oracle.
+
+    python -m studies run learned_scores --data DATASET --weights FILE
+    python -m studies run learned_scores --data DATASET --weights FILE --split test_person --most 40
+    python -m studies run learned_scores --data DATASET --weights FILE --paper PAPER/weights.safetensors
+    python -m studies run learned_scores --data OF_ANOTHER_RADAR --other-radar hupr
+
+Ground truth is the simulator in the true room, and every method is given the exact joints. `realization` is the same
+simulator with other surface micro-phases of room and person: the oracle for methods that cannot know them.
+`realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the room without the
+person. `static_mean` is that of the ground truth itself, `training_mean` that of the rooms trained on. `paper` is the
+paper's own network (study `train_paper`); `energy_db`, the energy of a cube over that of the ground truth, shows
+whether it has collapsed. Intervals: bootstrap over rooms.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import RadarCube, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_plan import SequenceSpec
+from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
+from mmweaver.datasets.room_generation import generate_sequence
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.metrics.scorecard import METRICS, scorecard
+from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
+from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.weights import load_weights, read_card, shipped_weights
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.reconstruction import reconstruct
+from studies.manifest import StudyRun
+from studies.paper.paper_method import paper_method
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
+
+COLUMNS = (
+    "rd_ssim", "ra_ssim", "rd_ssim_all_cells", "ra_ssim_all_cells", "rd_difference_db", "ra_difference_db",
+    "magnitude_nmse_db", "antenna_phase_error_rad", "chamfer_m", "hausdorff_m",
+)  # fmt: skip
+BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
+SAME_M = 1e-4
+OTHER = 1000  # added to a person's number for other skin
+
+
+@dataclass(frozen=True)
+class Case:
+    """One sequence of an unseen room, with everything a method may be given."""
+
+    room: StoredRoom
+    index: int
+    other: StoredRoom  # the room of the wrong photo
+    seed_of_plan: int
+    lighting: str
+
+    @cached_property
+    def spec(self) -> SequenceSpec:
+        room = self.room
+        return SequenceSpec(
+            index=self.index, person=int(room.person[self.index]), activity=room.activity[self.index],
+            text=room.text[self.index], seed=int(room.seed[self.index]), split=room.split[self.index],
+        )  # fmt: skip
+
+    @cached_property
+    def true_scene(self) -> Scene:
+        return make_room(self.room.kind, self.room.layout, self.seed_of_plan).scene(self.lighting)
+
+    @property
+    def joints(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.room.joints_m[self.index], self.room.joint_velocity_mps[self.index]
+
+
+Method = Callable[[Case], RadarCube]
+
+
+def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0) -> Method:
+    """Our physics in some room, always with another noise than the truth's."""
+
+    def method(case: Case) -> RadarCube:
+        simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed)
+        spec, frames = case.spec, len(case.joints[0])
+        subject, noise = spec.person + skin, spec.seed + OTHER
+        made = generate_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
+        if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
+            raise InputError("the data set's people move otherwise in this version; make it again")
+        return made.cube
+
+    return method
+
+
+def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
+    """The network, given a photo, and `recorded` with as many frames of the empty room as the radar records them."""
+
+    def method(case: Case) -> RadarCube:
+        config = case.room.config
+        empty = None
+        if recorded:
+            empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER)
+        woven_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, empty=empty)
+        joints, velocity = case.joints
+        motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=OTHER + case.spec.person)
+        return woven_room.cube([motion], seed=case.index)
+
+    return method
+
+
+def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int) -> RadarCube:
+    """What the radar records of a room with nobody in it, noise and all."""
+    return radar_cube(Simulator(scene, config).run((), num_frames=num_frames, seed=seed).adc)
+
+
+def nearest(train: list[StoredRoom]) -> Method:
+    """The training sequence whose joints are nearest in the radar's frame, as it was recorded."""
+    pool = [(room, index) for room in train for index, split in enumerate(room.split) if split == "train"]
+    joints = np.stack([room.joints_m[index] for room, index in pool])
+
+    def method(case: Case) -> RadarCube:
+        gap = np.linalg.norm(joints - case.joints[0][None], axis=-1).mean(axis=(1, 2))
+        room, index = pool[int(gap.argmin())]
+        return room.cube(index)
+
+    return method
+
+
+def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
+    """The mean of one sequence of each training room over frames and rooms: the static mean without the truth's."""
+    found = [(room, room.split.index("train")) for room in train if "train" in room.split][:most]
+
+    @lru_cache(maxsize=1)
+    def mean() -> np.ndarray:
+        each = np.stack([room.cube(index).values.mean(axis=0) for room, index in found])
+        return each.mean(axis=0, dtype=np.complex128).astype(np.complex64)
+
+    def method(case: Case) -> RadarCube:
+        like = case.room.cube(case.index)
+        return replace(like, values=np.repeat(mean()[None], len(like.values), axis=0))
+
+    return method
+
+
+def scored(cases: list[Case], methods: dict[str, Method]) -> dict[str, dict[str, np.ndarray]]:
+    """{method: {column: value of each case}}; the floors come along, and CPU seconds."""
+    rows: dict[str, dict[str, list[float]]] = {}
+
+    def add(name: str, values: dict[str, float]) -> None:
+        for column, value in values.items():
+            rows.setdefault(name, {}).setdefault(column, []).append(value)
+
+    for case in cases:
+        truth = case.room.cube(case.index)
+        for name, method in methods.items():
+            began = time.process_time()
+            cube = method(case)
+            seconds = time.process_time() - began
+            card = scorecard(cube, truth)
+            if name == next(iter(methods)):
+                for floor, values in card.baselines.items():
+                    empty = _magnitude_nmse_db(_floor_cube(floor, truth), truth)
+                    add(floor, {**_columns(values), "magnitude_nmse_db": empty, "cpu_s": 0.0})
+            own = {
+                "magnitude_nmse_db": _magnitude_nmse_db(cube, truth), "energy_db": energy_db(cube, truth),
+                "cpu_s": seconds,
+            }  # fmt: skip
+            add(name, {**_columns(card.prediction), **own})
+    return {name: {column: np.array(values) for column, values in row.items()} for name, row in rows.items()}
+
+
+def _columns(values: dict[str, float]) -> dict[str, float]:
+    return {name: values[name] for name in COLUMNS if name in values}
+
+
+def _floor_cube(name: str, truth: RadarCube) -> RadarCube:
+    from mmweaver.metrics.baselines import BASELINES
+
+    return BASELINES[name](truth)
+
+
+def _magnitude_nmse_db(cube: RadarCube, truth: RadarCube) -> float:
+    """Error of |cube| over the energy of the truth: what is left when phases count for nothing."""
+    error = np.abs(cube.values) - np.abs(truth.values)
+    return float(10 * np.log10((error**2).sum() / (np.abs(truth.values) ** 2).sum()))
+
+
+def energy_db(cube: RadarCube, truth: RadarCube) -> float:
+    """A cube's energy over the truth's: what has collapsed to zeros has little."""
+    energy = [float((np.abs(each.values).astype(np.float64) ** 2).sum()) for each in (cube, truth)]
+    return float(10 * np.log10(max(energy[0], 1e-30) / energy[1]))
+
+
+def interval(values: np.ndarray, rooms: list[str], seed: int = 0) -> tuple[float, float, float]:
+    """Mean and 95 % bootstrap interval over rooms."""
+    names = sorted(set(rooms))
+    means = np.array([np.nanmean(values[[room == name for room in rooms]]) for name in names])
+    rng = stream(seed, "bootstrap")
+    draws = np.nanmean(means[rng.integers(len(names), size=(2000, len(names)))], axis=1)
+    return float(np.nanmean(means)), float(np.percentile(draws, 2.5)), float(np.percentile(draws, 97.5))
+
+
+def cases_of(
+    rooms: list[StoredRoom], split: str, each: int, plan: dict[str, Any], seed: int, most: int | None = None
+) -> list[Case]:
+    """`each` sequences of every room that has the split, or of at most so many rooms; the wrong photo is that of a
+    room of another kind.
+    """
+    rng = stream(seed, "cases", split)
+    chosen = [room for room in rooms if split in room.split]
+    if most is not None and most < len(chosen):
+        chosen = [chosen[int(index)] for index in np.sort(rng.choice(len(chosen), size=most, replace=False))]
+    cases = []
+    for room in chosen:
+        others = [other for other in chosen if other.kind != room.kind] or [o for o in rooms if o.kind != room.kind]
+        indices = [index for index, name in enumerate(room.split) if name == split]
+        for index in rng.choice(indices, size=min(each, len(indices)), replace=False):
+            other = others[int(rng.integers(len(others)))]
+            cases.append(Case(room, int(index), other, plan["seed"], room.lighting))
+    return cases
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True)
+    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper, for a row of its own")
+    parser.add_argument("--split", default="test_room")
+    parser.add_argument("--each", type=int, default=1, help="sequences of each room")
+    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--only", nargs="*", help="rows (default: all)")
+    parser.add_argument("--other-radar", metavar="NAME", help="data of another radar or length: a result of this name")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    weights = options.weights or shipped_weights()
+    network, card = load_weights(weights)
+    rooms, plan = read_rooms(options.data), read_plan(options.data)
+    cases = cases_of(rooms, options.split, options.each, plan, 0, options.most)
+    generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
+    generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
+    methods: dict[str, Method] = {
+        "weaver": learned(network, lambda case: case.room),
+        "weaver_with_background": learned(network, lambda case: case.room, recorded=True),
+        "wrong_photo": learned(network, lambda case: case.other),
+        "training_mean": training_mean(rooms),
+        "nearest_training_pose": nearest(rooms),
+        "generic_room_physics": simulated(lambda case: generic_scene, skin=OTHER, micro_seed=1),
+        "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=OTHER, micro_seed=1),
+        "realization_skin": simulated(lambda case: case.true_scene, skin=OTHER),
+        "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
+    }
+    about = {"weights": card.__dict__, "data_plan": plan, "each": options.each}
+    if options.paper is not None:
+        methods["paper"] = paper_method(options.paper)
+        about["paper"] = read_card(options.paper).__dict__
+    if options.only:
+        methods = {name: methods[name] for name in options.only}
+    names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
+    table = scored(cases, methods)
+    rows = [_row(name, values, names, options.split) for name, values in table.items()]
+    rows = complete_rows(
+        rows, dataset=dataset_of(options.data), seeds=[0], baselines=BASELINES, oracles=ORACLES,
+        unknown={"seconds": "metric cpu_s has those of each method"},
+    )  # fmt: skip
+    folder = "other_radars" if options.other_radar else "learned_scores"
+    run.write(folder, options.other_radar or options.split, config=about, rows=rows)
+    for row in rows:
+        values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
+        print(f"{row['method']:30}", *values, flush=True)
+
+
+def _row(name: str, values: dict[str, np.ndarray], rooms: list[str], split: str) -> dict[str, Any]:
+    metrics = {}
+    for column, each in values.items():
+        mean, low, high = interval(each, rooms)
+        known = METRICS.get(column)
+        metrics[column] = {
+            "value": _number(mean), "interval_95": [_number(low), _number(high)],
+            "unit": known.unit if known else {"cpu_s": "s"}.get(column, "dB"),
+        }  # fmt: skip
+    return {"method": name, "split": split, "n": len(rooms), "num_rooms": len(set(rooms)), "metrics": metrics}
+
+
+def _number(value: float) -> float | None:
+    return value if np.isfinite(value) else None

@@ -1,0 +1,113 @@
+"""Batches for the recipe `paper`: photos, motions, and patches of cubes that favour ranges with human activity.
+
+The paper draws 16,384 of the coordinates a step. Its complex SSIM and its perceptual loss compare neighbours, so what
+is drawn here are whole patches: 2 frames of 21 ranges, all 32 Doppler bins and all 12 antennas, 16,128 coordinates of a
+sequence. Half of them lie around a range in which something moves, half anywhere.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import RadarCube
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_store import StoredRoom, read_rooms
+from mmweaver.metrics.cells import cells_of
+from mmweaver.metrics.cube_errors import span_of
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.scene.reconstruction import reconstruct
+from mmweaver.training.device import Share
+from studies.paper.paper_method import motion_of, unit_sqrt_mw
+from studies.paper.positional_encoding import encode_axis, normalised
+
+POINTS, FRAMES = 16_384, 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class PaperBatch:
+    """Sequences, each of another room, and a patch of each."""
+
+    image: Tensor  # (sequence, 5, row, column)
+    motion: Tensor  # (sequence, frame, 22, 6), all frames
+    frames: Tensor  # (sequence, 2) those of the patch
+    encoded: Tensor  # (sequence, range doppler antenna, 51), coordinates of the patch
+    truth: Tensor  # (sequence, 2, range, doppler, antenna) complex, in the network's unit
+    span: Tensor  # (sequence,) data range of these two frames, in the network's unit
+
+
+class PaperRoom:
+    """One stored room: its photo as the network sees it, and the sequences of one split."""
+
+    def __init__(self, room: StoredRoom, split: str):
+        self.room = room
+        self.indices = [index for index, name in enumerate(room.split) if name == split]
+
+    @cached_property
+    def image(self) -> Tensor:
+        """(5, row, column): colour, depth and classes of the reconstructed room."""
+        geometry = self.room.geometry
+        photographed = None if geometry is None else geometry.photographed
+        return SceneTensors.of(reconstruct(self.room.photo), self.room.config, photographed).image
+
+
+def paper_rooms(folder: Path, split: str, device: str = "cpu") -> list[PaperRoom]:
+    """The rooms that have sequences of a split; signals that are not stored are made on `device` when a batch wants
+    them. Raises InputError where there are none."""
+    rooms = [PaperRoom(room, split) for room in read_rooms(folder, device=device) if split in room.split]
+    if not rooms:
+        raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
+    return rooms
+
+
+def sample_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: int, share: Share = (0, 1)) -> PaperBatch:
+    """`size` sequences of as many rooms, of them the share of one process; the same seed and step give the same."""
+    rng = stream(seed, "paper batch", step)
+    images, motions, frames, encoded, truth, span = [], [], [], [], [], []
+    for number, which in enumerate(rng.choice(len(rooms), size=size, replace=len(rooms) < size)):
+        own = stream(seed, "paper patch", step, number)
+        if number % share[1] != share[0]:
+            continue
+        one = rooms[int(which)]
+        index = one.indices[int(own.integers(len(one.indices)))]
+        num_frames = len(one.room.joints_m[index])
+        chosen = np.sort(own.choice(num_frames, size=FRAMES, replace=num_frames < FRAMES))
+        cube, unit = one.room.cube(index, chosen), unit_sqrt_mw(one.room.config)
+        first, length = _patch(cube, own)
+        joints, velocity = (part[index] for part in (one.room.joints_m, one.room.joint_velocity_mps))
+        images.append(one.image)
+        motions.append(motion_of(torch.from_numpy(joints), torch.from_numpy(velocity)))
+        frames.append(torch.from_numpy(chosen))
+        encoded.append(_encoded(one.room.config, first, length))
+        truth.append(torch.from_numpy(cube.values[:, first : first + length] / np.float32(unit)))
+        span.append(span_of(cube.values) / unit)
+    return PaperBatch(
+        image=torch.stack(images), motion=torch.stack(motions), frames=torch.stack(frames),
+        encoded=torch.stack(encoded), truth=torch.stack(truth), span=torch.tensor(span),
+    )  # fmt: skip
+
+
+def _patch(cube: RadarCube, rng: np.random.Generator) -> tuple[int, int]:
+    """The first range of the patch and how many; half of the patches where the first frame moves."""
+    _, num_ranges, num_loops, num_antennas = cube.values.shape
+    length = min(num_ranges, max(1, POINTS // (FRAMES * num_loops * num_antennas)))
+    middle = int(rng.integers(num_ranges))
+    moving = np.flatnonzero(cells_of(cube).is_moving[0].any(axis=-1))
+    if rng.random() < 0.5 and len(moving):
+        middle = int(moving[rng.integers(len(moving))])
+    return int(np.clip(middle - length // 2, 0, num_ranges - length)), length
+
+
+def _encoded(config: RadarConfig, first: int, length: int) -> Tensor:
+    """Encoded coordinates of some ranges, all Doppler bins and all antennas, (point, 51)."""
+    sizes = (config.num_range_bins, config.num_loops, config.num_antennas)
+    axes = [torch.from_numpy(normalised(np.arange(float(num)), num).astype(np.float32)) for num in sizes]
+    r, d, a = (encode_axis(axis) for axis in (axes[0][first : first + length], *axes[1:]))
+    shape = (len(r), len(d), len(a), -1)
+    parts = (r[:, None, None].expand(shape), d[None, :, None].expand(shape), a[None, None].expand(shape))
+    return torch.cat(parts, dim=-1).flatten(0, 2)

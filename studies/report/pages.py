@@ -1,0 +1,52 @@
+"""Pages with generated tables: README, docs and model cards, each table between two marks.
+
+<!-- table: NAME -->
+...
+<!-- end -->
+"""
+
+import re
+from pathlib import Path
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.errors import InputError
+from studies.report.tables import TABLES
+
+MARKED = re.compile(r"<!-- table: (?P<name>[^>]*?) -->(?P<table>.*?)<!-- (?P<end>end|table: [^>]*?) -->", re.DOTALL)
+BEGIN, END = "<!-- table: {} -->", "<!-- end -->"
+PAGES = ("README.md", "docs/**/*.md", "model_cards/**/*.md")
+
+
+def pages_of(root: Path) -> list[Path]:
+    """Every page of the documentation that has a table."""
+    pages = sorted({path for pattern in PAGES for path in root.glob(pattern)})
+    return [page for page in pages if "<!-- table:" in page.read_text(encoding="utf-8")]
+
+
+def fill(page: Path, results: Path) -> bool:
+    """Fills the tables of a page; returns whether anything changed. Raises InputError as `with_tables`."""
+    before = page.read_text(encoding="utf-8")
+    after = with_tables(before, results, page.name)
+    if after == before:
+        return False
+    with atomic_file(page) as temporary:
+        temporary.write_text(after, encoding="utf-8")
+    return True
+
+
+def with_tables(text: str, results: Path, name: str = "the page") -> str:
+    """A page with every occurrence of every table filled. Raises InputError for an unknown table or a missing end."""
+
+    def filled(found: re.Match[str]) -> str:
+        table = found["name"]
+        if table not in TABLES:
+            raise InputError(f"{name} asks for table {table!r}, which is not declared; known: {', '.join(TABLES)}")
+        if found["end"] != "end":
+            raise InputError(f"{name}: the mark of table {table!r} has no {END} after it")
+        return f"{BEGIN.format(table)}\n{TABLES[table](results)}\n{END}"
+
+    after = MARKED.sub(filled, text)
+    begun, ended = text.count("<!-- table: "), text.count(END)
+    if begun > ended:
+        raise InputError(f"{name}: {begun - ended} table(s) lack the mark {END}")
+    return after

@@ -1,0 +1,74 @@
+"""The documentation: links resolve, files that are named exist, every decision has a status."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + [
+    *sorted((ROOT / "docs").rglob("*.md")),
+    *sorted((ROOT / "model_cards").glob("*.md")),
+]
+DECISIONS = sorted((ROOT / "docs" / "decisions").glob("[0-9]*.md"))
+WRITTEN_BY_MAKE_DOCS = ("reference/", "gallery/")
+PACKAGE = ROOT / "src" / "mmweaver"
+
+
+def _prose(page: Path) -> str:
+    """The page without its blocks of code."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    return re.sub(r"^    .*$", "", text, flags=re.MULTILINE)
+
+
+def _anchors(page: Path) -> set[str]:
+    """The anchors of a page's headings, as Python-Markdown and GitHub name them."""
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    words = (re.sub(r"[^\w\- ]", "", re.sub(r"\[(.*?)\]\(.*?\)", r"\1", heading).lower()) for heading in headings)
+    return {re.sub(r"[ ]+", "-", heading.strip()) for heading in words}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_resolve(page: Path):
+    for target in re.findall(r"\]\(([^)\s]+)\)", _prose(page)):
+        place, _, anchor = target.partition("#")
+        if re.match(r"(https?|mailto):", target) or place.startswith(WRITTEN_BY_MAKE_DOCS):
+            continue
+        file = (page.parent / place).resolve() if place else page
+        assert file.exists(), f"{page.relative_to(ROOT)} links to {target}"
+        if anchor and file.suffix == ".md":
+            assert anchor in _anchors(file), f"{page.relative_to(ROOT)} links to {target}"
+
+
+def test_source_files_that_pages_name_exist():
+    """`paths/exact.py` is named from the package's folder, `studies/run.py` from the repository's."""
+    for page in PAGES:
+        if page.name == "CHANGELOG.md":  # tells of files as they were
+            continue
+        for name in re.findall(r"`((?:[\w.]+/)+[\w]+\.(?:py|md|toml))`", _prose(page)):
+            assert any((root / name).exists() for root in (ROOT, PACKAGE)), f"{page.relative_to(ROOT)} names {name}"
+
+
+def test_every_decision_has_its_number_and_a_status():
+    numbers = {int(path.name[:4]) for path in DECISIONS}
+    assert len(numbers) == len(DECISIONS)
+    for path in DECISIONS:
+        title, _, status = path.read_text(encoding="utf-8").splitlines()[:3]
+        assert title.startswith(f"# {int(path.name[:4])}. "), path.name
+        found = re.match(r"Status: (accepted|superseded by (\d+))\b", status)
+        assert found, f"{path.name}: {status}"
+        assert found[2] is None or int(found[2]) in numbers, f"{path.name} names no decision"
+
+
+def test_contributing_has_the_packages_in_the_order_of_the_import_contract():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    (contract,) = [one for one in settings["tool"]["importlinter"]["contracts"] if one["type"] == "layers"]
+    layers = [re.sub(r"[()]", "", layer) for layer in contract["layers"]]
+    listed = re.search(r"((?:^      .*\n)+)", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert listed
+    assert [line.strip() for line in listed[1].splitlines()] == layers
+
+
+def test_the_readme_is_short():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 120

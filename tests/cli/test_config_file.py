@@ -1,0 +1,110 @@
+"""Options from a TOML file, and the request.toml by which a run is repeated bit for bit."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.cli.config_file import request_toml, with_config
+from mmweaver.cli.main import build_parser, main
+from mmweaver.core.presets import AWR1843
+
+REPEATED = ("radar.npz", "pose.npz", "points.npz", "radar.json", "request.toml")
+
+
+def parsed(argv: list[str]):
+    return build_parser().parse_args(argv)
+
+
+def commands():
+    return next(action.choices for action in build_parser()._actions if action.dest == "command")
+
+
+def test_a_run_is_repeated_by_its_request(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "board.json").write_text(AWR1843.to_json())
+    monkeypatch.chdir(tmp_path)
+    argv = ["generate", "--demo", "--text", "a person stands", "--at=-0.2,2.1", "--frames", "3", "--seed", "7"]
+    argv += ["--radar", "board.json", "--height", "1.71", "--method", "physics", "--bin", "--tx-order", "1,0,2"]
+    assert main([*argv, "--no-pictures", "--quiet", "--out", "out"]) == 0
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert main(["generate", "--config", "../out/request.toml", "--out", "again", "--quiet"]) == 0
+    for name in (*REPEATED, "adc_data.bin"):
+        assert (tmp_path / "out" / name).read_bytes() == (tmp_path / "elsewhere" / "again" / name).read_bytes(), name
+    assert main(["process", "../out/adc_data.bin", "--radar", "../out/radar.json", "--out", "cube", "--quiet"]) == 0
+    assert main(["process", "--config", "cube/request.toml", "--out", "same", "--quiet"]) == 0
+    assert Path("cube/radar.npz").read_bytes() == Path("same/radar.npz").read_bytes()
+
+
+def test_a_sequence_of_a_batch_is_repeated_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    Path("texts.txt").write_text("a person stands\na person waves\n")
+    argv = ["generate", "--demo", "--frames", "3", "--no-pictures", "--quiet"]
+    assert main([*argv, "--texts", "texts.txt", "--seed", "3", "--out", "set"]) == 0
+    assert main(["generate", "--config", "set/0001/request.toml", "--quiet", "--out", "alone"]) == 0
+    for name in REPEATED:
+        assert Path("set/0001", name).read_bytes() == Path("alone", name).read_bytes(), name
+
+
+def test_every_kind_of_value_comes_back(tmp_path: Path):
+    argv = [
+        "generate",
+        "--rgb",
+        "/a/rgb.png",
+        "--text",
+        'a "b" \u00e9\n',
+        "--text",
+        "c",
+        "--at=-0.1,2",
+        "--at",
+        "1,1.5",
+    ]
+    argv += ["--landmark", "door=0.9,2.8", "--fps", "12.5", "--bin", "--heading=-20.25", "--iq-order", "qi"]
+    first = parsed(argv)
+    file = tmp_path / "request.toml"
+    file.write_text(request_toml(commands()["generate"], first), encoding="utf-8")
+    again = parsed(with_config(["generate", "--config", str(file)], commands()))
+    again.config = None
+    settings = [
+        {name: value for name, value in vars(one).items() if name not in ("parser", "whole_parser")}
+        for one in (first, again)
+    ]
+    assert settings[0] == settings[1]
+
+
+def test_the_command_line_goes_before_the_file_and_paths_are_the_files(tmp_path: Path):
+    file = tmp_path / "run.toml"
+    file.write_text('rgb = "rgb.png"\ntext = ["one", "two"]\nframes = 7\nno_pictures = true\n')
+    found = parsed(with_config(["generate", "--config", str(file), "--text", "mine", "--frames=9"], commands()))
+    assert (found.text, found.frames, found.no_pictures) == (["mine"], 9, True)
+    assert found.rgb == tmp_path / "rgb.png"
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        ("frames = ", "no TOML"),
+        ("frame = 3", "did you mean 'frames'?"),
+        ("frames = true", "cannot be True"),
+        ("bin = 1", "true or false"),
+        ('frames = "many"', "no whole number"),
+        ('command = "process"', "is of mmweaver process"),
+        (None, "cannot read"),
+    ],
+)
+def test_a_bad_file_is_one_line(content: str | None, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    file = tmp_path / "run.toml"
+    if content is not None:
+        file.write_text(content)
+    assert main(["generate", "--demo", "--config", str(file), "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_floats_keep_every_bit(tmp_path: Path):
+    fps = float(np.nextafter(0.1, 1)) * 100
+    file = tmp_path / "request.toml"
+    file.write_text(request_toml(commands()["generate"], parsed(["generate", "--demo", "--fps", repr(fps)])))
+    assert parsed(with_config(["generate", "--config", str(file)], commands())).fps == fps

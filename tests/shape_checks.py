@@ -1,0 +1,63 @@
+"""Checks of shapes and types that cost little: the first calls of every function in every test.
+
+The import hook of jaxtyping wraps every function of the package. One check costs some 50 microseconds, and functions of
+inner loops are called a million times: with all calls checked, tests of motion took three times as long.
+"""
+
+import functools
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import jaxtyping
+
+FIRST_CALLS = 10  # of each function in each test
+
+
+class _Current:
+    test = 0  # number of the running test: a new one checks anew
+    most_calls = FIRST_CALLS
+
+
+def next_test() -> None:
+    """From here on the first calls of every function are checked again."""
+    _Current.test += 1
+
+
+def check_every_call() -> None:
+    """As the hook does by itself; the nightly run asks for it."""
+    _Current.most_calls = sys.maxsize
+
+
+def check_first_calls() -> None:
+    """Makes the hook check only the first calls of what is imported from now on."""
+    every_call = jaxtyping.jaxtyped
+
+    def jaxtyped(decorated: Any = None, *, typechecker: Any) -> Any:
+        if decorated is None:
+            return functools.partial(jaxtyped, typechecker=typechecker)
+        if not isinstance(decorated, type):
+            return _first_calls(decorated, every_call(decorated, typechecker=typechecker))
+        plain = decorated.__init__
+        checked = every_call(decorated, typechecker=typechecker)
+        if checked.__init__ is not plain:  # a dataclass
+            checked.__init__ = _first_calls(plain, checked.__init__)
+        return checked
+
+    jaxtyping.jaxtyped = jaxtyped  # the name that the hook writes before each function
+
+
+def _first_calls(plain: Callable[..., Any], checked: Callable[..., Any]) -> Callable[..., Any]:
+    test, left = -1, 0
+
+    @functools.wraps(plain)
+    def function(*args: Any, **kwargs: Any) -> Any:
+        nonlocal test, left
+        if test != _Current.test:
+            test, left = _Current.test, _Current.most_calls
+        if left:
+            left -= 1
+            return checked(*args, **kwargs)
+        return plain(*args, **kwargs)
+
+    return function

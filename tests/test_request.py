@@ -1,0 +1,80 @@
+"""A request is checked before any work, and its sentences are parsed once."""
+
+from dataclasses import replace
+
+import pytest
+
+from mmweaver import request as module
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843, MMMESH
+from mmweaver.request import MAX_FRAMES, parse_request
+
+TEXT = "a person walks towards the radar"
+
+
+@pytest.mark.parametrize(
+    ("request_", "says"),
+    [
+        ({"text": ""}, "empty"),
+        ({"text": " \n"}, "empty"),
+        ({"text": "walk " * 2000}, "10000 characters"),
+        ({"text": "a person photosynthesises"}, "walk"),
+        ({"text": "a person walks, then squats five times", "frames": 10}, "need at least"),
+        ({"frames": 0}, f"1 to {MAX_FRAMES}"),
+        ({"frames": 1_000_000}, f"1 to {MAX_FRAMES}"),
+        ({"fps": 0.0}, "fps"),
+        ({"fps": float("nan")}, "fps"),
+        ({"fps": 500.0}, "frame period"),
+        ({"fps": 0.1, "frames": 100}, "600 s"),
+        ({"seed": -1}, "seed"),
+        ({"at": (float("nan"), 1.0)}, "two numbers"),
+        ({"at": [(0.0, 1.0), (0.5, 1.0)]}, "at most 1 places"),
+        ({"text": []}, "1 to 8 texts"),
+        ({"text": [TEXT] * 9}, "1 to 8 texts"),
+        ({"text": [TEXT, "a person photosynthesises"]}, "walk"),
+        ({"text": [TEXT, TEXT], "at": (0.0, 1.0)}, "list of at most 2 places"),
+        ({"text": [TEXT, TEXT], "at": [None, (0.0, float("inf"))]}, "two numbers"),
+    ],
+)
+def test_a_bad_request_is_refused_before_any_work(request_: dict, says: str):
+    with pytest.raises(InputError, match=says):
+        parse_request(AWR1843, **{"text": TEXT, **request_})
+
+
+def test_memory_is_asked_for_before_it_is_used():
+    with pytest.raises(InputError, match="GB of memory"):
+        parse_request(MMMESH, text=TEXT, frames=MAX_FRAMES, keep_adc=True)
+    parse_request(AWR1843, text=TEXT, frames=MAX_FRAMES, keep_adc=False)
+
+
+def test_the_frame_rate_is_the_radars_own_unless_given():
+    slow = replace(AWR1843, frame_period_s=0.2)
+    assert parse_request(slow, text=TEXT).config.frame_period_s == 0.2
+    assert parse_request(slow, text=TEXT, fps=10.0).config == AWR1843
+
+
+def test_one_person_and_several():
+    one = parse_request(AWR1843, TEXT, at=(0.5, 2.0), height_m=1.8)
+    assert (one.text, one.at, one.height_m) == (TEXT, (0.5, 2.0), 1.8)
+    assert one.duration_s == pytest.approx(2.0)
+    assert one.people[0].plan is not None
+    assert one.people[0].plan.steps[-1].end_s == pytest.approx(2.0)
+    two = parse_request(AWR1843, [TEXT, "a person waves"], at=[None, (0.5, 2.0)])
+    assert (two.text, two.at, two.height_m) == ([TEXT, "a person waves"], [None, (0.5, 2.0)], None)
+    with pytest.raises(InputError, match="list of heights"):
+        parse_request(AWR1843, [TEXT, TEXT], height_m=1.8)
+    with pytest.raises(InputError, match="at most 1 heights"):
+        parse_request(AWR1843, TEXT, height_m=[1.8, 1.7])
+
+
+def test_a_sentence_is_parsed_once(monkeypatch: pytest.MonkeyPatch):
+    parsed: list[str] = []
+
+    def counting(text: str):
+        parsed.append(text)
+        return parse(text)
+
+    parse = module.parse
+    monkeypatch.setattr(module, "parse", counting)
+    parse_request(AWR1843, [TEXT, "a person waves"])
+    assert parsed == [TEXT, "a person waves"]

@@ -1,0 +1,167 @@
+"""Builds the documentation site (make docs): pages, references, gallery and notebooks; nothing it writes is committed.
+
+python tools/build_docs.py [--out build/docs]
+"""
+
+import argparse
+import re
+import runpy
+import shutil
+import subprocess
+import sys
+from contextlib import chdir, redirect_stdout
+from io import StringIO
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "src" / "mmweaver"
+TOP = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
+WITHOUT_HEADING = "    options:\n      show_root_heading: false\n      show_root_toc_entry: false\n"
+# what a browser fetches by itself: of elements, and of style sheets
+REMOTE = re.compile(
+    r"""(?:<(?:link|script|img|iframe)\b[^>]*?(?:href|src)=|@import\s*|url\()\s*["']?((?:https?:)?//[^"')>\s]+)"""
+)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "docs")
+    out = parser.parse_args().out.resolve()
+    source = out / "source"
+    if out.exists():
+        shutil.rmtree(out)
+    shutil.copytree(ROOT / "docs", source)
+    for name, page in TOP.items():
+        (source / page).write_text((ROOT / name).read_text(encoding="utf-8").replace("](docs/", "]("), encoding="utf-8")
+    decisions = write_decision_index(source / "decisions")
+    packages = write_references(source / "reference")
+    write_gallery(source / "gallery")
+    for page in source.rglob("*.md"):
+        page.write_text(rewritten(page.read_text(encoding="utf-8"), page, source), encoding="utf-8")
+    settings = (ROOT / "zensical.toml").read_text(encoding="utf-8")
+    for place in ("src", "tools/doctest_blocks.py"):
+        settings = settings.replace(f'["{place}"]', f'["{(ROOT / place).as_posix()}"]')
+    settings = settings.replace('"reference/api.md" }] }, # packages', f'"reference/api.md" }}, {packages}] }},')
+    settings = settings.replace('["decisions/index.md"] }, # decisions', f'["decisions/index.md", {decisions}] }},')
+    (out / "zensical.toml").write_text(settings, encoding="utf-8")
+    zensical = Path(sys.executable).with_name("zensical")
+    status = subprocess.run([zensical, "build", "--strict", "-f", out / "zensical.toml"], check=False).returncode
+    faults = faults_of(out / "site")
+    print("\n".join(faults) or f"{out / 'site' / 'index.html'}")
+    return status or bool(faults)
+
+
+def rewritten(text: str, page: Path, source: Path) -> str:
+    """The page with its links as the site has them: pages of the root renamed, files outside the site as plain text."""
+
+    def link(found: re.Match[str]) -> str:
+        words, target = found.groups()
+        place, _, anchor = target.partition("#")
+        if re.match(r"(https?|mailto):", target) or not place:
+            return found[0]
+        name = Path(place).name
+        if name in TOP and not (page.parent / place).exists():
+            up = "../" * len(page.relative_to(source).parent.parts)
+            return f"[{words}]({up}{TOP[name]}{'#' + anchor if anchor else ''})"
+        inside = (page.parent / place).resolve().is_relative_to(source)
+        return found[0] if inside and (page.parent / place).exists() else words
+
+    return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)", link, text)
+
+
+def write_decision_index(folder: Path) -> str:
+    """Writes the list of decisions with their status; returns their entries of the navigation."""
+    lines, entries = (
+        ["# Decisions", "", "Why things are as they are.", "", "| | decision | status |", "| --- | --- | --- |"],
+        [],
+    )
+    for path in sorted(folder.glob("[0-9]*.md")):
+        title, _, status = path.read_text(encoding="utf-8").splitlines()[:3]
+        number, _, words = title.removeprefix("# ").partition(". ")
+        state = re.match(r"Status: (accepted|superseded by \d+)", status)
+        lines.append(f"| {number} | [{words}]({path.name}) | {state[1] if state else ''} |")
+        entries.append(f'{{ "{number}. {words.replace(chr(34), chr(39))}" = "decisions/{path.name}" }}')
+    (folder / "index.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return ", ".join(entries)
+
+
+def write_references(folder: Path) -> str:
+    """Writes pages of the command line, the public names and each package; returns navigation entries of the last."""
+    from mmweaver import _HOME
+    from mmweaver import __all__ as public
+    from mmweaver.cli.main import build_parser
+
+    folder.mkdir()
+    (folder / "cli.md").write_text(command_line(build_parser()), encoding="utf-8")
+    names = [f"::: mmweaver.{_HOME[name]}.{name}" for name in public if name in _HOME]
+    head = "# Python\n\nWhat `from mmweaver import ...` gives; the packages behind it are on the pages that follow.\n\n"
+    (folder / "api.md").write_text(head + "\n\n".join(names) + "\n", encoding="utf-8")
+    entries = []
+    for package in sorted(path.parent for path in PACKAGE.glob("*/__init__.py") if path.parent.name != "cli"):
+        modules = sorted(path for path in package.rglob("*.py") if path.name != "__init__.py")
+        text = f"# mmweaver.{package.name}\n"
+        for module in modules:
+            dotted = ".".join(module.relative_to(PACKAGE.parent).with_suffix("").parts)
+            text += f"\n## {dotted.removeprefix('mmweaver.')}\n\n::: {dotted}\n{WITHOUT_HEADING}"
+        (folder / f"{package.name}.md").write_text(text, encoding="utf-8")
+        entries.append(f'{{ "mmweaver.{package.name}" = "reference/{package.name}.md" }}')
+    return ", ".join(entries)
+
+
+def command_line(parser: argparse.ArgumentParser) -> str:
+    """The help of every command."""
+    parts = ["# Command line", "", "```text", parser.format_help().rstrip(), "```"]
+    commands = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
+    pending = [(name, sub) for action in commands for name, sub in action.choices.items()]
+    while pending:
+        name, sub = pending.pop(0)
+        parts += ["", f"## {parser.prog} {name}", "", "```text", sub.format_help().rstrip(), "```"]
+        nested = [action for action in sub._actions if isinstance(action, argparse._SubParsersAction)]
+        pending = [(f"{name} {more}", deep) for action in nested for more, deep in action.choices.items()] + pending
+    return "\n".join(parts) + "\n"
+
+
+def write_gallery(folder: Path) -> None:
+    """Runs every example and writes a page with its code, what it printed and its pictures, and a notebook of each."""
+    import jupytext
+
+    folder.mkdir()
+    page = ["# Gallery", "", "Each of these is a file of `examples/`, run as it is when this site is built.", ""]
+    for script in sorted((ROOT / "examples").glob("*.py")):
+        code = script.read_text(encoding="utf-8")
+        work = folder / script.stem
+        work.mkdir()
+        printed = StringIO()
+        with chdir(work), redirect_stdout(printed):
+            runpy.run_path(str(script), run_name="__main__")
+        jupytext.write(jupytext.reads(code, fmt="py:percent"), folder / f"{script.stem}.ipynb")
+        title = code.splitlines()[0].strip('"').rstrip(".")
+        page += [f"## {title}", ""]
+        page += [f"![{title}]({script.stem}/{picture.name})\n" for picture in sorted(work.glob("*.png"))]
+        page += ["```python", "\n".join(code.splitlines()[1:]).strip(), "```", "", "It prints:", ""]
+        page += ["```text", printed.getvalue().rstrip(), "```", "", f"[As a notebook]({script.stem}.ipynb)", ""]
+        for other in [path for path in sorted(work.rglob("*"), reverse=True) if path.suffix != ".png"]:
+            other.rmdir() if other.is_dir() and not any(other.iterdir()) else other.is_file() and other.unlink()
+    (folder / "index.md").write_text("\n".join(page), encoding="utf-8")
+
+
+def faults_of(site: Path) -> list[str]:
+    """What a visitor's browser would fetch from another server, and local links that lead nowhere."""
+    faults = []
+    for page in sorted(site.rglob("*.html")):
+        text = page.read_text(encoding="utf-8")
+        where = page.relative_to(site)
+        faults += [f"{where} requests {target}" for target in REMOTE.findall(text)]
+        body = re.sub(r"<script\b.*?</script>", "", text, flags=re.DOTALL)
+        for target in re.findall(r"""(?:href|src)="([^"#?]+)""", body):
+            if re.match(r"(https?:|mailto:|data:|//)", target):
+                continue
+            if not (site / target[1:] if target.startswith("/") else page.parent / target).exists():
+                faults.append(f"{where} links to {target}, which is not there")
+    for style in sorted(site.rglob("*.css")):
+        faults += [f"{style.relative_to(site)} requests {target}" for target in REMOTE.findall(style.read_text())]
+    return faults
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
