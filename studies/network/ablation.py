@@ -23,7 +23,7 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_power import PowerMaps
@@ -138,7 +138,7 @@ def scores(learner: NetworkLearner, photo: Callable[[Case], StoredRoom], case: C
 
 def drawn_scores(method: Method, case: Case) -> dict[str, float]:
     """Of a signal with its own draw of phases against the truth's."""
-    truth, prediction = Views(case.room.cube(case.index)), Views(method(case))
+    truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))
     return {name: METRICS[name].score(prediction, truth) for name in COLUMNS}
 
 

@@ -71,7 +71,7 @@ class RoomExamples:
         """Maps (range, other) of the room without a person."""
         if self._expected is not None:
             return self._expected.empty
-        return _one(power_maps(static_cube(self.room.empty, self.room.config).values, self.room.config))
+        return _one(power_maps(static_cube(self.room.static, self.room.config).values, self.room.config))
 
     @cached_property
     def _expected(self) -> ExpectedMaps | None:

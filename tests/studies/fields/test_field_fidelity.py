@@ -22,7 +22,7 @@ def test_every_row_has_its_floors_its_size_and_its_seconds(tmp_path, monkeypatch
     assert record["config"]["steps"] == 2
     (row,) = record["rows"]
     assert set(row["metrics"]) == set(METRICS)
-    assert all(set(entry["floor"]) == {"zeros", "static_mean"} for entry in row["metrics"].values())
+    assert all(set(entry["baseline"]) == {"zeros", "static_mean"} for entry in row["metrics"].values())
     assert row["seconds"]["fit"] >= 0
     assert row["dataset"]["sha256"] == signal.digest
     size = row["size"]
