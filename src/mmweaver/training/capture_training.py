@@ -155,7 +155,9 @@ def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], lic
     figures = compared(tuned.trainer, begun(tuned.trainer.recipe, start))
     card = card_of(tuned.trainer, digest, **more)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(model_card(card, file, data=told, judged_on=f"{judged}; {EXPLAINED}", figures=figures))
+        partial.write_text(
+            model_card(card, file, data=told, judged_on=f"{judged}; {EXPLAINED}", figures=figures), encoding="utf-8"
+        )
     return file
 
 
