@@ -35,6 +35,7 @@ def simulation_costs() -> dict[str, float]:
     from mmweaver import Weaver
     from mmweaver.dsp.cube import radar_cube
     from mmweaver.motion.compose import compose
+    from mmweaver.motion.language.timing import plan_motion
     from mmweaver.paths.body_model import body_of
     from mmweaver.paths.body_paths import BodyPaths
     from mmweaver.paths.exact import exact_frame
@@ -45,7 +46,7 @@ def simulation_costs() -> dict[str, float]:
     scene = weaver.sample_room().scene
     config = weaver.radar
     window = (float(config.range_m[0]), float(config.range_m[-1]))
-    pose = compose(SENTENCE, scene, duration_s=2.0, seed=0, range_window_m=window).pose
+    pose = compose(plan_motion(SENTENCE, 2.0), scene, seed=0, range_window_m=window).pose
     room_s = cpu_seconds(lambda: Simulator(scene, config), 1)
     simulator = Simulator(scene, config)
     run_s = cpu_seconds(lambda: simulator.run(pose, num_frames=20, seed=0, num_points=800))

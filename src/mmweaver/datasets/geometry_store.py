@@ -19,7 +19,8 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
-from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, REFERENCE_HEIGHT_M, ScatteringBody
+from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
+from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points
 from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.static_paths_store import room_arrays, room_of, room_words
