@@ -169,7 +169,7 @@ class Learned:
 
         if self._ready is None or self._ready[0] is not scene or self._ready[1] != config:
             network, _ = load_weights(self.weights or shipped_weights())
-            self._ready = (scene, config, LearnedRoom(network, scene, config, empty=scene.empty_recording))
+            self._ready = (scene, config, LearnedRoom(network, scene, config, background=scene.empty_recording))
         return self._ready[2]
 
 

@@ -83,13 +83,7 @@ class Receiver:
             samples += noise
         if not self.config.complex_samples:
             samples = torch.complex(samples.real, torch.zeros_like(samples.real))
-        return self.quantised(samples) if self.impairments.quantise else samples
-
-    def quantised(self, samples: Tensor) -> Tensor:
-        """Samples as a 16-bit converter gives them: whole counts in either part, clipped."""
-        count = self.config.adc_count_sqrt_mw
-        parts = torch.view_as_real(samples)
-        return torch.view_as_complex((parts / count).round_().clamp_(-32768, 32767) * count)
+        return quantised(samples, self.config.adc_count_sqrt_mw) if self.impairments.quantise else samples
 
     @property
     def _has_unstable_clock(self) -> bool:
@@ -142,6 +136,12 @@ def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
     gain_db, phase_rad = impairments.channel_gain_db * drawn[0], impairments.channel_phase_rad * drawn[1]
     each = 10 ** (gain_db / 20) * np.exp(1j * phase_rad)
     return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
+
+
+def quantised(samples: Tensor, count: float) -> Tensor:
+    """Samples as a 16-bit converter gives them: whole multiples of `count` in either part, clipped."""
+    parts = torch.view_as_real(samples)
+    return torch.view_as_complex((parts / count).round_().clamp_(-32768, 32767) * count)
 
 
 def leakage(config: RadarConfig, impairments: Impairments) -> complex:

@@ -10,9 +10,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import RadarCube, Scene
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.models.background import BackgroundRecording, agreeing_gain
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
+from mmweaver.paths.background import BackgroundRecording, agreeing_gain
 from mmweaver.paths.random_phases import SampledStaticClutter
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -33,7 +33,7 @@ def recording(scene: Scene) -> RadarCube:
 
 def _woven(scene: Scene, recording: RadarCube | None) -> LearnedRoom:
     torch.manual_seed(0)
-    return LearnedRoom(WeaverNetwork().eval(), scene, AWR1843, empty=recording)
+    return LearnedRoom(WeaverNetwork().eval(), scene, AWR1843, background=recording)
 
 
 def _still(cube: RadarCube) -> np.ndarray:
