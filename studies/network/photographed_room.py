@@ -53,7 +53,7 @@ def judged(kind: str, layout: int, seed: int = 0) -> Scores:
         "zeros": 0 * truth.adc,
         "photo without mask": RayTracedRoom(reconstruct(_without_mask(photo)), config, 1).adc,
         "photo": sum(own.values()),
-        "photo, true mirrors": sum((own | {"specular": mirrors}).values()),
+        "photo, true specular reflectors": sum((own | {"specular": mirrors}).values()),
         "photo, true edges": sum((own | {"edges": true["edges"]}).values()),
         "photo, true surfaces": sum((own | {"diffuse": true["diffuse"]}).values()),
         REALIZATION: twin.adc,
