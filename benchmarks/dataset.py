@@ -19,7 +19,7 @@ from measuring import report, results_folder
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 
 KINDS = ("office", "living_room", "kitchen", "gym")
 PLAN = DatasetPlan(kinds=KINDS, lightings=("day", "lamps"), num_layouts=1, sequences_a_room=24)
@@ -37,7 +37,7 @@ def run(plan: DatasetPlan, workers: int) -> tuple[float, float, int, int]:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "set"
         cpu, wall = spent_s(), time.perf_counter()
-        made = sum(room.num_sequences for room in generate(out, plan, AWR1843, workers=workers))
+        made = sum(room.num_sequences for room in generate_dataset(out, plan, AWR1843, workers=workers))
         cpu, wall = spent_s() - cpu, time.perf_counter() - wall
         return cpu, wall, made, sum(file.stat().st_size for file in out.rglob("*") if file.is_file())
 

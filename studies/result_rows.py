@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from mmweaver.metrics.scorecard import METRICS, Scorecard
+from mmweaver.metrics.scorecard import METRICS
 
 COST = "a cost, not a score: it is compared with nothing"
 NONE_MEASURED = "no baseline was measured for it"
@@ -93,18 +93,6 @@ def _reasons(row: Mapping[str, Any]) -> dict[str, str]:
         if metric["baseline"] is None:
             reasons[f"metrics.{name}.baseline"] = COST if is_cost[name] else NONE_MEASURED
     return reasons
-
-
-def scorecard_metrics(card: Scorecard) -> dict[str, dict[str, Any]]:
-    """The metrics of a scorecard; its other realization of the same scene is an oracle."""
-    metrics = {}
-    for name, entry in card.as_json().items():
-        record = {key: value for key, value in entry.items() if key not in ("floor", "twin")}
-        record["baseline"] = entry["floor"]
-        if "twin" in entry:
-            record["oracle"] = {"realization": entry["twin"]}
-        metrics[name] = record
-    return metrics
 
 
 def dataset_of(data: Path) -> dict[str, Any]:

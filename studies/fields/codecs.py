@@ -16,7 +16,7 @@ import numpy as np
 
 from mmweaver.core.records import RadarCube
 from mmweaver.core.registry import Registry
-from mmweaver.metrics.baselines import FLOORS
+from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS
@@ -89,7 +89,7 @@ def errors_db(values: np.ndarray, truth: RadarCube) -> dict[str, float | None]:
 
 
 def _metrics(scores: dict[str, Any], truth: RadarCube) -> dict[str, Any]:
-    baselines = {name: errors_db(make(truth).values, truth) for name, make in FLOORS.items()}
+    baselines = {name: errors_db(make(truth).values, truth) for name, make in BASELINES.items()}
     return {
         name: {
             "value": scores[name],

@@ -18,7 +18,7 @@ from mmweaver.metrics.scorecard import scorecard
 from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
-from studies.result_rows import complete_rows, scorecard_metrics
+from studies.result_rows import complete_rows
 from studies.study import Reads
 
 EXPERIMENT = "field_fidelity"
@@ -31,7 +31,7 @@ Fitter = Callable[[RadarCube], tuple[SignalField, float]]
 def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
     """Fits a field to one signal and scores it: what it stores, in which type, against the same frames in theirs."""
     field, seconds = make(signal.cube)
-    metrics = scorecard_metrics(scorecard(field.cube(), signal.cube, twin=signal.twin))
+    metrics = scorecard(field.cube(), signal.cube, oracle=signal.twin).as_json()
     if signal.noise_free is not None:
         for name, entry in scorecard(signal.noise_free, signal.cube).as_json().items():
             metrics[name].setdefault("oracle", {})["noise_free"] = entry["value"]

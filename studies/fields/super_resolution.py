@@ -34,7 +34,7 @@ from mmweaver.fields.phase_centring import centred, centring_phasor
 from mmweaver.fields.sampling import finer_grid, sampled_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.metrics.baselines import FLOORS
+from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import cells_of
 from mmweaver.metrics.cube_errors import nmse_db
 from mmweaver.metrics.scorecard import METRICS, scorecard
@@ -53,7 +53,7 @@ from studies.fields.finer_radar import (
 )
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
-from studies.result_rows import complete_rows, scorecard_metrics
+from studies.result_rows import complete_rows
 
 FACTORS = (1.5, 2.0, 3.0, 4.0)
 RADII = (1, 2, 3, 4, 5, 6, 7)
@@ -162,7 +162,7 @@ def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig)
     """The scorecard of a coarse cube's sampler on the grid of a finer radar's cube, both phase-centred."""
     values = sampler(truth.grid) * centring_phasor(coarse, truth.grid)[None, :, :, None]
     prediction = replace(truth, values=values.astype(np.complex64))
-    return scorecard_metrics(scorecard(prediction, centred(truth)))
+    return scorecard(prediction, centred(truth)).as_json()
 
 
 def measure(run: StudyRun, recipe_names: tuple[str, ...], factors: tuple[float, ...] = FACTORS) -> list[Path]:
@@ -212,7 +212,7 @@ def _run_method(
         for (kind, factor), truth in truths.items():
             prediction = renderer(truth.config, -middle_delay_s(coarse.config, truth.config))
             prediction = replace(prediction, grid=truth.grid)
-            rows.append(_row(kind, factor, scorecard_metrics(scorecard(prediction, truth))))
+            rows.append(_row(kind, factor, scorecard(prediction, truth).as_json()))
     for row in rows:
         row |= {"n": 1, "seeds": [0], "seconds": {"prepare": round(seconds, 3)}}
     unknown = {"dataset.sha256": "simulated anew in every run"}
@@ -242,7 +242,7 @@ def _entry(
         "definition": f"{metric.definition}; {cells}",
         "version": metric.version,
         "is_headline": metric.is_headline,
-        "baseline": {name: nmse_db(make(truth).values, truth.values, where) for name, make in FLOORS.items()},
+        "baseline": {name: nmse_db(make(truth).values, truth.values, where) for name, make in BASELINES.items()},
     }
 
 

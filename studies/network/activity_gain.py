@@ -32,7 +32,7 @@ from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import ACTIVITIES, PEOPLE_HEIGHT_M, SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.make_room import pose_of
+from mmweaver.datasets.room_generation import pose_of
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork, TimeHead, load_activity
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom

@@ -25,7 +25,7 @@ from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.make_room import make_sequence
+from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.formats.npz_files import write_pose_npz, write_radar_npz
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
@@ -51,7 +51,7 @@ def write_capture(folder: Path, room: StoredRoom, index: int, *, joints: bool) -
     folder.mkdir(parents=True, exist_ok=True)
     cube = room.cube(index)
     write_radar_npz(folder / "radar.npz", cube)
-    (folder / "radar.json").write_text(room.config.to_json())
+    (folder / "radar.json").write_text(room.config.to_json(), encoding="utf-8")
     if joints:
         time_s = cube.grid.frame_time_s + room.config.active_time_s / 2
         height_m = PEOPLE_HEIGHT_M[int(room.person[index])]
@@ -69,7 +69,9 @@ def write_photo(folder: Path, photo: RgbdPhoto) -> None:
     Image.fromarray(rgb).save(folder / "rgb.png")
     np.save(folder / "depth.npy", photo.depth_m)
     camera = asdict(photo.intrinsics)
-    (folder / "camera.json").write_text(json.dumps({name: camera[name] for name in ("fx", "fy", "cx", "cy")}))
+    (folder / "camera.json").write_text(
+        json.dumps({name: camera[name] for name in ("fx", "fy", "cx", "cy")}), encoding="utf-8"
+    )
 
 
 def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) -> dict[str, list[dict[str, float]]]:
@@ -112,7 +114,7 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
             card = scorecard(method(int(index)), truth)
             scores.setdefault(name, []).append({column: card.prediction[column] for column in COLUMNS})
             if name == "untuned":
-                zeros = {column: card.floors["zeros"][column] for column in COLUMNS}
+                zeros = {column: card.baselines["zeros"][column] for column in COLUMNS}
                 scores.setdefault("zeros", []).append(zeros)
     return scores
 
@@ -154,7 +156,9 @@ def _realization(room: StoredRoom, plan_seed: int) -> Method:
         spec = SequenceSpec(index=index, person=int(room.person[index]), activity=room.activity[index],
                             text=room.text[index], seed=int(room.seed[index]), split="")  # fmt: skip
         frames = room.joints_m.shape[1]
-        made = make_sequence(spec, scene, simulator, frames, subject=spec.person + OTHER, noise_seed=spec.seed + OTHER)
+        made = generate_sequence(
+            spec, scene, simulator, frames, subject=spec.person + OTHER, noise_seed=spec.seed + OTHER
+        )
         if np.abs(made.joints_m - room.joints_m[index]).max() > SAME_M:
             raise InputError("the data set's people move otherwise in this version; make it again")
         return made.cube

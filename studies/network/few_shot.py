@@ -15,7 +15,7 @@ import torch
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.metrics.scorecard import METRICS, Views
+from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.training.network_examples import RoomExamples
@@ -72,7 +72,7 @@ def judged(method: Method, cases: list[Case]) -> dict[str, dict[str, float | str
     """{column: mean and interval over rooms}."""
     values: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for case in cases:
-        truth, prediction = Views(case.room.cube(case.index)), Views(method(case))
+        truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))
         for name in COLUMNS:
             values[name].append(METRICS[name].score(prediction, truth))
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in cases]

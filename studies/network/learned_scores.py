@@ -29,7 +29,7 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import SequenceSpec
 from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
-from mmweaver.datasets.make_room import make_sequence
+from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
@@ -89,7 +89,7 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
         simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed)
         spec, frames = case.spec, len(case.joints[0])
         subject, noise = spec.person + skin, spec.seed + OTHER
-        made = make_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
+        made = generate_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
         if np.abs(made.joints_m - case.joints[0]).max() > SAME_M:
             raise InputError("the data set's people move otherwise in this version; make it again")
         return made.cube
@@ -163,7 +163,7 @@ def scored(cases: list[Case], methods: dict[str, Method]) -> dict[str, dict[str,
             seconds = time.process_time() - began
             card = scorecard(cube, truth)
             if name == next(iter(methods)):
-                for floor, values in card.floors.items():
+                for floor, values in card.baselines.items():
                     empty = _magnitude_nmse_db(_floor_cube(floor, truth), truth)
                     add(floor, {**_columns(values), "magnitude_nmse_db": empty, "cpu_s": 0.0})
             own = {
@@ -179,9 +179,9 @@ def _columns(values: dict[str, float]) -> dict[str, float]:
 
 
 def _floor_cube(name: str, truth: RadarCube) -> RadarCube:
-    from mmweaver.metrics.baselines import FLOORS
+    from mmweaver.metrics.baselines import BASELINES
 
-    return FLOORS[name](truth)
+    return BASELINES[name](truth)
 
 
 def _magnitude_nmse_db(cube: RadarCube, truth: RadarCube) -> float:

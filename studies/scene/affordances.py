@@ -24,7 +24,9 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Landmark, Scene, Seat
 from mmweaver.core.seeding import stream
+from mmweaver.geometry.pinhole import project
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.scene.procedural.ground_truth import RadarFrame
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
@@ -129,18 +131,19 @@ def _is_findable(room: ProceduralRoom, seat: Seat) -> bool:
 
 
 def _is_seen(room: ProceduralRoom, points: np.ndarray) -> np.ndarray:
-    lens, camera = room.intrinsics, points @ room.radar_from_camera
-    column, row = lens.fx * camera[:, 0] / camera[:, 2] + lens.cx, lens.fy * camera[:, 1] / camera[:, 2] + lens.cy
-    inside = (camera[:, 2] > 0.3) & (column > 0) & (column < lens.width - 1) & (row > 0) & (row < lens.height - 1)
-    depth = room.true_depth_m[np.where(inside, row, 0).astype(int), np.where(inside, column, 0).astype(int)]
-    return inside & (depth > camera[:, 2] - 0.06)
+    pixels, depth_m = project(points @ room.radar_from_camera, room.intrinsics)
+    column, row = pixels.T
+    width, height = room.intrinsics.width, room.intrinsics.height
+    inside = (depth_m > 0.3) & (column > 0) & (column < width - 1) & (row > 0) & (row < height - 1)
+    surface_m = room.true_depth_m[np.where(inside, row, 0).astype(int), np.where(inside, column, 0).astype(int)]
+    return inside & (surface_m > depth_m - 0.06)
 
 
 def _is_in_view(room: ProceduralRoom, mark: Landmark) -> bool:
     """Its middle within the picture's width, and near enough to be gone to."""
-    lens, camera = room.intrinsics, mark.position_m @ room.radar_from_camera
-    column = lens.fx * camera[0] / max(camera[2], 1e-6) + lens.cx
-    return bool(camera[2] > 0.3 and 20 < column < lens.width - 20 and np.hypot(*mark.position_m[:2]) < 4.0)
+    pixel, depth_m = project(mark.position_m @ room.radar_from_camera, room.intrinsics)
+    in_width = 20 < pixel[0] < room.intrinsics.width - 20
+    return bool(depth_m > 0.3 and in_width and np.hypot(*mark.position_m[:2]) < 4.0)
 
 
 def _measure_marks(
@@ -167,7 +170,7 @@ def _is_same_mark(found: Landmark, truth: Landmark, within_m: float) -> bool:
 def _measure_placements(room: ProceduralRoom, scene: Scene, tally: Tally) -> None:
     for seed, text in enumerate(SENTENCES):
         try:
-            motion = compose(text, scene, duration_s=SECONDS, seed=seed, range_window_m=RANGE_WINDOW_M)
+            motion = compose(plan_motion(text, SECONDS), scene, seed=seed, range_window_m=RANGE_WINDOW_M)
         except InputError:
             tally.refused += 1
             continue

@@ -29,7 +29,7 @@ from mmweaver.scene.segmentation.builtin_segmenter import (
     load_network,
     segment_builtin,
 )
-from mmweaver.scene.segmentation.segmenter_features import EVERY, grid_features
+from mmweaver.scene.segmentation.segmenter_features import STRIDE, grid_features
 from mmweaver.training.segmenter_data import SegmenterExample, make_examples
 from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
 from mmweaver.training.segmenter_training import TEST_KINDS, TEST_SEED
@@ -155,7 +155,7 @@ def measure(run: StudyRun, folders: list[Path], per_kind: int, number: int) -> P
     for name, guess in guesses.items():
         rows += real_rows(name, guess, folders)
     rows += [affordance_row(name, number) for name in ("none", "network", "true")]
-    config = {"kinds": list(TEST_KINDS), "every": EVERY}
+    config = {"kinds": list(TEST_KINDS), "every": STRIDE}
     return run.write("segmenter", "builtin", config=config, rows=complete_rows(rows, seconds=None, unknown=UNKNOWN))
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,12 +66,9 @@ def draw_top(
 
 def _draw_points(axes: "Axes", scene: Scene) -> None:
     """What was measured between floor and head, darker where higher."""
-    photo, lens = scene.photo, scene.photo.intrinsics
-    step = max(1, lens.width // 320)
-    rows, columns = np.mgrid[0 : lens.height : step, 0 : lens.width : step]
-    depth = photo.depth_m[rows, columns]
-    camera = np.stack([(columns - lens.cx) / lens.fx * depth, (rows - lens.cy) / lens.fy * depth, depth], axis=-1)
-    points = camera[np.isfinite(depth)] @ scene.radar_from_camera.T
+    step = max(1, scene.photo.intrinsics.width // 320)
+    points = AlignedPhoto.of(scene).points_m[::step, ::step]
+    points = points[np.isfinite(points[..., 2])]
     height = points[:, 2] - scene.floor_z_m
     kept = (height > 0.1) & (height < 1.9)
     axes.scatter(

@@ -8,36 +8,36 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
-from mmweaver.datasets.dataset_cost import check_for_space, cost_of
+from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
 from mmweaver.datasets.dataset_plan import DatasetPlan
 
 PLAN = DatasetPlan(kinds=("office", "gym"), lightings=("day",), num_layouts=3, sequences_a_room=10)
 
 
 def test_what_is_there_costs_nothing(tmp_path: Path):
-    whole = cost_of(PLAN, AWR1843, tmp_path)
+    whole = estimate_cost(PLAN, AWR1843, tmp_path)
     assert (whole.rooms, whole.sequences) == (6, 60)
     assert sum(whole.splits.values()) == 60
     (tmp_path / "office_001").mkdir()
     (tmp_path / "office_001" / "zarr.json").touch()
-    rest = cost_of(PLAN, AWR1843, tmp_path)
+    rest = estimate_cost(PLAN, AWR1843, tmp_path)
     assert (rest.rooms, rest.sequences) == (5, 50)
     assert rest.disk_bytes < whole.disk_bytes
 
 
 def test_time_and_disk_grow_with_frames_and_shrink_without_signals(tmp_path: Path):
-    own = cost_of(PLAN, AWR1843, tmp_path)
-    longer = cost_of(replace(PLAN, num_frames=40), AWR1843, tmp_path)
-    light = cost_of(replace(PLAN, geometry_only=True), AWR1843, tmp_path)
+    own = estimate_cost(PLAN, AWR1843, tmp_path)
+    longer = estimate_cost(replace(PLAN, num_frames=40), AWR1843, tmp_path)
+    light = estimate_cost(replace(PLAN, geometry_only=True), AWR1843, tmp_path)
     assert longer.disk_bytes > 1.8 * own.disk_bytes
     assert longer.core_s > 1.5 * own.core_s
     assert light.disk_bytes < 0.1 * own.disk_bytes
-    assert "of one core" in own.told(1)
-    assert "with 4 workers" in own.told(4)
+    assert "of one core" in own.summary(1)
+    assert "with 4 workers" in own.summary(4)
 
 
 def test_a_full_disk_is_refused_before_anything_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    cost = cost_of(PLAN, AWR1843, tmp_path)
+    cost = estimate_cost(PLAN, AWR1843, tmp_path)
     check_for_space(cost, tmp_path / "not" / "there" / "yet")
     monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=1e6))
     with pytest.raises(InputError, match="--geometry-only"):

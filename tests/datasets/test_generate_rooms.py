@@ -17,7 +17,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_being_written, read_rooms
-from mmweaver.datasets.generate_rooms import generate, make_one
+from mmweaver.datasets.generate_rooms import generate_dataset, generate_one
 
 zarr = pytest.importorskip("zarr")
 PLAN = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=4)
@@ -26,7 +26,7 @@ PLAN = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequenc
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("data") / "set"
-    generate(folder, PLAN, AWR1843)
+    generate_dataset(folder, PLAN, AWR1843)
     return folder
 
 
@@ -57,7 +57,7 @@ def test_after_a_kill_the_rest_is_made_and_is_the_same_to_the_bit(folder: Path, 
     dead, living = (again / f".office_001.{host}.{process}" for process in (4_000_000, os.getppid()))
     for partial in (dead, living):  # what a killed process leaves, and what a worker that outlives it still writes
         partial.mkdir()
-    reports = generate(again, PLAN, AWR1843)
+    reports = generate_dataset(again, PLAN, AWR1843)
     assert [report.name for report in reports] == ["office_001"]
     assert not dead.exists()
     assert living.exists()
@@ -66,16 +66,16 @@ def test_after_a_kill_the_rest_is_made_and_is_the_same_to_the_bit(folder: Path, 
         assert np.array_equal(first.cube(1).values, second.cube(1).values)
         assert np.array_equal(first.joints_m, second.joints_m)
         assert np.array_equal(first.photo.rgb, second.photo.rgb)
-    assert generate(again, PLAN, AWR1843) == []
+    assert generate_dataset(again, PLAN, AWR1843) == []
 
 
 def test_another_plan_and_a_full_folder_are_refused(folder: Path, tmp_path: Path):
     other = DatasetPlan(kinds=("office",), lightings=("day",), num_layouts=2, sequences_a_room=2, num_frames=5)
     with pytest.raises(InputError, match="another plan"):
-        generate(folder, other, AWR1843)
+        generate_dataset(folder, other, AWR1843)
     (tmp_path / "mine.txt").write_text("keep me")
     with pytest.raises(InputError, match="not empty"):
-        generate(tmp_path, PLAN, AWR1843)
+        generate_dataset(tmp_path, PLAN, AWR1843)
     assert (tmp_path / "mine.txt").read_text() == "keep me"
     with pytest.raises(InputError, match="no data set"):
         read_rooms(tmp_path)
@@ -85,14 +85,14 @@ def test_a_room_that_was_made_meanwhile_is_kept(folder: Path, tmp_path: Path):
     again = tmp_path / "again"
     shutil.copytree(folder, again)
     before = (again / "office_000" / "zarr.json").stat().st_mtime_ns
-    make_one((again, PLAN.rooms()[0], AWR1843, PLAN.num_frames, False))
+    generate_one((again, PLAN.rooms()[0], AWR1843, PLAN.num_frames, False))
     assert (again / "office_000" / "zarr.json").stat().st_mtime_ns == before
     assert not list(again.glob(".office*"))
 
 
 def test_on_ray_it_is_the_same_to_the_bit(folder: Path, tmp_path: Path):
     pytest.importorskip("ray")
-    reports = generate(tmp_path / "set", PLAN, AWR1843, workers=2, ray_address="local")
+    reports = generate_dataset(tmp_path / "set", PLAN, AWR1843, workers=2, ray_address="local")
     assert sorted(report.name for report in reports) == ["office_000", "office_001"]
     assert contents(tmp_path / "set") == contents(folder)
 

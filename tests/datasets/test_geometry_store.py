@@ -11,7 +11,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_store import read_rooms
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 from tests.training.tiny_data import TINY_PLAN
 
 pytest.importorskip("zarr")
@@ -34,7 +34,7 @@ def test_signals_are_those_that_would_be_stored(folders: dict[bool, Path]):
     """-68 dB was measured, of which the stored set's half precision is a part."""
     for drawn, stored in zip(read_rooms(folders[True]), read_rooms(folders[False]), strict=True):
         assert np.array_equal(drawn.joints_m, stored.joints_m)
-        assert np.array_equal(drawn.empty, stored.empty)
+        assert np.array_equal(drawn.static, stored.static)
         assert drawn.split == stored.split
         for index in range(len(drawn.split)):
             wanted = stored.cube(index).values
@@ -46,9 +46,9 @@ def test_signals_are_those_that_would_be_stored(folders: dict[bool, Path]):
 
 def test_a_twin_is_another_signal(folders: dict[bool, Path]):
     room = read_rooms(folders[True])[0]
-    first, twin = room.cube(0).values, room.cube(0, twin=7).values
+    first, twin = room.cube(0).values, room.cube(0, realization=7).values
     assert _error(twin, first) > 0.3
-    assert np.array_equal(twin, room.cube(0, twin=7).values)
+    assert np.array_equal(twin, room.cube(0, realization=7).values)
 
 
 def test_a_sequence_takes_little(folders: dict[bool, Path]):
@@ -67,7 +67,7 @@ def test_geometry_of_other_people_is_refused(folders: dict[bool, Path], monkeypa
 
 def test_the_same_command_does_not_mix_both(folders: dict[bool, Path]):
     with pytest.raises(InputError, match="another plan"):
-        generate(folders[True], replace(TINY_PLAN, geometry_only=False), AWR1843)
+        generate_dataset(folders[True], replace(TINY_PLAN, geometry_only=False), AWR1843)
 
 
 def test_the_network_trains_on_it_without_a_ray_caster(folders: dict[bool, Path], tmp_path: Path):

@@ -1,9 +1,19 @@
 """Pixels to points and back."""
 
 import numpy as np
+import pytest
 
 from mmweaver.core.records import CameraIntrinsics
-from mmweaver.geometry.pinhole import project, unproject
+from mmweaver.geometry.pinhole import (
+    binned,
+    pixel_coordinates,
+    project,
+    resized,
+    rotated_clockwise,
+    subsampled,
+    unproject,
+    viewing_rays,
+)
 
 CAMERA = CameraIntrinsics(fx=400.0, fy=410.0, cx=30.0, cy=25.0, width=64, height=48)
 
@@ -29,3 +39,32 @@ def test_what_is_behind_has_no_pixel_and_holes_stay_holes():
     assert depth.tolist() == [-1, 0]
     holes = np.full((48, 64), np.nan)
     assert np.isnan(unproject(holes, CAMERA)).all()
+
+
+def test_every_array_library_projects_alike():
+    torch = pytest.importorskip("torch")
+    points = np.random.default_rng(1).uniform(0.5, 3.0, (5, 3))
+    pixels, _ = project(points, CAMERA)
+    x, y, z = torch.from_numpy(points).unbind(-1)
+    column, row = pixel_coordinates(x, y, z, CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy)
+    np.testing.assert_array_equal(torch.stack([column, row], dim=-1).numpy(), pixels)
+
+
+def test_subsampling_keeps_the_rays_of_the_pixels_that_stay():
+    small = subsampled(CAMERA, 3)
+    assert (small.width, small.height) == (22, 16)
+    np.testing.assert_allclose(viewing_rays(small), viewing_rays(CAMERA)[::3, ::3], atol=1e-12)
+
+
+@pytest.mark.parametrize("small", [binned(CAMERA, 4), resized(CAMERA, 16, 12)])
+def test_binning_and_resizing_average_the_rays_of_a_block(small: CameraIntrinsics):
+    blocks = viewing_rays(CAMERA).reshape(12, 4, 16, 4, 3).mean(axis=(1, 3))
+    np.testing.assert_allclose(viewing_rays(small), blocks, atol=1e-12)
+
+
+def test_rotating_the_picture_rotates_its_rays():
+    """Clockwise: what was at the left is now at the top."""
+    rays = np.rot90(viewing_rays(CAMERA), -1)
+    rotated = viewing_rays(rotated_clockwise(CAMERA))
+    np.testing.assert_allclose(rotated[..., 0], -rays[..., 1], atol=1e-12)
+    np.testing.assert_allclose(rotated[..., 1], rays[..., 0], atol=1e-12)

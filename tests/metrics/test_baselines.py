@@ -4,7 +4,7 @@ from mmweaver.metrics.baselines import all_zeros, static_mean
 from tests.cubes import point_cube
 
 
-def test_floors_know_nothing_that_moves():
+def test_baselines_know_nothing_that_moves():
     cube = point_cube()
     assert not all_zeros(cube).values.any()
     still = static_mean(cube).values

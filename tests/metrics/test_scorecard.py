@@ -29,7 +29,7 @@ def truth() -> RadarCube:
 
 @pytest.fixture(scope="module")
 def card(truth: RadarCube) -> Scorecard:
-    return scorecard(truth, truth, twin=other_phases(truth))
+    return scorecard(truth, truth, oracle=other_phases(truth))
 
 
 def test_the_truth_scores_perfectly(card: Scorecard):
@@ -40,27 +40,27 @@ def test_the_truth_scores_perfectly(card: Scorecard):
 @pytest.mark.parametrize("name", HEADLINES)
 def test_all_zeros_score_poorly_on_every_headline(card: Scorecard, name: str):
     poor = {
-        "dB": card.floors["zeros"][name] >= (0.0 if "nmse" in name else 5.0),
-        "1": card.floors["zeros"][name] <= 0.2,
-        "rad": card.floors["zeros"][name] >= np.pi / 2 - 1e-9,
-        "m": card.floors["zeros"][name] >= 1.0,
+        "dB": card.baselines["zeros"][name] >= (0.0 if "nmse" in name else 5.0),
+        "1": card.baselines["zeros"][name] <= 0.2,
+        "rad": card.baselines["zeros"][name] >= np.pi / 2 - 1e-9,
+        "m": card.baselines["zeros"][name] >= 1.0,
     }
-    assert poor[METRICS[name].unit], card.floors["zeros"][name]
+    assert poor[METRICS[name].unit], card.baselines["zeros"][name]
 
 
 def test_psnr_and_cssim_are_saturated_by_nothing_at_all(card: Scorecard):
     """On a sparse cube the empty one has 0.9 and 30 dB (the paper: 0.88 and 35), and beats the right magnitudes."""
-    zeros, twin = card.floors["zeros"], card.twin
-    assert twin is not None
+    zeros, oracle = card.baselines["zeros"], card.oracle
+    assert oracle is not None
     assert zeros["psnr_db"] > 29
     assert zeros["cssim"] > 0.9
     for name in ("psnr_db", "cssim"):
         assert not METRICS[name].is_headline
-        assert zeros[name] > twin[name]
+        assert zeros[name] > oracle[name]
     for name in ("rd_ssim", "ra_ssim"):
-        assert zeros[name] < twin[name]
+        assert zeros[name] < oracle[name]
     for name in ("rd_difference_db", "ra_difference_db", "antenna_phase_error_rad", "chamfer_m", "hausdorff_m"):
-        assert zeros[name] > twin[name]
+        assert zeros[name] > oracle[name]
 
 
 def test_more_noise_scores_worse_on_every_headline(truth: RadarCube):
@@ -74,13 +74,13 @@ def test_more_noise_scores_worse_on_every_headline(truth: RadarCube):
         assert better, name
 
 
-def test_every_score_is_written_beside_its_floors_and_data_range(card: Scorecard):
+def test_every_score_is_written_with_its_baselines_and_data_range(card: Scorecard):
     rows = card.as_json()
     json.dumps(rows, allow_nan=False)
     assert set(rows) == set(METRICS)
     for row in rows.values():
-        assert set(row["floor"]) == {"zeros", "static_mean"}
-        assert "twin" in row
+        assert set(row["baseline"]) == {"zeros", "static_mean"}
+        assert "realization" in row["oracle"]
         assert {"value", "unit", "definition", "version"} <= set(row)
     assert rows["psnr_db"]["peak"] > 0
     assert rows["cssim"]["data_range"] > rows["psnr_db"]["peak"]
@@ -90,7 +90,7 @@ def test_every_score_is_written_beside_its_floors_and_data_range(card: Scorecard
 
 
 def test_what_cannot_be_scored_is_refused(truth: RadarCube):
-    with pytest.raises(InputError, match="sample both alike"):
+    with pytest.raises(InputError, match="on the same grid"):
         scorecard(point_cube(), truth)
     with pytest.raises(InputError, match="all zeros"):
         scorecard(truth, replace(truth, values=0 * truth.values))

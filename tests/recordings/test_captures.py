@@ -37,7 +37,7 @@ def test_a_folder_of_generate(made: Path):
     noise = AWR1843.noise_power_mw * 1.5 / AWR1843.num_samples * 1.5 / AWR1843.num_loops
     assert 10 * np.log10(room.noise_power / noise) == pytest.approx(0, abs=1.5)
     assert np.allclose(room.cube(0).values, one.cube.values * one.cube.scale)
-    assert np.allclose(room.times(2.0).empty, 2 * room.empty)
+    assert np.allclose(room.calibrated(2.0).static, 2 * room.static)
 
 
 def test_a_recording_without_scale_and_joints(made: Path, tmp_path: Path):
@@ -58,7 +58,7 @@ def test_a_recording_without_scale_and_joints(made: Path, tmp_path: Path):
     assert not room.has_joints
     # people move and the room does not: the mean over frames is the room
     still = cube.values[:, :, AWR1843.num_loops // 2].mean(axis=0)
-    assert np.allclose(room.empty, still, rtol=1e-4, atol=1e-4 * np.abs(still).max())
+    assert np.allclose(room.static, still, rtol=1e-4, atol=1e-4 * np.abs(still).max())
 
 
 def test_a_capture_folder_brings_its_own_photo(tmp_path: Path):
@@ -106,5 +106,5 @@ def test_a_photo_that_changed_since_is_refused(made: Path, tmp_path: Path):
     inputs = {name: {"path": str(tmp_path / file), "sha256": "0"} for name, file in (("rgb", "rgb.jpg"),
               ("depth", "depth.npy"))}  # fmt: skip
     (folder / "meta.json").write_text(json.dumps({"inputs": inputs}))
-    with pytest.raises(InputError, match="is not what it was"):
+    with pytest.raises(InputError, match="has changed since"):
         read_capture(folder)

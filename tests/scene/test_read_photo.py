@@ -212,7 +212,7 @@ def test_a_gigantic_picture_is_refused_unread(files: Files):
         ({"fx": 0.08, "fy": 0.08}, "view of"),
         ({"fx": 8000, "fy": 8000}, "view of"),
         ({"fx": 80, "fy": 8}, "view of"),
-        ({"width": 640, "height": 640}, "another shape"),
+        ({"width": 640, "height": 640}, "another aspect ratio"),
         ({"depth_unit_m": 0}, "positive"),
         ({"depth_unit_m": float("inf")}, "finite number"),
     ],

@@ -1,9 +1,6 @@
 """Rows are completed by what is common to them, and by what they are compared with."""
 
-from mmweaver.core.presets import AWR1843
-from mmweaver.metrics.scorecard import scorecard
-from studies.result_rows import COST, NONE_MEASURED, complete_rows, plan_dataset, scorecard_metrics
-from tests.cubes import point_cube
+from studies.result_rows import COST, NONE_MEASURED, complete_rows, plan_dataset
 
 
 def test_rows_are_compared_with_baselines_and_oracles_among_them():
@@ -36,13 +33,6 @@ def test_a_metric_keeps_its_own_words_and_scores():
     done = complete_rows([row, others], dataset={"name": "x", "sha256": "0"}, seeds=[], baselines=("b",))
     assert done[0]["metrics"]["accuracy"]["unit"] == "share"
     assert done[0]["metrics"]["accuracy"]["baseline"] == {"b": 0.5, "chance": 0.1}
-
-
-def test_another_realization_is_an_oracle():
-    cube, other = (point_cube(AWR1843, num_frames=3, seed=seed) for seed in (0, 1))
-    metrics = scorecard_metrics(scorecard(cube, cube, twin=other))
-    assert set(metrics["rd_ssim"]["baseline"]) == {"zeros", "static_mean"}
-    assert set(metrics["rd_ssim"]["oracle"]) == {"realization"}
 
 
 def test_the_hash_of_a_plan_does_not_depend_on_its_order():

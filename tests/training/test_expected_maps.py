@@ -21,7 +21,7 @@ def room(tiny_geometry: Path) -> StoredRoom:
 
 
 def _mean(room: StoredRoom, index: int, name: str) -> torch.Tensor:
-    drawn = [power_maps(room.cube(index, FRAMES, twin=1 + draw).values, room.config) for draw in range(DRAWS)]
+    drawn = [power_maps(room.cube(index, FRAMES, realization=1 + draw).values, room.config) for draw in range(DRAWS)]
     return torch.stack([getattr(maps, name) for maps in drawn]).mean(dim=0)
 
 

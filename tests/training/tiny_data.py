@@ -5,7 +5,7 @@ from pathlib import Path
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import DatasetPlan
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 
 TINY_PLAN = DatasetPlan(
     kinds=("office", "dining_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4,
@@ -15,7 +15,7 @@ TINY_PLAN = DatasetPlan(
 
 def tiny_data(folder: Path, *, geometry_only: bool) -> Path:
     """An office to train on and a dining room to validate on; where it is there already, nothing is made."""
-    generate(folder, replace(TINY_PLAN, geometry_only=geometry_only), AWR1843)
+    generate_dataset(folder, replace(TINY_PLAN, geometry_only=geometry_only), AWR1843)
     return folder
 
 

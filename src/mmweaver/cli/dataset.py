@@ -58,9 +58,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
-    from mmweaver.datasets.dataset_cost import check_for_space, cost_of
+    from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
     from mmweaver.datasets.dataset_plan import DatasetPlan, check_for_leaks
-    from mmweaver.datasets.generate_rooms import generate
     from mmweaver.formats.radar_file import load_radar
 
     config = load_radar(arguments.radar)
@@ -71,16 +70,16 @@ def run(arguments: argparse.Namespace) -> int:
     )  # fmt: skip
     workers = max(1, arguments.workers)
     check_for_leaks(plan.rooms())
-    cost = cost_of(plan, config, arguments.out)
+    cost = estimate_cost(plan, config, arguments.out)
     if arguments.dry_run:
-        print(json.dumps(asdict(cost)) if arguments.json else cost.told(workers))
+        print(json.dumps(asdict(cost)) if arguments.json else cost.summary(workers))
         return 0
     if not (arguments.quiet or arguments.json):
-        print(cost.told(workers), file=sys.stderr)
+        print(cost.summary(workers), file=sys.stderr)
     check_for_space(cost, arguments.out)
     total = len(plan.kinds) * plan.num_layouts
     with tqdm(total=total, unit="room", disable=arguments.quiet or None) as bar:
-        reports = generate(
+        reports = generate_dataset(
             arguments.out, plan, config, workers=workers, ray_address=arguments.ray_address,
             listener=lambda report: bar.update(),
         )  # fmt: skip

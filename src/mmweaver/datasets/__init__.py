@@ -1,1 +1,1 @@
-"""Data sets of made-up rooms: what is in one, how it is made, and how it is stored. Read `plan` first."""
+"""Data sets of procedural rooms: plan, generation and storage. Read `dataset_plan` first."""

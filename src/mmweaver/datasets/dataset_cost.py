@@ -1,4 +1,4 @@
-"""What a data set will cost before it is made: processor time, and room on the disk."""
+"""Estimated cost of a data set before it is generated: CPU time and disk space."""
 
 import shutil
 from collections import Counter
@@ -10,18 +10,18 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.datasets.dataset_plan import DatasetPlan
 from mmweaver.datasets.dataset_store import is_done
 
-# of benchmarks/dataset.py, for 20 frames; other machines differ
-USUAL_FRAMES = 20
-SEQUENCE_S = {False: 0.33, True: 0.13}  # of a core; with signals, with geometry alone
+# measured by benchmarks/dataset.py for 20 frames; other machines differ
+BENCHMARK_FRAMES = 20
+SEQUENCE_S = {False: 0.33, True: 0.13}  # CPU seconds; with signals, with geometry only
 ROOM_S = {False: 0.9, True: 1.1}
 ROOM_BYTES = {False: 1.0e6, True: 1.27e6}
-LOOK_BYTES = 21_500.0  # of a sequence without its signal
-PACKED = 0.93  # of a signal's float16 bytes, after compression
+GEOMETRY_BYTES = 21_500.0  # of a sequence without its signal
+COMPRESSED_SHARE = 0.93  # of the float16 bytes of a signal
 
 
 @dataclass(frozen=True, kw_only=True)
 class DatasetCost:
-    """Of what is not there yet; `splits` of the whole plan."""
+    """Cost of the missing rooms; `splits` counts the sequences of the whole plan."""
 
     rooms: int
     sequences: int
@@ -29,40 +29,41 @@ class DatasetCost:
     disk_bytes: float
     splits: dict[str, int]
 
-    def told(self, workers: int) -> str:
-        """In one line."""
+    def summary(self, workers: int) -> str:
+        """One line of text."""
         splits = ", ".join(f"{name} {count:,}" for name, count in self.splits.items())
         wall = _time(self.core_s / max(workers, 1))
         return (
-            f"{self.sequences:,} sequences in {self.rooms} rooms to make ({splits} in all): about"
+            f"{self.sequences:,} sequences in {self.rooms} rooms to generate ({splits} in total): about"
             f" {_time(self.core_s)} of one core, {wall} with {workers} {'worker' if workers == 1 else 'workers'},"
-            f" {_size(self.disk_bytes)} on the disk"
+            f" {_size(self.disk_bytes)} on disk"
         )
 
 
-def cost_of(plan: DatasetPlan, config: RadarConfig, folder: Path) -> DatasetCost:
-    """What the rooms of a plan cost that a folder lacks; a few motions will find no place and cost less."""
+def estimate_cost(plan: DatasetPlan, config: RadarConfig, folder: Path) -> DatasetCost:
+    """Cost of the rooms of a plan that are missing in a folder; an upper bound, for some motions find no place."""
     rooms = plan.rooms()
     missing = [room for room in rooms if not is_done(folder, room.name)]
     count = sum(len(room.sequences) for room in missing)
-    light, share = plan.geometry_only, plan.num_frames / USUAL_FRAMES
-    signal = PACKED * plan.num_frames * config.num_range_bins * config.num_loops * config.num_antennas * 4.0
+    geometry_only, share = plan.geometry_only, plan.num_frames / BENCHMARK_FRAMES
+    signal = COMPRESSED_SHARE * plan.num_frames * config.num_range_bins * config.num_loops * config.num_antennas * 4.0
+    each = GEOMETRY_BYTES * share if geometry_only else signal
     splits = Counter(sequence.split for room in rooms for sequence in room.sequences)
     return DatasetCost(
         rooms=len(missing), sequences=count,
-        core_s=len(missing) * ROOM_S[light] + count * share * SEQUENCE_S[light],
-        disk_bytes=len(missing) * ROOM_BYTES[light] + count * (LOOK_BYTES * share if light else signal),
+        core_s=len(missing) * ROOM_S[geometry_only] + count * share * SEQUENCE_S[geometry_only],
+        disk_bytes=len(missing) * ROOM_BYTES[geometry_only] + count * each,
         splits=dict(splits.most_common()),
     )  # fmt: skip
 
 
 def check_for_space(cost: DatasetCost, folder: Path) -> None:
-    """Raises InputError where the disk has no room for it."""
+    """Raises InputError where the disk has too little free space."""
     there = next(path for path in (folder.absolute(), *folder.absolute().parents) if path.exists())
     free = float(shutil.disk_usage(there).free)
     if cost.disk_bytes > free:
         raise InputError(
-            f"the data set needs about {_size(cost.disk_bytes)} and {there} has {_size(free)} left; take another disk,"
+            f"the data set needs about {_size(cost.disk_bytes)} and {there} has {_size(free)} free; use another disk,"
             " fewer --sequences or --layouts, or --geometry-only"
         )
 

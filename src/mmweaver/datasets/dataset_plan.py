@@ -1,4 +1,4 @@
-"""What a data set holds: which room, person, activity and seed each sequence has, and which split it belongs to."""
+"""Plan of a data set: room, person, activity, seed and split of every sequence."""
 
 import json
 from dataclasses import asdict, dataclass, field, replace
@@ -9,7 +9,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 
 PLAN_VERSION = 2
-# The paper's activities and three more; each in the words of several people.
+# The activities of the paper and three more, each phrased in several ways.
 ACTIVITIES: dict[str, tuple[str, ...]] = {
     "walking": ("a person walks towards the radar", "a person walks to the left", "a person walks to the right",
                 "someone walks away", "a person walks around"),
@@ -26,14 +26,14 @@ ACTIVITIES: dict[str, tuple[str, ...]] = {
     "squatting": ("a person squats", "someone squats"),
     "punching": ("a person punches", "a person punches quickly"),
 }  # fmt: skip
-# Of six people: heights from the least to the greatest; the number names the skin, too.
+# Six people by height; the index also selects the body surface.
 PEOPLE_HEIGHT_M = (1.63, 1.70, 1.75, 1.80, 1.87, 1.96)
 SPLITS = ("train", "validation", "test_room", "test_layout", "test_person", "test_activity")
 
 
 @dataclass(frozen=True, kw_only=True)
 class HeldOut:
-    """What training never sees."""
+    """What is held out from training."""
 
     validation_kinds: tuple[str, ...] = ("dining_room",)
     test_kinds: tuple[str, ...] = ("living_room", "classroom", "workshop")
@@ -42,9 +42,9 @@ class HeldOut:
     test_layouts: int = 2  # the last ones of each kind
 
     def split(self, *, kind: str, layouts_after: int, person: int, activity: str) -> str:
-        """The split of a sequence, or "" for one that would show two withheld things at once and is not made.
+        """The split of a sequence, or "" if it combines two held-out properties and is not generated.
 
-        `layouts_after`: how many layouts of the room's kind come after its own.
+        `layouts_after`: number of layouts of this kind of room that come after its own.
 
         >>> HeldOut().split(kind="office", layouts_after=9, person=0, activity="walking")
         'train'
@@ -67,9 +67,9 @@ class HeldOut:
 
 @dataclass(frozen=True, kw_only=True)
 class SequenceSpec:
-    """One sequence to be made."""
+    """One sequence to be generated."""
 
-    index: int  # in its room
+    index: int  # within its room
     person: int
     activity: str
     text: str
@@ -79,7 +79,7 @@ class SequenceSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class RoomSpec:
-    """One room to be made: a kind, a layout, a light, and what happens in it."""
+    """One room to be generated: kind, layout, lighting and sequences."""
 
     kind: str
     layout: int
@@ -94,7 +94,7 @@ class RoomSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class DatasetPlan:
-    """A whole data set. The same plan gives the same bits, whoever makes which part of it."""
+    """A whole data set. The same plan gives the same bits, however the work is distributed."""
 
     kinds: tuple[str, ...]
     lightings: tuple[str, ...]
@@ -104,7 +104,7 @@ class DatasetPlan:
     radar: str = "awr1843"
     seed: int = 0
     withheld: HeldOut = field(default_factory=HeldOut)
-    geometry_only: bool = False  # signals are made while training, from prepared rooms
+    geometry_only: bool = False  # signals are synthesised during training from stored geometry
 
     def __post_init__(self) -> None:
         for name in ("num_layouts", "sequences_a_room", "num_frames"):
@@ -114,7 +114,7 @@ class DatasetPlan:
             raise InputError("a data set needs at least one kind of room")
 
     def rooms(self) -> list[RoomSpec]:
-        """All rooms, kind after kind."""
+        """All rooms, sorted by kind."""
         return [self._room(kind, layout) for kind in self.kinds for layout in range(self.num_layouts)]
 
     def _room(self, kind: str, layout: int) -> RoomSpec:
@@ -123,10 +123,10 @@ class DatasetPlan:
         room = RoomSpec(kind=kind, layout=layout, seed=self.seed, lighting=lighting, sequences=())
         names = list(ACTIVITIES)
         specs: list[SequenceSpec] = []
-        turn = int(rng.integers(len(names)))
+        number = int(rng.integers(len(names)))
         while len(specs) < self.sequences_a_room:
-            activity = names[turn % len(names)]
-            turn += 1
+            activity = names[number % len(names)]
+            number += 1
             spec = self._sequence(room, len(specs), activity, rng)
             if spec.split:
                 specs.append(spec)
@@ -146,19 +146,19 @@ class DatasetPlan:
         )
 
     def _layouts_after(self, layout: int) -> int:
-        """Of a kind with fewer than six layouts, at most a third is withheld."""
+        """Layouts after this one; with fewer than six layouts per kind, at most a third is held out."""
         spared = max(self.withheld.test_layouts - self.num_layouts // 3, 0)
         return self.num_layouts - 1 - layout + spared
 
     def to_json(self) -> str:
-        words = {"plan_version": PLAN_VERSION, **asdict(self)}
-        if not self.geometry_only:  # older sets do not name it
-            del words["geometry_only"]
-        return json.dumps(words, indent=1)
+        values = {"plan_version": PLAN_VERSION, **asdict(self)}
+        if not self.geometry_only:  # older data sets do not have it
+            del values["geometry_only"]
+        return json.dumps(values, indent=1)
 
 
 def check_for_leaks(rooms: list[RoomSpec]) -> None:
-    """Raises InputError where something withheld from training, or a seed of a test, turns up in training."""
+    """Raises InputError where a held-out property, or the seed of a test sequence, occurs in training."""
     of = {split: [(room, s) for room in rooms for s in room.sequences if s.split == split] for split in SPLITS}
     train = of["train"]
     checks = {
@@ -175,8 +175,8 @@ def check_for_leaks(rooms: list[RoomSpec]) -> None:
                 "test_person": s.person, "test_activity": s.activity,
             }[split]  # fmt: skip
             if value in seen:
-                raise InputError(f"leak: {value!r} of split {split} is in training, too")
+                raise InputError(f"leak: {value!r} of split {split} also occurs in training")
     seeds = [s.seed for _, s in train]
     tested = {s.seed for split in SPLITS[1:] for _, s in of[split]}
     if tested & set(seeds):
-        raise InputError("leak: a sequence's seed is both in training and in a test")
+        raise InputError("leak: a seed occurs both in training and in a test split")

@@ -2,16 +2,16 @@
 
     OUT/                       root group: plan, radar, axes
     OUT/office_003/            one group a room
-        iq          (sequence, frame, range, doppler, antenna, part)  float16, times iq_scale = sqrt(mW)
+        iq          (sequence, frame, range, doppler, antenna, part)  float16; times iq_scale: sqrt(mW)
         iq_scale    (sequence,)
         joints_m, joint_velocity_mps   (sequence, frame, joint, axis)
         person, seed, activity, text, split    (sequence,)
         photo_rgb, photo_depth_m, photo_class  (row, column[, colour])
-        empty_iq    (range, antenna, part)  the room without a person
-        geometry/   instead of iq: what signals are drawn from on the fly (`geometry_store`)
+        empty_iq    (range, antenna, part)  static clutter of the room
+        geometry/   instead of iq: stored geometry from which signals are synthesised (`geometry_store`)
 
-A room is written under another name and renamed when it is whole, so that a kill at any point loses only the rooms
-that were being made. Reference: Zarr v3, xarray's `_ARRAY_DIMENSIONS`; decision 92.
+A room is written under a temporary name and renamed when complete, so that a kill at any point loses only unfinished
+rooms. Reference: Zarr v3, xarray's `_ARRAY_DIMENSIONS`; decision 92.
 """
 
 import json
@@ -32,11 +32,11 @@ from mmweaver.core.records import CameraIntrinsics, ClassMask, CubeGrid, RadarCu
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, DatasetPlan
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry, write_geometry
-from mmweaver.datasets.make_room import MadeRoom, MadeSequence, TracedSequence
+from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, TracedSequence
 
 PLAN_FILE = "plan.json"
 SEQUENCES_A_SHARD = 8
-FORGOTTEN_S = 3600.0  # after which an unfinished room of another machine is taken for given up
+ABANDONED_S = 3600.0  # after which an unfinished room of another machine counts as abandoned
 UNITS = {
     "iq": "1 (times iq_scale: sqrt(mW))", "iq_scale": "sqrt(mW)", "joints_m": "m", "joint_velocity_mps": "m/s",
     "photo_depth_m": "m", "range_m": "m", "radial_velocity_mps": "m/s", "frame_time_s": "s",
@@ -45,7 +45,7 @@ UNITS = {
 
 
 def _zarr() -> Any:
-    """The library, imported late. Raises InputError where it is not installed."""
+    """The zarr module, imported lazily. Raises InputError where it is not installed."""
     try:
         import zarr
     except ImportError as error:
@@ -53,13 +53,13 @@ def _zarr() -> Any:
     return zarr
 
 
-def start(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
-    """Makes the data set's folder, or checks that the one there is of the same plan. Raises InputError if it is not."""
+def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
+    """Creates the folder of a data set, or checks that an existing one has the same plan. Raises InputError if not."""
     zarr = _zarr()
     text = plan.to_json()
     file = folder / PLAN_FILE
     if file.is_file():
-        if file.read_text() != text:
+        if file.read_text(encoding="utf-8") != text:
             raise InputError(f"{folder} holds a data set of another plan; choose another folder or the same settings")
         return
     if folder.exists() and any(folder.iterdir()):
@@ -76,22 +76,23 @@ def start(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
          "wavelength_m": config.wavelength_m}
     )  # fmt: skip
     partial = folder / f".{PLAN_FILE}"
-    partial.write_text(text)
-    partial.rename(file)
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(file)
 
 
 def is_done(folder: Path, name: str) -> bool:
+    """Whether a room has been written completely."""
     return (folder / name / "zarr.json").is_file()
 
 
 def is_being_written(partial: Path) -> bool:
-    """Whether a room's unfinished folder belongs to a process that still runs here, or may run elsewhere.
+    """Whether an unfinished room belongs to a process that still runs here, or may run on another machine.
 
-    Workers outlive a parent that was killed by a room or two; what they write must not be taken from under them.
+    Workers outlive a killed parent by a room or two; their unfinished rooms must not be deleted.
     """
     *_, host, process = partial.name.rsplit(".", 2)
-    if host != _host():
-        return time.time() - partial.stat().st_mtime < FORGOTTEN_S
+    if host != _host() or os.name == "nt":  # on Windows os.kill would end the process instead of asking after it
+        return time.time() - partial.stat().st_mtime < ABANDONED_S
     try:
         os.kill(int(process), 0)
     except (ProcessLookupError, ValueError):
@@ -102,7 +103,7 @@ def is_being_written(partial: Path) -> bool:
 
 
 def _is_zombie(process: str) -> bool:
-    """Whether it has ended and nobody has asked how; not known where there is no /proc."""
+    """Whether the process has ended but was not waited for; False where there is no /proc."""
     try:
         state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
     except (OSError, IndexError):
@@ -114,67 +115,72 @@ def _host() -> str:
     return platform.node().replace(".", "-") or "here"
 
 
-def write_room(folder: Path, made: MadeRoom) -> None:
-    """Writes one room, whole or not at all."""
+def write_room(folder: Path, generated: GeneratedRoom) -> None:
+    """Writes one room atomically."""
     zarr = _zarr()
-    partial = folder / f".{made.spec.name}.{_host()}.{os.getpid()}"
+    partial = folder / f".{generated.spec.name}.{_host()}.{os.getpid()}"
     shutil.rmtree(partial, ignore_errors=True)
     group = zarr.open_group(partial, mode="w")
-    sequences = made.sequences
-    looked = tuple(s for s in sequences if isinstance(s, TracedSequence))
-    signals = [s.cube.values for s in sequences if isinstance(s, MadeSequence)]
+    sequences = generated.sequences
+    traced = tuple(s for s in sequences if isinstance(s, TracedSequence))
+    signals = [s.cube.values for s in sequences if isinstance(s, GeneratedSequence)]
     if signals:
         iq, scale = _packed(signals)
         _put(group, "iq", iq, ("sequence", "frame", "range", "doppler", "antenna", "part"), each=True)
         _put(group, "iq_scale", scale, ("sequence",))
-    if made.geometry is not None:
-        write_geometry(group, made.geometry, looked)
+    if generated.geometry is not None:
+        write_geometry(group, generated.geometry, traced)
     if sequences:
         pose = ("sequence", "frame", "joint", "axis")
         _put(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
         _put(group, "joint_velocity_mps", np.stack([s.joint_velocity_mps for s in sequences]), pose)
         _put(group, "person", np.array([s.spec.person for s in sequences]), ("sequence",))
         _put(group, "seed", np.array([s.spec.seed for s in sequences]), ("sequence",))
-    photo = made.photo
+    photo = generated.photo
     _put(group, "photo_rgb", photo.rgb, ("row", "column", "colour"))
     _put(group, "photo_depth_m", photo.depth_m.astype(np.float32), ("row", "column"))
     if photo.classes is not None:
         _put(group, "photo_class", photo.classes.index, ("row", "column"))
-    _put(group, "empty_iq", np.stack([np.real(made.empty), np.imag(made.empty)], -1), ("range", "antenna", "part"))
+    _put(
+        group,
+        "empty_iq",
+        np.stack([np.real(generated.static), np.imag(generated.static)], -1),
+        ("range", "antenna", "part"),
+    )
     group.attrs.update(
         {
-            "kind": made.spec.kind, "layout": made.spec.layout, "lighting": made.spec.lighting,
+            "kind": generated.spec.kind, "layout": generated.spec.layout, "lighting": generated.spec.lighting,
             "activity": [s.spec.activity for s in sequences], "text": [s.spec.text for s in sequences],
             "split": [s.spec.split for s in sequences], "index": [s.spec.index for s in sequences],
-            "refused": [list(entry) for entry in made.refused],
+            "refused": [list(entry) for entry in generated.refused],
             "camera": asdict(photo.intrinsics),
             "class_names": list(photo.classes.names) if photo.classes else [],
         }
     )  # fmt: skip
-    if not is_done(folder, made.spec.name):
-        shutil.rmtree(folder / made.spec.name, ignore_errors=True)
+    if not is_done(folder, generated.spec.name):
+        shutil.rmtree(folder / generated.spec.name, ignore_errors=True)
     try:
-        partial.rename(folder / made.spec.name)
-    except OSError:  # another process made it meanwhile, the same to the bit
-        if not is_done(folder, made.spec.name):
+        partial.rename(folder / generated.spec.name)
+    except OSError:  # another process has written the identical room in the meantime
+        if not is_done(folder, generated.spec.name):
             raise
         shutil.rmtree(partial, ignore_errors=True)
 
 
 def _packed(cubes: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Cubes as float16 pairs between -1 and 1 and the scale of each: error below 5e-4 of each value."""
+    """Cubes as float16 pairs (cube, ..., part) and the scale of each (cube,): relative error below 5e-4."""
     out = np.empty((len(cubes), *cubes[0].shape, 2), np.float16)
     scale = np.empty(len(cubes), np.float32)
-    for index, values in enumerate(cubes):  # one by one: a room of 120 would fill gigabytes
+    for index, values in enumerate(cubes):  # one at a time: 120 sequences would fill gigabytes
         scale[index] = max(np.abs(values).max(), 1e-30)
         unit = values / scale[index]
-        # below 6e-5 float16 loses digits; the noise of a cell lies there, so 1.0 is kept at 1024
+        # float16 loses precision below 6e-5, where the cell noise lies: 1.0 is stored as 1024
         out[index] = np.stack([unit.real, unit.imag], axis=-1) * 1024
     return out, scale / np.float32(1024)
 
 
 def _put(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...], *, each: bool = False) -> None:
-    """One array, in one piece, or a piece a sequence gathered into shards."""
+    """Writes one array as one chunk, or (`each`) one chunk per sequence, gathered into shards."""
     values = np.ascontiguousarray(values)
     options: dict[str, Any] = {"chunks": values.shape if values.size else (1,) * values.ndim}
     if each:
@@ -192,47 +198,47 @@ def _put(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...],
 
 @dataclass(frozen=True, kw_only=True)
 class StoredRoom:
-    """A room as read: its photo at once, its sequences one by one."""
+    """A room of a data set: photo and joints in memory, cubes read or synthesised on demand."""
 
     folder: Path
     kind: str
     layout: int
     lighting: str
     photo: RgbdPhoto
-    empty: np.ndarray  # (range, antenna) complex64
-    joints_m: np.ndarray
-    joint_velocity_mps: np.ndarray
-    person: np.ndarray
+    static: np.ndarray  # (range, antenna) complex64, static clutter at the peak of zero Doppler, sqrt(mW)
+    joints_m: np.ndarray  # (sequence, frame, 22, 3)
+    joint_velocity_mps: np.ndarray  # (sequence, frame, 22, 3)
+    person: np.ndarray  # (sequence,)
     activity: tuple[str, ...]
     text: tuple[str, ...]
     split: tuple[str, ...]
-    seed: np.ndarray
+    seed: np.ndarray  # (sequence,)
     config: RadarConfig
-    geometry: StoredGeometry | None = None  # of a set without signals
-    device: str = "cpu"  # where signals are made from geometry
+    geometry: StoredGeometry | None = None  # of a data set without signals
+    device: str = "cpu"  # where signals are synthesised from geometry
 
-    def cube(self, index: int, frames: np.ndarray | None = None, *, twin: int = 0) -> RadarCube:
-        """The cube of one sequence, in sqrt(mW), or some of its frames.
+    def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
+        """The cube of one sequence, or some of its frames, in sqrt(mW).
 
-        Where signals are not stored they are made, and another `twin` has other micro-phases and noise.
+        Signals that are not stored are synthesised; another `realization` has other surface micro-phases and noise.
         """
         if self.geometry is not None:
             wanted = np.arange(len(self.joints_m[index])) if frames is None else frames
-            values = self.geometry.cube_values(self._look(index), wanted, twin=twin, device=self.device)
+            values = self.geometry.cube(self._traced_motion(index), wanted, realization=realization, device=self.device)
         else:
             values = self._stored(index)
             values = values if frames is None else values[frames]
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
-    def echoes(self, index: int, frames: np.ndarray) -> Any:
-        """The person's echoes (`paths.body_paths.BodyEchoes`) in frames of one sequence, of a set with geometry."""
+    def body_paths(self, index: int, frames: np.ndarray) -> Any:
+        """The person's paths (`paths.body_paths.BodyPaths`) in frames of one sequence, of a set with geometry."""
         assert self.geometry is not None, "signals are stored, not geometry"
-        return self.geometry.replay("cpu").person(self._look(index), frames)
+        return self.geometry.resynthesis("cpu").person(self._traced_motion(index), frames)
 
-    def _look(self, index: int) -> Any:
+    def _traced_motion(self, index: int) -> Any:
         assert self.geometry is not None
         person = int(self.person[index])
-        return self.geometry.look(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
+        return self.geometry.motion(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
 
     def _stored(self, index: int) -> np.ndarray:
         zarr = _zarr()
@@ -242,9 +248,9 @@ class StoredRoom:
 
 
 def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
-    """All rooms of a data set; without stored signals these are made on `device`.
+    """All rooms of a data set; signals that are not stored are synthesised on `device`.
 
-    Raises InputError where the folder is no data set.
+    Raises InputError where the folder is not a data set.
     """
     if not (folder / PLAN_FILE).is_file():
         raise InputError(f"{folder} holds no data set (no {PLAN_FILE}); make one with: mmweaver dataset {folder}")
@@ -263,12 +269,12 @@ def read_radar(folder: Path) -> RadarConfig:
 
 
 def plan_text(folder: Path) -> str:
-    """The plan a data set was made by, as JSON."""
-    return (folder / PLAN_FILE).read_text()
+    """The plan of a data set as JSON text."""
+    return (folder / PLAN_FILE).read_text(encoding="utf-8")
 
 
 def read_plan(folder: Path) -> dict[str, Any]:
-    """The same, read."""
+    """The plan of a data set as a dictionary."""
     return json.loads(plan_text(folder))
 
 
@@ -278,14 +284,14 @@ def _room(folder: Path, config: RadarConfig, device: str) -> StoredRoom:
     attrs: dict[str, Any] = dict(group.attrs)
     names = tuple(attrs["class_names"])
     classes = ClassMask(index=np.asarray(group["photo_class"]), names=names) if names else None
-    empty = np.asarray(group["empty_iq"])
+    static = np.asarray(group["empty_iq"])
     return StoredRoom(
         folder=folder, kind=attrs["kind"], layout=attrs["layout"], lighting=attrs["lighting"],
         photo=RgbdPhoto(
             rgb=np.asarray(group["photo_rgb"]), depth_m=np.asarray(group["photo_depth_m"]).astype(np.float64),
             intrinsics=CameraIntrinsics(**attrs["camera"]), classes=classes,
         ),
-        empty=(empty[..., 0] + 1j * empty[..., 1]).astype(np.complex64),
+        static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64),
         joints_m=np.asarray(group["joints_m"]), joint_velocity_mps=np.asarray(group["joint_velocity_mps"]),
         person=np.asarray(group["person"]), activity=tuple(attrs["activity"]), text=tuple(attrs["text"]),
         split=tuple(attrs["split"]), seed=np.asarray(group["seed"]), config=config,

@@ -1,4 +1,4 @@
-"""Makes a data set: what is missing of it, on the cores of this machine or on a Ray cluster."""
+"""Generates the missing rooms of a data set, on the cores of this machine or on a Ray cluster."""
 
 import shutil
 from collections.abc import Callable, Iterable, Iterator
@@ -9,19 +9,19 @@ from pathlib import Path
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec, check_for_leaks
-from mmweaver.datasets.dataset_store import is_being_written, is_done, start, write_room
+from mmweaver.datasets.dataset_store import is_being_written, is_done, open_dataset, write_room
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoomReport:
-    """What became of one room."""
+    """Summary of one generated room."""
 
     name: str
     num_sequences: int
-    refused: tuple[tuple[int, str], ...]  # index of the sequence, and why the room has no place for it
+    refused: tuple[tuple[int, str], ...]  # index of the sequence, and why it does not fit the room
 
 
-def generate(
+def generate_dataset(
     folder: Path,
     plan: DatasetPlan,
     config: RadarConfig,
@@ -30,29 +30,29 @@ def generate(
     ray_address: str | None = None,
     listener: Callable[[RoomReport], object] | None = None,
 ) -> list[RoomReport]:
-    """Makes the rooms that are not there yet and gives a report of each; may be killed and called again.
+    """Generates the missing rooms and returns a report of each; may be killed and called again.
 
-    One process for each of `workers`; with `ray_address` ("local" for an embedded one) on Ray, one task a core.
+    Uses `workers` processes; with `ray_address` ("local" for an embedded cluster) Ray, one task per core.
     Raises InputError for a folder of another plan.
     """
     rooms = plan.rooms()
     check_for_leaks(rooms)
-    start(folder, plan, config)
-    _sweep(folder)
+    open_dataset(folder, plan, config)
+    _remove_partial_rooms(folder)
     missing = [room for room in rooms if not is_done(folder, room.name)]
     tasks = ((folder, room, config, plan.num_frames, plan.geometry_only) for room in missing)
     reports = []
-    with _engine(workers, ray_address) as run:
+    with _executor(workers, ray_address) as run:
         for report in run(tasks):
             reports.append(report)
             if listener is not None:
                 listener(report)
-    _sweep(folder)
+    _remove_partial_rooms(folder)
     return reports
 
 
-def _sweep(folder: Path) -> None:
-    """Takes away what a kill left half written."""
+def _remove_partial_rooms(folder: Path) -> None:
+    """Removes unfinished rooms of killed processes."""
     for leftover in folder.glob(".*.*"):
         if leftover.is_dir() and not is_being_written(leftover):
             shutil.rmtree(leftover, ignore_errors=True)
@@ -61,36 +61,36 @@ def _sweep(folder: Path) -> None:
 Task = tuple[Path, RoomSpec, RadarConfig, int, bool]
 
 
-def make_one(task: Task) -> RoomReport:
-    """Makes and writes one room, on one thread."""
+def generate_one(task: Task) -> RoomReport:
+    """Generates and writes one room on one thread."""
     from threadpoolctl import threadpool_limits
 
-    from mmweaver.datasets.make_room import make
+    from mmweaver.datasets.room_generation import generate_room
 
     folder, spec, config, num_frames, geometry_only = task
     with threadpool_limits(limits=1):
-        made = make(spec, config, num_frames, geometry_only=geometry_only)
-    write_room(folder, made)
-    return RoomReport(name=spec.name, num_sequences=len(made.sequences), refused=made.refused)
+        room = generate_room(spec, config, num_frames, geometry_only=geometry_only)
+    write_room(folder, room)
+    return RoomReport(name=spec.name, num_sequences=len(room.sequences), refused=room.refused)
 
 
 @contextmanager
-def _engine(workers: int, ray_address: str | None) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
+def _executor(workers: int, ray_address: str | None) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
     if ray_address is not None:
         with _ray(workers, ray_address) as run:
             yield run
     elif workers == 1:
-        yield lambda tasks: map(make_one, tasks)
+        yield lambda tasks: map(generate_one, tasks)
     else:
         import multiprocessing
 
         with multiprocessing.get_context("spawn").Pool(workers) as pool:
-            yield lambda tasks: pool.imap_unordered(make_one, tasks)
+            yield lambda tasks: pool.imap_unordered(generate_one, tasks)
 
 
 @contextmanager
 def _ray(workers: int, address: str) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
-    """A room is one task; a lost one is tried again elsewhere, since writing is whole or not at all."""
+    """One task per room; a lost task is retried elsewhere, for rooms are written atomically."""
     try:
         import ray  # pyright: ignore[reportMissingImports]
     except ImportError as error:
@@ -99,7 +99,7 @@ def _ray(workers: int, address: str) -> Iterator[Callable[[Iterable[Task]], Iter
         ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, configure_logging=False)
     else:
         ray.init(address=address, log_to_driver=False)
-    remote = ray.remote(num_cpus=1, max_retries=3)(make_one)
+    remote = ray.remote(num_cpus=1, max_retries=3)(generate_one)
 
     def run(tasks: Iterable[Task]) -> Iterator[RoomReport]:
         waiting = [remote.remote(task) for task in tasks]

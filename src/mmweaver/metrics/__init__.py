@@ -1,1 +1,1 @@
-"""Scores of a radar cube against the truth, each beside its floor."""
+"""Scores of a radar cube against the ground truth, each with its baselines."""

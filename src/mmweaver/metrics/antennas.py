@@ -1,17 +1,17 @@
-"""Whether the antennas of a cell agree about where its echo comes from."""
+"""Phase consistency across antennas: whether the array sees echoes from the right direction."""
 
 import numpy as np
 
 from mmweaver.core.shapes import CubeValues, RangeDopplerMask
 
-CHANCE_RAD = np.pi / 2  # mean absolute error of a phase drawn at random
+CHANCE_RAD = np.pi / 2  # mean absolute error of a uniformly random phase
 
 
 def antenna_phase_error_rad(prediction: CubeValues, truth: CubeValues, where: RangeDopplerMask) -> float:
     """Mean absolute error of the phase step from each antenna to the next, over the cells `where`, in [0, pi].
 
-    A phase common to all antennas of a cell does not matter. A random phase scores pi / 2, and so does a step next
-    to an antenna that is exactly zero. nan where there are no cells or no two antennas.
+    Invariant to a phase common to all antennas of a cell. A random phase scores pi / 2, and so does a step next to an
+    antenna that is exactly zero. nan without cells or with fewer than two antennas.
 
     >>> truth = np.exp(1j * np.array([0.0, 1.0, 2.0])).reshape(1, 1, 1, 3)
     >>> everywhere = np.ones((1, 1, 1), bool)

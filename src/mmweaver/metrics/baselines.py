@@ -1,4 +1,4 @@
-"""What knows nothing of the signal and scores all the same: a score means what it exceeds these by."""
+"""Trivial predictions: a score is meaningful by how much it exceeds theirs."""
 
 from dataclasses import replace
 
@@ -8,14 +8,14 @@ from mmweaver.core.records import RadarCube
 
 
 def all_zeros(truth: RadarCube) -> RadarCube:
-    """The empty cube."""
+    """A cube of zeros."""
     return replace(truth, values=np.zeros_like(truth.values))
 
 
 def static_mean(truth: RadarCube) -> RadarCube:
-    """The mean over the truth's frames, shown in every frame: knows the room, and nothing that moves."""
+    """The mean over the frames of the ground truth, repeated: exact static clutter, no motion."""
     mean = truth.values.mean(axis=0, keepdims=True, dtype=np.complex128).astype(np.complex64)
     return replace(truth, values=np.repeat(mean, len(truth.values), axis=0))
 
 
-FLOORS = {"zeros": all_zeros, "static_mean": static_mean}
+BASELINES = {"zeros": all_zeros, "static_mean": static_mean}

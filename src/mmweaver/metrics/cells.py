@@ -1,4 +1,4 @@
-"""Which cells of a cube carry signal, and which of them move."""
+"""Active and moving cells of a cube."""
 
 from dataclasses import dataclass
 
@@ -13,18 +13,18 @@ ACTIVE_DB = 12.0  # above the noise floor
 
 @dataclass(frozen=True, kw_only=True)
 class Cells:
-    """Masks over (frame, range, doppler); a cell is counted with all its antennas."""
+    """Masks (frame, range, doppler); a cell comprises all its antennas."""
 
     is_active: RangeDopplerMask  # power more than 12 dB above the noise floor
-    is_moving: RangeDopplerMask  # active, and not in zero Doppler or its two neighbours
+    is_moving: RangeDopplerMask  # active, outside zero Doppler and its two neighbours
     floor_power: float
 
 
 def cells_of(cube: RadarCube) -> Cells:
     """The active and the moving cells of a cube.
 
-    Power is the mean of |.|^2 over the antennas; the noise floor is its median over all cells, which noise fills in
-    any radar cube with most of its cells empty.
+    Power is the mean of |.|^2 over the antennas. The noise floor is its median over all cells, which is valid as long
+    as most cells contain only noise.
     """
     power = range_doppler_power(cube)
     floor = noise_floor(power)
@@ -33,5 +33,5 @@ def cells_of(cube: RadarCube) -> Cells:
 
 
 def noise_floor(power: RangeDopplerMap) -> float:
-    """Median power of all cells."""
+    """Median power over all cells."""
     return float(np.median(power))

@@ -1,4 +1,4 @@
-"""Scores of complex cubes: error against signal, PSNR, complex SSIM. Pure functions of arrays."""
+"""Scores of complex cubes: NMSE, PSNR, complex SSIM. Pure functions of arrays."""
 
 import numpy as np
 from jaxtyping import Complex
@@ -11,9 +11,9 @@ AnyComplex = Complex[np.ndarray, "*any"]
 
 
 def nmse_db(prediction: CubeValues, truth: CubeValues, where: RangeDopplerMask | None = None) -> float:
-    """Energy of the error over energy of the truth in dB, all antennas of the cells `where` (default: of all cells).
+    """Energy of the error over energy of the ground truth in dB, over the cells `where` (default: all), all antennas.
 
-    0 dB is what all zeros score, lower is better, -inf is perfect; nan where the truth has no energy there.
+    All zeros score 0 dB, lower is better, -inf is perfect; nan where the ground truth has no energy.
 
     >>> truth = np.ones((1, 2, 2, 1), complex)
     >>> nmse_db(0 * truth, truth), round(nmse_db(0.9 * truth, truth), 9)
@@ -31,7 +31,7 @@ def psnr_db(prediction: AnyComplex, truth: AnyComplex, *, peak: float) -> float:
     """Peak signal-to-noise ratio in dB: peak^2 over the mean squared error of I and Q together.
 
     `peak` is the largest |I| or |Q| that counts, see `peak_of`. inf is perfect. On a sparse cube all zeros score
-    30 dB and more, so this is no headline: read it beside its floor.
+    30 dB and more, so this is not a headline metric: compare it with its baseline.
 
     >>> truth = np.array([1.0 + 0j, 0, 0, 0])
     >>> round(psnr_db(0 * truth, truth, peak=1.0), 3)

@@ -10,7 +10,7 @@ Other = Float[np.ndarray, "other 3"]
 
 
 def hausdorff_m(one: One, other: Other) -> float:
-    """The farthest that a point of either set lies from the nearest of the other. Both sets must have points.
+    """Largest distance in metres from a point of either set to the nearest of the other. Both sets must have points.
 
     >>> hausdorff_m(np.zeros((1, 3)), np.array([[0.0, 0, 0], [0, 3.0, 4.0]]))
     5.0
@@ -20,9 +20,9 @@ def hausdorff_m(one: One, other: Other) -> float:
 
 
 def chamfer_m(one: One, other: Other) -> float:
-    """Half of (mean distance of one set's points to the nearest of the other + the same the other way round).
+    """Mean distance in metres from a point to the nearest of the other set, averaged over both directions.
 
-    Distances themselves, not their squares. Both sets must have points.
+    Distances are not squared. Both sets must have points.
 
     >>> chamfer_m(np.zeros((1, 3)), np.array([[0.0, 0, 0], [0, 3.0, 4.0]]))
     1.25
@@ -36,8 +36,8 @@ def cloud_distances_m(
 ) -> tuple[float, float]:
     """(Hausdorff, Chamfer), each the mean over the frames.
 
-    A frame in which only one of the two has points counts `missing_m` (the far end of the radar's range), a frame
-    in which neither has any counts 0.
+    A frame where only one cloud has points counts `missing_m` (the far end of the radar's range), a frame where both
+    are empty counts 0.
     """
     distances: list[tuple[float, float]] = []
     for frame in range(num_frames):

@@ -1,4 +1,4 @@
-"""Every score of a cube against the truth, each beside its floors: the one way to report a comparison."""
+"""All scores of a cube against the ground truth, each with its baselines: the one way to report a comparison."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -14,15 +14,15 @@ from mmweaver.dsp.cfar import ca_cfar
 from mmweaver.dsp.points import point_cloud
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
 from mmweaver.metrics.antennas import antenna_phase_error_rad
-from mmweaver.metrics.baselines import FLOORS
+from mmweaver.metrics.baselines import BASELINES
 from mmweaver.metrics.cells import Cells, cells_of
 from mmweaver.metrics.cube_errors import complex_ssim, nmse_db, peak_of, psnr_db, span_of
 from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
 from mmweaver.metrics.point_clouds import cloud_distances_m
 
 
-class Views:
-    """What the metrics look at in a cube, each made once."""
+class Representations:
+    """Maps, masks and points of a cube that metrics compare, each computed once."""
 
     def __init__(self, cube: RadarCube):
         self.cube = cube
@@ -59,21 +59,21 @@ class Views:
 
 @dataclass(frozen=True, kw_only=True)
 class Metric:
-    """One score: what it means, its perfect value, and whether a model may be praised for it.
+    """One metric: unit, definition, perfect value, and whether it may serve as a headline.
 
-    `is_headline` is False where all zeros come near a good score on the sparse cubes that radars give.
+    `is_headline` is False where all zeros score nearly as well as a good model on sparse radar cubes.
     """
 
     unit: str
     definition: str
     perfect: float
     is_headline: bool
-    score: Callable[[Views, Views], float]
+    score: Callable[[Representations, Representations], float]
     version: int = 1
 
 
-def _cloud(which: int) -> Callable[[Views, Views], float]:
-    def score(prediction: Views, truth: Views) -> float:
+def _cloud(which: int) -> Callable[[Representations, Representations], float]:
+    def score(prediction: Representations, truth: Representations) -> float:
         num_frames, missing_m = len(truth.values), float(truth.cube.grid.range_m[-1])
         return cloud_distances_m(prediction.points, truth.points, num_frames=num_frames, missing_m=missing_m)[which]
 
@@ -187,21 +187,21 @@ Scores = dict[str, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Scorecard:
-    """All metrics of a prediction and of each floor; `data_range` holds the peak and the span that PSNR and cSSIM use.
+    """All metrics of a prediction and of the baselines; `data_range` holds the peak and span used by PSNR and cSSIM.
 
-    `twin` is the score of another draw of the same pose and room with other surface micro-phases: the best that
-    anyone who does not know those can do.
+    `oracle` scores another realization of the same pose and room with other surface micro-phases: the best possible
+    without knowing those.
     """
 
     prediction: Scores
-    floors: dict[str, Scores]
-    twin: Scores | None
+    baselines: dict[str, Scores]
+    oracle: Scores | None
     data_range: dict[str, float]
 
     def as_json(self) -> dict:
-        """{metric: {value, unit, definition, version, is_headline, floor: {zeros, static_mean}, twin}}.
+        """{metric: {value, unit, definition, version, is_headline, baseline: {...}, oracle: {realization}}}.
 
-        A value that is no finite number (a perfect score in dB, or one that does not exist) is None.
+        A value that is not finite (a perfect score in dB, or an undefined one) is None.
         """
         rows = {}
         for name, metric in METRICS.items():
@@ -211,50 +211,52 @@ class Scorecard:
                 "definition": metric.definition,
                 "version": metric.version,
                 "is_headline": metric.is_headline,
-                "floor": {floor: _finite(scores[name]) for floor, scores in self.floors.items()},
+                "baseline": {baseline: _finite(scores[name]) for baseline, scores in self.baselines.items()},
             }
-            if self.twin is not None:
-                rows[name]["twin"] = _finite(self.twin[name])
+            if self.oracle is not None:
+                rows[name]["oracle"] = {"realization": _finite(self.oracle[name])}
         rows["psnr_db"]["peak"] = self.data_range["peak"]
         rows["cssim"]["data_range"] = self.data_range["span"]
         return rows
 
     def table(self) -> str:
-        """A text table, one metric a line, the floors beside each score."""
-        columns = [("score", self.prediction), *self.floors.items()]
-        if self.twin is not None:
-            columns.append(("twin", self.twin))
+        """A text table, one metric per line, with baselines in further columns."""
+        columns = [("score", self.prediction), *self.baselines.items()]
+        if self.oracle is not None:
+            columns.append(("oracle", self.oracle))
         lines = [f"{'':26}" + "".join(f"{name:>13}" for name, _ in columns)]
         lines += [f"{name:26}" + "".join(f"{scores[name]:13.3f}" for _, scores in columns) for name in METRICS]
         return "\n".join(lines)
 
 
-def scorecard(prediction: RadarCube, truth: RadarCube, *, twin: RadarCube | None = None) -> Scorecard:
-    """Scores a cube against the truth; the floors come with it, always.
+def scorecard(prediction: RadarCube, truth: RadarCube, *, oracle: RadarCube | None = None) -> Scorecard:
+    """Scores a cube against the ground truth, always with its baselines.
 
-    Raises InputError where the cubes are not on the same cells, the truth is empty or the prediction is not finite.
+    `oracle`: another realization of the same scene. Raises InputError where the cubes have different cells, the ground
+    truth is all zeros or the prediction is not finite.
     """
-    for cube, name in ((prediction, "prediction"), (truth, "truth"), *([(twin, "twin")] if twin else [])):
+    for cube, name in ((prediction, "prediction"), (truth, "ground truth"), *([(oracle, "oracle")] if oracle else [])):
         if cube.values.shape != truth.values.shape:
             raise InputError(
-                f"the {name} has shape {cube.values.shape}, the truth {truth.values.shape}; sample both alike"
+                f"the {name} has shape {cube.values.shape}, the ground truth {truth.values.shape};"
+                " sample both on the same grid"
             )
         if not np.isfinite(cube.values).all():
             raise InputError(f"the {name} holds values that are not finite")
     if not truth.values.any():
-        raise InputError("the truth is all zeros; there is nothing to score against")
-    seen = Views(truth)
+        raise InputError("the ground truth is all zeros; there is nothing to score against")
+    reference = Representations(truth)
     return Scorecard(
-        prediction=_scores(prediction, seen),
-        floors={name: _scores(floor(truth), seen) for name, floor in FLOORS.items()},
-        twin=None if twin is None else _scores(twin, seen),
-        data_range={"peak": seen.peak, "span": seen.span},
+        prediction=_scores(prediction, reference),
+        baselines={name: _scores(predict(truth), reference) for name, predict in BASELINES.items()},
+        oracle=None if oracle is None else _scores(oracle, reference),
+        data_range={"peak": reference.peak, "span": reference.span},
     )
 
 
-def _scores(prediction: RadarCube, truth: Views) -> Scores:
-    seen = Views(prediction)
-    return {name: metric.score(seen, truth) for name, metric in METRICS.items()}
+def _scores(prediction: RadarCube, truth: Representations) -> Scores:
+    candidate = Representations(prediction)
+    return {name: metric.score(candidate, truth) for name, metric in METRICS.items()}
 
 
 def _finite(value: float) -> float | None:

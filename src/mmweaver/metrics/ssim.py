@@ -20,11 +20,11 @@ def ssim_map(
     *,
     data_range: float,
 ) -> Float[np.ndarray, "*stack height width"]:
-    """SSIM at each place of each map of a stack; 1 where the maps agree.
+    """SSIM at each position of each map of a stack; 1 where the maps agree.
 
-    Windows are Gaussian (sigma 1.5, 11 x 11), moments are those of the window itself (no N / (N - 1)), and maps are
-    mirrored at their edges, so that maps smaller than a window have a value too. `data_range` is the span that the
-    maps' values could have. Raises InputError where that is not above 0.
+    Windows are Gaussian (sigma 1.5, 11 x 11), moments are not bias-corrected (no N / (N - 1)), and maps are padded by
+    reflection, so that maps smaller than a window have a value too. `data_range` is the possible span of the maps'
+    values. Raises InputError where it is not positive.
 
     >>> x = np.arange(12.0).reshape(1, 3, 4)
     >>> float(ssim_map(x, x, data_range=11.0).min())

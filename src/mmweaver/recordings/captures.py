@@ -1,12 +1,12 @@
-"""A user's own recordings as examples to train on: radar, a photo of the room, and joints where they are known.
+"""A user's own recordings as training examples: radar, a photo of the room, and joints where known.
 
 A folder is one of
 
     a folder of mmweaver generate or process     radar.npz, radar.json
     a capture folder of mmwave-capture-std       radar.cfg, dca.pcap
 
-and may hold `pose.npz` (22 joints of the one person at any times, in the radar's frame). Its photo is rgb.png beside
-depth.png or depth.npy and camera.json, in it or in the folder above; or what meta.json names; or the RealSense's.
+and may contain `pose.npz` (22 joints of one person at any times, in the radar's frame). The photo is rgb.png with
+depth.png or depth.npy and camera.json, in the folder or its parent; or the one named in meta.json; or the RealSense's.
 """
 
 import hashlib
@@ -33,14 +33,14 @@ from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.sample_photo import sample_photo
 
 POSE, META = "pose.npz", "meta.json"
-FRAMES = 20  # of a sequence, where a capture is longer
-LATE_S = 0.25  # that joints may be missing at either end
+FRAMES = 20  # per sequence of a longer capture
+LATE_S = 0.25  # tolerance for joints missing at either end
 SPLIT = "captured"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Capture:
-    """One recording: a cube, the photo of its room, and the person's joints if they are known."""
+    """One recording: cube, photo of the room, and the person's joints if known."""
 
     folder: Path
     cube: RadarCube
@@ -50,9 +50,9 @@ class Capture:
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedRoom(StoredRoom):
-    """A capture cut into sequences; joints that nobody knows are nan."""
+    """A capture split into sequences; unknown joints are nan."""
 
-    values: np.ndarray  # (frame, range, doppler, antenna) in sqrt(mW), or in counts where the scale is not known
+    values: np.ndarray  # (frame, range, doppler, antenna) in sqrt(mW), or in ADC counts where the scale is unknown
     is_calibrated: bool
     sha256: str
 
@@ -62,19 +62,19 @@ class RecordedRoom(StoredRoom):
 
     @property
     def noise_power(self) -> float:
-        """Of a cell; 0 where a radar of one loop cannot tell it."""
+        """Noise power per cell; 0 for a radar of one loop, which cannot estimate it."""
         return noise_power(self._cube(self.values)) or 0.0
 
-    def cube(self, index: int, frames: np.ndarray | None = None, *, twin: int = 0) -> RadarCube:
-        """A sequence, or some of its frames; a recording has no twin."""
+    def cube(self, index: int, frames: np.ndarray | None = None, *, realization: int = 0) -> RadarCube:
+        """A sequence, or some of its frames; a recording has only one realization."""
         length = self.joints_m.shape[1]
         values = self.values[index * length : (index + 1) * length]
         return self._cube(values if frames is None else values[frames])
 
-    def times(self, gain: float) -> "RecordedRoom":
-        """The same with all amplitudes times `gain`."""
+    def calibrated(self, gain: float) -> "RecordedRoom":
+        """The room with all amplitudes multiplied by `gain`, in sqrt(mW) per count."""
         factor = np.float32(gain)
-        return replace(self, values=self.values * factor, empty=self.empty * factor, is_calibrated=True)
+        return replace(self, values=self.values * factor, static=self.static * factor, is_calibrated=True)
 
     def _cube(self, values: np.ndarray) -> RadarCube:
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
@@ -83,9 +83,9 @@ class RecordedRoom(StoredRoom):
 def read_capture(
     folder: Path, *, rgb: Path | None = None, depth: Path | None = None, camera: Path | None = None
 ) -> Capture:
-    """Reads one folder; `rgb`, `depth` and `camera` take the place of its own photo.
+    """Reads one folder; `rgb`, `depth` and `camera` replace its own photo.
 
-    Raises InputError for a folder that is none, has no photo, or joints that do not belong to its frames.
+    Raises InputError for a folder without a recording or a photo, or with joints at other times than its frames.
     """
     cube = read_recording(folder).cube
     photo = _own_photo(folder) if rgb is None else read_photo(rgb, depth, camera)[0]
@@ -96,9 +96,9 @@ def read_capture(
 
 
 def rooms_of(captures: Sequence[Capture]) -> list[RecordedRoom]:
-    """The captures as rooms to draw batches from, all in sequences of one length.
+    """The captures as rooms to sample batches from, all split into sequences of one length.
 
-    What rests is the mean over a capture's frames. Raises InputError for recordings of different radars.
+    Static clutter is the mean over the frames of a capture. Raises InputError for recordings of different radars.
     """
     config = captures[0].cube.config
     for one in captures:
@@ -120,7 +120,7 @@ def _room(capture: Capture, config: RadarConfig, frames: int) -> RecordedRoom:
         joints, velocity = (part.reshape(shape) for part in joints_and_velocities(capture.pose, times_s))
     return RecordedRoom(
         folder=capture.folder, kind=SPLIT, layout=0, lighting="", photo=capture.photo,
-        empty=values[:, :, config.num_loops // 2].mean(axis=0, dtype=np.complex128).astype(np.complex64),
+        static=values[:, :, config.num_loops // 2].mean(axis=0, dtype=np.complex128).astype(np.complex64),
         joints_m=joints, joint_velocity_mps=velocity, person=np.zeros(count, int), activity=("",) * count,
         text=("",) * count, split=(SPLIT,) * count, seed=np.zeros(count, int), config=config, values=values,
         is_calibrated=is_calibrated, sha256=hashlib.sha256(np.ascontiguousarray(cube.values).tobytes()).hexdigest(),
@@ -139,10 +139,10 @@ def _check_times(folder: Path, pose: PoseSequence, cube: RadarCube) -> None:
 # photos -------------------------------------------------------------------------------------------------------------
 def _own_photo(folder: Path) -> RgbdPhoto:
     for place in (folder, folder.parent):
-        found = _beside(place)
+        found = _photo_in(place)
         if found is not None:
             return found
-    named = _named(folder / META)
+    named = _photo_of_meta(folder / META)
     if named is not None:
         return named
     if photo_folder(folder) is not None:
@@ -153,7 +153,7 @@ def _own_photo(folder: Path) -> RgbdPhoto:
     )
 
 
-def _beside(place: Path) -> RgbdPhoto | None:
+def _photo_in(place: Path) -> RgbdPhoto | None:
     rgb, camera = place / "rgb.png", place / "camera.json"
     depths = [place / name for name in ("depth.png", "depth.npy") if (place / name).is_file()]
     if not rgb.is_file() or not depths:
@@ -161,10 +161,10 @@ def _beside(place: Path) -> RgbdPhoto | None:
     return read_photo(rgb, depths[0], camera if camera.is_file() else None)[0]
 
 
-def _named(meta: Path) -> RgbdPhoto | None:
-    """The photo that `mmweaver generate` says it used. Raises InputError where that has changed since."""
+def _photo_of_meta(meta: Path) -> RgbdPhoto | None:
+    """The photo named in a meta.json of `mmweaver generate`. Raises InputError where it has changed since."""
     try:
-        inputs: dict[str, Any] = json.loads(meta.read_text())["inputs"]
+        inputs: dict[str, Any] = json.loads(meta.read_text(encoding="utf-8"))["inputs"]
     except (OSError, ValueError, KeyError, TypeError):
         return None
     if "sample" in inputs:
@@ -176,9 +176,7 @@ def _named(meta: Path) -> RgbdPhoto | None:
             if not files[name].is_file():
                 return None
             if hashlib.sha256(files[name].read_bytes()).hexdigest() != inputs[name]["sha256"]:
-                raise InputError(
-                    f"{files[name]} is not what it was when {meta.parent} was made; give --rgb and --depth"
-                )
+                raise InputError(f"{files[name]} has changed since {meta.parent} was written; give --rgb and --depth")
     return (
         read_photo(files["rgb"], files["depth"], files.get("camera"))[0] if {"rgb", "depth"} <= files.keys() else None
     )

@@ -1,9 +1,9 @@
-"""The classes of COCO-Stuff, the names that models trained elsewhere have for them, and what they are made of.
+"""The classes of COCO-Stuff, their aliases in other label sets, and the material that each implies.
 
 Reference: COCO-Stuff labels.txt (Caesar et al. 2018); ADE20K's 150 names (Zhou et al. 2017); ITU-R P.2040-3, table 3.
 """
 
-# A class's place in this tuple is its number in COCO-Stuff.
+# The index is the class number in COCO-Stuff.
 NAMES: tuple[str, ...] = (
     "unlabeled", "person", "bicycle", "car", "motorcycle", "airplane", "bus", "train", "truck", "boat",
     "traffic light", "fire hydrant", "street sign", "stop sign", "parking meter", "bench", "bird", "cat", "dog",
@@ -26,32 +26,18 @@ NAMES: tuple[str, ...] = (
     "window-blind", "window-other", "wood",
 )  # fmt: skip
 UNLABELED = NAMES[0]
-GLASS = frozenset({"window", "window-other"})  # what a depth camera looks through,
-MIRRORS = frozenset({"mirror", "mirror-stuff"})  # and what it sees another room in
-SCREENS = frozenset({"tv", "laptop", "oven", "microwave"})  # dark panes that give no depth
+GLASS = frozenset({"window", "window-other"})  # a depth camera sees through it
+MIRRORS = frozenset({"mirror", "mirror-stuff"})  # a depth camera sees the reflected room
+SCREENS = frozenset({"tv", "laptop", "oven", "microwave"})  # dark panes, without depth
 DOORS = frozenset({"door", "door-stuff"})
 WALLS = frozenset(name for name in NAMES if name.startswith("wall-"))
-ROUGH = frozenset(
-    {
-        "book",
-        "shelf",
-        "curtain",
-        "cloth",
-        "clothes",
-        "towel",
-        "blanket",
-        "pillow",
-        "potted plant",
-        "plant-other",
-        "flower",
-        "leaves",
-        "teddy bear",
-        "backpack",
-        "textile-other",
-    }
-)  # no mirror for waves of 4 mm, however flat its front
+# Rough surfaces: no specular reflection at a wavelength of 4 mm, however flat their fronts.
+ROUGH = frozenset({
+    "book", "shelf", "curtain", "cloth", "clothes", "towel", "blanket", "pillow", "potted plant", "plant-other",
+    "flower", "leaves", "teddy bear", "backpack", "textile-other",
+})  # fmt: skip
 
-# What each class is made of; a class that is not here says nothing, geometry and colour decide.
+# The material that a class implies; for a class that is not listed, geometry and colour decide.
 MATERIAL: dict[str, str] = {
     "wall-brick": "brick", "wall-concrete": "concrete", "wall-panel": "wood", "wall-stone": "concrete",
     "wall-tile": "marble", "wall-wood": "wood", "ceiling-tile": "ceiling_board", "floor-marble": "marble",
@@ -66,7 +52,7 @@ MATERIAL: dict[str, str] = {
     "metal": "metal", "railing": "metal", "toilet": "marble", "bottle": "glass", "vase": "glass",
 }  # fmt: skip
 
-# Other people's names -> COCO-Stuff's.
+# Names of other label sets (ADE20K, COCO panoptic) -> COCO-Stuff's.
 ALIASES: dict[str, str] = {
     "wall": "wall-other", "floor": "floor-other", "flooring": "floor-other", "ceiling": "ceiling-other",
     "windowpane": "window-other", "sofa": "couch", "lounge": "couch", "armchair": "chair", "swivel chair": "chair",
@@ -90,7 +76,7 @@ ALIASES: dict[str, str] = {
 
 
 def coco_class(label: str) -> str | None:
-    """COCO-Stuff's name for a model's label ("sofa, couch, lounge", "wall-other-merged"); None where it has none.
+    """COCO-Stuff's name of a model's label, such as "sofa, couch, lounge" or "wall-other-merged"; None if it has none.
 
     >>> coco_class("sofa, couch, lounge"), coco_class("ceiling-merged"), coco_class("LABEL_7")
     ('couch', 'ceiling-other', None)
@@ -105,5 +91,5 @@ def coco_class(label: str) -> str | None:
 
 
 def material_of(name: str) -> str | None:
-    """The material of a COCO-Stuff class, where the class says one."""
+    """The material that a COCO-Stuff class implies; None where it implies none."""
     return MATERIAL.get(name)

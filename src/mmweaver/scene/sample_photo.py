@@ -1,4 +1,4 @@
-"""The bundled sample room: a photo to begin with, made by tools/make_sample_room.py."""
+"""The bundled sample room, rendered by tools/make_sample_room.py."""
 
 from pathlib import Path
 
@@ -9,5 +9,5 @@ SAMPLE_FOLDER = Path(__file__).resolve().parents[1] / "sample"
 
 
 def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:
-    """The sample room's photo, and what `read_photo` assumed of it."""
+    """The sample room's photo, and the assumptions of `read_photo`."""
     return read_photo(SAMPLE_FOLDER / "rgb.png", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")

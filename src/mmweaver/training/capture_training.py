@@ -125,7 +125,7 @@ def tune(
     gain = 1.0
     if not all(room.is_calibrated for room in rooms):
         gain = gain_of(network, [room for room in rooms if not room.is_calibrated])
-        rooms = [room if room.is_calibrated else room.times(gain) for room in rooms]
+        rooms = [room if room.is_calibrated else room.calibrated(gain) for room in rooms]
     noise = float(np.median([room.noise_power for room in rooms]))
     held_out = rooms[-1] if len(rooms) > 1 else None
     used = rooms[:-1] if held_out is not None else rooms
@@ -155,7 +155,9 @@ def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], lic
     figures = compared(tuned.trainer, begun(tuned.trainer.recipe, start))
     card = card_of(tuned.trainer, digest, **more)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(model_card(card, file, data=told, judged_on=f"{judged}; {EXPLAINED}", figures=figures))
+        partial.write_text(
+            model_card(card, file, data=told, judged_on=f"{judged}; {EXPLAINED}", figures=figures), encoding="utf-8"
+        )
     return file
 
 
@@ -176,7 +178,7 @@ def gain_of(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
     for room in rooms:
         one = RoomExamples(room, SPLIT)
         with torch.inference_mode():
-            view = type(one.view).stacked([one.view])
+            view = one.view[None]
             resting = learner.network.encode_room(view).resting
             expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
         maps.append((expected, one.empty.range_azimuth))

@@ -145,7 +145,7 @@ def write_weights(out: Path, data: Path, trainer: Trainer, *, start: dict[str, t
     figures = compared(trainer, begun(trainer.recipe, start))
     page = model_card(card, file, data=told, judged_on=f"{judged} {EXPLAINED}", figures=figures)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(page)
+        partial.write_text(page, encoding="utf-8")
     return file
 
 

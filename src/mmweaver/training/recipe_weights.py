@@ -48,7 +48,7 @@ def write_recipe_weights(
     judged = f"{unseen:,} sequences of {unseen_rooms} rooms of kinds not trained on, the weights that were best there."
     text = model_card(card, file, data=told, judged_on=judged, figures=figures, page=page)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(text)
+        partial.write_text(text, encoding="utf-8")
     return file
 
 

@@ -16,11 +16,11 @@ from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.segmentation.builtin_segmenter import group_of_classes
 from mmweaver.scene.segmentation.segmenter_features import (
     COLOURS,
-    EVERY,
     HEIGHT,
     HEIGHT_UNIT_M,
     MEASURED,
     SLOPE,
+    STRIDE,
     grid_features,
 )
 
@@ -45,7 +45,7 @@ def make_example(kind: str, seed: int) -> SegmenterExample:
     assert photo.classes is not None
     grid = make_grid(photo)
     assert grid.class_index is not None
-    groups = group_of_classes(photo.classes.names)[grid.class_index[::EVERY, ::EVERY]]
+    groups = group_of_classes(photo.classes.names)[grid.class_index[::STRIDE, ::STRIDE]]
     return SegmenterExample(kind=kind, features=grid_features(grid), groups=groups.astype(np.int64))
 
 

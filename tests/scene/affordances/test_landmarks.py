@@ -55,17 +55,17 @@ def test_a_mask_rules_out_a_box_as_a_seat():
         assert room.boxes.distance_m(seat.position_m[None])[0][cartons].min() > 0.05
 
 
-def test_what_a_person_tells_takes_the_place_of_what_was_found(office: ProceduralRoom):
+def test_given_landmarks_replace_those_found(office: ProceduralRoom):
     scene = reconstruct(office.photo("lamps"))
-    told = with_given_landmarks(scene, [("door", (0.2, 2.0))])
-    (door,) = [mark for mark in told.landmarks if mark.kind == "door"]
+    given = with_given_landmarks(scene, [("door", (0.2, 2.0))])
+    (door,) = [mark for mark in given.landmarks if mark.kind == "door"]
     assert door.position_m[:2] == pytest.approx([0.2, 2.0])
     assert np.hypot(*(np.array(door.approach_m) - [0.2, 2.0])) < 1.2
-    assert [mark.kind for mark in told.landmarks].count("table") == [mark.kind for mark in scene.landmarks].count(
+    assert [mark.kind for mark in given.landmarks].count("table") == [mark.kind for mark in scene.landmarks].count(
         "table"
     )
-    assert "told, not found" in told.assumptions[-1]
+    assert "given by the user, not detected" in given.assumptions[-1]
     with pytest.raises(InputError, match="known: door, window"):
         with_given_landmarks(scene, [("lamp", (0.2, 2.0))])
-    with pytest.raises(InputError, match="not before the radar"):
+    with pytest.raises(InputError, match="not in front of the radar"):
         with_given_landmarks(scene, [("door", (0.2, -2.0))])

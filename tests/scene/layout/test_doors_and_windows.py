@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.layout.doors_and_windows import find_openings
 from tests.motion.rooms import LEVEL
 
@@ -26,7 +27,8 @@ def _found(*patches: tuple[float, float, float, float], hidden_below_m: float = 
     depth[z < 0] = np.nan
     depth[z < hidden_below_m] = 1.5
     photo = RgbdPhoto(rgb=rgb, depth_m=depth, intrinsics=LENS)
-    return [opening.kind for opening in find_openings(photo, LEVEL, FLOOR_Z_M, (WALL,))]
+    view = AlignedPhoto(photo=photo, radar_from_camera=LEVEL, floor_z_m=FLOOR_Z_M)
+    return [opening.kind for opening in find_openings(view, (WALL,))]
 
 
 def test_a_door_reaches_the_floor_and_ends_under_the_wall():

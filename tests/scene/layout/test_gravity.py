@@ -39,12 +39,12 @@ def test_a_large_table_is_not_the_floor(box_room: Callable):
 
 
 def test_without_a_floor_it_says_what_it_assumed(box_room: Callable):
-    """A camera that looks level at a wall from afar: nothing level is in sight."""
+    """A camera that looks level at a wall from afar: nothing horizontal is visible."""
     room = box_room(pitch_deg=0.0, has_floor=False, ceiling_m=40.0, walls=(-1.0, 1.3, 2.5))
     photo = room.photo()
     gravity = find_gravity(make_grid(photo))
     assert not gravity.has_floor
-    assert "No floor is in sight" in gravity.assumptions[0]
+    assert "No floor is visible" in gravity.assumptions[0]
     assert gravity.floor_z_m <= -1.2
     assert np.rad2deg(np.arccos(gravity.up_camera @ room.radar_from_camera[2])) < 3
 

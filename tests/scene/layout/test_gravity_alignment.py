@@ -1,18 +1,18 @@
-"""The depth grid turned level."""
+"""The depth grid aligned with gravity."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from mmweaver.scene.layout.gravity_alignment import level_room
+from mmweaver.scene.layout.gravity_alignment import align_room
 from mmweaver.scene.photo.depth_grid import make_grid
 from mmweaver.scene.reconstruction import reconstruct
 
 
-def test_floor_and_walls_of_a_tilted_photo_come_out_level(box_room: Callable):
+def test_floor_and_walls_of_a_tilted_photo_are_aligned(box_room: Callable):
     photo = box_room(pitch_deg=12.0).photo(width=640, height=480)
-    room = level_room(make_grid(photo))
+    room = align_room(make_grid(photo))
     scene = reconstruct(photo)
     assert room.gravity.floor_z_m == pytest.approx(scene.floor_z_m)
     assert np.array_equal(room.radar_from_camera, scene.radar_from_camera)

@@ -65,7 +65,7 @@ def test_a_side_that_is_not_seen_is_not_made_up(box_room: Callable):
 
 def test_it_is_said(box_room: Callable):
     scene = reconstruct(box_room(pitch_deg=10.0).photo())
-    assert any("continued" in line for line in scene.assumptions)
+    assert any("extended until they meet" in line for line in scene.assumptions)
 
 
 def test_a_mask_says_what_is_wall(box_room: Callable):

@@ -74,4 +74,4 @@ def test_a_screen_gets_its_own_plane_and_not_the_walls():
     depth[30:80:4, 60:110:3] = 2.2
     closed, sentences = with_transparent_surfaces(replace(photo, depth_m=depth))
     assert closed.depth_m[screen] == pytest.approx(np.full(screen.sum(), 2.2), rel=0.01)
-    assert sentences == ("1 screens without depth were put on the plane of what was measured of them.",)
+    assert sentences == ("1 screens: their missing depth was filled by the plane of their measured pixels.",)

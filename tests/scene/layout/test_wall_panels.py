@@ -1,4 +1,4 @@
-"""Windows, doors and screens become panels of their own, on the wall that they hang on."""
+"""Windows, doors and screens become panels on the wall that they are on."""
 
 from dataclasses import replace
 
@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from mmweaver.core.records import CameraIntrinsics, ClassMask, Plane, RgbdPhoto
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.coco_stuff import NAMES
-from mmweaver.scene.layout.wall_panels import hung_panels, with_hung
+from mmweaver.scene.layout.wall_panels import find_wall_panels, with_wall_panels
 from tests.rooms import back_wall, plane, side_wall
 
 LENS = CameraIntrinsics(fx=120.0, fy=120.0, cx=79.5, cy=59.5, width=160, height=120)
@@ -29,7 +30,8 @@ def _photo(
 
 
 def _found(photo: RgbdPhoto) -> tuple[Plane, ...]:
-    return hung_panels(photo, RADAR_FROM_CAMERA, [side_wall(2.4), back_wall(WALL_M)])
+    view = AlignedPhoto(photo=photo, radar_from_camera=RADAR_FROM_CAMERA, floor_z_m=-1.3)
+    return find_wall_panels(view, [side_wall(2.4), back_wall(WALL_M)])
 
 
 @pytest.mark.parametrize(("name", "material"), [("window-other", "glass"), ("mirror", "metal"), ("door-stuff", "wood")])
@@ -46,16 +48,16 @@ def test_a_leaf_before_its_wall_is_put_there():
     assert panel.centre_m[1] == pytest.approx(WALL_M - 0.05, abs=0.005)
 
 
-def test_what_hangs_on_no_wall_or_is_small_or_something_else_is_left():
+def test_regions_off_the_walls_small_ones_and_other_classes_are_ignored():
     assert _found(_photo("tv", depth_m=2.2)) == ()
     assert _found(_photo("window-other", rows=slice(30, 36))) == ()
     assert _found(_photo("couch")) == ()
     assert _found(replace(_photo("window-other"), classes=None)) == ()
 
 
-def test_it_takes_the_place_of_what_was_found_there():
+def test_a_panel_replaces_the_planes_that_it_covers():
     (panel,) = _found(_photo("window-other"))
     same = plane("panel", (0.7, WALL_M - 0.03, 0.2), (0, -1, 0), (1, 0, 0), (0.3, 0.3), "wood")
     elsewhere = plane("panel", (-0.7, 2.0, 0.2), (0, -1, 0), (1, 0, 0), (0.3, 0.3), "wood")
     wall = back_wall(WALL_M)
-    assert with_hung([wall, same, elsewhere], [panel], [wall]) == (panel, wall, elsewhere)
+    assert with_wall_panels([wall, same, elsewhere], [panel], [wall]) == (panel, wall, elsewhere)

@@ -29,7 +29,7 @@ def test_what_is_no_avi(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         avi_frame(path, 0)
     for content, says in (
         (b"", "empty"),
-        (b"RIFF1234WAVE", "no .avi"),
+        (b"RIFF1234WAVE", "not an .avi"),
         (b"RIFF\xff\0\0\0AVI " + bytes(30), "no video"),
     ):
         path.write_bytes(content)

@@ -5,7 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from mmweaver.core.records import RgbdPhoto
-from mmweaver.scene.photo.depth_grid import drop_strays, make_grid
+from mmweaver.geometry.pinhole import resized
+from mmweaver.scene.photo.depth_grid import make_grid, remove_outliers
 
 
 def test_edges_are_not_bridged(box_room: Callable):
@@ -32,7 +33,7 @@ def test_flying_pixels_and_speckle_are_dropped():
     depth[:, 10:] = 3.0
     depth[:, 10] = 2.5  # halfway between two surfaces
     depth[5, 4] = 0.3
-    cleaned = drop_strays(depth)
+    cleaned = remove_outliers(depth)
     assert np.isnan(cleaned[5, 4])
     assert cleaned[8, 5] == 2.0
     assert cleaned[8, 15] == 3.0
@@ -43,6 +44,6 @@ def test_a_large_picture_gives_no_more_cells(box_room: Callable):
     large = RgbdPhoto(
         rgb=np.repeat(np.repeat(photo.rgb, 4, 0), 4, 1),
         depth_m=np.repeat(np.repeat(photo.depth_m, 4, 0), 4, 1),
-        intrinsics=photo.intrinsics,
+        intrinsics=resized(photo.intrinsics, 1280, 960),
     )
     assert make_grid(large).depth_m.shape == (120, 160)

@@ -22,7 +22,7 @@ def test_a_metric_model_gives_metres(tmp_path: Path):
 
 
 def test_models_without_a_unit_are_refused(tmp_path: Path):
-    with pytest.raises(InputError, match="without a unit"):
+    with pytest.raises(InputError, match="relative depth"):
         estimate_depth(RGB, models.depth_anything(tmp_path / "relative", "relative"))
     with pytest.raises(InputError, match="no metric depth"):
         estimate_depth(RGB, models.segformer(tmp_path / "segformer"))

@@ -27,8 +27,8 @@ def error(source: str) -> str:
 def test_what_is_no_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("HF_HUB_OFFLINE", "1")
     assert "without config.json" in error(str(tmp_path))
-    assert "is no folder" in error(str(tmp_path / "none"))
-    assert "is no folder" in error("./none")
+    assert "is not a folder" in error(str(tmp_path / "none"))
+    assert "is not a folder" in error("./none")
     assert "hf download" in error("nobody/no-such-model")
 
 

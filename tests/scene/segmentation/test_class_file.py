@@ -44,9 +44,9 @@ def test_numbers_of_ones_own(path: Path):
 @pytest.mark.parametrize(
     ("table", "says"),
     [
-        ("{", "no JSON object"),
-        ("[1]", "no JSON object"),
-        ('{"3": "gobbledygook"}', "no class"),
+        ("{", "not a JSON object"),
+        ("[1]", "not a JSON object"),
+        ('{"3": "gobbledygook"}', "not a class"),
         ('{"4": "bed"}', "class number 3"),
     ],
 )

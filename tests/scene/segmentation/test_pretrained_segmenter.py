@@ -8,7 +8,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.scene.coco_stuff import NAMES
 from mmweaver.scene.segmentation import pretrained_segmenter
-from mmweaver.scene.segmentation.pretrained_segmenter import painted, sam_masks, segment
+from mmweaver.scene.segmentation.pretrained_segmenter import relabelled, sam_masks, segment
 from tests.scene import models
 
 pytest.importorskip("transformers")
@@ -36,8 +36,8 @@ def test_the_labels_of_the_model_decide(tmp_path: Path):
 
 
 def test_sams_masks_are_masks_of_the_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(pretrained_segmenter, "SURE", -10.0)  # random weights are sure of nothing
-    monkeypatch.setattr(pretrained_segmenter, "LARGEST", 1.1)
+    monkeypatch.setattr(pretrained_segmenter, "MIN_IOU", -10.0)  # random weights are certain of nothing
+    monkeypatch.setattr(pretrained_segmenter, "MAX_SHARE", 1.1)
     masks = sam_masks(RGB, models.sam(tmp_path / "sam"))
     assert len(masks) > 0
     assert all(mask.shape == RGB.shape[:2] and mask.dtype == bool for mask in masks)
@@ -52,16 +52,16 @@ def test_a_mask_takes_the_class_of_most_of_it():
     index[:, :5], index[:, 5:] = 63, 172
     large, small, mixed = (np.zeros((10, 10), bool) for _ in range(3))
     large[:, :6], small[0, 4:6], mixed[9, 2:8] = True, True, True
-    out = painted(index, [large, mixed, small])
+    out = relabelled(index, [large, mixed, small])
     assert (out[1:9, :6] == 63).all()
     assert (out[1:9, 6:] == 172).all()
     assert out[9, 7] == 172  # half and half: left as it was
 
 
 def test_models_that_are_no_segmenters(tmp_path: Path):
-    with pytest.raises(InputError, match="gives no classes"):
+    with pytest.raises(InputError, match="does not segment"):
         segment(RGB, models.depth_anything(tmp_path / "depth"))
-    with pytest.raises(InputError, match="no SAM"):
+    with pytest.raises(InputError, match="not a SAM"):
         sam_masks(RGB, models.segformer(tmp_path / "segformer"))
-    with pytest.raises(InputError, match="none of COCO-Stuff"):
+    with pytest.raises(InputError, match="not those of COCO-Stuff"):
         segment(RGB, models.segformer(tmp_path / "dumb", {0: "LABEL_0", 1: "LABEL_1"}))

@@ -10,11 +10,11 @@ from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.segmentation.segmenter_features import (
     CHANNELS,
     COLOURS,
-    EVERY,
     HEIGHT,
     HEIGHT_UNIT_M,
     MEASURED,
     SLOPE,
+    STRIDE,
     grid_features,
 )
 
@@ -27,9 +27,9 @@ def photo():
 def test_features_tell_height_slope_and_what_was_measured(photo):
     grid = make_grid(photo)
     features = grid_features(grid)
-    assert features.shape == (CHANNELS, *grid.depth_m[::EVERY, ::EVERY].shape)
+    assert features.shape == (CHANNELS, *grid.depth_m[::STRIDE, ::STRIDE].shape)
     assert np.isfinite(features).all()
-    assert np.array_equal(features[MEASURED] > 0, np.isfinite(grid.depth_m[::EVERY, ::EVERY]))
+    assert np.array_equal(features[MEASURED] > 0, np.isfinite(grid.depth_m[::STRIDE, ::STRIDE]))
     bottom = features[:, -5:, 30:50]
     assert np.median(HEIGHT_UNIT_M * bottom[HEIGHT]) == pytest.approx(0.0, abs=0.03)
     assert np.median(bottom[SLOPE]) > 0.95

@@ -18,7 +18,7 @@ def test_the_walking_person_moves_and_the_twin_is_a_twin():
     assert signal.twin is not None
     scores = scorecard(signal.twin, signal.cube)
     assert scores.prediction["nmse_db"] > 1  # another phase: worse than zeros
-    assert scores.prediction["rd_ssim"] > scores.floors["static_mean"]["rd_ssim"]
+    assert scores.prediction["rd_ssim"] > scores.baselines["static_mean"]["rd_ssim"]
     assert signal.noise_free is not None
     assert scorecard(signal.noise_free, signal.cube).prediction["nmse_active_db"] < -30
     again = simulated("walking", is_alone=True, num_frames=4)
@@ -50,10 +50,10 @@ def test_the_real_two_people_are_as_measured(real_data):
     assert cells.is_active.mean() == pytest.approx(0.109, abs=0.005)
     assert power[cells.is_moving].sum() / power.sum() == pytest.approx(0.52, abs=0.01)
     card = scorecard(cube, cube)
-    assert card.floors["zeros"]["psnr_db"] == pytest.approx(29.8, abs=0.2)
-    assert card.floors["zeros"]["cssim"] == pytest.approx(0.922, abs=0.005)
-    assert card.floors["static_mean"]["cssim"] == pytest.approx(0.962, abs=0.005)
-    assert card.floors["static_mean"]["nmse_db"] == pytest.approx(-1.4, abs=0.1)
+    assert card.baselines["zeros"]["psnr_db"] == pytest.approx(29.8, abs=0.2)
+    assert card.baselines["zeros"]["cssim"] == pytest.approx(0.922, abs=0.005)
+    assert card.baselines["static_mean"]["cssim"] == pytest.approx(0.962, abs=0.005)
+    assert card.baselines["static_mean"]["nmse_db"] == pytest.approx(-1.4, abs=0.1)
 
 
 def test_the_breathing_person_is_read(real_data):

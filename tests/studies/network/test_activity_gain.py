@@ -9,7 +9,7 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_plan import ACTIVITIES, DatasetPlan
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
-from mmweaver.datasets.generate_rooms import generate
+from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.models.network import WeaverNetwork
 from studies.network.activity_gain import (
@@ -36,7 +36,7 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     plan = DatasetPlan(
         kinds=("office", "living_room"), lightings=("day",), num_layouts=1, sequences_a_room=3, num_frames=4
     )
-    generate(folder, plan, AWR1843)
+    generate_dataset(folder, plan, AWR1843)
     return folder
 
 

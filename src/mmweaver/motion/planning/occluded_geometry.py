@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import Plane, Scene
-from mmweaver.geometry.pinhole import project
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 Points = Float[np.ndarray, "point 3"]
 _FOOT_M, _FEET_DOWN_M, _SOLE_M = 0.24, (0.04, 0.08, 0.12, 0.16), 0.035
@@ -22,14 +22,14 @@ _LEGS_M, _ASIDE_M = (0.15, 0.35, 0.55, 0.75), 0.2  # where legs are as somebody 
 _UNDER_STEP_M, _UNDER_GRAIN_M = 0.05, 0.05
 
 
-def feet_of(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
+def extended_to_floor(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
     """Below points that are seen low over the floor: what ends there reaches the floor."""
     low = points[points[:, 2] < floor_z_m + _FOOT_M]
     down = np.concatenate([low - np.array([0.0, 0.0, step]) for step in _FEET_DOWN_M])
     return down[down[:, 2] > floor_z_m + _SOLE_M]
 
 
-def legs_of(scene: Scene) -> Points:
+def table_legs(scene: Scene) -> Points:
     """Legs under the corners of level tops, but where the camera sees that none are."""
     legs = [
         _leg(scene, plane, u, v) for plane in scene.planes if _is_table(scene, plane) for u in (-1, 1) for v in (-1, 1)
@@ -50,7 +50,7 @@ def _leg(scene: Scene, plane: Plane, u: int, v: int) -> Points:
     return np.concatenate([np.column_stack([np.tile(side[:2], (len(height), 1)), height]) for side in sides])
 
 
-def tops_of(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
+def table_tops(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
     """Of the points those on tops and rims of tables, thin and long; and the tops behind rims that hide their own."""
     height = points[:, 2] - scene.floor_z_m
     column, row = np.floor((points[:, :2].T + _REACH_M) / _SQUARE_M).astype(int)
@@ -117,9 +117,8 @@ def _may_be(scene: Scene, leg: Points) -> bool:
 
 def _seen_through(scene: Scene, points: Points) -> np.ndarray:
     """Which points something was measured behind."""
-    behind = _behind_m(scene, points)
-    depth = (points @ scene.radar_from_camera)[:, 2]
-    return behind > _BEHIND_M + _BEHIND_PER_M2 * np.square(depth)
+    seen = AlignedPhoto.of(scene).look_up(points)
+    return _behind_m(scene, points) > _BEHIND_M + _BEHIND_PER_M2 * np.square(seen.depth_m)
 
 
 def occluded_share(scene: Scene, points: Points) -> float:
@@ -129,7 +128,7 @@ def occluded_share(scene: Scene, points: Points) -> float:
 
 def unseen_share(scene: Scene, points: Points) -> float:
     """Of places, the share that is hidden or outside the picture."""
-    return float(((_behind_m(scene, points) < -_BEFORE_M) | ~_in_picture(scene, points)[0]).mean())
+    return float(((_behind_m(scene, points) < -_BEFORE_M) | ~AlignedPhoto.of(scene).look_up(points).in_picture).mean())
 
 
 def occluded_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> Float[np.ndarray, "way place"]:
@@ -143,7 +142,7 @@ def occluded_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> 
     return hidden.reshape(*tracks_m.shape[:2], -1).mean(axis=-1)
 
 
-def pillars_of(scene: Scene, points: Points) -> Float[np.ndarray, "leg 3"]:
+def upright_structures(scene: Scene, points: Points) -> Float[np.ndarray, "leg 3"]:
     """Of points those of upright things, tables' legs mostly, and what is just behind them: no cushion of a seat."""
     side = int(2 * _REACH_M / _SQUARE_M)
     low, high = np.zeros((side, side), bool), np.zeros((side, side), bool)
@@ -163,7 +162,7 @@ def _squares(points: Points, side: int) -> tuple[np.ndarray, np.ndarray]:
     return np.where(inside[:, None], square, 0), inside
 
 
-def under(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
+def below_tops(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
     """What may be under tables' tops: everything but where something farther was seen below them."""
     _, one_each = np.unique(np.rint(tops[:, :2] / _UNDER_GRAIN_M).astype(int), axis=0, return_index=True)
     tops = tops[one_each]
@@ -175,14 +174,5 @@ def under(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
 
 def _behind_m(scene: Scene, points: Points) -> Float[np.ndarray, " point"]:
     """How far behind each point something was measured, negative before it; nan where nothing was."""
-    inside, row, column, depth = _in_picture(scene, points)
-    return np.where(inside, scene.photo.depth_m[row, column] - depth, np.nan)
-
-
-def _in_picture(scene: Scene, points: Points) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Which points are in the picture; their rows and columns there (0 where not), and their depths."""
-    pixels, depth = project(points @ scene.radar_from_camera, scene.photo.intrinsics)
-    rows, columns = scene.photo.depth_m.shape
-    column, row = np.nan_to_num(np.round(pixels), nan=-1.0).clip(-1, 1e6).astype(int).T
-    inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows) & (depth > 0)
-    return inside, np.where(inside, row, 0), np.where(inside, column, 0), depth
+    seen = AlignedPhoto.of(scene).look_up(points)
+    return np.where(seen.in_picture, scene.photo.depth_m[seen.row, seen.column] - seen.depth_m, np.nan)

@@ -1,4 +1,4 @@
-"""Where a person could sit: level surfaces at seat height, with a back behind them and room for legs in front."""
+"""Where a person could sit: horizontal surfaces at seat height, with a backrest behind and room for legs in front."""
 
 from dataclasses import dataclass
 
@@ -6,65 +6,81 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Seat
-from mmweaver.core.shapes import Array
+from mmweaver.core.shapes import Array, GridMask
 from mmweaver.scene.layout.class_evidence import GridClass
-from mmweaver.scene.layout.connected_patches import labelled, places
+from mmweaver.scene.layout.connected_components import bounding_slices, label_components
 from mmweaver.scene.layout.height_map import CELL_M, SEAT_LEVELS_M, HeightMap
 
-_LOWEST_M, _HIGHEST_M = 0.33, 0.60
-_FLAT_M = 0.055
-_DIRECTIONS = 24
+# Heights are above the floor unless they are relative to the seat.
+_SEAT_HEIGHTS_M = (0.33, 0.60)
+_FLATNESS_M = 0.055
+_NUM_DIRECTIONS = 24
 _MAX_SEATS = 8
-_APART_M = 0.55
-_MIN_ON_SEAT, _MAX_CONTRARY = 0.22, 0.15
-_MIN_BACK = 0.38
-_BACK_M = (0.22, 0.85)  # a backrest reaches this far above the seat; a wall reaches farther
+_MIN_SPACING_M = 0.55  # between seats: a person's width
+_MIN_FLAT, _MAX_CONTRARY = 0.22, 0.15  # shares of the seat area
+_MIN_BACK = 0.38  # share of the width behind the sitter
+_BACK_M = (0.22, 0.85)  # a backrest's top above the seat; a wall reaches higher
 _FULL_BACK_M = 0.42
-_THIGH_M = 0.16
+_THIGH_M = 0.16  # clearance above the seat that thighs need below a table
 _SAG_M = 0.06  # a seat's middle lies this much below its rim
-_TABLE_M = (0.60, 1.0)
-_BED_M, _MIN_BED_M2 = (0.38, 0.66), 1.0
-_SMALLEST_M = 0.25  # of what is seen of a seat
-_STOOL_M = (0.30, 0.60)
-_STOOL_HIGHEST_M = 0.52
+_TABLE_HEIGHTS_M = (0.60, 1.0)
+_BED_HEIGHTS_M, _MIN_BED_M2 = (0.38, 0.66), 1.0
+_MIN_SIZE_M = 0.25  # visible size of a seat
+_STOOL_SIZE_M = (0.30, 0.60)
+_MAX_STOOL_HEIGHT_M = 0.52
 
-# Squares around a sitter, in metres: forward, leftward.
+# Sample places around a sitter, in metres: forward, leftward.
 _ACROSS = np.arange(-0.20, 0.201, 0.05)
 _ON_SEAT = np.stack(np.meshgrid(np.arange(-0.20, 0.201, 0.05), _ACROSS, indexing="ij"), axis=-1)
 _BEHIND = np.stack(np.meshgrid(np.arange(-0.55, -0.23, 0.05), _ACROSS, indexing="ij"), axis=-1)
 _IN_FRONT = np.stack(np.meshgrid(np.arange(0.30, 0.61, 0.05), _ACROSS, indexing="ij"), axis=-1)
 
+Offsets = Float[Array, "a b 2"]  # forward, leftward
+PerCandidate = Float[Array, " candidate"]
+CandidateMask = Bool[Array, " candidate"]
+SampleMask = Bool[Array, "candidate a b"]
+
 
 @dataclass(frozen=True, kw_only=True)
 class _Candidates:
-    """One entry for each place and direction."""
+    """Possible seats: every place at seat height in every direction of view."""
 
-    x_m: Float[Array, " candidate"]
-    y_m: Float[Array, " candidate"]
-    facing_rad: Float[Array, " candidate"]
-    height_m: Float[Array, " candidate"]
+    x_m: PerCandidate
+    y_m: PerCandidate
+    facing_rad: PerCandidate
+    height_m: PerCandidate
 
-    def tops(self, height_map: HeightMap, offsets: Float[Array, "a b 2"]) -> Float[Array, "candidate a b"]:
-        """What stands at the offsets (forward, leftward) from each place, above its seat; nan where nothing does."""
+    def heights_at(self, height_map: HeightMap, offsets: Offsets) -> Float[Array, "candidate a b"]:
+        """Height above the seat of what stands at the offsets from each place, metres; nan where nothing does."""
         inside, row, column = self._squares(height_map, offsets)
         return np.where(inside, height_map.top_m[row, column], np.nan) - self.height_m[:, None, None]
 
-    def at(
-        self, height_map: HeightMap, mask: Bool[Array, "y x"], offsets: Float[Array, "a b 2"]
-    ) -> Bool[Array, "candidate a b"]:
+    def mask_at(self, height_map: HeightMap, mask: GridMask, offsets: Offsets) -> SampleMask:
         """The mask at the offsets from each place; False outside the map."""
         inside, row, column = self._squares(height_map, offsets)
         return inside & mask[row, column]
 
-    def bare(self, height_map: HeightMap, offsets: Float[Array, "a b 2"]) -> Bool[Array, "candidate a b"]:
-        """True where lines of sight pass even below the seat's height: no surface lies there."""
+    def clear_at(self, height_map: HeightMap, offsets: Offsets) -> SampleMask:
+        """Whether lines of sight pass at, or just below, the seat's height: no surface lies there."""
         inside, row, column = self._squares(height_map, offsets)
         level = np.argmin(np.abs(SEAT_LEVELS_M - (self.height_m[:, None] - _SAG_M)), axis=1)[:, None, None]
-        return inside & height_map.is_bare[level, row, column]
+        return inside & height_map.is_clear_at[level, row, column]
+
+    def mask_here(self, height_map: HeightMap, mask: GridMask) -> CandidateMask:
+        """The mask at the places themselves."""
+        return self.mask_at(height_map, mask, np.zeros((1, 1, 2)))[:, 0, 0]
+
+    def select(self, chosen: CandidateMask) -> "_Candidates":
+        return _Candidates(
+            x_m=self.x_m[chosen],
+            y_m=self.y_m[chosen],
+            facing_rad=self.facing_rad[chosen],
+            height_m=self.height_m[chosen],
+        )
 
     def _squares(
-        self, height_map: HeightMap, offsets: Float[Array, "a b 2"]
-    ) -> tuple[Bool[Array, "candidate a b"], Int[Array, "candidate a b"], Int[Array, "candidate a b"]]:
+        self, height_map: HeightMap, offsets: Offsets
+    ) -> tuple[SampleMask, Int[Array, "candidate a b"], Int[Array, "candidate a b"]]:
         """Whether the offset places lie on the map, and their rows and columns (0 where not)."""
         forward, left = offsets[..., 0], offsets[..., 1]
         cosine, sine = np.cos(self.facing_rad)[:, None, None], np.sin(self.facing_rad)[:, None, None]
@@ -76,161 +92,148 @@ class _Candidates:
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
         return inside, np.where(inside, row, 0), np.where(inside, column, 0)
 
-    def on(self, height_map: HeightMap, mask: Bool[Array, "y x"] | None) -> Bool[Array, " candidate"]:
-        """The mask at the places themselves; all False without one."""
-        if mask is None:
-            return np.zeros(len(self.x_m), bool)
-        return self.at(height_map, mask, np.zeros((1, 1, 2)))[:, 0, 0]
 
-    def only(self, chosen: Bool[Array, " candidate"]) -> "_Candidates":
-        return _Candidates(
-            x_m=self.x_m[chosen],
-            y_m=self.y_m[chosen],
-            facing_rad=self.facing_rad[chosen],
-            height_m=self.height_m[chosen],
-        )
+def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tuple[Seat, ...]:
+    """Finds seats, the best first: surfaces of any size with a backrest, and stool-sized ones without.
 
-
-def find_seats(height_map: HeightMap, floor_z_m: float, sittable: GridClass | None = None) -> tuple[Seat, ...]:
-    """Seats, the best first. Those with a back come from all level patches, those without only from stool-sized ones.
-
-    A low table has no back of its own: what stands behind it is lower than a backrest, or too far away, or a wall.
-    `sittable` (class_evidence) rules out what is something else, and lets chairs, benches and beds do without a back.
+    A low table has no backrest: what stands behind it is lower, too far away, or a wall. `evidence`, of
+    `class_evidence.seat_evidence`, excludes other furniture and accepts chairs, benches and beds without a backrest.
     """
-    level = _level_squares(height_map)
-    if sittable is not None:
-        level &= sittable >= 0
-    candidates = _candidates(height_map, level)
+    is_seat_height = _horizontal_squares(height_map)
+    if evidence is not None:
+        is_seat_height &= evidence >= 0
+    candidates = _candidates(height_map, is_seat_height)
     if len(candidates.x_m) == 0:
         return ()
-    on_seat = candidates.tops(height_map, _ON_SEAT)
-    fits = np.abs(on_seat) < _FLAT_M
-    # What is lower speaks against a seat only where the seat would have been seen: not under a chair seen edge-on.
-    contrary = (on_seat >= _FLAT_M) | (~fits & candidates.bare(height_map, _ON_SEAT))
-    is_named = candidates.on(height_map, bed_squares(height_map) if sittable is None else sittable > 0)
-    on_stool = _on_stool(height_map, level, candidates)
-    inner = slice(2, -2)  # a stool is smaller than the place that a sitter takes
-    is_round = on_stool & (contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
-    is_whole = (contrary.mean(axis=(1, 2)) < _MAX_CONTRARY) | is_round
-    suits = (fits.mean(axis=(1, 2)) > _MIN_ON_SEAT) & is_whole
-    candidates, fit = candidates.only(suits), fits[suits].mean(axis=(1, 2))
-    is_named, on_stool, is_round = is_named[suits], on_stool[suits], is_round[suits]
+    # 1. The surface is flat where one sits.
+    on_seat = candidates.heights_at(height_map, _ON_SEAT)
+    is_flat = np.abs(on_seat) < _FLATNESS_M
+    # A lower surface counts against a seat only where the seat would have been visible: not below a chair seen edge-on.
+    is_contrary = (on_seat >= _FLATNESS_M) | (~is_flat & candidates.clear_at(height_map, _ON_SEAT))
+    is_labelled = candidates.mask_here(height_map, bed_squares(height_map) if evidence is None else evidence > 0)
+    on_stool = _on_stool(height_map, is_seat_height, candidates)
+    inner = slice(2, -2)  # a stool is smaller than the area that a sitter covers
+    is_flat_stool = on_stool & (is_contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
+    is_whole = (is_contrary.mean(axis=(1, 2)) < _MAX_CONTRARY) | is_flat_stool
+    chosen = (is_flat.mean(axis=(1, 2)) > _MIN_FLAT) & is_whole
+    candidates, flat_share = candidates.select(chosen), is_flat[chosen].mean(axis=(1, 2))
+    is_labelled, on_stool, is_flat_stool = is_labelled[chosen], on_stool[chosen], is_flat_stool[chosen]
     if len(candidates.x_m) == 0:
         return ()
-    back = _back_share(height_map, candidates)
-    front = candidates.tops(height_map, _IN_FRONT)
-    # Legs need room: nothing above the seat, save a table top high enough for the thighs to go under.
+    # 2. A backrest stands behind, and legs have room in front: nothing above the seat, except a table top that is high
+    # enough for the thighs.
+    back_share = _back_share(height_map, candidates)
+    front = candidates.heights_at(height_map, _IN_FRONT)
     obstructed = ((front > 0.08) & (front < _THIGH_M)).mean(axis=(1, 2))
-    drop = (front < -0.12) | (np.isnan(front) & candidates.at(height_map, _is_open(height_map), _IN_FRONT))
-    drop, under_table = drop.mean(axis=(1, 2)), (front >= _THIGH_M).mean(axis=(1, 2))
-    score = 2 * back + (0.5 + 1.5 * is_round) * fit + drop + 0.7 * under_table - 2 * obstructed
-    is_backed = (back >= _MIN_BACK) & (obstructed < 0.35) & (drop + under_table > 0.4)
+    is_drop = (front < -0.12) | (np.isnan(front) & candidates.mask_at(height_map, _is_open(height_map), _IN_FRONT))
+    drop, under_table = is_drop.mean(axis=(1, 2)), (front >= _THIGH_M).mean(axis=(1, 2))
+    # 3. Score, and keep what is a seat with a backrest, a stool, or labelled as a seat (one sits at its edge).
+    score = 2 * back_share + (0.5 + 1.5 * is_flat_stool) * flat_share + drop + 0.7 * under_table - 2 * obstructed
+    has_back = (back_share >= _MIN_BACK) & (obstructed < 0.35) & (drop + under_table > 0.4)
     is_stool = on_stool & (obstructed < 0.1)
-    # Without a back one sits at the edge.
-    is_bench = is_named & (obstructed < 0.35) & (drop + under_table > 0.8)
-    score = np.where(is_backed, score + 2, score)
-    return _spread_out(height_map, candidates, np.where(is_backed | is_stool | is_bench, score, -np.inf), floor_z_m)
+    is_bench = is_labelled & (obstructed < 0.35) & (drop + under_table > 0.8)
+    score = np.where(has_back, score + 2, score)
+    return _best_seats(height_map, candidates, np.where(has_back | is_stool | is_bench, score, -np.inf))
 
 
-def _level_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
+def _horizontal_squares(height_map: HeightMap) -> GridMask:
     """Squares at seat height with at least two neighbours at the same height."""
     top = np.pad(height_map.top_m, 1, constant_values=np.nan)
     centre = height_map.top_m
     rows, columns = centre.shape
     neighbours = np.zeros(centre.shape, int)
     for row, column in ((0, 1), (1, 0), (2, 1), (1, 2)):
-        neighbours += np.abs(top[row : row + rows, column : column + columns] - centre) < 0.6 * _FLAT_M
-    return (centre > _LOWEST_M) & (centre < _HIGHEST_M) & (neighbours >= 2)
+        neighbours += np.abs(top[row : row + rows, column : column + columns] - centre) < 0.6 * _FLATNESS_M
+    return (centre > _SEAT_HEIGHTS_M[0]) & (centre < _SEAT_HEIGHTS_M[1]) & (neighbours >= 2)
 
 
-def table_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
-    """Squares of level surfaces at table height that are 35 cm across and more: no backs of sofas or chairs."""
+def table_squares(height_map: HeightMap) -> GridMask:
+    """Squares of horizontal surfaces at table height at least 35 cm across: no backs of sofas or chairs."""
     from scipy import ndimage
 
     found = np.zeros(height_map.top_m.shape, bool)
-    for height in np.arange(_TABLE_M[0], _TABLE_M[1], 0.02):
-        near = np.abs(height_map.top_m - height) < 0.02
+    for height_m in np.arange(_TABLE_HEIGHTS_M[0], _TABLE_HEIGHTS_M[1], 0.02):
+        near = np.abs(height_map.top_m - height_m) < 0.02
         found |= np.asarray(ndimage.binary_opening(near, structure=np.ones((7, 7), bool)), bool)
     return found
 
 
-def bed_squares(height_map: HeightMap) -> Bool[Array, "y x"]:
-    """Squares of level surfaces at a bed's height that are 65 cm across and 1 m2 large: larger than low tables."""
+def bed_squares(height_map: HeightMap) -> GridMask:
+    """Squares of horizontal surfaces at bed height at least 65 cm across and 1 m2 large: larger than low tables."""
     from scipy import ndimage
 
     found = np.zeros(height_map.top_m.shape, bool)
-    for height in np.arange(_BED_M[0], _BED_M[1], 0.03):
-        near = ndimage.binary_closing(np.abs(height_map.top_m - height) < 0.05, structure=np.ones((3, 3), bool))
+    for height_m in np.arange(_BED_HEIGHTS_M[0], _BED_HEIGHTS_M[1], 0.03):
+        near = ndimage.binary_closing(np.abs(height_map.top_m - height_m) < 0.05, structure=np.ones((3, 3), bool))
         wide = np.asarray(ndimage.binary_opening(near, structure=np.ones((13, 13), bool)), bool)
-        labels, _ = labelled(wide)
+        labels, _ = label_components(wide)
         large = np.bincount(labels.ravel()) * CELL_M**2 >= _MIN_BED_M2
         found |= wide & large[labels]
     return found
 
 
-def _is_open(height_map: HeightMap) -> Bool[Array, "y x"]:
+def _is_open(height_map: HeightMap) -> GridMask:
     return height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
 
 
-def _candidates(height_map: HeightMap, level: Bool[Array, "y x"]) -> _Candidates:
-    row, column = np.nonzero(level)
-    facing = 2 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
+def _candidates(height_map: HeightMap, squares: GridMask) -> _Candidates:
+    row, column = np.nonzero(squares)
+    facing_rad = 2 * np.pi * np.arange(_NUM_DIRECTIONS) / _NUM_DIRECTIONS
     return _Candidates(
-        x_m=np.repeat(height_map.x_m[column], _DIRECTIONS),
-        y_m=np.repeat(height_map.y_m[row], _DIRECTIONS),
-        facing_rad=np.tile(facing, len(row)),
-        height_m=np.repeat(height_map.top_m[row, column], _DIRECTIONS),
+        x_m=np.repeat(height_map.x_m[column], _NUM_DIRECTIONS),
+        y_m=np.repeat(height_map.y_m[row], _NUM_DIRECTIONS),
+        facing_rad=np.tile(facing_rad, len(row)),
+        height_m=np.repeat(height_map.top_m[row, column], _NUM_DIRECTIONS),
     )
 
 
-def _back_share(height_map: HeightMap, candidates: _Candidates) -> Float[Array, " candidate"]:
+def _back_share(height_map: HeightMap, candidates: _Candidates) -> PerCandidate:
     """Share of the width behind the sitter at which a backrest stands."""
-    behind = candidates.tops(height_map, _BEHIND)
-    stands = (behind > _BACK_M[0]) & (behind < _BACK_M[1])
-    # An armrest is lower than a back and counts for less.
-    highest = np.where(stands, behind, 0.0).max(axis=1)
+    behind = candidates.heights_at(height_map, _BEHIND)
+    is_back = (behind > _BACK_M[0]) & (behind < _BACK_M[1])
+    # An armrest is lower than a backrest and counts for less.
+    highest = np.where(is_back, behind, 0.0).max(axis=1)
     share = np.minimum(highest / _FULL_BACK_M, 1.0).mean(axis=1)
-    stands &= ~candidates.at(height_map, table_squares(height_map), _BEHIND)
-    # A table top is as high as a low back, but level: a back is thin, or slopes.
-    height = np.where(stands, behind, -1.0)
-    middle = np.partition(height.reshape(len(height), -1), -(height[0].size // 4), axis=1)[:, -(height[0].size // 4)]
-    is_table = (np.abs(behind - middle[:, None, None]) < 0.025).mean(axis=(1, 2)) > 0.4
+    is_back &= ~candidates.mask_at(height_map, table_squares(height_map), _BEHIND)
+    # A table top is as high as a low backrest, but horizontal: a backrest is thin, or slopes.
+    height = np.where(is_back, behind, -1.0)
+    quarter = height[0].size // 4
+    upper_quartile = np.partition(height.reshape(len(height), -1), -quarter, axis=1)[:, -quarter]
+    is_table = (np.abs(behind - upper_quartile[:, None, None]) < 0.025).mean(axis=(1, 2)) > 0.4
     return np.where(is_table, 0.0, share)
 
 
-def _on_stool(height_map: HeightMap, level: Bool[Array, "y x"], candidates: _Candidates) -> Bool[Array, " candidate"]:
-    """True on a patch of a stool's size and height that stands by itself."""
-    labels, count = labelled(level)
+def _on_stool(height_map: HeightMap, squares: GridMask, candidates: _Candidates) -> CandidateMask:
+    """Whether a candidate is on an isolated patch of a stool's size and height."""
+    labels, count = label_components(squares)
     is_stool = np.zeros(count + 1, bool)
-    for label, (rows, columns) in enumerate(places(labels), start=1):
+    for label, (rows, columns) in enumerate(bounding_slices(labels), start=1):
         sizes = ((rows.stop - rows.start) * CELL_M, (columns.stop - columns.start) * CELL_M)
-        height = np.median(height_map.top_m[labels == label])
-        is_stool[label] = min(sizes) >= _STOOL_M[0] and max(sizes) <= _STOOL_M[1] and height <= _STOOL_HIGHEST_M
+        has_size = min(sizes) >= _STOOL_SIZE_M[0] and max(sizes) <= _STOOL_SIZE_M[1]
+        is_stool[label] = has_size and np.median(height_map.top_m[labels == label]) <= _MAX_STOOL_HEIGHT_M
     row = np.round((candidates.y_m - height_map.y_m[0]) / CELL_M).astype(int)
     column = np.round((candidates.x_m - height_map.x_m[0]) / CELL_M).astype(int)
     return is_stool[labels[row, column]]
 
 
-def _spread_out(
-    height_map: HeightMap, candidates: _Candidates, score: Float[Array, " candidate"], floor_z_m: float
-) -> tuple[Seat, ...]:
-    """The best candidates, no two closer than a person is wide."""
+def _best_seats(height_map: HeightMap, candidates: _Candidates, score: PerCandidate) -> tuple[Seat, ...]:
+    """Non-maximum suppression: the best candidates, no two closer than a person is wide."""
     seats: list[Seat] = []
     for index in np.argsort(-score, kind="stable"):
         if not np.isfinite(score[index]) or len(seats) == _MAX_SEATS:
             break
         x, y = candidates.x_m[index], candidates.y_m[index]
-        if any(np.hypot(seat.position_m[0] - x, seat.position_m[1] - y) < _APART_M for seat in seats):
+        if any(np.hypot(seat.position_m[0] - x, seat.position_m[1] - y) < _MIN_SPACING_M for seat in seats):
             continue
-        one = candidates.only(np.arange(len(score)) == index)
+        one = candidates.select(np.arange(len(score)) == index)
         size_m = _size_m(height_map, one)
-        if min(size_m) < _SMALLEST_M:
+        if min(size_m) < _MIN_SIZE_M:
             continue
-        tops = one.tops(height_map, _ON_SEAT)[0]
-        height = one.height_m[0] + float(np.median(tops[np.abs(tops) < _FLAT_M]))
+        heights = one.heights_at(height_map, _ON_SEAT)[0]
+        height_m = one.height_m[0] + float(np.median(heights[np.abs(heights) < _FLATNESS_M]))
         seats.append(
             Seat(
-                position_m=np.array([x, y, floor_z_m + height]),
+                position_m=np.array([x, y, height_map.floor_z_m + height_m]),
                 facing_rad=float(np.angle(np.exp(1j * one.facing_rad[0]))),
                 size_m=size_m,
             )
@@ -239,13 +242,13 @@ def _spread_out(
 
 
 def _size_m(height_map: HeightMap, one: _Candidates) -> tuple[float, float]:
-    """How far the surface goes on from its middle: across and along the facing."""
-    reach = np.arange(0.0, 1.21, CELL_M)
+    """Extent of the surface around one candidate: across and along its facing, metres."""
+    reach_m = np.arange(0.0, 1.21, CELL_M)
     lengths = []
     for forward, left in ((0, 1), (0, -1), (1, 0), (-1, 0)):
-        offsets = np.stack([forward * reach, left * reach], axis=-1)[None]
-        on_seat = np.abs(one.tops(height_map, offsets)[0, 0]) < _FLAT_M
+        offsets = np.stack([forward * reach_m, left * reach_m], axis=-1)[None]
+        on_seat = np.abs(one.heights_at(height_map, offsets)[0, 0]) < _FLATNESS_M
         # One missing square is a gap in the measurement, two are the edge.
-        gone = ~(on_seat | np.append(on_seat[1:], False))
-        lengths.append(reach[np.argmax(gone)] if gone.any() else reach[-1])
+        is_edge = ~(on_seat | np.append(on_seat[1:], False))
+        lengths.append(reach_m[np.argmax(is_edge)] if is_edge.any() else reach_m[-1])
     return float(lengths[0] + lengths[1]), float(lengths[2] + lengths[3])

@@ -1,4 +1,4 @@
-"""What a class mask says of the room: where one can sit and where not, and where things with a name are."""
+"""What a class mask tells about a room: cells of given classes, evidence for seats, and the points of landmarks."""
 
 from collections.abc import Iterator
 
@@ -6,111 +6,109 @@ import numpy as np
 from jaxtyping import Bool, Int
 
 from mmweaver.core.records import ClassMask, Plane, RgbdPhoto
-from mmweaver.core.shapes import Array, Points, Rotation
-from mmweaver.geometry.pinhole import unproject
-from mmweaver.scene.layout.connected_patches import labelled, places
-from mmweaver.scene.layout.height_map import CELL_M, HALF_WIDTH_M, LENGTH_M
+from mmweaver.core.shapes import Array, Points
+from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.scene.layout.connected_components import bounding_slices, label_components
+from mmweaver.scene.layout.height_map import grid_axes, square_index
 from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool
 
+# COCO-Stuff class -> kind of landmark
 LANDMARKS = {
     "door-stuff": "door", "door": "door", "window-other": "window", "window": "window", "window-blind": "window",
     "table": "table", "dining table": "table", "desk-stuff": "table", "desk": "table", "counter": "counter",
     "bed": "bed",
 }  # fmt: skip
-_MIN_CELLS = 40
+_MIN_PIXELS = 40
 SITTABLE = ("chair", "couch", "bench", "bed", "stool")
 _NO_EVIDENCE = ("unlabeled", "furniture-other", "pillow", "blanket", "cloth", "textile-other", "rug", "person")
-_LOWEST_M, _HIGHEST_M = 0.25, 0.65  # above the floor: where seats are
+_SEAT_HEIGHTS_M = (0.25, 0.65)  # above the floor
 
 GridClass = Int[Array, "y x"]
+PixelMask = Bool[Array, "height width"]
 
 
 def cells_of(grid: DepthGrid, photo: RgbdPhoto, names: frozenset[str]) -> GridBool | None:
     """The cells of a photo's grid that show one of these classes; None without a mask, or where it shows none."""
     if photo.classes is None or grid.class_index is None:
         return None
-    found = np.isin(grid.class_index, numbers_of(photo.classes, names))
+    found = np.isin(grid.class_index, indices_of(photo.classes, names))
     return found if found.any() else None
 
 
-def numbers_of(classes: ClassMask, names: frozenset[str]) -> list[int]:
-    """The numbers that a mask has for classes of these names."""
-    return [number for number, name in enumerate(classes.names) if name in names]
+def indices_of(classes: ClassMask, names: frozenset[str]) -> list[int]:
+    """The indices that a mask uses for classes of these names."""
+    return [index for index, name in enumerate(classes.names) if name in names]
 
 
-def regions_of(classes: ClassMask, names: frozenset[str], smallest: float) -> list[Bool[Array, "height width"]]:
-    """The connected regions of pixels of these classes that are at least that share of the picture."""
-    regions, count = labelled(np.isin(classes.index, numbers_of(classes, names)))
-    each = [regions == region for region in range(1, count + 1)]
-    return [region for region in each if region.mean() >= smallest]
+def regions_of(classes: ClassMask, names: frozenset[str], min_share: float) -> list[PixelMask]:
+    """The connected regions of pixels of these classes that cover at least that share of the picture."""
+    labels, count = label_components(np.isin(classes.index, indices_of(classes, names)))
+    regions = [labels == label for label in range(1, count + 1)]
+    return [region for region in regions if region.mean() >= min_share]
 
 
-def sittable_squares(photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: float) -> GridClass | None:
-    """1 where most of what lies at seat height in a square is a chair, couch, bench or bed, -1 where it is something
-    else, 0 where nothing is known; on the squares of the height map. None without a mask.
+def seat_evidence(view: AlignedPhoto) -> GridClass | None:
+    """For each square of the height map, whether its points at seat height are mostly something to sit on.
+
+    1 for a chair, couch, bench or bed, -1 for other things, 0 where nothing is known. None without a mask.
     """
-    mask = photo.classes
+    mask = view.photo.classes
     if mask is None:
         return None
-    value = np.array([_evidence(name) for name in mask.names])
-    points = unproject(photo.depth_m, photo.intrinsics) @ radar_from_camera.T
-    height = points[..., 2] - floor_z_m
-    kept = (height > _LOWEST_M) & (height < _HIGHEST_M)
-    points, sort = points[kept], value[mask.index[kept]]
-    shape = (round(LENGTH_M / CELL_M), round(2 * HALF_WIDTH_M / CELL_M))
-    column = np.floor((points[:, 0] + HALF_WIDTH_M) / CELL_M).astype(int)
-    row = np.floor(points[:, 1] / CELL_M).astype(int)
-    inside = (column >= 0) & (column < shape[1]) & (row >= 0) & (row < shape[0])
-    total = np.bincount((row * shape[1] + column)[inside], weights=sort[inside], minlength=shape[0] * shape[1])
+    height_m = view.points_m[..., 2] - view.floor_z_m
+    at_seat_height = (height_m > _SEAT_HEIGHTS_M[0]) & (height_m < _SEAT_HEIGHTS_M[1])
+    vote = np.array([_vote(name) for name in mask.names])[mask.index[at_seat_height]]
+    x_m, y_m = grid_axes()
+    shape = (len(y_m), len(x_m))
+    square = square_index(view.points_m[at_seat_height], shape)
+    total = np.bincount(square[square >= 0], weights=vote[square >= 0], minlength=shape[0] * shape[1])
     return np.sign(total).astype(int).reshape(shape)
 
 
-def _evidence(name: str) -> int:
+def _vote(name: str) -> int:
     if name in SITTABLE:
         return 1
     is_room = name.startswith(("wall", "floor", "ceiling", "carpet"))
     return 0 if name in _NO_EVIDENCE or is_room else -1
 
 
-def named_points(
-    photo: RgbdPhoto, radar_from_camera: Rotation, planes: tuple[Plane, ...]
-) -> Iterator[tuple[str, Points]]:
-    """For each patch of pixels of a class that is a landmark: its kind and its points in the radar's frame.
+def landmark_points(view: AlignedPhoto, planes: tuple[Plane, ...]) -> Iterator[tuple[str, Points]]:
+    """For each connected region of a landmark's class: the kind, and the region's points (point, 3) in metres.
 
     Where glass gives no depth, the points are those on the wall behind it.
     """
-    mask = photo.classes
+    mask = view.photo.classes
     if mask is None:
         return
-    step = max(1, photo.intrinsics.width // 320)
-    index = mask.index[::step, ::step]
-    points = (unproject(photo.depth_m, photo.intrinsics) @ radar_from_camera.T)[::step, ::step]
-    rays = (unproject(np.ones_like(photo.depth_m), photo.intrinsics) @ radar_from_camera.T)[::step, ::step]
+    step = max(1, view.photo.intrinsics.width // 320)
+    every = (slice(None, None, step), slice(None, None, step))
+    index, points_m, rays = mask.index[every], view.points_m[every], view.rays[every]
     for kind in dict.fromkeys(LANDMARKS.values()):
         chosen = [i for i, name in enumerate(mask.names) if LANDMARKS.get(name) == kind]
-        labels, _ = labelled(np.isin(index, chosen))
-        for label, place in enumerate(places(labels), start=1):
-            cells = labels[place] == label
-            if cells.sum() < _MIN_CELLS:
+        labels, _ = label_components(np.isin(index, chosen))
+        for label, region in enumerate(bounding_slices(labels), start=1):
+            cells = labels[region] == label
+            if cells.sum() < _MIN_PIXELS:
                 continue
-            there = points[place][cells]
-            measured = np.isfinite(there[:, 0])
+            found_m = points_m[region][cells]
+            measured = np.isfinite(found_m[:, 0])
             if measured.mean() < 0.5 and kind in ("door", "window"):
-                there = _on_walls(rays[place][cells], planes)
-                measured = np.isfinite(there[:, 0])
-            if measured.sum() >= _MIN_CELLS:
-                yield kind, there[measured]
+                found_m = _intersection_with_walls(rays[region][cells], planes)
+                measured = np.isfinite(found_m[:, 0])
+            if measured.sum() >= _MIN_PIXELS:
+                yield kind, found_m[measured]
 
 
-def _on_walls(rays: Points, planes: tuple[Plane, ...]) -> Points:
-    """Where rays from the radar first meet a wall; nan where they meet none."""
-    reach = np.full(len(rays), np.inf)
+def _intersection_with_walls(rays: Points, planes: tuple[Plane, ...]) -> Points:
+    """Where rays from the radar first meet a wall, metres; nan where they meet none."""
+    nearest = np.full(len(rays), np.inf)
     for wall in planes:
         if wall.kind != "wall":
             continue
         along = rays @ wall.normal
         distance = float(wall.normal @ wall.centre_m) / np.where(np.abs(along) < 1e-6, np.nan, along)
-        aside = np.abs((rays * distance[:, None] - wall.centre_m) @ wall.axis_u)
-        meets = (distance > 0) & (aside < wall.half_size_m[0] + 0.3)
-        reach = np.where(meets & (distance < reach), distance, reach)
-    return np.where(np.isfinite(reach)[:, None], rays * np.where(np.isfinite(reach), reach, 0.0)[:, None], np.nan)
+        offset_m = np.abs((rays * distance[:, None] - wall.centre_m) @ wall.axis_u)
+        meets = (distance > 0) & (offset_m < wall.half_size_m[0] + 0.3)
+        nearest = np.where(meets & (distance < nearest), distance, nearest)
+    is_met = np.isfinite(nearest)[:, None]
+    return np.where(is_met, rays * np.where(np.isfinite(nearest), nearest, 0.0)[:, None], np.nan)

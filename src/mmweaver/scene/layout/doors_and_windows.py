@@ -1,149 +1,148 @@
-"""Doors and windows on the walls of a photo without a mask: by their size, and by how they differ from the wall."""
+"""Doors and windows on the walls of a photo without class mask, from their size and their contrast with the wall."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float
 
-from mmweaver.core.records import Plane, RgbdPhoto
-from mmweaver.core.shapes import Array, Rotation
-from mmweaver.geometry.pinhole import project
+from mmweaver.core.records import Plane
+from mmweaver.core.shapes import Array, Vec3
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.photo.depth_grid import depth_tolerance_m
 
 CELL_M = 0.05
 _DOOR_WIDTH_M, _WINDOW_WIDTH_M = (0.65, 1.30), (0.7, 2.4)
 _DOOR_BAND_M, _WINDOW_BAND_M, _SILL_BAND_M = (0.15, 1.85), (1.05, 1.95), (0.25, 0.70)
-# A door is the whole wall's other colour from the floor to over head height, and the wall goes on above: windows over
-# something, boards and cupboards differ only in parts.
+# A door differs from the wall over its whole height, and the wall continues above it: windows above furniture,
+# boards and cupboards differ only in parts.
 _DOOR_FOOT_M, _LINTEL_M = (0.0, 0.15), (2.15, 2.4)
-_WHOLE, _WHOLE_FOOT, _FEW_ABOVE = 0.95, 0.8, 0.4
-_FOOT_KNOWN, _ALL_KNOWN = 0.4, 0.85
-_FARTHEST_M = 5.0
-_MIN_KNOWN, _MIN_SHARE = 0.45, 0.72
-_LEAF_M = 0.09  # how far a leaf or a frame may stand before its wall
+_MIN_DOOR_SHARE, _MIN_FOOT_SHARE, _MAX_LINTEL_SHARE = 0.95, 0.8, 0.4
+_MIN_FOOT_VISIBLE, _MIN_DOOR_VISIBLE = 0.4, 0.85
+_MAX_DISTANCE_M = 5.0
+_MIN_VISIBLE, _MIN_SHARE = 0.45, 0.72
+_MIN_WALL_SQUARES = 60
+_LEAF_M = 0.09  # how far a leaf or a frame may protrude from the wall
 
-Wall2 = Float[Array, "height along"]
+WallFloat = Float[Array, "height along"]
 WallMask = Bool[Array, "height along"]
+Span = tuple[int, int]  # first column, and the one after the last
+BandM = tuple[float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Opening:
-    """A door or a window in a wall: its middle, and places along its foot on the floor."""
+    """A door or a window in a wall."""
 
-    kind: str
-    position_m: Float[Array, "3"]
-    foot_m: Float[Array, "square 2"]
+    kind: str  # door | window
+    position_m: Vec3  # its middle
+    foot_m: Float[Array, "square 2"]  # places along its foot on the floor
 
 
 @dataclass(frozen=True, kw_only=True)
-class _WallPicture:
-    """A wall in squares of 5 cm from the floor up: what is known of each, and what differs from the wall."""
+class _WallImage:
+    """A rectified view of a wall in squares of 5 cm, from the floor up."""
 
-    known: WallMask  # seen, and not hidden by something before it
-    differs: WallMask  # of another colour, open to what lies behind, or without depth as glass is
+    is_visible: WallMask  # in the picture, and not occluded
+    differs: WallMask  # in colour, or open to what lies behind, or without depth as glass is
     along_m: Float[Array, " along"]
     height_m: Float[Array, " height"]
 
 
-def find_openings(
-    photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: float, planes: tuple[Plane, ...]
-) -> list[Opening]:
-    """Runs of columns, as wide as a door or a window, that differ from the wall at its heights and not beside it.
+def find_openings(view: AlignedPhoto, planes: tuple[Plane, ...]) -> list[Opening]:
+    """Spans of a wall's columns, as wide as a door or window, that differ from the wall at the heights of one.
 
-    Doors are told only where next to nothing speaks against them: few are found, and those are doors.
+    A door is reported only where hardly anything contradicts it: most doors are missed, and few are false.
     """
     found: list[Opening] = []
     for wall in planes:
-        if wall.kind != "wall" or np.linalg.norm(wall.centre_m) > 2 * _FARTHEST_M:
+        if wall.kind != "wall" or np.linalg.norm(wall.centre_m) > 2 * _MAX_DISTANCE_M:
             continue
-        picture = _picture(photo, radar_from_camera, floor_z_m, wall)
-        if picture is None:
+        image = _rectified(view, wall)
+        if image is None:
             continue
-        doors = [run for run in _runs(picture, _DOOR_BAND_M, _DOOR_WIDTH_M) if _is_door(picture, run)]
+        doors = [span for span in _spans(image, _DOOR_BAND_M, _DOOR_WIDTH_M) if _is_door(image, span)]
         windows = [
-            run for run in _runs(picture, _WINDOW_BAND_M, _WINDOW_WIDTH_M)
-            if _share(picture, run, _SILL_BAND_M) < 0.35 and not any(run[0] < b and a < run[1] for a, b in doors)
-        ]  # fmt: skip
-        found += [_opening("door", run, picture, wall, floor_z_m) for run in doors]
-        found += [_opening("window", run, picture, wall, floor_z_m) for run in windows]
+            span
+            for span in _spans(image, _WINDOW_BAND_M, _WINDOW_WIDTH_M)
+            if _share(image, span, _SILL_BAND_M) < 0.35 and not any(span[0] < b and a < span[1] for a, b in doors)
+        ]
+        found += [_opening("door", span, image, wall, view.floor_z_m) for span in doors]
+        found += [_opening("window", span, image, wall, view.floor_z_m) for span in windows]
     return found
 
 
-def _picture(photo: RgbdPhoto, radar_from_camera: Rotation, floor_z_m: float, wall: Plane) -> _WallPicture | None:
-    """Looks up the wall's squares in the photo."""
+def _rectified(view: AlignedPhoto, wall: Plane) -> _WallImage | None:
+    """Samples the photo at the squares of a wall; None where too little of the wall is visible."""
     along = np.arange(-wall.half_size_m[0] - 0.6, wall.half_size_m[0] + 0.6, CELL_M)
     height = np.arange(CELL_M / 2, 2.4, CELL_M)
     a, h = np.meshgrid(along, height)
-    points = wall.centre_m + a[..., None] * wall.axis_u
-    points[..., 2] = floor_z_m + h
-    camera = photo.intrinsics
-    pixels, depth = project(points.reshape(-1, 3) @ radar_from_camera, camera)
-    pixels = np.nan_to_num(np.round(pixels), nan=-1.0)
-    column, row = np.clip(pixels, -1, 1e6).astype(int).T
-    inside = (column >= 0) & (column < camera.width) & (row >= 0) & (row < camera.height) & (depth < _FARTHEST_M)
-    column, row = np.where(inside, column, 0), np.where(inside, row, 0)
-    measured, colour = photo.depth_m[row, column], photo.rgb[row, column].astype(float) / 255
-    tolerance = depth_tolerance_m(np.nan_to_num(depth, nan=9.0)) + 0.02
-    before = measured < depth - tolerance - _LEAF_M
-    behind = measured > depth + 0.25 + tolerance
-    on_wall = inside & ~before & ~behind & np.isfinite(measured)
-    if on_wall.sum() < 60:
+    points_m = wall.centre_m + a[..., None] * wall.axis_u
+    points_m[..., 2] = view.floor_z_m + h
+    seen = view.look_up(points_m)
+    in_view = seen.in_picture & (seen.depth_m < _MAX_DISTANCE_M)
+    measured_m = view.photo.depth_m[seen.row, seen.column]
+    colour = view.photo.rgb[seen.row, seen.column].astype(float) / 255
+    tolerance_m = depth_tolerance_m(seen.depth_m) + 0.02
+    is_occluded = measured_m < seen.depth_m - tolerance_m - _LEAF_M
+    is_open = measured_m > seen.depth_m + 0.25 + tolerance_m
+    on_wall = in_view & ~is_occluded & ~is_open & np.isfinite(measured_m)
+    if on_wall.sum() < _MIN_WALL_SQUARES:
         return None
-    usual = np.median(colour[on_wall], axis=0)
-    away = _unlike(colour, usual)
-    limit = max(0.055, 2.5 * float(np.median(away[on_wall])))
-    differs = inside & ~before & ((away > limit) | behind | np.isnan(measured))
-    shape = a.shape
-    known = inside & ~before
-    return _WallPicture(
-        known=known.reshape(shape), differs=differs.reshape(shape), along_m=along, height_m=height
-    )  # fmt: skip
+    difference = _colour_difference(colour, np.median(colour[on_wall], axis=0))
+    limit = max(0.055, 2.5 * float(np.median(difference[on_wall])))
+    is_visible = in_view & ~is_occluded
+    differs = is_visible & ((difference > limit) | is_open | np.isnan(measured_m))
+    return _WallImage(is_visible=is_visible, differs=differs, along_m=along, height_m=height)
 
 
-def _unlike(colour: Float[Array, "n 3"], usual: Float[Array, "3"]) -> Float[Array, " n"]:
-    """Difference of hue (colour over brightness), and of brightness beyond what shadow and light make."""
-    bright, normal = colour.mean(axis=1), max(float(usual.mean()), 0.02)
-    hue = np.abs(colour / np.maximum(bright, 0.04)[:, None] - usual / normal).max(axis=1)
-    return 0.5 * hue + 0.35 * np.clip(np.abs(np.log(np.maximum(bright, 0.01) / normal)) - 0.12, 0, None)
+def _colour_difference(colour: Float[Array, "height along 3"], wall: Float[Array, "3"]) -> WallFloat:
+    """Difference from the wall's colour in chromaticity, and in brightness beyond that of shading; colours 0 to 1."""
+    brightness, wall_brightness = colour.mean(axis=-1), max(float(wall.mean()), 0.02)
+    chromaticity = np.abs(colour / np.maximum(brightness, 0.04)[..., None] - wall / wall_brightness).max(axis=-1)
+    log_ratio = np.abs(np.log(np.maximum(brightness, 0.01) / wall_brightness))
+    return 0.5 * chromaticity + 0.35 * np.clip(log_ratio - 0.12, 0, None)
 
 
-def _runs(picture: _WallPicture, band_m: tuple[float, float], width_m: tuple[float, float]) -> list[tuple[int, int]]:
-    """Spans of columns in which most of what is known within the band differs; others beside them do not."""
-    rows = (picture.height_m > band_m[0]) & (picture.height_m < band_m[1])
-    known = picture.known[rows]
-    share = (picture.differs[rows] & known).sum(axis=0) / np.maximum(known.sum(axis=0), 1)
-    differs = (share > _MIN_SHARE) & (known.mean(axis=0) > _MIN_KNOWN)
+def _spans(image: _WallImage, band_m: BandM, width_m: tuple[float, float]) -> list[Span]:
+    """Spans of columns of a given width that differ over most of their visible part within a band of heights."""
+    rows = _rows(image, band_m)
+    visible = image.is_visible[rows]
+    share = (image.differs[rows] & visible).sum(axis=0) / np.maximum(visible.sum(axis=0), 1)
+    differs = (share > _MIN_SHARE) & (visible.mean(axis=0) > _MIN_VISIBLE)
     # Handles, panels and glazing bars leave gaps of a column or two.
     differs |= np.pad(differs[2:], (0, 2)) & np.pad(differs[:-2], (2, 0))[: len(differs)]
     edges = np.flatnonzero(np.diff(np.concatenate([[0], differs.astype(int), [0]])))
-    runs = [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
-    return [run for run in runs if width_m[0] <= (run[1] - run[0]) * CELL_M <= width_m[1]]
+    spans = [(int(start), int(end)) for start, end in zip(edges[::2], edges[1::2], strict=True)]
+    return [span for span in spans if width_m[0] <= (span[1] - span[0]) * CELL_M <= width_m[1]]
 
 
-def _is_door(picture: _WallPicture, run: tuple[int, int]) -> bool:
-    """Differs all over and down to the floor, where that is seen, and ends under the wall above it."""
-    if _share(picture, run, _DOOR_BAND_M) < _WHOLE or _share(picture, run, _LINTEL_M) > _FEW_ABOVE:
+def _is_door(image: _WallImage, span: Span) -> bool:
+    """Differs over its whole height, down to the floor where that is visible, and ends below the lintel."""
+    if _share(image, span, _DOOR_BAND_M) < _MIN_DOOR_SHARE or _share(image, span, _LINTEL_M) > _MAX_LINTEL_SHARE:
         return False
-    if _known(picture, run, _DOOR_FOOT_M) >= _FOOT_KNOWN:
-        return _share(picture, run, _DOOR_FOOT_M) >= _WHOLE_FOOT
-    return _known(picture, run, _DOOR_BAND_M) >= _ALL_KNOWN
+    if _visible_share(image, span, _DOOR_FOOT_M) >= _MIN_FOOT_VISIBLE:
+        return _share(image, span, _DOOR_FOOT_M) >= _MIN_FOOT_SHARE
+    return _visible_share(image, span, _DOOR_BAND_M) >= _MIN_DOOR_VISIBLE
 
 
-def _known(picture: _WallPicture, run: tuple[int, int], band_m: tuple[float, float]) -> float:
-    rows = (picture.height_m > band_m[0]) & (picture.height_m < band_m[1])
-    return float(picture.known[rows][:, slice(*run)].mean())
+def _rows(image: _WallImage, band_m: BandM) -> Bool[Array, " height"]:
+    return (image.height_m > band_m[0]) & (image.height_m < band_m[1])
 
 
-def _share(picture: _WallPicture, run: tuple[int, int], band_m: tuple[float, float]) -> float:
-    rows = (picture.height_m > band_m[0]) & (picture.height_m < band_m[1])
-    part = (slice(None), slice(*run))
-    known = picture.known[rows][part]
-    return float((picture.differs[rows][part] & known).sum() / max(int(known.sum()), 1))
+def _visible_share(image: _WallImage, span: Span, band_m: BandM) -> float:
+    return float(image.is_visible[_rows(image, band_m)][:, slice(*span)].mean())
 
 
-def _opening(kind: str, run: tuple[int, int], picture: _WallPicture, wall: Plane, floor_z_m: float) -> Opening:
-    along = picture.along_m[run[0] : run[1]]
-    places = wall.centre_m + along[:, None] * wall.axis_u + 0.05 * wall.normal
-    middle = places.mean(axis=0)
+def _share(image: _WallImage, span: Span, band_m: BandM) -> float:
+    """Of the visible squares of a span and band, the share that differs from the wall."""
+    rows, columns = _rows(image, band_m), slice(*span)
+    visible = image.is_visible[rows][:, columns]
+    return float((image.differs[rows][:, columns] & visible).sum() / max(int(visible.sum()), 1))
+
+
+def _opening(kind: str, span: Span, image: _WallImage, wall: Plane, floor_z_m: float) -> Opening:
+    along = image.along_m[span[0] : span[1]]
+    places_m = wall.centre_m + along[:, None] * wall.axis_u + 0.05 * wall.normal
+    middle = places_m.mean(axis=0)
     middle[2] = floor_z_m + (1.0 if kind == "door" else 1.5)
-    return Opening(kind=kind, position_m=middle, foot_m=places[:, :2].copy())
+    return Opening(kind=kind, position_m=middle, foot_m=places_m[:, :2].copy())

@@ -1,10 +1,10 @@
-"""Which way is up, and how far below the camera the floor lies."""
+"""Gravity direction and camera height from a depth grid: the floor plane, supported by the walls."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import Array, PerPoint, Points, Vec3
@@ -13,36 +13,36 @@ from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, depth_tolerance
 Normals = Float[Array, "normal 3"]
 
 _MAX_TILT_RAD = np.deg2rad(55)
-_FLAT = np.cos(np.deg2rad(12))  # a normal this near to up belongs to something horizontal
-_UPRIGHT = np.sin(np.deg2rad(8))  # one this near to level belongs to something vertical
-_MAX_LEAN = np.sin(np.deg2rad(9))  # of a wall, before it is no witness
-_NEAREST_FLOOR_M = 0.25  # a camera closer to the floor than this is not expected
-_GUESSED_HEIGHT_M = 1.2
+_HORIZONTAL = np.cos(np.deg2rad(12))  # cosine between up and the normal of a horizontal surface, at least
+_VERTICAL = np.sin(np.deg2rad(8))  # the same of a vertical surface, at most
+_MAX_WALL_LEAN = np.sin(np.deg2rad(9))  # walls that lean more are ignored
+_MIN_CAMERA_HEIGHT_M = 0.25
+_DEFAULT_CAMERA_HEIGHT_M = 1.2
 _MIN_FLOOR_CELLS = 60
 _HEIGHT_BIN_M = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gravity:
-    """Up in the camera's frame, the floor's height (negative), and what had to be assumed."""
+    """The gravity direction in the camera frame and the floor's height."""
 
-    up_camera: Vec3
-    floor_z_m: float
-    has_floor: bool
+    up_camera: Vec3  # unit vector against gravity
+    floor_z_m: float  # relative to the camera, so negative
+    has_floor: bool  # whether the floor is visible
     assumptions: tuple[str, ...]
 
 
 def find_gravity(grid: DepthGrid) -> Gravity:
-    """Finds the floor: the lowest large level surface, at right angles to the upright ones.
+    """Finds the floor: the lowest large horizontal surface, perpendicular to the vertical ones.
 
-    Without a floor in sight, up is taken from the walls, else from a level camera, and the floor is assumed; it says
-    so. Raises InputError where there is no surface at all.
+    Where no floor is visible, up follows from the walls, else from the assumption of a level camera, and the camera
+    height is assumed; `assumptions` says so. Raises InputError where there is no surface at all.
     """
     usable = np.isfinite(grid.normals).all(axis=2) & np.isfinite(grid.depth_m)
     points, normals = grid.points_m[usable], grid.normals[usable]
     if len(points) < 2 * _MIN_FLOOR_CELLS:
         raise InputError("the depth picture shows no surfaces, only scattered points; give a depth picture of a room")
-    up = _vertical(normals)
+    up = _up_direction(normals)
     if up is not None:
         found = _floor(points, normals, up)
         if found is not None:
@@ -50,89 +50,97 @@ def find_gravity(grid: DepthGrid) -> Gravity:
     return _without_floor(points, normals, up)
 
 
-def corrected_by_walls(gravity: Gravity, grid: DepthGrid, floor: GridBool, walls: Sequence[GridBool]) -> Gravity:
-    """Weighs the floor's own slope against the walls', which must be upright.
+def refined_by_walls(gravity: Gravity, grid: DepthGrid, floor: GridBool, walls: Sequence[GridBool]) -> Gravity:
+    """Gravity as the least-squares compromise of the floor's normal and the walls', which must be vertical.
 
-    Each is trusted by its length over the sensor's error: that error is one of the whole surface (a dark or shiny
-    floor seems deeper to a time-of-flight camera), so the number of cells does not count.
+    Each surface is weighted by its extent over the sensor's error. That error is systematic over a surface (a dark or
+    shiny floor appears deeper to a time-of-flight camera), so the number of cells does not reduce it.
     """
     if not gravity.has_floor or floor.sum() < _MIN_FLOOR_CELLS:
         return gravity
-    squares = np.zeros((3, 3))
+    scatter = np.zeros((3, 3))
     for cells in walls:
         points = grid.points_m[cells]
         _, vectors = np.linalg.eigh(np.cov(points.T))
         normal = vectors[:, 0]
-        if abs(normal @ gravity.up_camera) < _MAX_LEAN:
-            squares += np.outer(normal, normal) * np.square(np.std(points @ gravity.up_camera) / _error_m(points))
+        if abs(normal @ gravity.up_camera) < _MAX_WALL_LEAN:
+            scatter += np.outer(normal, normal) * np.square(np.std(points @ gravity.up_camera) / _error_m(points))
     points = grid.points_m[floor]
     values, vectors = np.linalg.eigh(np.cov(points.T))
     for value, along in zip(values[1:], vectors.T[1:], strict=True):
-        squares += np.outer(along, along) * value / np.square(_error_m(points))
-    _, vectors = np.linalg.eigh(squares)
+        scatter += np.outer(along, along) * value / np.square(_error_m(points))
+    _, vectors = np.linalg.eigh(scatter)
     up = vectors[:, 0] * np.sign(vectors[:, 0] @ gravity.up_camera)
     return replace(gravity, up_camera=up, floor_z_m=float(np.median(points @ up)))
 
 
 def _error_m(points: Points) -> float:
+    """The sensor's typical error at points of the camera frame."""
     return float(np.median(depth_tolerance_m(points[:, 2])))
 
 
-def _vertical(normals: Points) -> Vec3 | None:
-    """The direction near the camera's up that most surfaces are level or upright to; None if none are level."""
+def _up_direction(normals: Points) -> Vec3 | None:
+    """The direction, near the camera's up, to which most surfaces are horizontal or vertical.
+
+    None where no surface is horizontal.
+    """
     tilt_cosine = -normals[:, 1]
     candidates = normals[tilt_cosine > np.cos(_MAX_TILT_RAD)]
     if len(candidates) < _MIN_FLOOR_CELLS:
         return None
     hypotheses = candidates[np.linspace(0, len(candidates) - 1, min(150, len(candidates))).astype(int)]
     alignment = hypotheses @ normals.T
-    level, upright = (alignment > _FLAT).sum(axis=1), (np.abs(alignment) < _UPRIGHT).sum(axis=1)
-    # A level surface is a must, walls are a witness: a sloped one finds few at right angles to it.
-    best = hypotheses[np.argmax(np.minimum(level, len(normals) // 4) + 0.7 * upright)]
+    horizontal, vertical = (alignment > _HORIZONTAL).sum(axis=1), (np.abs(alignment) < _VERTICAL).sum(axis=1)
+    # Walls tell a horizontal surface from a sloped one, to which few others are perpendicular.
+    best = hypotheses[np.argmax(np.minimum(horizontal, len(normals) // 4) + 0.7 * vertical)]
     for _ in range(4):
         alignment = normals @ best
-        best = _most_upright(normals[alignment > _FLAT], normals[np.abs(alignment) < _UPRIGHT], best)
+        best = _fitted_up(normals[alignment > _HORIZONTAL], normals[np.abs(alignment) < _VERTICAL], best)
     return best
 
 
-def _most_upright(level: Normals, upright: Float[Array, "other 3"], near: Vec3) -> Vec3:
-    """The unit vector along the level surfaces' normals and across the upright ones', in least squares."""
-    _, vectors = np.linalg.eigh(upright.T @ upright - level.T @ level)
+def _fitted_up(horizontal: Normals, vertical: Float[Array, "other 3"], near: Vec3) -> Vec3:
+    """The unit vector parallel to horizontal surfaces' normals and perpendicular to vertical ones', least squares."""
+    _, vectors = np.linalg.eigh(vertical.T @ vertical - horizontal.T @ horizontal)
     up = vectors[:, 0]
     return up if up @ near > 0 else -up
 
 
 def _floor(points: Points, normals: Points, up: Vec3) -> tuple[Vec3, float] | None:
-    """The lowest level surface of some size, fitted by a plane: (up, height)."""
+    """The plane of the lowest horizontal surface of sufficient size: its normal and its height in metres."""
     height = points @ up
     tolerance = depth_tolerance_m(points[:, 2])
-    facing = (normals @ up > _FLAT) & (height < -_NEAREST_FLOOR_M)
-    for level_m in _levels(height[facing], (np.square(points[:, 2]) / 1.0)[facing]):
-        chosen = facing & (np.abs(height - level_m) < tolerance + 0.04)
-        below = (height < level_m - 3 * tolerance - 0.10).mean()
-        if chosen.sum() < _MIN_FLOOR_CELLS or below > 0.06:
+    facing_up = (normals @ up > _HORIZONTAL) & (height < -_MIN_CAMERA_HEIGHT_M)
+    area = np.square(points[:, 2])  # a cell covers an area that grows with its depth squared
+    for peak_m in _height_peaks_m(height[facing_up], area[facing_up]):
+        chosen = facing_up & (np.abs(height - peak_m) < tolerance + 0.04)
+        share_below = (height < peak_m - 3 * tolerance - 0.10).mean()
+        if chosen.sum() < _MIN_FLOOR_CELLS or share_below > 0.06:
             continue
-        fitted = _fitted(points, chosen, up)
+        fitted = _fitted_plane(points, chosen, up)
         if fitted is not None:
             return fitted
     return None
 
 
-def _levels(height: PerPoint, weight: PerPoint) -> Float[Array, " level"]:
-    """Heights at which much level surface lies, lowest first. A cell's surface grows with its depth squared."""
+def _height_peaks_m(height: PerPoint, area: PerPoint) -> Float[Array, " peak"]:
+    """Heights, lowest first, at which the histogram of horizontal area has a peak."""
     if len(height) == 0:
         return np.zeros(0)
     edges = np.arange(height.min() - 0.1, 0.1, _HEIGHT_BIN_M)
-    area = np.convolve(np.histogram(height, edges, weights=weight)[0], np.ones(4), mode="same")
+    binned = np.convolve(np.histogram(height, edges, weights=area)[0], np.ones(4), mode="same")
     count = np.convolve(np.histogram(height, edges)[0], np.ones(4), mode="same")
-    padded = np.pad(area, 4)
-    highest = np.max([padded[shift : shift + len(area)] for shift in range(9)], axis=0)
-    is_peak = (area == highest) & (area > 0.04 * area.max()) & (count > _MIN_FLOOR_CELLS / 2)
+    padded = np.pad(binned, 4)
+    local_maximum = np.max([padded[shift : shift + len(binned)] for shift in range(9)], axis=0)
+    is_peak = (binned == local_maximum) & (binned > 0.04 * binned.max()) & (count > _MIN_FLOOR_CELLS / 2)
     return edges[:-1][is_peak] + _HEIGHT_BIN_M / 2
 
 
-def _fitted(points: Points, chosen: np.ndarray, up: Vec3) -> tuple[Vec3, float] | None:
-    """Least-squares plane through the chosen points and what joins them; keeps `up` where the floor seen is small."""
+def _fitted_plane(points: Points, chosen: Bool[Array, " point"], up: Vec3) -> tuple[Vec3, float] | None:
+    """Weighted least-squares plane, re-fitted to its inliers: normal and offset; None where it leaves `up` or them.
+
+    Where the visible floor is small, its normal stays `up`.
+    """
     normal, offset = up, float(np.median(points[chosen] @ up))
     tolerance = depth_tolerance_m(points[:, 2])
     for _ in range(4):
@@ -151,22 +159,22 @@ def _fitted(points: Points, chosen: np.ndarray, up: Vec3) -> tuple[Vec3, float] 
 
 
 def _without_floor(points: Points, normals: Points, up: Vec3 | None) -> Gravity:
-    """Up from what is level or upright, else from a level camera; the floor just below everything seen."""
-    sentences = ["No floor is in sight."]
+    """Up from horizontal or vertical surfaces, else from a level camera; the floor just below all points."""
+    sentences = ["No floor is visible."]
     if up is None:
-        up = _vertical(-normals)  # a ceiling is as level as a floor
+        up = _up_direction(-normals)  # a ceiling is as horizontal as a floor
     if up is None:
         up = np.array([0.0, -1.0, 0.0])
         walls = normals[np.abs(normals @ up) < np.sin(np.deg2rad(25))]
         if len(walls) >= 4 * _MIN_FLOOR_CELLS:
-            # The level camera as a weak witness: one wall alone leaves a turn about its normal open.
-            up = _most_upright(np.tile(up * np.sqrt(0.02 * len(walls)), (1, 1)), walls, up)
-            sentences.append("Up was taken from the walls.")
+            # The level camera is a weak prior: a single wall leaves the rotation about its normal open.
+            up = _fitted_up(np.tile(up * np.sqrt(0.02 * len(walls)), (1, 1)), walls, up)
+            sentences.append("The gravity direction was estimated from the walls.")
         else:
-            sentences.append("The camera was taken to be level.")
+            sentences.append("The camera was assumed to be level.")
     else:
-        sentences.append("Up was taken from level and upright surfaces.")
+        sentences.append("The gravity direction was estimated from horizontal and vertical surfaces.")
     lowest_m = float(np.percentile(points @ up, 0.5))
-    floor_z_m = min(-_GUESSED_HEIGHT_M, lowest_m)
-    sentences.append(f"The floor was taken to lie {-floor_z_m:.2f} m below the camera.")
+    floor_z_m = min(-_DEFAULT_CAMERA_HEIGHT_M, lowest_m)
+    sentences.append(f"The floor was assumed {-floor_z_m:.2f} m below the camera.")
     return Gravity(up_camera=up, floor_z_m=floor_z_m, has_floor=False, assumptions=(" ".join(sentences),))

@@ -1,4 +1,4 @@
-"""Triangles for the ray caster: the depth grid where it is continuous, and the whole floor."""
+"""Triangle mesh of a room for the ray caster: the depth grid where it is continuous, and the whole floor."""
 
 from collections.abc import Sequence
 
@@ -7,31 +7,31 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
-from mmweaver.scene.layout.connected_patches import grown, labelled, places
-from mmweaver.scene.layout.surfaces import LevelGrid, Surface
+from mmweaver.scene.layout.connected_components import bounding_slices, dilated, label_components
+from mmweaver.scene.layout.surfaces import AlignedGrid, Surface
 from mmweaver.scene.photo.depth_grid import GridBool, GridVectors, depth_tolerance_m
 
 _MAX_HOLE = 0.04  # share of the grid: larger holes stay open
-_MIN_RIM = 0.5  # share of a hole's rim on one surface
+_MIN_BORDER = 0.5  # share of a hole's border on one surface
 _GRAZING = np.sin(np.deg2rad(4))
 
 GridInt = Int[Array, "row column"]
 
 
 def make_mesh(
-    grid: LevelGrid, rays: GridVectors, surfaces: Sequence[Surface], is_floor: GridBool, cell_material: GridInt
+    grid: AlignedGrid, rays: GridVectors, surfaces: Sequence[Surface], is_floor: GridBool, cell_material: GridInt
 ) -> tuple[Vertices, Faces, PerFace]:
-    """Vertices, faces (counter-clockwise seen from the radar) and each face's material.
+    """Vertices in metres, faces (counter-clockwise seen from the radar) and the material index of each face.
 
-    `rays` are the cells' viewing directions in the radar's frame. Cells of a flat surface are moved onto it along
-    their rays; small holes within one are filled. Of the floor only the cells at the foot of things remain: the
-    floor itself is one rectangle, made by `floor_faces`.
+    `rays` (row, column, 3) are the cells' viewing directions in the radar's frame. Cells of a planar surface are
+    projected onto it along their rays, and small holes within one are filled. Of the floor only the cells at the foot
+    of objects remain: the floor itself is one rectangle, made by `floor_faces`.
     """
-    points, surface_of = _flattened(grid, rays, surfaces, is_floor)
-    points, surface_of, material = _filled(points, rays, surfaces, surface_of, cell_material)
+    points, surface_of = _projected_onto_surfaces(grid, rays, surfaces, is_floor)
+    points, surface_of, material = _with_filled_holes(points, rays, surfaces, surface_of, cell_material)
     faces = _continuous_faces(points, grid, surface_of)
     faces = faces[~(is_floor.ravel()[faces]).all(axis=1)]
-    # A face at an edge belongs to what is not floor.
+    # A face at the edge of the floor takes the material of what is not floor.
     corner_is_floor = is_floor.ravel()[faces]
     corner = np.argmin(corner_is_floor, axis=1)
     face_material = material.ravel()[np.take_along_axis(faces, corner[:, None], axis=1)[:, 0]]
@@ -40,62 +40,63 @@ def make_mesh(
 
 
 def floor_faces(floor: Plane) -> tuple[Vertices, Faces]:
-    """The floor as two triangles, facing up."""
+    """The floor as two triangles that face up: (4, 3) metres and (2, 3)."""
     u, v = floor.half_size_m[0] * floor.axis_u, floor.half_size_m[1] * floor.axis_v
     corners = [floor.centre_m - u - v, floor.centre_m + u - v, floor.centre_m + u + v, floor.centre_m - u + v]
     return np.stack(corners), np.array([[0, 1, 2], [0, 2, 3]])
 
 
-def _flattened(
-    grid: LevelGrid, rays: GridVectors, surfaces: Sequence[Surface], is_floor: GridBool
+def _projected_onto_surfaces(
+    grid: AlignedGrid, rays: GridVectors, surfaces: Sequence[Surface], is_floor: GridBool
 ) -> tuple[GridVectors, GridInt]:
-    """Points moved onto their surfaces, and the index of each cell's surface (-1 none, -2 floor)."""
+    """Points projected onto their surfaces, and the index of each cell's surface (-1 none, -2 floor)."""
     points = grid.points_m.copy()
     surface_of = np.where(is_floor, -2, -1)
-    points[is_floor] = _onto(rays[is_floor], np.array([0.0, 0.0, 1.0]), grid.floor_z_m)
+    points[is_floor] = _intersections(rays[is_floor], np.array([0.0, 0.0, 1.0]), grid.floor_z_m)
     for index, surface in enumerate(surfaces):
         normal = surface.plane.normal
-        points[surface.cells] = _onto(rays[surface.cells], normal, float(normal @ surface.plane.centre_m))
+        points[surface.cells] = _intersections(rays[surface.cells], normal, float(normal @ surface.plane.centre_m))
         surface_of[surface.cells] = index
     return points, surface_of
 
 
-def _onto(rays: Float[Array, "cell 3"], normal: Float[Array, "3"], offset: float) -> Float[Array, "cell 3"]:
-    """Where rays from the origin meet the plane n . p = offset."""
+def _intersections(rays: Float[Array, "cell 3"], normal: Float[Array, "3"], offset: float) -> Float[Array, "cell 3"]:
+    """Intersections of rays from the origin with the plane n . p = offset, metres."""
     return rays * (offset / (rays @ normal))[:, None]
 
 
-def _filled(
+def _with_filled_holes(
     points: GridVectors,
     rays: GridVectors,
     surfaces: Sequence[Surface],
     surface_of: GridInt,
     cell_material: GridInt,
 ) -> tuple[GridVectors, GridInt, GridInt]:
-    """Closes small holes whose rim lies on one flat surface."""
+    """Closes small holes whose border lies on one planar surface."""
     points, surface_of, material = points.copy(), surface_of.copy(), cell_material.copy()
-    labels, _ = labelled(~np.isfinite(points[..., 2]))
-    for label, place in enumerate(places(labels), start=1):
-        rows, columns = (slice(max(part.start - 1, 0), part.stop + 1) for part in place)
-        wider = (rows, columns)
-        hole = labels[wider] == label
+    labels, _ = label_components(~np.isfinite(points[..., 2]))
+    for label, region in enumerate(bounding_slices(labels), start=1):
+        rows, columns = (slice(max(part.start - 1, 0), part.stop + 1) for part in region)
+        around = (rows, columns)
+        hole = labels[around] == label
         if hole.sum() > _MAX_HOLE * points[..., 0].size:
             continue
-        rim = surface_of[wider][grown(hole) & ~hole]
-        on_surfaces = rim[rim >= 0]
+        border = surface_of[around][dilated(hole) & ~hole]
+        on_surfaces = border[border >= 0]
         if len(on_surfaces) == 0:
             continue
         index = int(np.bincount(on_surfaces).argmax())
-        if (rim == index).sum() < _MIN_RIM * len(rim):
+        if (border == index).sum() < _MIN_BORDER * len(border):
             continue
         plane = surfaces[index].plane
-        points[wider][hole] = _onto(rays[wider][hole], plane.normal, float(plane.normal @ plane.centre_m))
-        surface_of[wider][hole] = index
-        material[wider][hole] = np.bincount(material[surfaces[index].cells]).argmax()
+        points[around][hole] = _intersections(rays[around][hole], plane.normal, float(plane.normal @ plane.centre_m))
+        surface_of[around][hole] = index
+        material[around][hole] = np.bincount(material[surfaces[index].cells]).argmax()
     return points, surface_of, material
 
 
-def _continuous_faces(points: GridVectors, grid: LevelGrid, surface_of: GridInt) -> Faces:
+def _continuous_faces(points: GridVectors, grid: AlignedGrid, surface_of: GridInt) -> Faces:
+    """Two triangles per square of four cells, those that bridge a depth discontinuity or graze the view left out."""
     rows, columns = surface_of.shape
     index = np.arange(rows * columns).reshape(rows, columns)
     top_left, top_right = index[:-1, :-1].ravel(), index[:-1, 1:].ravel()
@@ -118,9 +119,9 @@ def _continuous_faces(points: GridVectors, grid: LevelGrid, surface_of: GridInt)
 
 
 def _joined(
-    points: GridVectors, grid: LevelGrid, surface_of: GridInt, a: np.ndarray, b: np.ndarray
+    points: GridVectors, grid: AlignedGrid, surface_of: GridInt, a: np.ndarray, b: np.ndarray
 ) -> Bool[Array, " edge"]:
-    """True where two neighbouring cells lie on one surface: the same plane, or each in the other's tangent plane."""
+    """Whether two neighbouring cells are on one surface: near, on one plane, or each in the other's tangent plane."""
     flat, normals, surface = points.reshape(-1, 3), grid.normals.reshape(-1, 3), surface_of.ravel()
     between = flat[b] - flat[a]
     distance = np.minimum(np.linalg.norm(flat[a], axis=1), np.linalg.norm(flat[b], axis=1))

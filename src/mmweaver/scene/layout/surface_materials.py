@@ -1,4 +1,4 @@
-"""What surfaces are made of: by what is seen where somebody said it, else guessed from geometry and colour.
+"""Materials of surfaces: from the class of each pixel where a mask gives one, else guessed from geometry and colour.
 
 Metal and glass are never guessed.
 """
@@ -12,10 +12,10 @@ from jaxtyping import Bool, Float, Int
 from mmweaver.core.records import Plane, Seat
 from mmweaver.core.shapes import Array
 from mmweaver.scene.coco_stuff import material_of
-from mmweaver.scene.layout.surfaces import LevelGrid, Surface
+from mmweaver.scene.layout.surfaces import AlignedGrid, Surface
 from mmweaver.scene.photo.depth_grid import GridVectors
 
-# ITU-R P.2040-3, table 3, and upholstery, which it does not list.
+# ITU-R P.2040-3, table 3, and upholstery (fabric), which it does not list.
 MATERIAL_NAMES = (
     "concrete", "brick", "plasterboard", "wood", "glass", "ceiling_board", "chipboard", "plywood", "marble",
     "floorboard", "metal", "fabric",
@@ -33,16 +33,16 @@ ASSUMPTION_OF_CLASSES = (
 )
 
 _SEAT_REACH_M = 0.55
-_SOFA_M = 0.8  # a seat as wide as this is upholstered, whatever its colour
+_SOFA_M = 0.8  # a seat of at least this width is upholstered, whatever its colour
 
 
 def floor_material(colours: Float[Array, "cell 3"]) -> str:
-    """Boards where the floor is warm and saturated, else concrete."""
+    """Floorboard where the colours (cell, 3), 0 to 1, are those of wood, else concrete."""
     return "floorboard" if _is_wooden(colours) else "concrete"
 
 
 def surface_material(surface: Surface, rgb: GridVectors) -> str:
-    """The material of a flat surface by its kind, then by its colour."""
+    """The material of a planar surface from its kind, else from the colours `rgb` (row, column, 3) of its cells."""
     by_kind = {"wall": "plasterboard", "ceiling": "ceiling_board"}
     return by_kind.get(surface.plane.kind) or _furniture(rgb[surface.cells])
 
@@ -52,13 +52,13 @@ def with_material(plane: Plane, name: str) -> Plane:
 
 
 def cell_materials(
-    grid: LevelGrid,
+    grid: AlignedGrid,
     rgb: GridVectors,
     surfaces: Sequence[Surface],
     is_floor: Bool[Array, "row column"],
     seats: Sequence[Seat],
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Index into MATERIAL_NAMES of every cell, and the name of each surface's material."""
+    """Guesses materials: index into MATERIAL_NAMES of every cell (row, column), and the name of each surface's."""
     wooden = _wooden_cells(rgb)
     material = np.where(wooden, MATERIAL_NAMES.index("wood"), MATERIAL_NAMES.index("chipboard"))
     names = [surface_material(surface, rgb) for surface in surfaces]
@@ -80,7 +80,7 @@ def cell_materials(
     return material, tuple(names)
 
 
-def by_class(
+def with_class_materials(
     material: np.ndarray,
     names: tuple[str, ...],
     class_index: Int[Array, "row column"],
@@ -88,33 +88,34 @@ def by_class(
     surfaces: Sequence[Surface],
     is_floor: Bool[Array, "row column"],
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """The same with what is known in place of what was guessed: the class of a cell decides where it says a material.
+    """Replaces the guesses of `cell_materials` where the class of a cell implies a material.
 
-    A surface, and the floor, takes what most of its cells are where the class of half of them says it.
+    A surface, and the floor, takes the majority's material where the classes of half of its cells imply one.
     """
-    told = np.array([MATERIAL_NAMES.index(m) if (m := material_of(name)) else -1 for name in class_names])
-    known = told[np.clip(class_index, 0, len(told) - 1)]
-    guessed, material = material, np.where(known >= 0, known, material)
+    of_class = np.array([MATERIAL_NAMES.index(m) if (m := material_of(name)) else -1 for name in class_names])
+    implied = of_class[np.clip(class_index, 0, len(of_class) - 1)]
+    guessed, material = material, np.where(implied >= 0, implied, material)
     new = list(names)
     for index, surface in enumerate(surfaces):
-        told_here = _majority(known[surface.cells])
-        if told_here is not None:
-            new[index] = MATERIAL_NAMES[told_here]
-            material[surface.cells] = np.where(known[surface.cells] >= 0, known[surface.cells], told_here)
-    told_floor = _majority(known[is_floor])
-    material[is_floor] = guessed[is_floor] if told_floor is None else told_floor
+        majority = _majority(implied[surface.cells])
+        if majority is not None:
+            new[index] = MATERIAL_NAMES[majority]
+            material[surface.cells] = np.where(implied[surface.cells] >= 0, implied[surface.cells], majority)
+    majority = _majority(implied[is_floor])
+    material[is_floor] = guessed[is_floor] if majority is None else majority
     return material, tuple(new)
 
 
-def _majority(known: Int[Array, " cell"]) -> int | None:
-    told = known[known >= 0]
-    return int(np.bincount(told).argmax()) if len(told) > 0.5 * len(known) else None
+def _majority(implied: Int[Array, " cell"]) -> int | None:
+    """The most frequent material of the cells that have one (-1: none); None if fewer than half have one."""
+    known = implied[implied >= 0]
+    return int(np.bincount(known).argmax()) if len(known) > 0.5 * len(implied) else None
 
 
 def _upholstered(
-    grid: LevelGrid, rgb: GridVectors, open_cells: Bool[Array, "row column"], seats: Sequence[Seat]
+    grid: AlignedGrid, rgb: GridVectors, open_cells: Bool[Array, "row column"], seats: Sequence[Seat]
 ) -> list[Bool[Array, "row column"]]:
-    """The cells around each seat that is as wide as a sofa, or of no wooden colour."""
+    """The cells around each seat that is as wide as a sofa or not of a wooden colour."""
     found = []
     above_floor = grid.points_m[..., 2] - grid.floor_z_m
     for seat in seats:
@@ -137,7 +138,7 @@ def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:
 
 
 def _wooden_cells(rgb: Float[Array, "*cells 3"]) -> Bool[Array, "*cells"] | np.bool_:
-    """Red over green over blue, in the proportions of yellow to red-brown, and not pale."""
+    """Whether colours, 0 to 1, are those of wood: hues from yellow to red-brown, saturated, not too dark."""
     red, green, blue = rgb[..., 0], rgb[..., 1], rgb[..., 2]
     span = np.maximum(red - blue, 1e-6)
     hue_deg = 60 * (green - blue) / span

@@ -1,4 +1,4 @@
-"""The flat surfaces of a room: floor, ceiling, walls, table tops, furniture fronts."""
+"""Segments the planar surfaces of a room: floor, ceiling, walls, table tops, furniture fronts."""
 
 from dataclasses import dataclass
 
@@ -7,127 +7,133 @@ from jaxtyping import Float
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Points, Vec3
-from mmweaver.scene.layout.connected_patches import grown, labelled, linked
+from mmweaver.scene.layout.connected_components import dilated, label_by_distance, label_components
 from mmweaver.scene.photo.depth_grid import GridBool, GridFloat, GridVectors, depth_tolerance_m
 
 UP = np.array([0.0, 0.0, 1.0])
 _MIN_SIZE_M = 0.3
 _MIN_CELLS = 50
-_MIN_FILL = 0.35  # share of a rectangle that is really seen, or hidden by something nearer
-_LEVEL = np.cos(np.deg2rad(20))
-_UPRIGHT = np.sin(np.deg2rad(20))
+_MIN_FILL = 0.35  # share of a rectangle that its cells cover
+_HORIZONTAL = np.cos(np.deg2rad(20))
+_VERTICAL = np.sin(np.deg2rad(20))
 _SAME_FACING = np.cos(np.deg2rad(25))
 _MIN_TOP_M = 0.25  # above the floor
 _WALL_TOP_M = 1.75  # above the floor: a wall reaches higher than most furniture
 _CEILING_M = 1.9  # above the floor
-_MAX_UPRIGHT, _MAX_TOPS = 16, 12
-_WIDER = 2.0  # a wall bends by more than its noise in a real sensor's picture
-_HOUGH_M = 0.05
-_STEEPER = np.array([1.0, 1.0, 5.0])
+_MAX_VERTICAL, _MAX_HORIZONTAL = 16, 12  # planes that are searched for
+_WALL_TOLERANCE = 2.0  # times the tolerance of a cell: real sensors bend walls by more than their noise
+_HOUGH_BIN_M = 0.05
 _HOUGH_ANGLES = 120
+_HEIGHT_WEIGHT = np.array([1.0, 1.0, 5.0])  # in the distance of neighbours: steps in height separate surfaces
 
 
 @dataclass(frozen=True, kw_only=True)
-class LevelGrid:
+class AlignedGrid:
     """The depth grid in the radar's frame."""
 
     points_m: GridVectors
-    normals: GridVectors  # towards the radar
+    normals: GridVectors  # unit, towards the radar
     depth_m: GridFloat  # along the optical axis
     floor_z_m: float
-    focal_cells: float
+    focal_cells: float  # focal length in cells
 
     @property
     def tolerance_m(self) -> GridFloat:
-        """How far a cell may lie from the plane it belongs to."""
+        """How far a cell may lie from the plane it belongs to, (row, column)."""
         return 0.01 + depth_tolerance_m(self.depth_m)
 
     def spacing_m(self, normal: Vec3) -> GridFloat:
-        """Somewhat more than the step from cell to cell on a surface of that normal: far, seen obliquely."""
-        distance = np.linalg.norm(self.points_m, axis=-1)
-        across = np.maximum(np.abs(self.points_m @ normal), 0.05)
-        return 0.02 + 1.4 * np.square(distance) / (across * self.focal_cells)
+        """Upper bound on the distance of neighbouring cells on a surface of that normal, (row, column).
+
+        It grows with distance and with the obliqueness of the view.
+        """
+        distance_m = np.linalg.norm(self.points_m, axis=-1)
+        normal_distance_m = np.maximum(np.abs(self.points_m @ normal), 0.05)
+        return 0.02 + 1.4 * np.square(distance_m) / (normal_distance_m * self.focal_cells)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Surface:
-    """A plane (its material still open) and the cells of the grid that lie on it."""
+    """A plane, whose material is not known yet, and the cells of the grid that lie on it."""
 
     plane: Plane
     cells: GridBool
 
 
-def floor_cells(grid: LevelGrid) -> GridBool:
-    """Cells on the floor: at its height, and not plainly upright."""
+def floor_cells(grid: AlignedGrid) -> GridBool:
+    """Cells on the floor: at its height, and not clearly vertical."""
     near = np.abs(grid.points_m[..., 2] - grid.floor_z_m) < grid.tolerance_m + 0.015
     return near & ~(np.abs(grid.normals[..., 2]) < 0.7)
 
 
-def find_surfaces(grid: LevelGrid) -> tuple[Surface, ...]:
-    """All flat surfaces but the floor, larger ones first within a kind."""
-    # What seems to lie below the floor is a mirror image in it, or light that came round about.
+def find_surfaces(grid: AlignedGrid) -> tuple[Surface, ...]:
+    """All planar surfaces except the floor: walls, vertical panels, horizontal ones; larger ones first within each.
+
+    Planes are taken out one by one: the strongest peak of a Hough transform, its inliers, the next peak.
+    """
+    # Points below the floor are reflections in it, or multipath of the depth sensor.
     is_above = grid.points_m[..., 2] > grid.floor_z_m - grid.tolerance_m
     open_cells = np.isfinite(grid.normals).all(axis=2) & ~floor_cells(grid) & is_above
-    tops = _level_surfaces(grid, open_cells)
-    for surface in tops:
+    horizontal = _horizontal_surfaces(grid, open_cells)
+    for surface in horizontal:
         open_cells = open_cells & ~surface.cells
-    return _upright_surfaces(grid, open_cells) + tops
+    return _vertical_surfaces(grid, open_cells) + horizontal
 
 
-# Upright: walls and panels -------------------------------------------------------------------------------------------
-def _upright_surfaces(grid: LevelGrid, open_cells: GridBool) -> tuple[Surface, ...]:
-    open_cells = open_cells & (np.abs(grid.normals[..., 2]) < _UPRIGHT)
+# Vertical: walls and panels ------------------------------------------------------------------------------------------
+def _vertical_surfaces(grid: AlignedGrid, open_cells: GridBool) -> tuple[Surface, ...]:
+    open_cells = open_cells & (np.abs(grid.normals[..., 2]) < _VERTICAL)
     surfaces: list[Surface] = []
-    for _ in range(_MAX_UPRIGHT):
-        plane = _strongest_upright(grid.points_m[open_cells], grid.normals[open_cells])
+    for _ in range(_MAX_VERTICAL):
+        plane = _strongest_vertical(grid.points_m[open_cells], grid.normals[open_cells])
         if plane is None:
             break
-        normal, offset = _refined_upright(grid, open_cells, *plane)
-        on_plane = open_cells & _is_on(grid, normal, offset, _WIDER)
+        normal, offset = _refined_vertical(grid, open_cells, *plane)
+        on_plane = open_cells & _is_on(grid, normal, offset, _WALL_TOLERANCE)
         if on_plane.sum() < _MIN_CELLS:
-            # The peak of the vote was a chance meeting of many small things: leave them out of the next vote.
+            # The peak was a coincidence of many small things: leave them out of the next vote.
             open_cells = open_cells & ~_is_on(grid, *plane)
             continue
         open_cells = open_cells & ~on_plane
-        labels, count = labelled(grown(on_plane, 2))
+        labels, count = label_components(dilated(on_plane, 2))
         for label in range(1, count + 1):
-            surface = _upright_surface(grid, normal, offset, on_plane & (labels == label))
+            surface = _vertical_surface(grid, normal, offset, on_plane & (labels == label))
             if surface is not None:
                 surfaces.append(surface)
     return tuple(sorted(surfaces, key=lambda surface: (surface.plane.kind != "wall", -_area_m2(surface.plane))))
 
 
-def _strongest_upright(points: Points, normals: Points) -> tuple[Vec3, float] | None:
-    """Hough vote over direction and distance: the upright plane n . p = offset that most cells lie on."""
+def _strongest_vertical(points: Points, normals: Points) -> tuple[Vec3, float] | None:
+    """Hough transform over azimuth and offset: the vertical plane n . p = offset that most points lie on."""
     if len(points) < _MIN_CELLS:
         return None
     direction = np.arctan2(normals[:, 1], normals[:, 0])
     angle_bin = np.round(direction / (2 * np.pi) * _HOUGH_ANGLES).astype(int)
     best = (0.0, 0, 0.0)
-    for turn in range(_HOUGH_ANGLES):
-        near = np.abs((angle_bin - turn + _HOUGH_ANGLES // 2) % _HOUGH_ANGLES - _HOUGH_ANGLES // 2) <= 3
+    for candidate in range(_HOUGH_ANGLES):
+        near = np.abs((angle_bin - candidate + _HOUGH_ANGLES // 2) % _HOUGH_ANGLES - _HOUGH_ANGLES // 2) <= 3
         if near.sum() < _MIN_CELLS or near.sum() < best[0]:
             continue
-        theta = 2 * np.pi * turn / _HOUGH_ANGLES
+        theta = 2 * np.pi * candidate / _HOUGH_ANGLES
         offset = points[near, 0] * np.cos(theta) + points[near, 1] * np.sin(theta)
-        bins = np.floor(offset / _HOUGH_M).astype(int)
+        bins = np.floor(offset / _HOUGH_BIN_M).astype(int)
         lowest = bins.min()
         votes = np.bincount(bins - lowest)
         votes = votes + np.pad(votes[1:], (0, 1))
         peak = int(np.argmax(votes))
         if votes[peak] > best[0]:
-            best = (float(votes[peak]), turn, (peak + lowest + 1) * _HOUGH_M)
+            best = (float(votes[peak]), candidate, (peak + lowest + 1) * _HOUGH_BIN_M)
     if best[0] < _MIN_CELLS:
         return None
     theta = 2 * np.pi * best[1] / _HOUGH_ANGLES
     return np.array([np.cos(theta), np.sin(theta), 0.0]), best[2]
 
 
-def _refined_upright(grid: LevelGrid, open_cells: GridBool, normal: Vec3, offset: float) -> tuple[Vec3, float]:
-    """Least squares over the cells near the plane, kept exactly upright."""
-    slack = 1.5
+def _refined_vertical(grid: AlignedGrid, open_cells: GridBool, normal: Vec3, offset: float) -> tuple[Vec3, float]:
+    """Weighted least-squares fit to the cells near the plane, constrained to be vertical."""
+    tolerance_factor = 1.5
     for _ in range(4):
-        chosen = open_cells & _is_on(grid, normal, offset, slack)
+        chosen = open_cells & _is_on(grid, normal, offset, tolerance_factor)
         if chosen.sum() < _MIN_CELLS // 2:
             break
         points, weight = grid.points_m[chosen][:, :2], 1 / np.square(grid.tolerance_m[chosen])
@@ -135,11 +141,11 @@ def _refined_upright(grid: LevelGrid, open_cells: GridBool, normal: Vec3, offset
         spread = (points - centre) * np.sqrt(weight)[:, None]
         _, vectors = np.linalg.eigh(spread.T @ spread)
         flat = vectors[:, 0] * np.sign(vectors[:, 0] @ normal[:2] or 1.0)
-        normal, offset, slack = np.array([flat[0], flat[1], 0.0]), float(centre @ flat), 1.0
+        normal, offset, tolerance_factor = np.array([flat[0], flat[1], 0.0]), float(centre @ flat), 1.0
     return normal, offset
 
 
-def _upright_surface(grid: LevelGrid, normal: Vec3, offset: float, cells: GridBool) -> Surface | None:
+def _vertical_surface(grid: AlignedGrid, normal: Vec3, offset: float, cells: GridBool) -> Surface | None:
     if cells.sum() < _MIN_CELLS:
         return None
     axis_u = np.cross(UP, normal)
@@ -148,7 +154,7 @@ def _upright_surface(grid: LevelGrid, normal: Vec3, offset: float, cells: GridBo
     bottom, top = np.percentile(points[:, 2], [1, 99])
     is_wall = _is_wall(grid, normal, offset, (left, right, bottom, top), cells)
     if is_wall:
-        # A wall stands on the floor, whatever hides its foot.
+        # A wall reaches the floor, even where its foot is occluded.
         bottom = grid.floor_z_m
     if min(right - left, top - bottom) < _MIN_SIZE_M:
         return None
@@ -159,8 +165,8 @@ def _upright_surface(grid: LevelGrid, normal: Vec3, offset: float, cells: GridBo
     return Surface(plane=plane, cells=cells)
 
 
-def _is_wall(grid: LevelGrid, normal: Vec3, offset: float, extents: tuple[float, ...], cells: GridBool) -> bool:
-    """High enough (or cut off by the picture's upper edge), wide enough, and hardly anything seen behind it."""
+def _is_wall(grid: AlignedGrid, normal: Vec3, offset: float, extents: tuple[float, ...], cells: GridBool) -> bool:
+    """High enough (or cut off by the picture's upper edge), wide enough, and hardly any point behind it."""
     left, right, bottom, top = extents
     is_cut = cells[_first_measured_row(grid)].sum() >= 0.3 * cells.any(axis=0).sum()
     if right - left < 2 * _MIN_SIZE_M or top - bottom < 2 * _MIN_SIZE_M:
@@ -174,8 +180,8 @@ def _is_wall(grid: LevelGrid, normal: Vec3, offset: float, extents: tuple[float,
     return bool(seen_through < 0.25 * cells.sum())
 
 
-def _first_measured_row(grid: LevelGrid) -> tuple[np.ndarray, np.ndarray]:
-    """Index of the topmost measured cells (three of each column)."""
+def _first_measured_row(grid: AlignedGrid) -> tuple[np.ndarray, np.ndarray]:
+    """Rows and columns, (3, column) each, of the three topmost measured cells of every column."""
     measured = np.isfinite(grid.depth_m)
     columns = np.flatnonzero(measured.any(axis=0))
     first = np.argmax(measured[:, columns], axis=0)
@@ -184,40 +190,39 @@ def _first_measured_row(grid: LevelGrid) -> tuple[np.ndarray, np.ndarray]:
     return rows, np.broadcast_to(columns, rows.shape)
 
 
-# Level: ceilings and tops ---------------------------------------------------------------------------------------------
-def _level_surfaces(grid: LevelGrid, open_cells: GridBool) -> tuple[Surface, ...]:
+# Horizontal: ceilings and tops --------------------------------------------------------------------------------------
+def _horizontal_surfaces(grid: AlignedGrid, open_cells: GridBool) -> tuple[Surface, ...]:
     surfaces = []
     for sign in (1.0, -1.0):
-        facing = open_cells & (sign * grid.normals[..., 2] > _LEVEL)
+        facing = open_cells & (sign * grid.normals[..., 2] > _HORIZONTAL)
         above_floor = grid.points_m[..., 2] - grid.floor_z_m
         facing &= (above_floor > _MIN_TOP_M) if sign > 0 else (above_floor > _CEILING_M)
-        surfaces += _peeled_levels(grid, facing, sign)
+        surfaces += _peeled_surfaces(grid, facing, sign)
     return tuple(sorted(surfaces, key=lambda surface: -_area_m2(surface.plane)))
 
 
-def _peeled_levels(grid: LevelGrid, facing: GridBool, sign: float) -> list[Surface]:
-    """Takes the height with the most cells, its connected patches, and so on."""
+def _peeled_surfaces(grid: AlignedGrid, facing: GridBool, sign: float) -> list[Surface]:
+    """Takes the height with the most cells, the connected components of its cells, then the next height."""
     surfaces: list[Surface] = []
-    for _ in range(_MAX_TOPS):
+    for _ in range(_MAX_HORIZONTAL):
         heights = grid.points_m[facing][:, 2]
         if len(heights) < _MIN_CELLS:
             break
         bins = np.floor(heights / 0.02).astype(int)
         votes = np.convolve(np.bincount(bins - bins.min()), np.ones(3), mode="same")
-        level_m = (int(np.argmax(votes)) + bins.min() + 0.5) * 0.02
-        on_level = facing & (np.abs(grid.points_m[..., 2] - level_m) < 0.5 * grid.tolerance_m + 0.02)
-        facing = facing & ~on_level
-        # A step in height parts a table from the sofa behind it sooner than a gap does.
-        labels, _ = linked(on_level, grid.points_m * _STEEPER, grid.spacing_m(UP))
+        height_m = (int(np.argmax(votes)) + bins.min() + 0.5) * 0.02
+        at_height = facing & (np.abs(grid.points_m[..., 2] - height_m) < 0.5 * grid.tolerance_m + 0.02)
+        facing = facing & ~at_height
+        labels, _ = label_by_distance(at_height, grid.points_m * _HEIGHT_WEIGHT, grid.spacing_m(UP))
         sizes = np.bincount(labels.ravel())
         for label in np.flatnonzero(sizes >= _MIN_CELLS)[1:]:
-            surface = _level_surface(grid, labels == label, sign)
+            surface = _horizontal_surface(grid, labels == label, sign)
             if surface is not None:
                 surfaces.append(surface)
     return surfaces
 
 
-def _level_surface(grid: LevelGrid, cells: GridBool, sign: float) -> Surface | None:
+def _horizontal_surface(grid: AlignedGrid, cells: GridBool, sign: float) -> Surface | None:
     if cells.sum() < _MIN_CELLS:
         return None
     points = grid.points_m[cells]
@@ -237,7 +242,7 @@ def _level_surface(grid: LevelGrid, cells: GridBool, sign: float) -> Surface | N
 
 
 def _tightest_axis(points: Float[Array, "point 2"]) -> Vec3:
-    """Direction of the smallest rectangle around points in the plane."""
+    """Direction of the minimum-area bounding rectangle of points in the plane."""
     angles = np.deg2rad(np.arange(0, 90, 3))
     along = points[:, :1] * np.cos(angles) + points[:, 1:] * np.sin(angles)
     across = points[:, 1:] * np.cos(angles) - points[:, :1] * np.sin(angles)
@@ -249,8 +254,9 @@ def _tightest_axis(points: Float[Array, "point 2"]) -> Vec3:
 
 
 # Both ---------------------------------------------------------------------------------------------------------------
-def _is_on(grid: LevelGrid, normal: Vec3, offset: float, slack: float = 1.0) -> GridBool:
-    near = np.abs(grid.points_m @ normal - offset) < slack * grid.tolerance_m + 0.005
+def _is_on(grid: AlignedGrid, normal: Vec3, offset: float, tolerance_factor: float = 1.0) -> GridBool:
+    """Inliers of the plane n . p = offset: near it, and with a similar normal."""
+    near = np.abs(grid.points_m @ normal - offset) < tolerance_factor * grid.tolerance_m + 0.005
     return near & (grid.normals @ normal > _SAME_FACING)
 
 
@@ -265,8 +271,8 @@ def _plane(
     )
 
 
-def _fill(grid: LevelGrid, plane: Plane, cells: GridBool) -> float:
-    """Share of the rectangle that cells lie on, counted in squares of 5 cm (wider where the cells lie wider apart)."""
+def _fill(grid: AlignedGrid, plane: Plane, cells: GridBool) -> float:
+    """Share of the plane's rectangle that cells cover, in squares of 5 cm or of the cells' spacing if that is wider."""
     offsets = grid.points_m[cells] - plane.centre_m
     spacing = max(0.05, 1.5 * float(np.sqrt(4 * plane.half_size_m[0] * plane.half_size_m[1] / cells.sum())))
     u = np.floor((offsets @ plane.axis_u + plane.half_size_m[0]) / spacing).astype(int)

@@ -1,4 +1,4 @@
-"""One picture out of an .avi: motion JPEG, PNG and uncompressed by ourselves, anything else through ffmpeg.
+"""Reads one picture of an .avi: motion JPEG, PNG and uncompressed directly, other codecs through ffmpeg.
 
 Reference: Microsoft, "AVI RIFF File Reference".
 """
@@ -17,7 +17,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import RgbPixels
 
 PICTURE_CODECS = {b"MJPG", b"mjpg", b"MPNG", b"png ", b"PNG "}
-FFMPEG_S = 120.0
+FFMPEG_TIMEOUT_S = 120.0
 
 
 @dataclass(frozen=True)
@@ -29,17 +29,16 @@ class _Video:
 
 
 def avi_frame(path: Path, index: int) -> RgbPixels:
-    """Frame `index` of an .avi as RGB.
+    """Frame `index` of an .avi as uint8 RGB (height, width, 3).
 
-    Raises InputError where it is no .avi, has no such frame, or is coded in a way that needs an ffmpeg that is not
-    installed.
+    Raises InputError where the file is not an .avi, has no such frame, or needs an ffmpeg that is not installed.
     """
     try:
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     if data[:4] != b"RIFF" or data[8:12] != b"AVI ":
-        raise InputError(f"{path} is no .avi file{' (it is empty)' if not data else ''}")
+        raise InputError(f"{path} is not an .avi file{' (it is empty)' if not data else ''}")
     video = _video(path, data)
     if not 0 <= index < len(video.chunks):
         raise InputError(f"{path} has {len(video.chunks)} frames; choose one from 0 to {len(video.chunks) - 1}")
@@ -52,7 +51,7 @@ def avi_frame(path: Path, index: int) -> RgbPixels:
 
 
 def _video(path: Path, data: bytes) -> _Video:
-    """Size and coding of the first video stream, and where its frames lie."""
+    """Codec, size and frame positions of the first video stream."""
     codec, width, height, chunks = b"", 0, 0, []
     stream, video_stream = -1, -1
     for name, first, length in _chunks(data, 0, len(data)):
@@ -70,17 +69,17 @@ def _video(path: Path, data: bytes) -> _Video:
     return _Video(codec, width, abs(height), chunks)
 
 
-def _chunks(data: bytes, at: int, end: int) -> Iterator[tuple[bytes, int, int]]:
-    """Every chunk, depth first: name, first byte, length. Cut-off ones end the walk."""
-    while at + 8 <= end:
-        name, length = data[at : at + 4], int.from_bytes(data[at + 4 : at + 8], "little")
+def _chunks(data: bytes, position: int, end: int) -> Iterator[tuple[bytes, int, int]]:
+    """Every chunk, depth first: name, first byte, length. A truncated chunk ends the iteration."""
+    while position + 8 <= end:
+        name, length = data[position : position + 4], int.from_bytes(data[position + 4 : position + 8], "little")
         if name in (b"RIFF", b"LIST"):
-            yield from _chunks(data, at + 12, min(at + 8 + length, end))
-        elif at + 8 + length <= end:
-            yield name, at + 8, length
+            yield from _chunks(data, position + 12, min(position + 8 + length, end))
+        elif position + 8 + length <= end:
+            yield name, position + 8, length
         else:
             return
-        at += 8 + length + length % 2
+        position += 8 + length + length % 2
 
 
 def _decoded(path: Path, content: bytes, index: int) -> RgbPixels:
@@ -93,7 +92,7 @@ def _decoded(path: Path, content: bytes, index: int) -> RgbPixels:
 
 
 def _uncompressed(content: bytes, video: _Video) -> RgbPixels:
-    """Blue, green, red from the lowest row up; rows are padded to four bytes."""
+    """BGR pixels, stored from the lowest row up in rows padded to four bytes."""
     row = -(-3 * video.width // 4) * 4
     rows = np.frombuffer(content, np.uint8, row * video.height).reshape(video.height, row)
     return rows[::-1, : 3 * video.width].reshape(video.height, video.width, 3)[:, :, ::-1].copy()
@@ -104,17 +103,17 @@ def _through_ffmpeg(path: Path, codec: bytes, index: int) -> RgbPixels:
     ffmpeg = shutil.which("ffmpeg")
     if ffmpeg is None:
         raise InputError(
-            f"{path} is coded as {name}, which needs ffmpeg: install it, or save the picture yourself and give it with"
-            " --rgb"
+            f"{path} is encoded as {name}, which needs ffmpeg: install it, or save the picture yourself and give it"
+            " with --rgb"
         )
     command = [
         ffmpeg, "-v", "error", "-i", str(path), "-vf", f"select=eq(n\\,{index})", "-frames:v", "1", "-f", "image2pipe",
         "-c:v", "png", "-",
     ]  # fmt: skip
     try:
-        done = subprocess.run(command, capture_output=True, timeout=FFMPEG_S, stdin=subprocess.DEVNULL)
+        done = subprocess.run(command, capture_output=True, timeout=FFMPEG_TIMEOUT_S, stdin=subprocess.DEVNULL)
     except (OSError, subprocess.TimeoutExpired) as error:
-        raise InputError(f"{path}: ffmpeg did not read it ({error}); save the picture and give it with --rgb") from None
+        raise InputError(f"{path}: ffmpeg failed ({error}); save the picture and give it with --rgb") from None
     if done.returncode or not done.stdout:
         reason = done.stderr.decode(errors="replace").strip().splitlines()[-1:] or ["no picture came out"]
         raise InputError(f"{path}: ffmpeg cannot read frame {index} ({reason[0]}); give the picture with --rgb")

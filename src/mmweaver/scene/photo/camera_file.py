@@ -7,16 +7,17 @@ from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics
+from mmweaver.geometry.pinhole import resized
 
 DEFAULT_DEPTH_UNIT_M = 0.001
 
-# RealSense D455, colour: 1280 x 800 pixels, 90 degrees across (Intel's data sheet of the D400 series). Its smaller
-# pictures are centred crops of that, scaled; 640 x 480 so has a focal length of 384 pixels.
+# RealSense D455, colour: 1280 x 800 pixels, 90 degrees horizontally (Intel's data sheet of the D400 series). Its
+# smaller pictures are centred crops of that, scaled: 640 x 480 has a focal length of 384 pixels.
 _D455_WIDTH, _D455_HEIGHT, _D455_FOCAL = 1280, 800, 640.0
 
 
 def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
-    """The field of view of a RealSense D455 scaled to a picture.
+    """The intrinsics of a RealSense D455 for a picture of this size.
 
     >>> d455_intrinsics(640, 480).fx
     384.0
@@ -28,9 +29,9 @@ def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
 
 
 def read_camera_file(path: Path) -> dict[str, float]:
-    """The numbers of a camera.json: fx, fy, cx, cy, perhaps width, height (whole) and depth_unit_m.
+    """The numbers of a camera.json: fx, fy, cx, cy in pixels, and width, height and depth_unit_m if it has them.
 
-    Raises InputError where a key is missing or a value is no sensible number. Other keys are ignored.
+    Other keys are ignored. Raises InputError where a key is missing or a value is not a plausible number.
     """
     try:
         content: Any = json.loads(path.read_text(encoding="utf-8"))
@@ -53,40 +54,34 @@ def read_camera_file(path: Path) -> dict[str, float]:
 
 
 def intrinsics_for(path: Path, numbers: dict[str, float], width: int, height: int) -> CameraIntrinsics:
-    """The intrinsics in pixels of a picture of this size; scaled where the file states another width or height.
+    """The intrinsics, in pixels, of a picture of this size; rescaled where the file is for another size.
 
-    Raises InputError where the two differ in shape, or no camera could have such numbers.
+    Raises InputError where the aspect ratios differ, or no camera could have such numbers.
     """
-    stated_width, stated_height = numbers.get("width", float(width)), numbers.get("height", float(height))
-    across, down = width / stated_width, height / stated_height
-    if abs(across / down - 1) > 0.01:
+    stated = CameraIntrinsics(
+        fx=numbers["fx"], fy=numbers["fy"], cx=numbers["cx"], cy=numbers["cy"],
+        width=round(numbers.get("width", width)), height=round(numbers.get("height", height)),
+    )  # fmt: skip
+    if abs(width / stated.width / (height / stated.height) - 1) > 0.01:
         raise InputError(
-            f"{path} is for a picture of {stated_width:g} x {stated_height:g} pixels, this one has {width} x {height},"
-            " which is another shape; give the camera file of this picture"
+            f"{path} is for a picture of {stated.width} x {stated.height} pixels, this one has {width} x {height},"
+            " another aspect ratio; give the camera file of this picture"
         )
-    # Pixel centres lie at whole numbers, so pixel edges, at -0.5, are what scaling keeps.
-    intrinsics = CameraIntrinsics(
-        fx=numbers["fx"] * across,
-        fy=numbers["fy"] * down,
-        cx=(numbers["cx"] + 0.5) * across - 0.5,
-        cy=(numbers["cy"] + 0.5) * down - 0.5,
-        width=width,
-        height=height,
-    )
+    intrinsics = resized(stated, width, height)
     _check(path, intrinsics)
     return intrinsics
 
 
 def _check(path: Path, camera: CameraIntrinsics) -> None:
-    across = math.degrees(2 * math.atan(camera.width / 2 / camera.fx))
-    if not 10 <= across <= 150 or not 0.5 <= camera.fx / camera.fy <= 2:
+    field_of_view_deg = math.degrees(2 * math.atan(camera.width / 2 / camera.fx))
+    if not 10 <= field_of_view_deg <= 150 or not 0.5 <= camera.fx / camera.fy <= 2:
         raise InputError(
-            f"{path}: fx {camera.fx:g} and fy {camera.fy:g} on {camera.width} x {camera.height} pixels give a view of"
-            f" {across:.0f} degrees; focal lengths must be in pixels of this picture"
+            f"{path}: fx {camera.fx:g} and fy {camera.fy:g} on {camera.width} x {camera.height} pixels give a field of"
+            f" view of {field_of_view_deg:.0f} degrees; focal lengths must be in pixels of this picture"
         )
     if not (-0.25 <= camera.cx / camera.width <= 1.25 and -0.25 <= camera.cy / camera.height <= 1.25):
         raise InputError(
-            f"{path}: the principal point ({camera.cx:g}, {camera.cy:g}) lies far outside the picture of"
+            f"{path}: the principal point ({camera.cx:g}, {camera.cy:g}) is far outside the picture of"
             f" {camera.width} x {camera.height} pixels; cx and cy must be in pixels of this picture"
         )
 

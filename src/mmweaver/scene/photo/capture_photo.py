@@ -1,7 +1,7 @@
 """The photo of a capture folder as mmwave-capture-std writes it: a RealSense's colour.avi and depth.zst.
 
-The two are not aligned and their extrinsics are not recorded: the photo is the depth camera's, each of its pixels
-coloured from where the colour camera of a D455, 59 mm to the side, saw that point.
+The two are not aligned, and their extrinsics are not recorded. The photo is the depth camera's; each pixel takes its
+colour from the colour camera, which a D455 has 59 mm to the side.
 
 Reference: mmwave-capture-std, capture/realsense (facts of the format only).
 """
@@ -18,18 +18,18 @@ from jaxtyping import UInt8
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.shapes import Array, DepthPixels, PerFrame, RgbPixels
-from mmweaver.geometry.pinhole import unproject
+from mmweaver.geometry.pinhole import project, rotated_clockwise, unproject
 from mmweaver.scene.photo.avi_frames import avi_frame
 from mmweaver.scene.photo.picture_files import read_rgb
 
 DEPTH, COLOUR = "depth.zst", "color.avi"
 D455_BASELINE_M = 0.059  # a point at x in the depth camera is at x - baseline in the colour camera
-MOST_BYTES = 8_000_000_000
+MAX_BYTES = 8_000_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
 class CapturedPhoto:
-    """One photo of a capture, its folder, and what was assumed."""
+    """One photo of a capture, its folder, and the assumptions made in reading it."""
 
     photo: RgbdPhoto
     folder: Path
@@ -37,24 +37,24 @@ class CapturedPhoto:
 
 
 def photo_folder(path: Path | str) -> Path | None:
-    """The folder of the RealSense in a capture, or beside a radar's folder of one; None where there is none.
+    """The folder of the RealSense in a capture, or next to the given radar's folder; None where there is none.
 
     Raises InputError where there are several.
     """
     path = Path(path)
-    for place in (path, path.parent):
-        found = [place] if (place / DEPTH).is_file() else _below(place)
+    for parent in (path, path.parent):
+        found = [parent] if (parent / DEPTH).is_file() else _camera_folders(parent)
         if len(found) > 1:
-            raise InputError(f"{place} holds several cameras; give the folder of one: {', '.join(map(str, found))}")
+            raise InputError(f"{parent} holds several cameras; give the folder of one: {', '.join(map(str, found))}")
         if found:
             return found[0]
     return None
 
 
 def photo_times_s(folder: Path) -> PerFrame:
-    """When each photo of a RealSense's folder arrived at the recorder, seconds of its clock.
+    """Arrival time of each photo of a RealSense's folder, (photo,) seconds of the recorder's clock.
 
-    Raises InputError where depth_metadata.json is missing or holds no times.
+    Raises InputError where depth_metadata.json is missing or has no times.
     """
     entries = _json(folder / "depth_metadata.json")
     if not isinstance(entries, list) or not entries:
@@ -70,7 +70,7 @@ def photo_times_s(folder: Path) -> PerFrame:
 
 
 def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None) -> CapturedPhoto:
-    """Photo `index` of a capture folder, with depth; `rgb` takes the place of the frame of color.avi.
+    """Reads photo `index` of a capture folder with its depth; `rgb` replaces the frame of color.avi.
 
     Raises InputError where there is no RealSense in the folder, no such photo, or a file is missing or damaged.
     """
@@ -80,77 +80,83 @@ def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None
     if folder is None:
         raise InputError(f"{path} holds no RealSense ({DEPTH}); give --rgb and --depth instead")
     depth_config, colour_config = (_json(folder / f"{name}_config.json") for name in ("depth", "color"))
-    lens, colour_lens = (
+    intrinsics, colour_intrinsics = (
         _intrinsics(folder / f"{name}_config.json", content)
         for name, content in (("depth", depth_config), ("color", colour_config))
     )
     unit_m = depth_config.get("depth_units")
     if not (isinstance(unit_m, int | float) and 1e-6 < unit_m < 0.1):
-        raise InputError(f"{folder / 'depth_config.json'}: depth_units is {unit_m!r}; metres a count are needed")
-    turned = _is_turned(folder)
-    raw = _depth_frame(folder / DEPTH, index, lens)
+        raise InputError(
+            f"{folder / 'depth_config.json'}: depth_units is {unit_m!r}; it must be the metres of one count"
+        )
+    rotated = _is_rotated(folder)
+    raw = _depth_frame(folder / DEPTH, index, intrinsics)
     pixels = avi_frame(folder / COLOUR, index) if rgb is None else read_rgb(rgb)[0]
-    if turned:  # both were turned by 90 degrees clockwise when they were saved, their intrinsics were not
-        raw = np.rot90(raw.reshape(lens.width, lens.height))
+    if rotated:  # both pictures were rotated by 90 degrees clockwise when saved, their intrinsics were not
+        raw = np.rot90(raw.reshape(intrinsics.width, intrinsics.height))
         pixels = np.rot90(pixels)
-    if pixels.shape[:2] != (colour_lens.height, colour_lens.width):
+    if pixels.shape[:2] != (colour_intrinsics.height, colour_intrinsics.width):
         raise InputError(
             f"{rgb or folder / COLOUR} has {pixels.shape[1]} x {pixels.shape[0]} pixels, color_config.json says"
-            f" {colour_lens.width} x {colour_lens.height}"
+            f" {colour_intrinsics.width} x {colour_intrinsics.height}"
         )
     depth_m = np.where(raw > 0, raw * float(unit_m), np.nan)
     if not np.isfinite(depth_m).any():
         raise InputError(f"{folder / DEPTH}: photo {index} has no depth at all; choose another (--photo)")
-    colours = _coloured(depth_m, lens, pixels, colour_lens)
-    if turned:
-        depth_m, colours, lens = np.rot90(depth_m, -1).copy(), np.rot90(colours, -1).copy(), _turned(lens)
-    photo = RgbdPhoto(rgb=colours, depth_m=depth_m, intrinsics=lens)
+    colours = _coloured(depth_m, intrinsics, pixels, colour_intrinsics)
+    if rotated:
+        depth_m, colours = np.rot90(depth_m, -1).copy(), np.rot90(colours, -1).copy()
+        intrinsics = rotated_clockwise(intrinsics)
+    photo = RgbdPhoto(rgb=colours, depth_m=depth_m, intrinsics=intrinsics)
     return CapturedPhoto(photo=photo, folder=folder, assumptions=_assumptions(index))
 
 
 def _assumptions(index: int) -> tuple[str, ...]:
     return (
-        f"Photo {index} of the capture was taken, as the depth camera saw it; the colour camera's place is that of a"
-        f" RealSense D455, {1e3 * D455_BASELINE_M:.0f} mm beside it, for the capture does not hold it.",
-        "The recorder stamps a number into the colour picture; that patch keeps its white.",
+        f"Photo {index} of the capture was used, in the depth camera's view; the colour camera's position, which is not"
+        f" recorded, was assumed to be that of a RealSense D455, {1e3 * D455_BASELINE_M:.0f} mm to the side.",
+        "The recorder stamps a frame number into the colour picture; that patch stays white.",
     )
 
 
 def _coloured(
-    depth_m: DepthPixels, lens: CameraIntrinsics, rgb: UInt8[Array, "rows columns 3"], colour_lens: CameraIntrinsics
+    depth_m: DepthPixels,
+    intrinsics: CameraIntrinsics,
+    rgb: UInt8[Array, "rows columns 3"],
+    colour_intrinsics: CameraIntrinsics,
 ) -> RgbPixels:
-    """The colour of each depth pixel; where depth is missing that of a point at the median depth."""
+    """The colour of each depth pixel, reprojected; where depth is missing, that of a point at the median depth."""
     filled = np.where(np.isfinite(depth_m), depth_m, np.nanmedian(depth_m))
-    points = unproject(filled, lens)
-    column = colour_lens.fx * (points[..., 0] - D455_BASELINE_M) / filled + colour_lens.cx
-    row = colour_lens.fy * points[..., 1] / filled + colour_lens.cy
-    column = np.clip(np.rint(column), 0, colour_lens.width - 1).astype(int)
-    row = np.clip(np.rint(row), 0, colour_lens.height - 1).astype(int)
+    points_m = unproject(filled, intrinsics) - np.array([D455_BASELINE_M, 0.0, 0.0])
+    pixels, _ = project(points_m, colour_intrinsics)
+    column = np.clip(np.rint(pixels[..., 0]), 0, colour_intrinsics.width - 1).astype(int)
+    row = np.clip(np.rint(pixels[..., 1]), 0, colour_intrinsics.height - 1).astype(int)
     return rgb[row, column]
 
 
-def _depth_frame(path: Path, index: int, lens: CameraIntrinsics) -> np.ndarray:
-    """Counts (height, width) of one frame of the zstd stream."""
+def _depth_frame(path: Path, index: int, intrinsics: CameraIntrinsics) -> np.ndarray:
+    """Depth counts (height, width), uint16, of one frame of the zstd stream."""
     try:
         import zstandard
     except ImportError:
-        raise InputError(f"{path} is zstd-compressed; install what reads it: pip install 'mmweaver[capture]'") from None
-    size = 2 * lens.width * lens.height
-    if index < 0 or (index + 1) * size > MOST_BYTES:
-        raise InputError(f"photo {index} of {path} cannot be; choose one from 0")
+        raise InputError(f"{path} is zstd-compressed; install the reader: pip install 'mmweaver[capture]'") from None
+    size = 2 * intrinsics.width * intrinsics.height
+    if index < 0 or (index + 1) * size > MAX_BYTES:
+        raise InputError(f"{path} cannot hold a photo {index}; choose one from 0")
     try:
         with path.open("rb") as file, zstandard.ZstdDecompressor().stream_reader(file) as stream:
-            for at in range(index + 1):
+            for number in range(index + 1):
                 content = _read_fully(stream, size)
                 if len(content) < size:
+                    pixels = f"{intrinsics.width} x {intrinsics.height} pixels"
                     raise InputError(
-                        f"{path} holds {at} photos of {lens.width} x {lens.height}; choose one from 0 to {at - 1}"
-                        if at
-                        else f"{path} holds not one photo of {lens.width} x {lens.height} pixels; it is cut off"
+                        f"{path} holds {number} photos of {pixels}; choose one from 0 to {number - 1}"
+                        if number
+                        else f"{path} holds no whole photo of {pixels}; it is truncated"
                     )
     except (zstandard.ZstdError, OSError) as error:
         raise InputError(f"cannot read {path}: {error}; is it the capture's {DEPTH}?") from None
-    return np.frombuffer(content, "<u2").reshape(lens.height, lens.width)
+    return np.frombuffer(content, "<u2").reshape(intrinsics.height, intrinsics.width)
 
 
 def _read_fully(stream: Any, size: int) -> bytes:
@@ -169,19 +175,12 @@ def _intrinsics(path: Path, content: Any) -> CameraIntrinsics:
     except (KeyError, TypeError, ValueError):
         raise InputError(f"{path} lacks intrinsics with width, height, fx, fy, ppx, ppy") from None
     if not (32 <= width <= 8000 and 32 <= height <= 8000 and fx > 1 and fy > 1):
-        raise InputError(f"{path}: {width} x {height} pixels with fx {fx:g}, fy {fy:g} are no camera")
+        raise InputError(f"{path}: no camera has {width} x {height} pixels with fx {fx:g}, fy {fy:g}")
     return CameraIntrinsics(fx=fx, fy=fy, cx=ppx, cy=ppy, width=width, height=height)
 
 
-def _turned(lens: CameraIntrinsics) -> CameraIntrinsics:
-    """The intrinsics of a picture turned by 90 degrees clockwise."""
-    return CameraIntrinsics(
-        fx=lens.fy, fy=lens.fx, cx=lens.height - 1 - lens.cy, cy=lens.cx, width=lens.height, height=lens.width
-    )
-
-
-def _is_turned(folder: Path) -> bool:
-    """Whether config.toml had the camera's pictures turned."""
+def _is_rotated(folder: Path) -> bool:
+    """Whether config.toml says that the camera's pictures were rotated."""
     try:
         content = tomllib.loads((folder.parent / "config.toml").read_text(encoding="utf-8"))
         return bool(content["hardware"][folder.name].get("rotate", False))
@@ -195,8 +194,8 @@ def _json(path: Path) -> Any:
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path} is no JSON file ({error})") from None
+        raise InputError(f"{path} is not a JSON file ({error})") from None
 
 
-def _below(place: Path) -> list[Path]:
-    return sorted(folder for folder in place.iterdir() if (folder / DEPTH).is_file()) if place.is_dir() else []
+def _camera_folders(parent: Path) -> list[Path]:
+    return sorted(folder for folder in parent.iterdir() if (folder / DEPTH).is_file()) if parent.is_dir() else []

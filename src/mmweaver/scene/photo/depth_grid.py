@@ -1,4 +1,4 @@
-"""A depth picture thinned to a grid of about 160 x 120 cells, with clean edges and a normal for every cell."""
+"""A depth picture binned to a grid of about 160 x 120 cells, without flying pixels, with a normal for every cell."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.shapes import Array, ClassPixels, DepthPixels
-from mmweaver.geometry.pinhole import unproject
+from mmweaver.geometry.pinhole import binned, normalized_coordinates, unproject
 
 GridBool = Bool[Array, "row column"]
 GridFloat = Float[Array, "row column"]
@@ -17,42 +17,37 @@ _CELLS_ACROSS = 160
 _NORMAL_RADIUS = 3  # cells: a window of 7 x 7
 _MIN_NORMAL_SUPPORT = 12  # cells of that window on one surface
 _MIN_CELL_SUPPORT = 0.35  # share of a cell's pixels with a measurement
-_SHIFTS = ((0, 1), (1, 0), (0, -1), (-1, 0))
+_NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 
 
 @dataclass(frozen=True, kw_only=True)
 class DepthGrid:
-    """Cells in the camera's frame; nan where nothing was measured."""
+    """A grid of cells in the camera frame; nan where nothing was measured."""
 
     intrinsics: CameraIntrinsics  # in cells
-    depth_m: GridFloat
-    points_m: GridVectors  # (row, column, 3)
-    normals: GridVectors  # unit, towards the camera; nan where no surface could be fitted
+    depth_m: GridFloat  # along the optical axis
+    points_m: GridVectors
+    normals: GridVectors  # unit, towards the camera; nan where no plane could be fitted
     rgb: GridVectors  # mean colour, 0 to 1
-    class_index: Int[Array, "row column"] | None = None  # what most of a cell shows, where the photo says
+    class_index: Int[Array, "row column"] | None = None  # most frequent class of the cell, if the photo has classes
 
 
 def depth_tolerance_m(depth_m: Float[Array, "..."]) -> Float[Array, "..."]:
-    """How far two measurements of one surface may lie apart. Structured light and stereo err with depth squared."""
+    """How far two measurements of one surface may differ, metres, any shape.
+
+    The error of structured light and stereo grows with depth squared.
+    """
     return 0.015 + 0.0035 * np.square(depth_m)
 
 
 def make_grid(photo: RgbdPhoto) -> DepthGrid:
-    """Thins a photo to cells: the median depth of each (no bridging of edges), strays dropped, normals fitted."""
+    """Bins a photo to cells: their median depth (never between two surfaces) without outliers, and their normals."""
     height, width = photo.depth_m.shape
     size = max(1, round(width / _CELLS_ACROSS))
     rows, columns = height // size, width // size
-    depth = drop_strays(_block_median(_blocks(photo.depth_m[: rows * size, : columns * size], size)))
+    depth = remove_outliers(_block_median(_blocks(photo.depth_m[: rows * size, : columns * size], size)))
     colours = photo.rgb[: rows * size, : columns * size].reshape(rows, size, columns, size, 3)
-    camera = photo.intrinsics
-    intrinsics = CameraIntrinsics(
-        fx=camera.fx / size,
-        fy=camera.fy / size,
-        cx=(camera.cx + 0.5) / size - 0.5,
-        cy=(camera.cy + 0.5) / size - 0.5,
-        width=columns,
-        height=rows,
-    )
+    intrinsics = binned(photo.intrinsics, size)
     return DepthGrid(
         intrinsics=intrinsics,
         depth_m=depth,
@@ -64,7 +59,7 @@ def make_grid(photo: RgbdPhoto) -> DepthGrid:
 
 
 def _most_common(index: ClassPixels, size: int) -> Int[Array, "row column"]:
-    """The class that most pixels of each cell have."""
+    """The most frequent class of each cell of size x size pixels."""
     rows, columns = index.shape[0] // size, index.shape[1] // size
     blocks = index[: rows * size, : columns * size].reshape(rows, size, columns, size)
     present = np.unique(index)
@@ -72,13 +67,13 @@ def _most_common(index: ClassPixels, size: int) -> Int[Array, "row column"]:
     return present[np.argmax(shares, axis=0)].astype(np.int64)
 
 
-def drop_strays(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixels:
-    """Removes pixels that fewer than two of their four neighbours support: speckle, and pixels between two surfaces."""
+def remove_outliers(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixels:
+    """Sets pixels to nan whose depth fewer than two of their four neighbours share: speckle and flying pixels."""
     padded = np.pad(depth_m, 1, constant_values=np.nan)
     support = np.zeros(depth_m.shape, int)
-    # A surface seen at a grazing angle steps by more than its noise from cell to cell.
+    # On a surface seen at a grazing angle, neighbours differ by more than the noise.
     limit = depth_tolerance_m(depth_m) + 0.03 * depth_m
-    for row, column in _SHIFTS:
+    for row, column in _NEIGHBOURS:
         support += np.abs(_shifted(padded, row, column, 1) - depth_m) < limit
     return np.where(support >= min_neighbours, depth_m, np.nan)
 
@@ -90,7 +85,7 @@ def _blocks(depth_m: DepthPixels, size: int) -> Float[Array, "row column pixel"]
 
 
 def _block_median(blocks: Float[Array, "row column pixel"]) -> GridFloat:
-    """Median of the measured; of two middle ones their mean if they agree, else the nearer."""
+    """Median of each cell's measurements, metres: of two middle ones the mean if they agree, else the nearer."""
     ordered = np.sort(blocks, axis=2)  # nan last
     count = np.isfinite(ordered).sum(axis=2)
     low = np.take_along_axis(ordered, (np.maximum(count - 1, 0) // 2)[..., None], axis=2)[..., 0]
@@ -100,13 +95,16 @@ def _block_median(blocks: Float[Array, "row column pixel"]) -> GridFloat:
 
 
 def _fitted_normals(depth_m: GridFloat, intrinsics: CameraIntrinsics) -> GridVectors:
-    """Plane through each cell's neighbours: 1/z is linear in the picture, where Kinect's noise is even as well."""
+    """Normals of least-squares planes through each cell's neighbours on the same surface.
+
+    The inverse depth of a plane is linear in the picture, and a Kinect's noise is uniform in it.
+    """
     rows, columns = depth_m.shape
     radius = _NORMAL_RADIUS
     inverse = np.pad(1 / depth_m, radius, constant_values=np.nan)
     centre = 1 / depth_m
     limit = (depth_tolerance_m(depth_m) + 0.04 * depth_m) / np.square(depth_m)
-    # Sums of 1, u, v, uu, uv, vv, q, uq, vq over the neighbours on the same surface (u, v in cells from the centre).
+    # Sums of 1, u, v, uu, uv, vv, q, uq, vq over these neighbours; u, v: offset in cells, q: difference of 1/z.
     sums = np.zeros((9, rows, columns))
     for v in range(-radius, radius + 1):
         for u in range(-radius, radius + 1):
@@ -119,29 +117,28 @@ def _fitted_normals(depth_m: GridFloat, intrinsics: CameraIntrinsics) -> GridVec
             for index, factor in enumerate((1, u, v)):
                 if factor:
                     sums[6 + index] += factor * value
-    slope_u, slope_v, offset, is_sound = _solved(sums)
+    slope_u, slope_v, offset, is_determined = _fitted_planes(sums)
     # 1/z = a x + b y + c in normalised coordinates is the plane (a, b, c) . P = 1.
-    x = (np.arange(columns) - intrinsics.cx) / intrinsics.fx
-    y = ((np.arange(rows) - intrinsics.cy) / intrinsics.fy)[:, None]
+    x, y = normalized_coordinates(intrinsics)
     a, b = slope_u * intrinsics.fx, slope_v * intrinsics.fy
     normal = -np.stack([a, b, centre + offset - a * x - b * y], axis=-1)
     length = np.linalg.norm(normal, axis=-1)
-    usable = is_sound & np.isfinite(depth_m)
+    usable = is_determined & np.isfinite(depth_m)
     return np.where(usable[..., None], normal / np.where(usable, length, 1.0)[..., None], np.nan)
 
 
-def _solved(sums: Float[Array, "9 row column"]) -> tuple[GridFloat, GridFloat, GridFloat, GridBool]:
-    """Slopes and offset of the least-squares planes, and where they are well determined."""
+def _fitted_planes(sums: Float[Array, "9 row column"]) -> tuple[GridFloat, GridFloat, GridFloat, GridBool]:
+    """Slopes and offset of the planes q = slope_u u + slope_v v + offset, and where they are well determined."""
     n, u, v, uu, uv, vv, q, uq, vq = sums
     count = np.maximum(n, 1)
     cuu, cuv, cvv = uu - u * u / count, uv - u * v / count, vv - v * v / count
     cuq, cvq = uq - u * q / count, vq - v * q / count
     determinant = cuu * cvv - cuv * cuv
-    is_sound = (n >= _MIN_NORMAL_SUPPORT) & (determinant > 0.05 * np.square(n))
-    safe = np.where(is_sound, determinant, 1.0)
+    is_determined = (n >= _MIN_NORMAL_SUPPORT) & (determinant > 0.05 * np.square(n))
+    safe = np.where(is_determined, determinant, 1.0)
     slope_u = (cuq * cvv - cvq * cuv) / safe
     slope_v = (cvq * cuu - cuq * cuv) / safe
-    return slope_u, slope_v, (q - slope_u * u - slope_v * v) / count, is_sound
+    return slope_u, slope_v, (q - slope_u * u - slope_v * v) / count, is_determined
 
 
 def _shifted(padded: Float[Array, "a b"], rows: int, columns: int, pad: int) -> Float[Array, "c d"]:

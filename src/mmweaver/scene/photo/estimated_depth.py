@@ -1,4 +1,4 @@
-"""Depth of a photo that has none, by a metric model of other people: Depth Anything and its like."""
+"""Monocular depth for photos without depth, by pretrained metric models such as Depth Anything."""
 
 from typing import Any
 
@@ -14,9 +14,9 @@ SOMETIMES_METRIC = {"depth_anything", "prompt_depth_anything"}
 
 
 def estimate_depth(rgb: RgbPixels, source: str) -> DepthPixels:
-    """Depth in metres along the optical axis, (height, width), nan where the model gives none above 0.
+    """Estimates depth in metres along the optical axis, (height, width); nan where the model gives none above 5 cm.
 
-    Raises InputError where the model cannot be loaded or its depth has no unit.
+    Raises InputError where the model cannot be loaded or its depth is not metric.
     """
     import torch
     from PIL import Image
@@ -29,7 +29,7 @@ def estimate_depth(rgb: RgbPixels, source: str) -> DepthPixels:
             outputs = model(**inputs)
         found = processor.post_process_depth_estimation(outputs, target_sizes=[(height, width)])[0]["predicted_depth"]
     except (ValueError, TypeError, RuntimeError) as error:
-        raise InputError(f"--depth-model {source} cannot take this picture ({error}); try another model") from None
+        raise InputError(f"--depth-model {source} cannot process this picture ({error}); try another model") from None
     depth_m = np.asarray(found.cpu().numpy(), dtype=float).reshape(height, width)
     measured = np.isfinite(depth_m) & (depth_m > 0.05)
     if not measured.any():
@@ -41,7 +41,7 @@ def _depth_class(transformers: Any, config: Any) -> Any:
     kind = config.model_type
     is_metric = kind in ALWAYS_METRIC or getattr(config, "depth_estimation_type", "") == "metric"
     if kind in SOMETIMES_METRIC and not is_metric:
-        raise InputError(f"--depth-model: this {kind} gives depth without a unit; take a metric one, such as {EXAMPLE}")
+        raise InputError(f"--depth-model: this {kind} model gives relative depth; use a metric one, such as {EXAMPLE}")
     if kind not in ALWAYS_METRIC | SOMETIMES_METRIC:
         known = ", ".join(sorted(ALWAYS_METRIC | SOMETIMES_METRIC))
         raise InputError(f"--depth-model: a {kind} model gives no metric depth; known: {known}; for example {EXAMPLE}")

@@ -1,4 +1,4 @@
-"""Pictures from files: colour as 8-bit RGB, depth in metres. What is no such picture is refused in one line."""
+"""Reads colour pictures as 8-bit RGB and depth pictures in metres; anything else is refused in one line."""
 
 import warnings
 from pathlib import Path
@@ -13,32 +13,33 @@ MAX_PIXELS = 50_000_000
 _MIN_SIDE = 32
 _PLAUSIBLE_MEDIAN_M = (0.2, 20.0)
 _MAX_HOLES = 0.9
-# Units found in the wild: metres, centimetres, millimetres, TUM's 1/5000 m, 1/4000 m, 0.1 mm.
+# Units in use: metres, centimetres, millimetres, TUM's 1/5000 m, 1/4000 m, 0.1 mm.
 _KNOWN_UNITS_M = (1.0, 0.01, 0.001, 0.0002, 0.00025, 0.0001)
 _UINT16_SATURATED = 65535
 
 
 def read_rgb(path: Path) -> tuple[RgbPixels, tuple[int, int], bool]:
-    """The upright colour picture, the (width, height) stored in the file, and whether its EXIF tag turned it."""
+    """The upright picture, uint8 (height, width, 3), the (width, height) of the file, and whether EXIF rotated it."""
     from PIL import ImageOps
 
-    image = opened_picture(path)
+    image = open_picture(path)
     stored_size = image.size
-    turned = image.getexif().get(0x0112, 1) in range(2, 9)
-    if turned:
+    rotated = image.getexif().get(0x0112, 1) in range(2, 9)
+    if rotated:
         image = ImageOps.exif_transpose(image)
     if image.mode.startswith("I;16") or image.mode == "I":
         grey = np.clip(np.asarray(image).astype(np.int64) // 256, 0, 255).astype(np.uint8)
-        return np.repeat(grey[:, :, None], 3, axis=2), stored_size, turned
+        return np.repeat(grey[:, :, None], 3, axis=2), stored_size, rotated
     if image.mode == "F":
-        raise InputError(f"{path} holds floating-point values, not colours; --rgb takes a photo (PNG or JPEG)")
-    return np.array(_on_white(image)), stored_size, turned
+        raise InputError(f"{path} holds floating-point values, not colours; --rgb needs a photo (PNG or JPEG)")
+    return np.array(_on_white(image)), stored_size, rotated
 
 
 def read_depth(path: Path, unit_m: float | None) -> DepthPixels:
-    """Depth in metres, nan where there is no measurement. Whole numbers count in `unit_m` (millimetres if None).
+    """Depth in metres, (height, width), nan where there is no measurement.
 
-    Raises InputError for what cannot be depth: 8-bit or colour pictures, nothing measured, a wrong unit.
+    Integers are in units of `unit_m` metres (millimetres if None). Raises InputError for what cannot be depth: 8-bit or
+    colour pictures, pictures without measurements, a wrong unit.
     """
     raw = _raw_npy(path) if path.suffix.lower() == ".npy" else _raw_picture(path)
     if raw.size > MAX_PIXELS or min(raw.shape) < _MIN_SIDE:
@@ -88,7 +89,7 @@ def _check_unit(path: Path, median_m: float, unit_m: float, counts: bool) -> Non
 
 
 def _raw_picture(path: Path) -> np.ndarray:
-    image = opened_picture(path)
+    image = open_picture(path)
     if image.mode in ("1", "L", "P"):
         raise InputError(f"{path} has 8 bits a pixel; depth must be a 16-bit PNG or a .npy in metres")
     if not (image.mode.startswith("I;16") or image.mode in ("I", "F")):
@@ -119,8 +120,8 @@ def _raw_npy(path: Path) -> np.ndarray:
     return np.array(raw)
 
 
-def opened_picture(path: Path) -> Any:
-    """The picture, wholly decoded."""
+def open_picture(path: Path) -> Any:
+    """Opens and decodes a picture. Raises InputError where it cannot be read, is too small or too large."""
     from PIL import Image, UnidentifiedImageError
 
     try:
@@ -134,7 +135,7 @@ def opened_picture(path: Path) -> Any:
         image.load()
     except UnidentifiedImageError as error:
         if path.suffix.lower() == ".exr":
-            raise InputError(f"{path} is OpenEXR, which is not read; save it as a float TIFF or a .npy") from error
+            raise InputError(f"{path} is OpenEXR, which is not supported; save it as a float TIFF or a .npy") from error
         raise InputError(f"{path} is not a picture that can be read; give a PNG or JPEG") from error
     except Image.DecompressionBombError as error:
         raise InputError(f"{path} is too large; make it smaller than {MAX_PIXELS / 1e6:.0f} million pixels") from error
@@ -149,7 +150,7 @@ def opened_picture(path: Path) -> Any:
 
 
 def _on_white(image: Any) -> Any:
-    """Any colour mode -> RGB; what is transparent shows white."""
+    """Converts any colour mode to RGB, transparent pixels over white."""
     from PIL import Image
 
     if "transparency" not in image.info and image.mode not in ("RGBA", "LA", "PA", "La", "RGBa"):

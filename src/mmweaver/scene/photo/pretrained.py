@@ -1,4 +1,4 @@
-"""Models of other people through `transformers`: from a local folder, or from the Hub where there is a network."""
+"""Loads pretrained models through `transformers`, from a local folder or from the Hub."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,10 +10,10 @@ from mmweaver.core.hub_log import hub_log_off
 
 
 def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any]) -> tuple[Any, Any, Any]:
-    """(config, image processor, model) of a folder or Hub name, on the CPU, ready to run; safetensors alone are read.
+    """Config, image processor and model of a folder or Hub name, on the CPU in evaluation mode; safetensors only.
 
-    `choose(transformers, config)` gives the class to load with. Raises InputError where `transformers` is missing, or
-    nothing can be loaded.
+    `choose(transformers, config)` returns the class to load with. Raises InputError where `transformers` is missing or
+    the model cannot be loaded.
     """
     try:
         import transformers
@@ -23,9 +23,9 @@ def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any])
         ) from None
     folder = Path(source)
     if folder.is_dir() and not (folder / "config.json").is_file():
-        raise InputError(f"{option} {source} is a folder without config.json; give one that save_pretrained wrote")
+        raise InputError(f"{option} {source} is a folder without config.json; give one written by save_pretrained")
     if not folder.is_dir() and (folder.exists() or source.startswith((".", "/", "~"))):
-        raise InputError(f"{option} {source} is no folder; give a model's folder or its name on the Hub")
+        raise InputError(f"{option} {source} is not a folder; give a model's folder or its name on the Hub")
     with quiet(transformers):
         try:
             config = transformers.AutoConfig.from_pretrained(source)
@@ -34,16 +34,16 @@ def load_pretrained(source: str, option: str, choose: Callable[[Any, Any], Any])
             model = model_class.from_pretrained(source, use_safetensors=True)
         except InputError:
             raise
-        except Exception as error:  # a file of other people's may break in any way
+        except Exception as error:  # third-party files may fail in any way
             if isinstance(error, MemoryError):
                 raise
-            raise InputError(_why(source, option, error, is_folder=folder.is_dir())) from None
+            raise InputError(_load_error(source, option, error, is_folder=folder.is_dir())) from None
     return config, processor, model.eval()
 
 
 @contextmanager
 def quiet(transformers: Any) -> Iterator[None]:
-    """Without its log lines and progress bars."""
+    """Silences the log lines and progress bars of transformers."""
     logging = transformers.utils.logging
     level = logging.get_verbosity()
     logging.set_verbosity_error()
@@ -56,7 +56,7 @@ def quiet(transformers: Any) -> Iterator[None]:
         logging.enable_progress_bar()
 
 
-def _why(source: str, option: str, error: Exception, *, is_folder: bool) -> str:
+def _load_error(source: str, option: str, error: Exception, *, is_folder: bool) -> str:
     reason = (str(error).strip().splitlines() or [type(error).__name__])[0][:160]
     if is_folder:
         return (
@@ -64,6 +64,6 @@ def _why(source: str, option: str, error: Exception, *, is_folder: bool) -> str:
             " model.safetensors"
         )
     return (
-        f"{option} {source} is no folder here and cannot be had from the Hub ({reason}); where there is a network:"
+        f"{option} {source} is not a local folder and cannot be downloaded from the Hub ({reason}); with a network:"
         f" hf download {source} --local-dir DIR, then {option} DIR"
     )

@@ -1,4 +1,4 @@
-"""A small segmenter of our own: mostly the geometry of the depth grid in, a class for each cell out.
+"""The built-in segmenter: a small U-Net from features of the depth grid to a class of each cell.
 
     13 channels a cell (about 80 x 60)                      class scores a cell
       see `segmenter_features`                                   |
@@ -6,7 +6,7 @@
         32 --/2-- 48 --/2-- 80 --/2-- 128 -x2-- 80 --x2-- 48 --x2-- 32
                    \\________________\\____________/______________/
 
-It works offline and knows thirteen groups of COCO-Stuff's classes. Trained on procedural rooms alone, see
+It works offline and knows thirteen groups of COCO-Stuff's classes. It was trained on procedural rooms only, see
 `training.segmenter_training` and model_cards/segmenter.md.
 """
 
@@ -21,11 +21,11 @@ from mmweaver.core.records import ClassMask, RgbdPhoto
 from mmweaver.core.shapes import Array
 from mmweaver.scene.coco_stuff import NAMES
 from mmweaver.scene.photo.depth_grid import make_grid
-from mmweaver.scene.segmentation.segmenter_features import CHANNELS, EVERY, grid_features
+from mmweaver.scene.segmentation.segmenter_features import CHANNELS, STRIDE, grid_features
 
 WEIGHTS = Path(__file__).parents[2] / "weights" / "segmenter.safetensors"
 WIDTHS = (32, 48, 80, 128)
-# Each group is told by its first class; what is in none of them is "unlabeled".
+# A group is represented by its first class; a class in none of them is "unlabeled".
 GROUPS: tuple[tuple[str, ...], ...] = (
     ("unlabeled",),
     ("wall-other", "wall-brick", "wall-concrete", "wall-panel", "wall-stone", "wall-tile", "wall-wood"),
@@ -46,13 +46,13 @@ GROUP_NAMES = tuple(group[0] for group in GROUPS)
 
 
 def group_of_classes(names: tuple[str, ...]) -> Int[Array, " name"]:
-    """The group of each class name; 0 for what is in none."""
+    """The group of each class name, (name,); 0 for a class in none."""
     group = {name: index for index, members in enumerate(GROUPS) for name in members}
     return np.array([group.get(name, 0) for name in names])
 
 
 def make_network() -> Any:
-    """The network, with random weights; call it with (batch, 13, row, column)."""
+    """The network with random weights: (batch, 13, row, column) features to (batch, group, row, column) scores."""
     import torch
     from torch import nn
 
@@ -86,7 +86,7 @@ def make_network() -> Any:
 
 
 def load_network(path: Path = WEIGHTS) -> Any:
-    """The trained network, ready to run. Raises InputError where its file is missing or holds something else."""
+    """The trained network in evaluation mode. Raises InputError where its file is missing or holds something else."""
     from safetensors.torch import load_file
 
     network = make_network()
@@ -94,14 +94,12 @@ def load_network(path: Path = WEIGHTS) -> Any:
         network.load_state_dict({name: value.float() for name, value in load_file(path).items()}, strict=False)
     except Exception as error:
         reason = str(error).splitlines()[0][:120]
-        raise InputError(
-            f"{path} holds no weights of the built-in segmenter ({reason}); install mmweaver anew"
-        ) from None
+        raise InputError(f"{path} holds no weights of the built-in segmenter ({reason}); reinstall mmweaver") from None
     return network.eval()
 
 
 def groups_of_cells(features: Float[Array, "13 row column"], network: Any) -> Int[Array, "row column"]:
-    """The group of each cell."""
+    """The most likely group of each cell."""
     import torch
 
     with torch.inference_mode():
@@ -109,12 +107,12 @@ def groups_of_cells(features: Float[Array, "13 row column"], network: Any) -> In
 
 
 def segment_builtin(photo: RgbdPhoto) -> ClassMask:
-    """The classes of a photo by the network that comes with the project."""
+    """Segments a photo by the built-in network."""
     grid = make_grid(photo)
     groups = groups_of_cells(grid_features(grid), load_network())
-    size = EVERY * (photo.intrinsics.width // grid.intrinsics.width)
-    numbers = np.array([NAMES.index(name) for name in GROUP_NAMES], np.uint8)
-    cells = np.repeat(np.repeat(numbers[groups], size, axis=0), size, axis=1)
+    size = STRIDE * (photo.intrinsics.width // grid.intrinsics.width)  # pixels of a cell
+    class_of_group = np.array([NAMES.index(name) for name in GROUP_NAMES], np.uint8)
+    cells = np.repeat(np.repeat(class_of_group[groups], size, axis=0), size, axis=1)
     height, width = photo.intrinsics.height, photo.intrinsics.width
     index = np.pad(cells, ((0, max(0, height - len(cells))), (0, max(0, width - cells.shape[1]))))[:height, :width]
     return ClassMask(index=index, names=NAMES)

@@ -1,4 +1,4 @@
-"""What each pixel shows, from a picture of class numbers."""
+"""Reads a class mask from a picture of class numbers."""
 
 import json
 from pathlib import Path
@@ -9,19 +9,19 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import ClassMask
 from mmweaver.scene.coco_stuff import NAMES, UNLABELED, coco_class
-from mmweaver.scene.photo.picture_files import opened_picture
+from mmweaver.scene.photo.picture_files import open_picture
 
 
 def read_class_file(path: Path, width: int, height: int) -> ClassMask:
-    """An 8-bit picture of class numbers, as many pixels as the photo or in its proportions.
+    """Reads an 8-bit picture of class numbers, with the photo's size (width, height) or aspect ratio.
 
-    With a .json of the same name beside it, {"1": "couch", ...}, the numbers mean what that says (COCO-Stuff's names,
-    ADE20K's are understood); without one they are COCO-Stuff's pixel maps: class minus 1, 255 = unlabeled. Raises
-    InputError where the picture is no such thing.
+    A .json of the same name, {"1": "couch", ...}, defines the numbers by names of COCO-Stuff or ADE20K; without it
+    they are those of COCO-Stuff's pixel maps: class minus 1, 255 = unlabeled. Raises InputError where the picture is
+    not such a mask.
     """
     from PIL import Image
 
-    image = opened_picture(path)
+    image = open_picture(path)
     if image.mode not in ("L", "P"):
         raise InputError(
             f"{path} is a picture of mode {image.mode}; class numbers need 8 bits a pixel (grey or palette)"
@@ -33,7 +33,7 @@ def read_class_file(path: Path, width: int, height: int) -> ClassMask:
     if image.size != (width, height):
         image = image.resize((width, height), Image.Resampling.NEAREST)
     numbers = np.array(image)
-    table = _named(path.with_suffix(".json")) if path.with_suffix(".json").is_file() else _coco()
+    table = _table(path.with_suffix(".json")) if path.with_suffix(".json").is_file() else _coco_table()
     unknown = sorted(set(np.unique(numbers).tolist()) - set(table))
     if unknown:
         raise InputError(f"{path} has the class number {unknown[0]}, which {_source(path)} does not name")
@@ -44,26 +44,28 @@ def read_class_file(path: Path, width: int, height: int) -> ClassMask:
 
 
 def _source(path: Path) -> str:
-    beside = path.with_suffix(".json")
-    return str(beside) if beside.is_file() else "COCO-Stuff (0 to 181, 255; or name them in a .json beside it)"
+    table = path.with_suffix(".json")
+    return str(table) if table.is_file() else f"COCO-Stuff (0 to 181, 255; or name them in {table.name})"
 
 
-def _coco() -> dict[int, str]:
+def _coco_table() -> dict[int, str]:
     return {number - 1: name for number, name in enumerate(NAMES) if number} | {255: UNLABELED}
 
 
-def _named(path: Path) -> dict[int, str]:
+def _table(path: Path) -> dict[int, str]:
     try:
         content: Any = json.loads(path.read_text(encoding="utf-8"))
         pairs = [(int(number), str(label)) for number, label in content.items()]
     except (OSError, ValueError, AttributeError) as error:
-        raise InputError(f'{path} is no JSON object of numbers and names, such as {{"1": "couch"}} ({error})') from None
+        raise InputError(
+            f'{path} is not a JSON object of numbers and names, such as {{"1": "couch"}} ({error})'
+        ) from None
     table = {0: UNLABELED, 255: UNLABELED}
     for number, label in pairs:
         name = UNLABELED if label.lower() in (UNLABELED, "unknown", "void") else coco_class(label)
         if not 0 <= number <= 255 or name is None:
             raise InputError(
-                f"{path}: {number} is {label!r}, which is no class of COCO-Stuff, such as couch or wall-brick"
+                f"{path}: {number} is {label!r}, which is not a class of COCO-Stuff, such as couch or wall-brick"
             )
         table[number] = name
     return table

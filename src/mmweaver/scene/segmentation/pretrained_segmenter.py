@@ -1,6 +1,6 @@
-"""What is what in a photo, by models of other people: SegFormer, MaskFormer, Mask2Former and their like; SAM's edges.
+"""Semantic segmentation of a photo by pretrained models (SegFormer, MaskFormer, Mask2Former, ...), refined by SAM.
 
-The models bring their own labels (ADE20K, COCO); they become COCO-Stuff's classes, see `coco_stuff`.
+The models' own labels (ADE20K, COCO) are mapped to COCO-Stuff's classes, see `coco_stuff`.
 """
 
 from typing import Any
@@ -17,16 +17,16 @@ from mmweaver.scene.photo.pretrained import load_pretrained
 UNIVERSAL = {"maskformer", "mask2former", "oneformer"}
 SEMANTIC = {"segformer", "upernet", "beit", "dpt", "data2vec-vision", "mobilevit", "mobilevitv2", "mobilenet_v2"}
 SAM = {"sam", "sam_hq"}
-POINTS_ACROSS = 24  # SAM is asked what lies at so many points across the picture
-POINTS_AT_ONCE = 64
-SURE = 0.8  # SAM's own estimate of a mask's overlap with the truth
-LARGEST = 0.6  # of the picture: a mask above this is the room itself
+POINTS_ACROSS = 24  # of the grid of prompts for SAM, across the picture
+BATCH_SIZE = 64
+MIN_IOU = 0.8  # SAM's own estimate of a mask's overlap with the ground truth
+MIN_SHARE, MAX_SHARE = 1e-4, 0.6  # of the picture: a larger mask is the room itself
 
 
 def segment(rgb: RgbPixels, source: str, sam: str | None = None) -> ClassMask:
-    """The classes of a picture by the model in a folder or on the Hub; `sam` sharpens their edges by SAM's masks.
+    """The classes of a picture by the model in a folder or on the Hub, refined by the SAM model `sam` if given.
 
-    Raises InputError where a model cannot be loaded, is no segmenter, or has labels that mean nothing here.
+    Raises InputError where a model cannot be loaded, is not a segmenter, or has none of the known labels.
     """
     import torch
 
@@ -39,16 +39,16 @@ def segment(rgb: RgbPixels, source: str, sam: str | None = None) -> ClassMask:
         labels = processor.post_process_semantic_segmentation(outputs, target_sizes=[(height, width)])[0]
     index = look_up[np.clip(labels.cpu().numpy().astype(int), -1, len(look_up) - 2)]
     mask = ClassMask(index=index, names=NAMES)
-    return mask if sam is None else sharpened(mask, rgb, sam)
+    return mask if sam is None else refined_by_sam(mask, rgb, sam)
 
 
-def sharpened(mask: ClassMask, rgb: RgbPixels, sam: str) -> ClassMask:
-    """The same classes with the edges of SAM's masks."""
-    return ClassMask(index=painted(mask.index, sam_masks(rgb, sam)), names=mask.names)
+def refined_by_sam(mask: ClassMask, rgb: RgbPixels, sam: str) -> ClassMask:
+    """The classes with the edges of SAM's masks."""
+    return ClassMask(index=relabelled(mask.index, sam_masks(rgb, sam)), names=mask.names)
 
 
 def sam_masks(rgb: RgbPixels, source: str) -> list[Bool[Array, "height width"]]:
-    """SAM's masks at a grid of points, the surest first at each point, largest first in the list."""
+    """SAM's masks at a grid of points, the most certain one of each, the largest first."""
     import torch
 
     _, processor, model = load_pretrained(source, "--sam", _sam_class)
@@ -62,8 +62,8 @@ def sam_masks(rgb: RgbPixels, source: str) -> list[Bool[Array, "height width"]]:
     masks: list[np.ndarray] = []
     with torch.inference_mode():
         embeddings = model.get_image_embeddings(inputs["pixel_values"])
-        for first in range(0, len(points), POINTS_AT_ONCE):
-            some = torch.tensor(points[first : first + POINTS_AT_ONCE] * shape, dtype=torch.float32)[None, :, None]
+        for first in range(0, len(points), BATCH_SIZE):
+            some = torch.tensor(points[first : first + BATCH_SIZE] * shape, dtype=torch.float32)[None, :, None]
             out = model(image_embeddings=embeddings, input_points=some, multimask_output=True)
             whole = processor.post_process_masks(
                 out.pred_masks, inputs["original_sizes"], inputs["reshaped_input_sizes"]
@@ -72,8 +72,8 @@ def sam_masks(rgb: RgbPixels, source: str) -> list[Bool[Array, "height width"]]:
     return sorted(masks, key=lambda mask: -int(mask.sum()))
 
 
-def painted(index: ClassPixels, masks: list[Bool[Array, "height width"]]) -> ClassPixels:
-    """Each mask gets the class that most of its pixels have, if two thirds do; later (smaller) masks lie on top."""
+def relabelled(index: ClassPixels, masks: list[Bool[Array, "height width"]]) -> ClassPixels:
+    """Gives each mask the class of two thirds of its pixels, if there is one; later, smaller masks overwrite."""
     out = index.copy()
     for mask in masks:
         counts = np.bincount(index[mask], minlength=1)
@@ -82,13 +82,12 @@ def painted(index: ClassPixels, masks: list[Bool[Array, "height width"]]) -> Cla
     return out
 
 
-def _best(masks: Bool[Array, "point mask height width"], sure: Float[Array, "point mask"]) -> list[np.ndarray]:
-    chosen = np.argmax(sure, axis=1)
+def _best(masks: Bool[Array, "point mask height width"], iou: Float[Array, "point mask"]) -> list[np.ndarray]:
+    """The mask of the highest estimated overlap at each point, where that and its size are acceptable."""
     found = []
-    for point, which in enumerate(chosen):
-        mask = masks[point, which]
-        share = mask.mean()
-        if sure[point, which] >= SURE and 1e-4 < share < LARGEST:
+    for point, best in enumerate(np.argmax(iou, axis=1)):
+        mask = masks[point, best]
+        if iou[point, best] >= MIN_IOU and MIN_SHARE < mask.mean() < MAX_SHARE:
             found.append(mask)
     return found
 
@@ -99,7 +98,7 @@ def _prepared(processor: Any, rgb: RgbPixels, source: str) -> Any:
     try:
         return processor(images=Image.fromarray(rgb), return_tensors="pt")
     except (ValueError, TypeError, RuntimeError) as error:
-        raise InputError(f"{source} cannot take this picture ({error}); try another model") from None
+        raise InputError(f"{source} cannot process this picture ({error}); try another model") from None
 
 
 def _segmenter_class(transformers: Any, config: Any) -> Any:
@@ -108,17 +107,17 @@ def _segmenter_class(transformers: Any, config: Any) -> Any:
     if config.model_type in SEMANTIC:
         return transformers.AutoModelForSemanticSegmentation
     known = ", ".join(sorted(UNIVERSAL | SEMANTIC))
-    raise InputError(f"--segmenter: a {config.model_type} model gives no classes; known: {known}")
+    raise InputError(f"--segmenter: a {config.model_type} model does not segment; known: {known}")
 
 
 def _sam_class(transformers: Any, config: Any) -> Any:
     if config.model_type in SAM:
         return transformers.AutoModelForMaskGeneration
-    raise InputError(f"--sam: a {config.model_type} model is no SAM; known: {', '.join(sorted(SAM))}")
+    raise InputError(f"--sam: a {config.model_type} model is not a SAM; known: {', '.join(sorted(SAM))}")
 
 
 def _look_up(source: str, labels: dict[int, str]) -> UInt8[Array, " label"]:
-    """COCO-Stuff's number of each of the model's labels, and 0 for none (the last, which -1 picks)."""
+    """COCO-Stuff's index of each of the model's labels, 0 for none; the last entry, which -1 selects, is 0."""
     numbers = np.zeros(max(map(int, labels)) + 2, np.uint8)
     for label, text in labels.items():
         name = coco_class(text)
@@ -127,6 +126,6 @@ def _look_up(source: str, labels: dict[int, str]) -> UInt8[Array, " label"]:
     if not numbers.any():
         some = ", ".join(repr(text) for text in list(labels.values())[:3])
         raise InputError(
-            f"the labels of {source} ({some}, ...) are none of COCO-Stuff or ADE20K; give its id2label names"
+            f"the labels of {source} ({some}, ...) are not those of COCO-Stuff or ADE20K; set its id2label names"
         )
     return numbers

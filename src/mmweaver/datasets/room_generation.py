@@ -1,4 +1,4 @@
-"""One room of a data set: its photo, and the radar signal of everything that happens in it."""
+"""Generates one room of a data set: its photo and the radar signals of its sequences."""
 
 from dataclasses import dataclass, replace
 
@@ -11,18 +11,19 @@ from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, RoomSpec, SequenceSp
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
 from mmweaver.paths.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 
-RETRIES = 5  # other places for a motion that a room has no place for
+RETRIES = 5  # attempts to place a motion in a room
 
 
 @dataclass(frozen=True, kw_only=True)
-class MadeSequence:
-    """A sequence: cube in sqrt(mW), and joints at the middle of each radar frame."""
+class GeneratedSequence:
+    """A sequence: cube in sqrt(mW), joints at the middle of each radar frame."""
 
     spec: SequenceSpec
     cube: RadarCube
@@ -32,76 +33,78 @@ class MadeSequence:
 
 @dataclass(frozen=True, kw_only=True)
 class TracedSequence:
-    """A sequence whose signal is not made yet: joints as in `MadeSequence`, and what `paths.resynthesis` needs."""
+    """A sequence without its signal: joints as in `GeneratedSequence`, and the visibility for `paths.resynthesis`."""
 
     spec: SequenceSpec
-    joints_m: np.ndarray
-    joint_velocity_mps: np.ndarray
+    joints_m: np.ndarray  # (frame, 22, 3) float32
+    joint_velocity_mps: np.ndarray  # (frame, 22, 3) float32
     node_joints_m: np.ndarray  # (frame, node, 22, 3) float32
     visibility: Visibility
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoomGeometry:
-    """A room after its rays were cast: as it is, and as its photo shows it."""
+    """Ray-traced static paths of a room: of the true scene, and of the scene reconstructed from its photo."""
 
     room: PreparedRoom
     photographed: PreparedRoom
 
 
 @dataclass(frozen=True, kw_only=True)
-class MadeRoom:
-    """A room with its sequences; `refused` says which specs had no place in it, and why.
+class GeneratedRoom:
+    """A room with its sequences; `refused` lists the index of each sequence that does not fit, and the reason.
 
-    With `geometry` the sequences are looked at, without it they have their cubes.
+    With `geometry` the sequences are traced, without it they have cubes.
     """
 
     spec: RoomSpec
     photo: RgbdPhoto
-    empty: np.ndarray  # complex64 (range, antenna), what stands still without a person, at zero Doppler's peak
-    sequences: tuple[MadeSequence, ...] | tuple[TracedSequence, ...]
+    static: np.ndarray  # complex64 (range, antenna), static clutter at the peak of zero Doppler, sqrt(mW)
+    sequences: tuple[GeneratedSequence, ...] | tuple[TracedSequence, ...]
     refused: tuple[tuple[int, str], ...]
     geometry: RoomGeometry | None = None
 
 
-def make(spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False) -> MadeRoom:
-    """Makes a room and all its sequences by the simulator. Slow: about 0.3 s of CPU for each sequence.
+def generate_room(
+    spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False
+) -> GeneratedRoom:
+    """Generates a room and simulates all its sequences; about 0.3 CPU-seconds per sequence.
 
-    With `geometry_only` signals are left to be made from what is kept, for a third of it.
+    With `geometry_only` only the geometry is traced, in a third of the time; signals are synthesised from it later.
     """
     room = make_room(spec.kind, spec.layout, spec.seed)
-    truth = room.scene(spec.lighting)
-    simulator = Simulator(truth, config)
+    true_scene = room.scene(spec.lighting)
+    simulator = Simulator(true_scene, config)
     photo = room.photo(spec.lighting, noise=True)
-    one = trace_sequence if geometry_only else make_sequence
+    one = trace_sequence if geometry_only else generate_sequence
     made, refused = [], []
     for sequence in spec.sequences:
         try:
-            made.append(one(sequence, truth, simulator, num_frames))
+            made.append(one(sequence, true_scene, simulator, num_frames))
         except InputError as error:
             refused.append((sequence.index, str(error)))
-    return MadeRoom(
-        spec=spec, photo=photo, empty=_empty(simulator), sequences=tuple(made), refused=tuple(refused),
+    return GeneratedRoom(
+        spec=spec, photo=photo, static=_static_clutter(simulator), sequences=tuple(made), refused=tuple(refused),
         geometry=_geometry(simulator, photo) if geometry_only else None,
     )  # fmt: skip
 
 
 def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
-    stored = replace(photo, depth_m=photo.depth_m.astype(np.float32).astype(np.float64))  # as it will be read
+    stored = replace(photo, depth_m=photo.depth_m.astype(np.float32).astype(np.float64))  # as stored
     return RoomGeometry(room=simulator.room, photographed=RayTracedRoom(reconstruct(stored), simulator.config))
 
 
 def trace_sequence(spec: SequenceSpec, scene: Scene, simulator: Simulator, num_frames: int) -> TracedSequence:
-    """One sequence without its signal. Raises InputError where there is no room."""
+    """Traces one sequence without its signal. Raises InputError where the motion does not fit the room."""
     pose = pose_of(spec, scene, simulator.config, num_frames)
-    nodes_m, visibility = simulator.look(pose, num_frames=num_frames, seed=spec.seed)
+    nodes_m, visibility = simulator.trace(pose, num_frames=num_frames, seed=spec.seed)
     joints, velocity = _at_frames(pose, CubeGrid.of(simulator.config, num_frames), simulator.config)
     return TracedSequence(
         spec=spec, joints_m=joints, joint_velocity_mps=velocity, node_joints_m=nodes_m, visibility=visibility
     )
 
 
-def make_sequence(
+def generate_sequence(
     spec: SequenceSpec,
     scene: Scene,
     simulator: Simulator,
@@ -109,10 +112,10 @@ def make_sequence(
     *,
     subject: int | None = None,
     noise_seed: int | None = None,
-) -> MadeSequence:
-    """One sequence; another `subject` has another skin and another `noise_seed` other noise (a twin).
+) -> GeneratedSequence:
+    """Simulates one sequence; `subject` and `noise_seed` replace its body surface and noise (another realization).
 
-    Raises InputError where there is no room.
+    Raises InputError where the motion does not fit the room.
     """
     config = simulator.config
     pose = pose_of(spec, scene, config, num_frames)
@@ -123,7 +126,7 @@ def make_sequence(
     grid = CubeGrid.of(config, num_frames)
     cube = RadarCube(values=np.concatenate(parts), grid=grid, config=config, scale=1.0)
     joints, velocity = _at_frames(pose, grid, config)
-    return MadeSequence(spec=spec, cube=cube, joints_m=joints, joint_velocity_mps=velocity)
+    return GeneratedSequence(spec=spec, cube=cube, joints_m=joints, joint_velocity_mps=velocity)
 
 
 def _at_frames(pose: PoseSequence, grid: CubeGrid, config: RadarConfig) -> tuple[np.ndarray, np.ndarray]:
@@ -132,14 +135,14 @@ def _at_frames(pose: PoseSequence, grid: CubeGrid, config: RadarConfig) -> tuple
 
 
 def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: int) -> PoseSequence:
-    """The person's motion in the scene. Raises InputError where none of a few tries finds a place."""
+    """The person's motion in the scene. Raises InputError where it fits at none of a few attempts."""
     window = (float(config.range_m[0]), float(config.range_m[-1]))
+    plan = plan_motion(spec.text, num_frames * config.frame_period_s)
     for attempt in range(RETRIES):
         try:
             motion = compose(
-                spec.text, scene, duration_s=num_frames * config.frame_period_s, seed=spec.seed + attempt,
-                range_window_m=window, height_m=PEOPLE_HEIGHT_M[spec.person],
-            )  # fmt: skip
+                plan, scene, seed=spec.seed + attempt, range_window_m=window, height_m=PEOPLE_HEIGHT_M[spec.person]
+            )
             return replace(motion.pose, subject=spec.person)
         except InputError:
             if attempt == RETRIES - 1:
@@ -147,8 +150,8 @@ def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: i
     raise AssertionError("unreachable")
 
 
-def _empty(simulator: Simulator) -> np.ndarray:
-    """(range, antenna) of the room alone: the range transform of what stays."""
+def _static_clutter(simulator: Simulator) -> np.ndarray:
+    """Range spectrum (range, antenna) of the room's static paths, complex64, sqrt(mW)."""
     from mmweaver.core.records import AdcCube
 
     config = simulator.config
