@@ -26,6 +26,7 @@ from mmweaver.generate import Weaver
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
 
 SENTENCE = "a person walks towards the radar, then waves with the left hand"
@@ -53,7 +54,7 @@ def costs(weights: Path, *, with_physics: bool) -> dict[str, float]:
     window = (float(config.range_m[0]), float(config.range_m[-1]))
 
     def posed() -> PoseSequence:
-        return compose(SENTENCE, scene, duration_s=2.0, seed=0, range_window_m=window).pose
+        return compose(plan_motion(SENTENCE, 2.0), scene, seed=0, range_window_m=window).pose
 
     pose = posed()
     network, _ = load_weights(weights)

@@ -1,13 +1,28 @@
-"""The raw ADC samples, and an FFT of one's own: the range profile of the first chirp."""
+"""Raw ADC samples, and signal processing of your own."""
 
+# %% [markdown]
+# `keep_adc=True` gives the samples that the converter would have written, (frame, loop, tx, rx, sample). Everything
+# after that may be yours: here a range profile with a window and an FFT, compared with the cube that mmWeaver makes.
+
+# %%
+import matplotlib.pyplot as plt
 import numpy as np
 
 from mmweaver import Weaver
 
-weaver = Weaver(radar="awr1843")
+weaver = Weaver(radar="awr1843", method="physics")
 result = weaver.generate(weaver.sample_room(), "a person jumps", frames=2, keep_adc=True)
-assert result.adc is not None
-chirp = result.adc.samples[0, 0, 0, 0]  # frame, loop, tx, rx
-profile = np.abs(np.fft.fft(chirp * np.hanning(len(chirp))))
-config = result.adc.config
-print(f"strongest echo at {profile.argmax() * config.range_resolution_m:.2f} m")
+samples = result.adc.samples[0]  # (loop, tx, rx, sample)
+window = np.hanning(samples.shape[-1])
+profile = np.abs(np.fft.fft(samples * window)).mean(axis=(0, 1, 2)) / window.sum()  # (sample,)
+range_m = np.arange(len(profile)) * result.adc.config.range_resolution_m
+inside = (range_m > 0.5) & (range_m < range_m[-1] - 0.5)  # without the leakage of the transmitters
+print(f"strongest echo at {range_m[inside][profile[inside].argmax()]:.2f} m")
+
+# %%
+fig, axes = plt.subplots(figsize=(7, 3), layout="constrained")
+axes.plot(range_m, 20 * np.log10(profile))
+axes.axvspan(result.cube.grid.range_m[0], result.cube.grid.range_m[-1], alpha=0.15, label="range bins of the cube")
+axes.set(xlabel="range (m)", ylabel="dB (mW)", title="Range profile, mean over chirps and antennas")
+axes.legend()
+fig.savefig("range_profile.png", dpi=110)

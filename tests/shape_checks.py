@@ -52,6 +52,7 @@ def _first_calls(plain: Callable[..., Any], checked: Callable[..., Any]) -> Call
 
     @functools.wraps(plain)
     def function(*args: Any, **kwargs: Any) -> Any:
+        __tracebackhide__ = True
         nonlocal test, left
         if test != _Current.test:
             test, left = _Current.test, _Current.most_calls

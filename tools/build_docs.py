@@ -159,7 +159,10 @@ def faults_of(site: Path) -> list[str]:
             if not (site / target[1:] if target.startswith("/") else page.parent / target).exists():
                 faults.append(f"{where} links to {target}, which is not there")
     for style in sorted(site.rglob("*.css")):
-        faults += [f"{style.relative_to(site)} requests {target}" for target in REMOTE.findall(style.read_text())]
+        faults += [
+            f"{style.relative_to(site)} requests {target}"
+            for target in REMOTE.findall(style.read_text(encoding="utf-8"))
+        ]
     return faults
 
 

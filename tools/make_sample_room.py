@@ -532,7 +532,7 @@ def write_sample(folder: Path, seed: int, lamp_samples: int, bounce_samples: int
     Image.fromarray(photo).save(folder / "rgb.png", optimize=True)
     Image.fromarray(measured_depth(depth_m, seed)).save(folder / "depth.png", optimize=True)
     content = {**vars(camera()), "depth_unit_m": DEPTH_UNIT_M}
-    (folder / "camera.json").write_text(json.dumps(content, indent=1) + "\n")
+    (folder / "camera.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
 
 
 def main() -> None:

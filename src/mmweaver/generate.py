@@ -246,8 +246,8 @@ def _compose(request: Request, scene: Scene) -> tuple[Motion, ...]:
             start_m=first.start_m, heading_rad=request.heading_rad, as_recorded=request.as_recorded,
         )  # fmt: skip
     return compose_people(
-        [person.text for person in request.people], scene, duration_s=request.duration_s, seed=request.seed,
-        range_window_m=request.range_window_m, starts_m=[person.start_m for person in request.people],
+        [person.plan for person in request.people], scene, seed=request.seed, range_window_m=request.range_window_m,
+        starts_m=[person.start_m for person in request.people],
         heights_m=[person.height_m for person in request.people], first=recorded,
     )  # fmt: skip
 

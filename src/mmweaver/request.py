@@ -8,8 +8,7 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.motion.language.plan import MotionPlan
-from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.timing import schedule
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE, Place
@@ -120,7 +119,7 @@ def parse_request(
 
 
 def _scheduled(text: str, config: RadarConfig, frames: int) -> MotionPlan:
-    return schedule(parse(text), frames * config.frame_period_s, 1 / config.frame_period_s)
+    return plan_motion(text, frames * config.frame_period_s, 1 / config.frame_period_s)
 
 
 def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:

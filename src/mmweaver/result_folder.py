@@ -69,7 +69,7 @@ def save_results(
                     "tx_order": adc.config.tx_order,
                     "counts_per_unit": counts,
                 }
-            (stage / "radar.json").write_text(view.cube.config.to_json())
+            (stage / "radar.json").write_text(view.cube.config.to_json(), encoding="utf-8")
             for name, text in (extra or {}).items():
                 (stage / name).write_text(text, encoding="utf-8")
         if pictures:
@@ -80,7 +80,9 @@ def save_results(
         names = {file.name for file in stage.iterdir()} | {"meta.json"}
         meta["files"] = {name: text for name, text in FILES.items() if name in names}
         meta["seconds"] = {name: round(seconds, 3) for name, seconds in stages.seconds.items()}
-        (stage / "meta.json").write_text(json.dumps(plain(meta), indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+        (stage / "meta.json").write_text(
+            json.dumps(plain(meta), indent=2, allow_nan=False, ensure_ascii=False) + "\n", encoding="utf-8"
+        )
     return plain(meta)
 
 

@@ -19,6 +19,7 @@ from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
 from mmweaver.dsp.windows import hann
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
 from mmweaver.scene.reconstruction import reconstruct
@@ -73,7 +74,8 @@ def without_room(scene: Scene) -> Scene:
 def pose_of(activity: str, *, seconds: float, seed: int = 0, radar: RadarConfig = AWR1843) -> PoseSequence:
     """A person in the sample room, within the ranges that the radar keeps, doing what the activity's sentence says."""
     window_m = (float(radar.range_m[0]), float(radar.range_m[-1]))
-    return compose(SENTENCES[activity], sample_scene(), duration_s=seconds, seed=seed, range_window_m=window_m).pose
+    plan = plan_motion(SENTENCES[activity], seconds)
+    return compose(plan, sample_scene(), seed=seed, range_window_m=window_m).pose
 
 
 def simulated(

@@ -11,8 +11,9 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import FreeSpace, PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import steadied
+from mmweaver.motion.mocap.clip_resampling import low_passed
 from mmweaver.motion.mocap.humanml3d import FPS, features_from_joints, y_up
 from mmweaver.motion.mocap.joint_arrays import clips_of
 from mmweaver.motion.mocap.read_motion import read_motion
@@ -73,7 +74,7 @@ def library_examples(seeds: range, *, held_out_words: bool = False) -> Iterator[
             sentence = sentence_of(activity, seed, held_out=held_out_words)
             try:
                 motion = compose(
-                    sentence, room, duration_s=FRAMES / FPS + 1 / FPS, seed=seed, range_window_m=(0.7, 15.0),
+                    plan_motion(sentence, FRAMES / FPS + 1 / FPS), room, seed=seed, range_window_m=(0.7, 15.0),
                     height_m=HEIGHT_M,
                 )  # fmt: skip
             except InputError:
@@ -121,7 +122,7 @@ def _fitted(clip: MotionClip) -> Float[Array, "frame 22 3"]:
     """A clip at 20 frames a second."""
     from scipy.interpolate import CubicSpline
 
-    joints = steadied(clip)
+    joints = low_passed(clip)
     time_s = np.arange(len(joints)) / clip.fps
     wanted = np.arange(0, time_s[-1], 1 / FPS)
     return np.asarray(CubicSpline(time_s, joints, axis=0)(wanted))

@@ -51,7 +51,7 @@ def write_capture(folder: Path, room: StoredRoom, index: int, *, joints: bool) -
     folder.mkdir(parents=True, exist_ok=True)
     cube = room.cube(index)
     write_radar_npz(folder / "radar.npz", cube)
-    (folder / "radar.json").write_text(room.config.to_json())
+    (folder / "radar.json").write_text(room.config.to_json(), encoding="utf-8")
     if joints:
         time_s = cube.grid.frame_time_s + room.config.active_time_s / 2
         height_m = PEOPLE_HEIGHT_M[int(room.person[index])]
@@ -69,7 +69,9 @@ def write_photo(folder: Path, photo: RgbdPhoto) -> None:
     Image.fromarray(rgb).save(folder / "rgb.png")
     np.save(folder / "depth.npy", photo.depth_m)
     camera = asdict(photo.intrinsics)
-    (folder / "camera.json").write_text(json.dumps({name: camera[name] for name in ("fx", "fy", "cx", "cy")}))
+    (folder / "camera.json").write_text(
+        json.dumps({name: camera[name] for name in ("fx", "fy", "cx", "cy")}), encoding="utf-8"
+    )
 
 
 def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) -> dict[str, list[dict[str, float]]]:

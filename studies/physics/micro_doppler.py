@@ -31,7 +31,7 @@ from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import densely
+from mmweaver.motion.mocap.clip_resampling import resampled_clip
 from mmweaver.motion.mocap.joint_arrays import clips_of
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.paths.ray_traced import Simulator
@@ -197,7 +197,7 @@ def spectrogram(motion: RecordedMotion, simulator: Simulator, seed: int, *, is_a
     """
     clip = MotionClip(joints_m=placed(motion.joints_m, is_away=is_away), fps=RATE_HZ, label=motion.label)
     frames = int(np.floor((clip.duration_s - RADAR.active_time_s) / RADAR.frame_period_s))
-    time_s, joints_m = densely(clip, clip.duration_s)
+    time_s, joints_m = resampled_clip(clip, clip.duration_s)
     pose = PoseSequence(time_s=time_s, joints_m=joints_m, height_m=motion.height_m, subject=motion.subject)
     power = []
     for chunk in simulator.chunks(pose, num_frames=frames, seed=seed):

@@ -22,6 +22,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.dsp.cube import radar_cube, remove_static
 from mmweaver.dsp.points import point_cloud
 from mmweaver.metrics.scorecard import METRICS, Representations
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.paths.ray_traced import Simulator
@@ -70,15 +71,13 @@ def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> P
     """Draws two sentences and two bodies by the seed and simulates them. Raises InputError where they do not fit."""
     texts = [str(text) for text in stream(seed, "several people").choice(SENTENCES, 2, replace=False)]
     window_m = (float(AWR1843.range_m[0]), float(AWR1843.range_m[-1]))
-    people = compose_people(
-        texts, sample_scene(), duration_s=NUM_FRAMES * AWR1843.frame_period_s, seed=seed, range_window_m=window_m,
-        starts_m=places,
-    )  # fmt: skip
+    plans = [plan_motion(text, NUM_FRAMES * AWR1843.frame_period_s) for text in texts]
+    people = compose_people(plans, sample_scene(), seed=seed, range_window_m=window_m, starts_m=places)
     one, two = people[0].pose, people[1].pose
 
     def cube(*people: PoseSequence, noise: int = seed, mutual: bool = True) -> RadarCube:
         return radar_cube(
-            simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL, mutual_shadows=mutual).adc
+            simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL, mutual_occlusion=mutual).adc
         )
 
     skins = [replace(pose, subject=pose.subject + OTHER_SKIN) for pose in (one, two)]

@@ -11,7 +11,7 @@ COLUMNS = (
 
 def capture_tuning_table(folder: Path) -> str:
     """One row a method on other sequences of the room, mean and interval over rooms."""
-    record = json.loads((folder / "capture_tuning" / "test_room.json").read_text())
+    record = json.loads((folder / "capture_tuning" / "test_room.json").read_text(encoding="utf-8"))
     lines = ["| method | " + " | ".join(text for _, text in COLUMNS) + " |", "| --- |" + " --- |" * len(COLUMNS)]
     for row in record["rows"]:
         cells = []

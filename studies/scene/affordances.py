@@ -26,6 +26,7 @@ from mmweaver.core.records import Landmark, Scene, Seat
 from mmweaver.core.seeding import stream
 from mmweaver.geometry.pinhole import project
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.scene.procedural.ground_truth import RadarFrame
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom, make_room
@@ -169,7 +170,7 @@ def _is_same_mark(found: Landmark, truth: Landmark, within_m: float) -> bool:
 def _measure_placements(room: ProceduralRoom, scene: Scene, tally: Tally) -> None:
     for seed, text in enumerate(SENTENCES):
         try:
-            motion = compose(text, scene, duration_s=SECONDS, seed=seed, range_window_m=RANGE_WINDOW_M)
+            motion = compose(plan_motion(text, SECONDS), scene, seed=seed, range_window_m=RANGE_WINDOW_M)
         except InputError:
             tally.refused += 1
             continue

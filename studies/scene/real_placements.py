@@ -22,6 +22,7 @@ from mmweaver.core.shapes import Points
 from mmweaver.core.skeleton import joint
 from mmweaver.geometry.pinhole import unproject
 from mmweaver.motion.compose import Motion, compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.scene.read_photo import read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -104,7 +105,7 @@ def room_row(folder: Path) -> dict[str, Any]:
     for text in SENTENCES[folder.name]:
         for seed in SEEDS:
             try:
-                motion = compose(text, scene, duration_s=SECONDS, seed=seed, range_window_m=RANGE_WINDOW_M)
+                motion = compose(plan_motion(text, SECONDS), scene, seed=seed, range_window_m=RANGE_WINDOW_M)
             except InputError:
                 refused += 1
                 continue

@@ -7,7 +7,7 @@ import numpy as np
 
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
-from mmweaver.paths.body_model import CAPSULES, REFERENCE_HEIGHT_M, Capsule
+from mmweaver.geometry.body_capsules import CAPSULES, Capsule, scale_of
 from mmweaver.scene.procedural.parts import Boxes
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom
 
@@ -39,7 +39,7 @@ def sampled(pose: PoseSequence, along: np.ndarray) -> Iterator[tuple[Capsule, np
         share = along[:, None, None]
         points = (start * (1 - share) + end * share).reshape(-1, 3)
         radius = np.interp(along, [0, 1], [capsule.start_radius_m, capsule.end_radius_m])
-        radius = np.repeat(radius * pose.height_m / REFERENCE_HEIGHT_M, len(rows))
+        radius = np.repeat(radius * scale_of(pose.height_m), len(rows))
         yield capsule, points, radius
 
 

@@ -1,6 +1,7 @@
 """mmweaver evaluate: scores of a frozen recogniser, and one line for a folder that has none to give."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,8 @@ import pytest
 pytest.importorskip("sklearn")
 
 from mmweaver.cli.main import main
+from mmweaver.recognition.activity_classifier import ActivityClassifier
+from mmweaver.recognition.frozen_activity import Frozen
 
 
 @pytest.fixture
@@ -23,6 +26,18 @@ def recordings(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.fixture
+def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Trained within a second, on a few of the windows."""
+
+    def train(frozen: Frozen) -> ActivityClassifier:
+        few = replace(frozen.made, features=frozen.made.features[::23], labels=frozen.made.labels[::23])
+        return few.train(replace(frozen.classifier, num_trees=5, boosting_rounds=2, repetitions=1))
+
+    monkeypatch.setattr(Frozen, "train", train)
+
+
+@pytest.mark.usefixtures("few_trees")
 def test_scores_are_printed(recordings: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["evaluate", "zero-shot-activity", "--recordings", str(recordings), "--json"]) == 0
     scores = json.loads(capsys.readouterr().out)
@@ -34,6 +49,16 @@ def test_scores_are_printed(recordings: Path, capsys: pytest.CaptureFixture[str]
     text = capsys.readouterr().out
     for word in ("2 recordings", "balanced accuracy", "chance 0.200", "squats"):
         assert word in text
+
+
+@pytest.mark.slow  # with fewer trees: test_scores_are_printed
+@pytest.mark.parametrize("frozen", ["development", "blind"])
+def test_the_whole_recogniser_knows_a_walk(frozen: str, recordings: Path, capsys: pytest.CaptureFixture[str]):
+    words = ["evaluate", "zero-shot-activity", "--recordings", str(recordings), "--frozen", frozen, "--json"]
+    assert main(words) == 0
+    scores = json.loads(capsys.readouterr().out)
+    walk = scores["classes"].index("walk")
+    assert scores["window"]["confusion"][walk][walk] == 1
 
 
 def test_a_bad_folder_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

@@ -4,6 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.compression import mmw_codec
 from mmweaver.compression.mmw_codec import compress_cube, read_cube
 from mmweaver.compression.mmw_field import open_mmw
 from mmweaver.core.records import RadarCube
@@ -14,9 +15,9 @@ from tests.fields.echoes import crowd, error_db
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RadarCube]:
     path = tmp_path_factory.mktemp("mmw") / "a.mmw"
-    before, mmw.CHUNK_FRAMES = mmw.CHUNK_FRAMES, 2
-    path.write_bytes(compress_cube(crowd(), num_bytes=5000))
-    mmw.CHUNK_FRAMES = before
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mmw_codec, "CHUNK_FRAMES", 2)
+        path.write_bytes(compress_cube(crowd(), num_bytes=5000))
     return path, read_cube(path)
 
 

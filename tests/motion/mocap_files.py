@@ -8,6 +8,7 @@ import numpy as np
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from rooms import FLOOR_Z_M, WINDOW_M, room
 
 Array = np.ndarray
@@ -16,7 +17,7 @@ Array = np.ndarray
 @cache
 def walk(fps: float = 60.0, seconds: float = 2.0, text: str = "a person walks to the left") -> Array:
     """Joints (frame, 22, 3) of a walk, z up, floor at 0."""
-    pose = compose(text, room(), duration_s=seconds, seed=2, range_window_m=WINDOW_M, height_m=1.75).pose
+    pose = compose(plan_motion(text, seconds), room(), seed=2, range_window_m=WINDOW_M, height_m=1.75).pose
     joints = resample(pose, np.arange(round(seconds * fps)) / fps).joints_m
     return joints - np.array([0.0, 0.0, FLOOR_Z_M])
 

@@ -10,6 +10,7 @@ from mmweaver.core.records import Scene
 from mmweaver.core.skeleton import BONES, joint
 from mmweaver.motion.animation.skeleton_proportions import SHORTEST_M, TALLEST_M, SkeletonProportions
 from mmweaver.motion.compose import Motion, compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
 from rooms import FLOOR_Z_M, WINDOW_M, furnished, room, seat, sofa_room
 
@@ -22,7 +23,7 @@ ACTIVITIES = (
 
 
 def motion(text: str, scene: Scene | None = None, seed: int = 0, duration_s: float = 2.0, **more) -> Motion:
-    return compose(text, scene or room(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M, **more)
+    return compose(plan_motion(text, duration_s), scene or room(), seed=seed, range_window_m=WINDOW_M, **more)
 
 
 def speeds(made: Motion) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mmweaver.motion.mocap.clip_placement import place_clip
-from mmweaver.motion.mocap.clip_resampling import densely
+from mmweaver.motion.mocap.clip_resampling import resampled_clip
 from mmweaver.motion.mocap.humanml3d import CONTACTS, features_from_joints, joints_from_features
 from mmweaver.motion.mocap.joint_arrays import clips_of
 from mmweaver.motion.mocap.read_motion import read_motion
@@ -48,7 +48,7 @@ def test_every_clip_of_cmu_is_read_and_resampled_without_spikes(real_data: Path)
     for name in names[::6]:
         clip = read_motion(path, clip=name)
         assert 1.3 < clip.height_m < 2.0
-        _, joints = densely(clip, min(clip.duration_s, 4.0))
+        _, joints = resampled_clip(clip, min(clip.duration_s, 4.0))
         speed = np.linalg.norm(np.diff(joints, axis=0), axis=-1) * 120
         acceleration = np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1) * 120**2
         assert speed.max() < 12

@@ -14,6 +14,7 @@ from mmweaver.recognition.scoring import evaluate_recogniser, report
 RESULTS = Path(__file__).resolve().parents[2] / "results" / "zero_shot"
 
 
+@pytest.mark.slow  # tests/cli/test_evaluate.py trains the same with fewer trees
 @pytest.mark.parametrize("name", ["blind", "development"])
 def test_the_score_is_that_of_the_results(real_data: Path, name: str):
     frozen = load_frozen(name)

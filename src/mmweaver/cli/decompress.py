@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         with atomic_file(arguments.out) as temporary:
             write_radar_npz(temporary, cube)
         with atomic_file(radar_out) as temporary:
-            temporary.write_text(cube.config.to_json())
+            temporary.write_text(cube.config.to_json(), encoding="utf-8")
     if not arguments.quiet:
         print(f"wrote {arguments.out}: {len(cube.values)} frames of radar {cube.config.name!r}; and {radar_out}")
     return 0

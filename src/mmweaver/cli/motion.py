@@ -33,12 +33,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Acts the sentence out; writes what was asked for. Raises InputError."""
     from mmweaver.motion.empty_floor import act_out
-    from mmweaver.motion.language.sentence import parse
-    from mmweaver.motion.language.timing import natural_s
 
     _check_files(arguments)
-    seconds = arguments.seconds if arguments.seconds is not None else natural_s(parse(arguments.text))
-    motion = act_out(arguments.text, duration_s=seconds, seed=arguments.seed, height_m=arguments.height)
+    motion = act_out(arguments.text, duration_s=arguments.seconds, seed=arguments.seed, height_m=arguments.height)
     if arguments.out is not None:
         from mmweaver.core.atomic_files import atomic_file
         from mmweaver.formats.npz_files import write_pose_npz
@@ -55,7 +52,12 @@ def run(arguments: argparse.Namespace) -> int:
     ]
     if arguments.json:
         files = [str(file) for file in (arguments.out, arguments.picture) if file is not None]
-        facts = {"text": arguments.text, "seconds": seconds, "height_m": round(motion.pose.height_m, 3), "steps": steps}
+        facts = {
+            "text": arguments.text,
+            "seconds": motion.plan.duration_s,
+            "height_m": round(motion.pose.height_m, 3),
+            "steps": steps,
+        }
         print(json.dumps({**facts, "assumptions": motion.assumptions, "files": files}, indent=2))
         return 0
     for step in steps:

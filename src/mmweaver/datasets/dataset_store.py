@@ -59,7 +59,7 @@ def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
     text = plan.to_json()
     file = folder / PLAN_FILE
     if file.is_file():
-        if file.read_text() != text:
+        if file.read_text(encoding="utf-8") != text:
             raise InputError(f"{folder} holds a data set of another plan; choose another folder or the same settings")
         return
     if folder.exists() and any(folder.iterdir()):
@@ -76,8 +76,8 @@ def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
          "wavelength_m": config.wavelength_m}
     )  # fmt: skip
     partial = folder / f".{PLAN_FILE}"
-    partial.write_text(text)
-    partial.rename(file)
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(file)
 
 
 def is_done(folder: Path, name: str) -> bool:
@@ -91,7 +91,7 @@ def is_being_written(partial: Path) -> bool:
     Workers outlive a killed parent by a room or two; their unfinished rooms must not be deleted.
     """
     *_, host, process = partial.name.rsplit(".", 2)
-    if host != _host():
+    if host != _host() or os.name == "nt":  # on Windows os.kill would end the process instead of asking after it
         return time.time() - partial.stat().st_mtime < ABANDONED_S
     try:
         os.kill(int(process), 0)
@@ -224,21 +224,21 @@ class StoredRoom:
         """
         if self.geometry is not None:
             wanted = np.arange(len(self.joints_m[index])) if frames is None else frames
-            values = self.geometry.cube_values(self._traced_motion(index), wanted, twin=realization, device=self.device)
+            values = self.geometry.cube(self._traced_motion(index), wanted, realization=realization, device=self.device)
         else:
             values = self._stored(index)
             values = values if frames is None else values[frames]
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
-    def echoes(self, index: int, frames: np.ndarray) -> Any:
-        """The person's echoes (`paths.body_paths.BodyEchoes`) in frames of one sequence, of a set with geometry."""
+    def body_paths(self, index: int, frames: np.ndarray) -> Any:
+        """The person's paths (`paths.body_paths.BodyPaths`) in frames of one sequence, of a set with geometry."""
         assert self.geometry is not None, "signals are stored, not geometry"
-        return self.geometry.replay("cpu").person(self._traced_motion(index), frames)
+        return self.geometry.resynthesis("cpu").person(self._traced_motion(index), frames)
 
     def _traced_motion(self, index: int) -> Any:
         assert self.geometry is not None
         person = int(self.person[index])
-        return self.geometry.look(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
+        return self.geometry.motion(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
 
     def _stored(self, index: int) -> np.ndarray:
         zarr = _zarr()
@@ -270,7 +270,7 @@ def read_radar(folder: Path) -> RadarConfig:
 
 def plan_text(folder: Path) -> str:
     """The plan of a data set as JSON text."""
-    return (folder / PLAN_FILE).read_text()
+    return (folder / PLAN_FILE).read_text(encoding="utf-8")
 
 
 def read_plan(folder: Path) -> dict[str, Any]:

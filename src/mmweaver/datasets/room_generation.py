@@ -11,6 +11,7 @@ from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, RoomSpec, SequenceSp
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
 from mmweaver.paths.visibility import Visibility
@@ -96,7 +97,7 @@ def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
 def trace_sequence(spec: SequenceSpec, scene: Scene, simulator: Simulator, num_frames: int) -> TracedSequence:
     """Traces one sequence without its signal. Raises InputError where the motion does not fit the room."""
     pose = pose_of(spec, scene, simulator.config, num_frames)
-    nodes_m, visibility = simulator.look(pose, num_frames=num_frames, seed=spec.seed)
+    nodes_m, visibility = simulator.trace(pose, num_frames=num_frames, seed=spec.seed)
     joints, velocity = _at_frames(pose, CubeGrid.of(simulator.config, num_frames), simulator.config)
     return TracedSequence(
         spec=spec, joints_m=joints, joint_velocity_mps=velocity, node_joints_m=nodes_m, visibility=visibility
@@ -136,12 +137,12 @@ def _at_frames(pose: PoseSequence, grid: CubeGrid, config: RadarConfig) -> tuple
 def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: int) -> PoseSequence:
     """The person's motion in the scene. Raises InputError where it fits at none of a few attempts."""
     window = (float(config.range_m[0]), float(config.range_m[-1]))
+    plan = plan_motion(spec.text, num_frames * config.frame_period_s)
     for attempt in range(RETRIES):
         try:
             motion = compose(
-                spec.text, scene, duration_s=num_frames * config.frame_period_s, seed=spec.seed + attempt,
-                range_window_m=window, height_m=PEOPLE_HEIGHT_M[spec.person],
-            )  # fmt: skip
+                plan, scene, seed=spec.seed + attempt, range_window_m=window, height_m=PEOPLE_HEIGHT_M[spec.person]
+            )
             return replace(motion.pose, subject=spec.person)
         except InputError:
             if attempt == RETRIES - 1:

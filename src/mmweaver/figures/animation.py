@@ -1,7 +1,9 @@
 """preview.gif: the same over time. One figure is laid out once; only what moves is drawn again."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,8 +12,6 @@ from mmweaver.figures.skeleton_drawing import SkeletonInPhoto
 from mmweaver.figures.theme import POWER_MAP, SPAN_DB, STYLE, label_axes, person_colour, shortened
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -43,18 +43,66 @@ def _render(view: FigureData) -> list[np.ndarray]:
     canvas = FigureCanvasAgg(figure)
     movers = _lay_out(figure, view)
     canvas.draw()
-    still = canvas.copy_from_bbox(figure.bbox)
+    pixels = np.asarray(canvas.buffer_rgba())
+    still = pixels.copy()
+    maps = [CellsOnScreen.of(mover.axes, mover.cells[0]) for mover in movers if mover.axes and mover.cells is not None]
     pictures = []
     for index in range(len(view.frames)):
-        canvas.restore_region(still)
-        for axes, update in movers:
-            for artist in update(index):
-                (axes or figure).draw_artist(artist)
-        pictures.append(np.asarray(canvas.buffer_rgba())[:, :, :3].copy())
+        pixels[:] = still
+        shown = (mover.cells[index] for mover in movers if mover.cells is not None)
+        for place, values_db in zip(maps, shown, strict=True):
+            place.paint(pixels, values_db)
+        for mover in movers:
+            for artist in mover.update(index):
+                (mover.axes or figure).draw_artist(artist)
+        pictures.append(pixels[:, :, :3].copy())
     return pictures
 
 
-def _lay_out(figure: "Figure", view: FigureData) -> "list[tuple[Axes | None, Callable[[int], list[Artist]]]]":
+@dataclass(frozen=True)
+class CellsOnScreen:
+    """The pixels of an axes that show a map, and which cell each of them shows."""
+
+    rows: slice
+    columns: slice
+    row_cell: np.ndarray  # (pixel row,)
+    column_cell: np.ndarray  # (pixel column,)
+
+    @classmethod
+    def of(cls, axes: "Axes", cells: np.ndarray) -> "CellsOnScreen":
+        """For a map (up, right) that fills the axes, once the figure is laid out; the frame around it is spared."""
+        height = round(axes.get_figure(root=True).bbox.height)
+        left, bottom, right, top = axes.bbox.extents
+        columns = np.arange(int(left) + 1, int(right) + 1)
+        rows = np.arange(int(height - top) + 1, int(height - bottom) + 1)
+        across = (columns + 0.5 - left) / (right - left)
+        up = (height - rows - 0.5 - bottom) / (top - bottom)
+        return cls(
+            slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1),
+            (up * cells.shape[0]).astype(int), (across * cells.shape[1]).astype(int),
+        )  # fmt: skip
+
+    def paint(self, pixels: np.ndarray, values_db: np.ndarray) -> None:
+        """Writes a map (up, right) in dB into the picture (height, width, 4); nan leaves the picture as it is."""
+        from matplotlib import colormaps
+
+        level = np.nan_to_num((values_db + SPAN_DB) * (255 / SPAN_DB), nan=256.0)
+        level = np.clip(np.rint(level), 0, 256).astype(np.intp)[self.row_cell][:, self.column_cell]
+        colours = colormaps[POWER_MAP](np.arange(257), bytes=True)
+        place = pixels[self.rows, self.columns]
+        np.copyto(place, colours[level], where=(level < 256)[:, :, None])
+
+
+@dataclass(frozen=True)
+class Mover:
+    """What changes from frame to frame in an axes, or in the whole figure: a map, and lines or words over it."""
+
+    axes: Any  # Axes or None
+    update: Callable[[int], list[Any]]  # the artists to draw at a frame
+    cells: np.ndarray | None = None  # (frame, up, right) in dB
+
+
+def _lay_out(figure: "Figure", view: FigureData) -> list[Mover]:
     if view.photo is None:
         places = figure.add_gridspec(1, 2, left=0.07, right=0.975, bottom=0.13, top=0.83, wspace=0.22)
         doppler, azimuth = (figure.add_subplot(place) for place in places)
@@ -64,23 +112,18 @@ def _lay_out(figure: "Figure", view: FigureData) -> "list[tuple[Axes | None, Cal
             1, 3, left=0.012, right=0.985, bottom=0.13, top=0.83, wspace=0.2, width_ratios=(1.6, 0.8, 1.6)
         )
         photo, doppler, azimuth = (figure.add_subplot(place) for place in places)
-        photo_movers = [(photo, _photo_mover(photo, view))]
+        photo_movers = [_photo_mover(photo, view)]
     clock = figure.text(0.985, 0.955, "", ha="right", va="top", fontsize=10, animated=True)
     figure.text(0.012, 0.965, shortened(view.heading, 105), ha="left", va="top", fontsize=10, fontweight="bold")
 
-    def tell_time(index: int) -> "list[Artist]":
+    def show_time(index: int) -> "list[Artist]":
         clock.set_text(f"{view.time_s[index]:.1f} s")
         return [clock]
 
-    return [
-        *photo_movers,
-        (doppler, _doppler_mover(doppler, view)),
-        (azimuth, _azimuth_mover(azimuth, view)),
-        (None, tell_time),
-    ]
+    return [*photo_movers, _doppler_mover(doppler, view), _azimuth_mover(azimuth, view), Mover(None, show_time)]
 
 
-def _photo_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Artist]]":
+def _photo_mover(axes: "Axes", view: FigureData) -> Mover:
     assert view.photo is not None
     assert view.radar_from_camera is not None
     from matplotlib.colors import to_rgb
@@ -101,35 +144,20 @@ def _photo_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Artist
             skeleton.show(person.joints_m[index], colour)
         return artists
 
-    return update
+    return Mover(axes, update)
 
 
-def _doppler_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Artist]]":
-    values_db = decibels(view.range_doppler)
-    image = axes.imshow(
-        np.full(values_db.shape[1:], np.nan), origin="lower", aspect="auto", cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0.0,
-        extent=(*view.velocity_edges_mps, *view.range_edges_m), interpolation="nearest",
-    )  # fmt: skip
-    image.set_animated(True)
+def _doppler_mover(axes: "Axes", view: FigureData) -> Mover:
+    axes.set(xlim=view.velocity_edges_mps, ylim=view.range_edges_m)
     label_axes(axes, "Range-Doppler", "radial velocity (m/s)", "range (m)")
-
-    def update(index: int) -> "list[Artist]":
-        image.set_data(values_db[index])
-        return [image]
-
-    return update
+    return Mover(axes, lambda _: [], decibels(view.range_doppler))
 
 
-def _azimuth_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Artist]]":
+def _azimuth_mover(axes: "Axes", view: FigureData) -> Mover:
     values_db = decibels(view.range_azimuth_moving)
     fan = Fan.over(view.cube.grid.range_m, view.azimuth_rad)
-    image = axes.imshow(
-        np.full(fan.inside.shape, np.nan), origin="lower", cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0.0,
-        extent=fan.extent, interpolation="nearest",
-    )  # fmt: skip
-    image.set_animated(True)
-    axes.set(xlim=fan.extent[:2], ylim=fan.extent[2:])
-    label_axes(axes, "From above, what moves", "right (m)", "ahead (m)")
+    axes.set(xlim=fan.extent[:2], ylim=fan.extent[2:], aspect="equal")
+    label_axes(axes, "From above, moving", "right (m)", "ahead (m)", y_label_pt=22.0)
     people = view.shown_poses
     dots = [
         axes.plot([], [], ".", color=person_colour(index, len(people)), markersize=2.5, animated=True)[0]
@@ -137,12 +165,11 @@ def _azimuth_mover(axes: "Axes", view: FigureData) -> "Callable[[int], list[Arti
     ]
 
     def update(index: int) -> "list[Artist]":
-        image.set_data(fan.lay(values_db[index]))
         for dot, person in zip(dots, people, strict=True):
             dot.set_data(person.joints_m[index, :, 0], person.joints_m[index, :, 1])
-        return [image, *dots]
+        return [*dots]
 
-    return update
+    return Mover(axes, update, np.array([fan.lay(values) for values in values_db]))
 
 
 def _share_palette(pictures: list[np.ndarray]) -> "list[Image]":

@@ -41,18 +41,26 @@ def draw_preview(view: FigureData, path: Path) -> None:
     """Writes the page as a PNG, 1600 pixels wide; with a photo 900 high, without one 700."""
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    with matplotlib.rc_context(STYLE):
+        canvas = FigureCanvasAgg(preview_figure(view))
+        canvas.print_png(path, metadata={"Software": "mmWeaver"}, pil_kwargs={"compress_level": 2})
+
+
+def preview_figure(view: FigureData) -> "Figure":
+    """The page as a figure of matplotlib."""
+    import matplotlib
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
         photo = view.photo is not None
         figure = Figure(figsize=(16.0, 9.0 if photo else 7.0), dpi=DPI, facecolor="white")
-        canvas = FigureCanvasAgg(figure)
         figure.suptitle(
             shortened(view.heading, 150), x=0.04, y=0.98, ha="left", va="top", fontsize=13, fontweight="bold"
         )
         for drawer, axes in _layout(figure, photo):
             drawer(axes, view)
-        canvas.print_png(path, metadata={"Software": "mmWeaver"})
+    return figure
 
 
 def _layout(figure: "Figure", photo: bool) -> "list[tuple[Callable[[Axes, FigureData], None], Axes]]":
@@ -94,14 +102,14 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
     axes.set_anchor("NW")
     people = view.shown_poses
     if len(people) == 1:
-        axes.set_title("The room, and the person at several times (faint: hidden behind something)")
+        axes.set_title("The room, and the person at several times (faint: occluded)", y=1.0)
         colours = matplotlib.colormaps[TIME_MAP]
         _draw_person(axes, view, people[0], GHOST_POSES, lambda share: _time_colour(colours, share))
         low_s, high_s = float(people[0].time_s[0]), float(people[0].time_s[-1])
         span = Normalize(low_s, high_s if high_s > low_s else low_s + 1)
         colour_bar(axes, ScalarMappable(norm=span, cmap=_time_map()), "time (s)")
         return
-    axes.set_title("The room, and the people at several times, the last the brightest (faint: hidden)")
+    axes.set_title("The room, and the people at several times, the last the brightest (faint: occluded)", y=1.0)
     for index, person in enumerate(people):
         own = to_rgb(person_colour(index, len(people)))
         _draw_person(axes, view, person, GHOST_POSES_OF_MANY, partial(_constant, own))

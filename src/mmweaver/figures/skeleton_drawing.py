@@ -12,7 +12,7 @@ from mmweaver.geometry import pinhole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.collections import LineCollection
+    from matplotlib.lines import Line2D
 
 HIDDEN_BEYOND_M = 0.25  # a joint so far behind the measured surface is hidden; a body is thicker than its joints
 NEAREST_M = 0.05
@@ -45,28 +45,41 @@ class SkeletonInPhoto:
     """The bones of one person as lines in a photo's axes: full where seen, faint where furniture hides them."""
 
     def __init__(self, axes: "Axes", photo: RgbdPhoto, radar_from_camera: Rotation, width: float = 2.0):
-        from matplotlib.collections import LineCollection
+        from matplotlib.lines import Line2D
 
         self._photo, self._rotation = photo, radar_from_camera
-        self._back = LineCollection([], linewidths=width + 1.4, colors=[(0, 0, 0, 0.5)], capstyle="round")
-        self._seen = LineCollection([], linewidths=width, capstyle="round")
-        self._hidden = LineCollection([], linewidths=width * 0.6, capstyle="round")
-        for lines in self.artists:
-            axes.add_collection(lines, autolim=False)
+        self._back, self._hidden, self._seen = (
+            Line2D([], [], linewidth=one, color="black", solid_capstyle="round", solid_joinstyle="round")
+            for one in (width + 1.4, width * 0.6, width)
+        )
+        for line in self.artists:
+            axes.add_artist(line)
 
     @property
-    def artists(self) -> "tuple[LineCollection, ...]":
+    def artists(self) -> "tuple[Line2D, ...]":
         return self._back, self._hidden, self._seen
 
     def show(self, joints_m: Float[Array, "22 3"], colour: tuple[float, float, float], alpha: float = 1.0) -> None:
         """Moves the lines to a pose; joints in metres in the radar's frame."""
         pieces, hidden = bone_pieces(joints_m, self._photo, self._rotation)
-        self._back.set_segments(list(pieces[~hidden]))
+        for line, shown in ((self._back, ~hidden), (self._hidden, hidden), (self._seen, ~hidden)):
+            line.set_data(*_with_gaps(pieces[shown]).T)
         self._back.set_alpha(0.5 * alpha)
-        self._seen.set_segments(list(pieces[~hidden]))
-        self._seen.set_color([(*colour, alpha)])
-        self._hidden.set_segments(list(pieces[hidden]))
-        self._hidden.set_color([(*colour, 0.35 * alpha)])
+        self._hidden.set(color=colour, alpha=0.35 * alpha)
+        self._seen.set(color=colour, alpha=alpha)
+
+
+def _with_gaps(pieces: Float[Array, "piece 2 2"]) -> Float[Array, "point 2"]:
+    """The ends of the pieces one after the other, nan where the pen is lifted; pieces that meet are one stroke."""
+    gaps = np.full((len(pieces), 1, 2), np.nan)
+    points = np.concatenate([pieces, gaps], axis=1).reshape(-1, 2)
+    if len(pieces) < 2:
+        return points
+    meets = np.abs(pieces[1:, 0] - pieces[:-1, 1]).max(axis=1) < 1e-9
+    keep = np.ones((len(pieces), 3), dtype=bool)
+    keep[:-1, 2] = ~meets
+    keep[1:, 0] = ~meets
+    return points[keep.reshape(-1)]
 
 
 def bone_pieces(

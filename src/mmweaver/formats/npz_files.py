@@ -77,7 +77,7 @@ def read_radar_npz(path: str | Path, config: RadarConfig | None = None) -> Radar
 
 def _radar_beside(path: Path) -> RadarConfig:
     try:
-        text = path.with_name("radar.json").read_text()
+        text = path.with_name("radar.json").read_text(encoding="utf-8")
     except OSError:
         raise InputError(f"no radar.json beside {path}; give the radar that recorded it") from None
     return RadarConfig.from_json(text)

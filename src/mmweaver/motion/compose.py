@@ -1,28 +1,22 @@
-"""The room's door: a sentence and a Scene -> the motion of a body in it. Read this file first."""
+"""From a scheduled plan and a Scene to the motion of a body in it. Read this file first."""
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.animation.assemble import assemble
 from mmweaver.motion.animation.skeleton_proportions import SHORTEST_M, TALLEST_M, SkeletonProportions
 from mmweaver.motion.language.plan import MotionPlan
-from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.timing import schedule
 from mmweaver.motion.planning.collision import CollisionMap
-from mmweaver.motion.planning.collision_ranking import most_clear
+from mmweaver.motion.planning.collision_ranking import least_collision
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.placement import Placement, place
-from mmweaver.motion.planning.targets import without_things
-
-LONGEST_S = 600.0
+from mmweaver.motion.planning.targets import without_targets
 
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """A body's motion in a scene: dense and smooth poses, the steps with their times, and what was assumed."""
+    """A body's motion in a scene, the plan that it carries out, and what was assumed."""
 
     pose: PoseSequence  # 120 Hz, from two samples before 0 to two after the end, in the radar's frame
     plan: MotionPlan
@@ -30,10 +24,9 @@ class Motion:
 
 
 def compose(
-    text: str,
+    plan: MotionPlan,
     scene: Scene,
     *,
-    duration_s: float,
     seed: int,
     range_window_m: tuple[float, float],
     start_m: tuple[float, float] | None = None,
@@ -41,46 +34,52 @@ def compose(
     others: tuple[PoseSequence, ...] = (),
     has_photo: bool = True,
 ) -> Motion:
-    """Reads the sentence, shares out the time, finds room on the scene's floor, and moves the body.
+    """Finds a free trajectory on the scene's floor for a plan, and animates the body along it.
 
-    `range_window_m`: the slant ranges that the radar keeps; the body stays inside. `start_m`: where the person starts,
-    (x, y). `height_m`: the body's height, else drawn from the seed between 1.63 and 1.96 m. `others`: people who are
-    there already; the way keeps clear of them (see `company`). Without a photo behind the scene (`has_photo`) a thing
-    to go to cannot be looked for: the way then leads where there is room, and a note says so. Raises InputError where
-    the sentence is not understood, its steps do not fit the time, or the room has no place for it.
+    Args:
+        plan: a scheduled plan, as `motion.language.timing.plan_motion` makes it of a sentence.
+        scene: the room, in the radar's frame.
+        seed: decides everything that the sentence leaves open.
+        range_window_m: nearest and farthest slant range that the radar keeps; the body stays inside.
+        start_m: where the person starts, (x, y); chosen if None.
+        height_m: the body's height; if None sampled between 1.63 and 1.96 m.
+        others: people who are already in the scene; the trajectory keeps clear of them (see `multi_person`).
+        has_photo: False where no photo stands behind the scene. Nobody can then walk to a door or a table of it; the
+            walk leads where there is room, and an assumption says so.
+
+    Raises InputError where the room has no place for the motion.
     """
-    if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
-        raise InputError(f"a duration of {duration_s:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
-    plan = schedule(parse(text), duration_s)
+    if plan.duration_s <= 0:
+        raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
     if not has_photo:
-        plan = without_things(plan)
+        plan = without_targets(plan)
     if height_m is None:
         height_m = float(stream(seed, "motion", "height").uniform(SHORTEST_M, TALLEST_M))
     body = SkeletonProportions(height_m)
     floor = FloorMap(scene, range_window_m, height_m)
-    plan, spot_notes = _jogging_without_a_way(plan)
+    plan, jogging_notes = _jog_on_the_spot(plan)
 
-    def draw(again: int) -> list[Placement]:
-        return place(plan, floor, body, seed=seed, start_m=start_m, others=others, again=again)
+    def candidates(attempt: int) -> list[Placement]:
+        return place(plan, floor, body, seed=seed, start_m=start_m, others=others, attempt=attempt)
 
-    def moved(placement: Placement) -> PoseSequence:
+    def animate(placement: Placement) -> PoseSequence:
         return assemble(
             plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
-            seed=seed, duration_s=duration_s, floor_z_m=scene.floor_z_m,
+            seed=seed, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m,
         )  # fmt: skip
 
-    best = most_clear(draw, moved, CollisionMap.of(scene))
-    notes = plan.notes + spot_notes + best.placement.assumptions + best.notes
+    best = least_collision(candidates, animate, CollisionMap.of(scene))
+    notes = plan.notes + jogging_notes + best.placement.assumptions + best.notes
     return Motion(pose=best.pose, plan=plan, assumptions=notes)
 
 
-def _jogging_without_a_way(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
-    """Jogging needs metres a second that a room seldom has: without a direction it is on the spot, and said so."""
-    from dataclasses import replace
-
-    aimless = [step.lower == "jog" and step.direction == "" for step in plan.steps]
+def _jog_on_the_spot(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
+    """Jogging takes more room than most rooms have: without a direction it is on the spot, and a note says so."""
+    is_aimless = [step.lower == "jog" and step.direction == "" for step in plan.steps]
+    if not any(is_aimless):
+        return plan, ()
     steps = tuple(
-        replace(step, direction="spot") if free else step for step, free in zip(plan.steps, aimless, strict=True)
+        replace(step, direction="spot") if aimless else step
+        for step, aimless in zip(plan.steps, is_aimless, strict=True)
     )
-    note = ("no direction is said for jogging: the person jogs on the spot",) if any(aimless) else ()
-    return replace(plan, steps=steps), note
+    return replace(plan, steps=steps), ("no direction is given for jogging: the person jogs on the spot",)

@@ -1,9 +1,10 @@
-"""A sentence acted out without a photo: on an empty floor before the radar, to look at or to learn from."""
+"""A sentence acted out without a photo, on an empty floor in front of the radar."""
 
 import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Plane, RgbdPhoto, Scene
 from mmweaver.motion.compose import Motion, compose
+from mmweaver.motion.language.timing import plan_motion
 
 RADAR_HEIGHT_M = 1.1
 FLOOR_M = 8.0  # both ways
@@ -32,17 +33,18 @@ def empty_floor() -> Scene:
     )  # fmt: skip
 
 
-def act_out(text: str, *, duration_s: float, seed: int = 0, height_m: float | None = None) -> Motion:
+def act_out(text: str, *, duration_s: float | None = None, seed: int = 0, height_m: float | None = None) -> Motion:
     """The motion of a sentence on an empty floor; the radar stands at the origin, the floor lies 1.1 m below it.
 
-    Seats are stools, as nothing else stands there, and a way to a door leads where there is room. Raises InputError
-    where the sentence is not understood or does not fit the time.
+    Seats are stools, as nothing else stands there, and a walk to a door leads where there is room. Without
+    `duration_s` the motion takes as long as is natural. Raises InputError where the sentence is not understood or does
+    not fit the time.
 
     >>> motion = act_out("a person bows", duration_s=2.0)
     >>> motion.plan.steps[0].lower, motion.pose.joints_m.shape
     ('bow', (245, 22, 3))
     """
     return compose(
-        text, empty_floor(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M, height_m=height_m,
+        plan_motion(text, duration_s), empty_floor(), seed=seed, range_window_m=WINDOW_M, height_m=height_m,
         has_photo=False,
     )  # fmt: skip

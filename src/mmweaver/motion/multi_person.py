@@ -1,9 +1,9 @@
 """Several people in one room: composed one after the other, each clear of those who are already there.
 
-Who has a given place goes first, the others follow in the order of their sentences; where one finds no place all
-are drawn anew, and that one goes first.
+People with a given start go first, the others follow in the order of their sentences. Where one finds no place, all
+are composed again with other random numbers, and that person goes first.
 
-Clear means at all times: pelvises at least 0.5 m apart, and no part of one body within 2 cm of the other.
+Clear means at all times: pelvises at least 0.5 m apart, and at least 2 cm between the surfaces of two bodies.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,81 +13,84 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.compose import Motion, compose
-from mmweaver.motion.planning.separation import PELVISES_APART_M, are_apart
+from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.planning.separation import LEAST_PELVIS_DISTANCE_M, are_separate
 
 Place = tuple[float, float]
 MOST_PEOPLE = 8
-TRIES_EACH, TRIES_ALL = 6, 6
+TRIES_PER_PERSON, TRIES_FOR_ALL = 6, 6
 
 
 def compose_people(
-    texts: Sequence[str],
+    plans: Sequence[MotionPlan | None],
     scene: Scene,
     *,
-    duration_s: float,
     seed: int,
     range_window_m: tuple[float, float],
     starts_m: Sequence[Place | None] | None = None,
     heights_m: Sequence[float | None] | None = None,
     first: Motion | None = None,
 ) -> tuple[Motion, ...]:
-    """One motion for each sentence, in their order; the first is what it would be alone, wherever that leaves room.
+    """One motion for each scheduled plan, in their order, as subjects 0, 1, 2 ...
 
-    `starts_m`: where each starts, `heights_m`: how tall each is, None = chosen. Each person has a body of their own:
-    subjects 0, 1, 2 ... `first` is the first person's motion where it is there already (a recorded one); it stays as
-    it is. Raises InputError as `compose` does, and where the people cannot be kept apart.
+    `starts_m` and `heights_m` hold each person's start (x, y) and height, None where it is chosen. `first` is the first
+    person's motion where it exists already (a recorded one); it stays as it is, and `plans[0]` is not used. Otherwise
+    the first person moves as they would alone, wherever that leaves room for the others. Raises InputError as
+    `compose` does, and where the people cannot be kept separate.
     """
-    starts = [None] * len(texts) if starts_m is None else list(starts_m)
-    heights = [None] * len(texts) if heights_m is None else list(heights_m)
+    starts = [None] * len(plans) if starts_m is None else list(starts_m)
+    heights = [None] * len(plans) if heights_m is None else list(heights_m)
 
-    def alone(index: int, draw: int, others: tuple[PoseSequence, ...]) -> Motion:
+    def alone(index: int, own_seed: int, others: tuple[PoseSequence, ...]) -> Motion:
+        plan = plans[index]
+        assert plan is not None
         return compose(
-            texts[index], scene, duration_s=duration_s, seed=draw, range_window_m=range_window_m,
-            start_m=starts[index], height_m=heights[index], others=others,
+            plan, scene, seed=own_seed, range_window_m=range_window_m, start_m=starts[index],
+            height_m=heights[index], others=others,
         )  # fmt: skip
 
-    if len(texts) == 1:
+    if len(plans) == 1:
         return (alone(0, seed, ()) if first is None else first,)
-    there = {} if first is None else {0: first}
-    order = sorted(set(range(len(texts))) - set(there), key=lambda index: starts[index] is None)
+    given = {} if first is None else {0: first}
+    order = sorted(set(range(len(plans))) - set(given), key=lambda index: starts[index] is None)
     crowded = order[0]
-    for attempt in range(TRIES_ALL):
-        people = dict(there)
+    for attempt in range(TRIES_FOR_ALL):
+        people = dict(given)
         for index in order:
             try:
-                people[index] = _join(list(people.values()), alone, texts[index], (seed, index, attempt))
+                people[index] = _join(list(people.values()), alone, (seed, index, attempt))
             except InputError:
-                if attempt == 0:  # what is wrong even alone is said as such
+                if attempt == 0:  # an error that the person would meet alone is reported as such
                     alone(index, _seed_of(seed, index, 0, 0), ())
                 crowded = index
                 order.sort(key=lambda one: (starts[one] is None, one != crowded))  # it goes first the next time
                 break
-        if len(people) == len(texts):
-            return tuple(people[index] for index in range(len(texts)))
+        if len(people) == len(plans):
+            return tuple(people[index] for index in range(len(plans)))
+    refused = plans[crowded]
     raise InputError(
-        f"there is no room for {len(texts)} people who keep {PELVISES_APART_M:g} m apart: person {crowded + 1},"
-        f" {texts[crowded]!r}, finds no place beside the others; try fewer people, fewer frames or other places"
-        " (--at for each)"
+        f"there is no room for {len(plans)} people who keep {LEAST_PELVIS_DISTANCE_M:g} m apart: person {crowded + 1},"
+        f" {refused.text if refused else ''!r}, finds no place next to the others; try fewer people, fewer frames or"
+        " other places (--at for each)"
     )
 
 
 def _join(
-    people: list[Motion], alone: Callable[[int, int, tuple[PoseSequence, ...]], Motion], text: str,
-    draw: tuple[int, int, int],
-) -> Motion:  # fmt: skip
-    """One more person, clear of the others."""
-    seed, index, attempt = draw
+    people: list[Motion], alone: Callable[[int, int, tuple[PoseSequence, ...]], Motion], numbers: tuple[int, int, int]
+) -> Motion:
+    """One more person, clear of the others; `numbers` are seed, index of the person and attempt."""
+    seed, index, attempt = numbers
     others = tuple(one.pose for one in people)
-    for again in range(TRIES_EACH):
-        motion = alone(index, _seed_of(seed, index, attempt, again), others)
+    for retry in range(TRIES_PER_PERSON):
+        motion = alone(index, _seed_of(seed, index, attempt, retry), others)
         motion = replace(motion, pose=replace(motion.pose, subject=index))
-        if all(are_apart(motion.pose, other) for other in others):
+        if all(are_separate(motion.pose, other) for other in others):
             return motion
-    raise InputError(f"{text!r} comes too near to somebody else; try another place")
+    raise InputError(f"person {index + 1} comes too near to somebody else; try another place")
 
 
-def _seed_of(seed: int, index: int, attempt: int, again: int) -> int:
-    """The first person's first draw is that of a person alone."""
-    if (index, attempt, again) == (0, 0, 0):
+def _seed_of(seed: int, index: int, attempt: int, retry: int) -> int:
+    """The first person's first attempt has the seed of a person alone."""
+    if (index, attempt, retry) == (0, 0, 0):
         return seed
-    return int(stream(seed, "company", index, attempt, again).integers(2**31))
+    return int(stream(seed, "company", index, attempt, retry).integers(2**31))

@@ -21,7 +21,8 @@ def hidden(resting: Echoes, joints_m: Tensor) -> Tensor:
     come back.
     """
     body = average_body()
-    starts, axes, rotations = (torch.from_numpy(part).float() for part in body.frames(joints_m.double().cpu().numpy()))
+    posed = body.posed(joints_m.double().cpu().numpy())
+    starts, axes, rotations = (torch.from_numpy(part).float() for part in (posed.start_m, posed.axis_m, posed.rotation))
     ahead = (1 - resting.direction.square().sum(-1)).clamp(min=0).sqrt()
     ways = torch.stack([resting.direction[:, 0], ahead, resting.direction[:, 1]], dim=-1).cpu()
     radius = CORNERS * torch.from_numpy(body.radii_m).float()

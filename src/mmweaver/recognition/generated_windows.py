@@ -18,6 +18,7 @@ from mmweaver.dsp.firmware import firmware_points
 from mmweaver.dsp.firmware_cfar import counts_per_db
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.timing import schedule
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.recognition.diffuse_clutter import diffuse_clutter
@@ -146,7 +147,8 @@ def _pose(
     recipe: GenerationRecipe, now: VariationSample, sentence: str, person: int, rng: np.random.Generator
 ) -> PoseSequence:
     """A stretch from the middle of the motion, at the tempo, vigour and heading drawn; time 0 is the first frame."""
-    moves = any(step.moves for step in parse(sentence).steps)
+    plan = parse(sentence)
+    moves = any(step.moves for step in plan.steps)
     tempo = now.tempo * (recipe.variation.way_tempo if moves else 1.0)
     lasts_s = (recipe.frames * recipe.radar.frame_period_s + 0.1) * tempo  # of the motion's own time
     lead_s = LEAD_S + float(rng.uniform(0.0, 1.5))
@@ -156,7 +158,7 @@ def _pose(
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
     start_m = None if moves and rng.random() < 0.5 else now.start_m
     pose = compose(
-        sentence, scene, duration_s=whole_s, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,
+        schedule(plan, whole_s), scene, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,
         start_m=start_m, height_m=now.height_m,
     ).pose  # fmt: skip
     joints_m = _vigorous(pose.joints_m, now.vigour)

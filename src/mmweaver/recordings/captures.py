@@ -164,7 +164,7 @@ def _photo_in(place: Path) -> RgbdPhoto | None:
 def _photo_of_meta(meta: Path) -> RgbdPhoto | None:
     """The photo named in a meta.json of `mmweaver generate`. Raises InputError where it has changed since."""
     try:
-        inputs: dict[str, Any] = json.loads(meta.read_text())["inputs"]
+        inputs: dict[str, Any] = json.loads(meta.read_text(encoding="utf-8"))["inputs"]
     except (OSError, ValueError, KeyError, TypeError):
         return None
     if "sample" in inputs:

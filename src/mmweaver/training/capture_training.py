@@ -157,7 +157,10 @@ def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], lic
     figures = compare_with_start(tuned.trainer, initial_network(tuned.trainer.recipe, start))
     card = card_of(tuned.trainer, digest, **more)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(model_card(card, file, data=about, evaluated_on=f"{held_out}; {EXPLAINED}", figures=figures))
+        partial.write_text(
+            model_card(card, file, data=about, evaluated_on=f"{held_out}; {EXPLAINED}", figures=figures),
+            encoding="utf-8",
+        )
     return file
 
 
@@ -178,7 +181,7 @@ def estimate_gain(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> floa
     for room in rooms:
         one = RoomExamples(room, SPLIT)
         with torch.inference_mode():
-            scene = type(one.scene).stacked([one.scene])
+            scene = one.scene[None]
             resting = learner.network.encode_room(scene).resting
             expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
         maps.append((expected, one.static.range_azimuth))

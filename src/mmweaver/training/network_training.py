@@ -148,7 +148,7 @@ def write_weights(out: Path, data: Path, trainer: Trainer, *, start: dict[str, t
     figures = compare_with_start(trainer, initial_network(trainer.recipe, start))
     page = model_card(card, file, data=about, evaluated_on=f"{unseen} {EXPLAINED}", figures=figures)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(page)
+        partial.write_text(page, encoding="utf-8")
     return file
 
 

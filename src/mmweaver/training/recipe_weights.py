@@ -48,7 +48,7 @@ def write_recipe_weights(
     unseen_data = f"{unseen:,} sequences in {unseen_rooms} rooms of kinds not trained on; the weights best there."
     text = model_card(card, file, data=about, evaluated_on=unseen_data, figures=figures, page=page)
     with atomic_file(out / CARD_FILE) as partial:
-        partial.write_text(text)
+        partial.write_text(text, encoding="utf-8")
     return file
 
 

@@ -24,9 +24,9 @@ class RunLog:
         self.out, self.file = out, out / LOG
         self.board = _writer(out / BOARD, done) if tensorboard else None
         if self.file.is_file():
-            kept = [line for line in self.file.read_text().splitlines() if _step_of(line) <= done]
+            kept = [line for line in self.file.read_text(encoding="utf-8").splitlines() if _step_of(line) <= done]
             with atomic_file(self.file) as temporary:
-                temporary.write_text("".join(f"{line}\n" for line in kept))
+                temporary.write_text("".join(f"{line}\n" for line in kept), encoding="utf-8")
 
     def row(self, figures: dict[str, Any]) -> None:
         """Logs the figures of a step, if it is one of every 50 or a validation."""

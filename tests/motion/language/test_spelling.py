@@ -1,19 +1,19 @@
-from mmweaver.motion.language.spelling import corrected, mended
+from mmweaver.motion.language.spelling import correct_spelling, corrected_word
 
 
 def test_slips_are_mended_and_told():
-    text, notes = corrected("a person wlaks forwads")
+    text, notes = correct_spelling("a person wlaks forwads")
     assert text == "a person wlaks forwards"
     assert notes == ["'forwads' is read as 'forwards'"]
-    assert mended("backwrads") == "backwards"
-    assert mended("wawing") == "waving"
+    assert corrected_word("backwrads") == "backwards"
+    assert corrected_word("wawing") == "waving"
 
 
 def test_other_words_stay_as_they_are():
     for word in ("singing", "showing", "passes", "shaved", "walk", "bakes", "licking"):
-        assert mended(word) == ""
+        assert corrected_word(word) == ""
 
 
 def test_forms_of_other_verbs_are_no_slips():
     for word in ("talking", "cooking", "climbing", "wishing", "stirring", "swinging", "slides"):
-        assert mended(word) == ""
+        assert corrected_word(word) == ""

@@ -88,7 +88,9 @@ def test_no_room_is_said_with_what_there_is():
 
 
 def test_as_recorded_moves_nothing():
-    recorded = MotionClip(joints_m=walk(60.0, 2.0) + np.array([0.0, 2.0, -1.1]), fps=60.0, label="walk", steady=False)
+    recorded = MotionClip(
+        joints_m=walk(60.0, 2.0) + np.array([0.0, 2.0, -1.1]), fps=60.0, label="walk", has_jitter=False
+    )
     motion = place_clip(recorded, room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M, as_recorded=True)
     k = int(np.argmin(np.abs(motion.pose.time_s)))
     np.testing.assert_allclose(motion.pose.joints_m[k], recorded.joints_m[0], atol=1e-9)

@@ -7,7 +7,7 @@ from mocap_files import walk
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import BONES
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import check_lasts, densely, steadied
+from mmweaver.motion.mocap.clip_resampling import check_lasts, low_passed, resampled_clip
 
 TRUTH_FPS = 120.0
 
@@ -30,7 +30,7 @@ def figures(joints: np.ndarray) -> tuple[float, float]:
     ("fps", "error_m"), [(20.0, 0.025), (30.0, 0.012), (60.0, 0.006), (100.0, 0.006), (240.0, 0.006)]
 )
 def test_the_motion_is_kept_at_any_rate(fps: float, error_m: float):
-    time_s, joints = densely(clip(fps), 1.8)
+    time_s, joints = resampled_clip(clip(fps), 1.8)
     assert time_s[0] < 0 < 1.8 < time_s[-1]
     inside = (time_s >= 0) & (time_s <= 1.8)
     truth = walk(TRUTH_FPS)[: inside.sum()]
@@ -42,7 +42,7 @@ def test_the_motion_is_kept_at_any_rate(fps: float, error_m: float):
 
 
 def test_bones_keep_their_length_between_frames():
-    _, joints = densely(clip(20.0), 1.8)
+    _, joints = resampled_clip(clip(20.0), 1.8)
     for parent, child in BONES:
         length = np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1)
         assert np.ptp(length) < 0.02
@@ -51,19 +51,19 @@ def test_bones_keep_their_length_between_frames():
 def test_jitter_is_taken_out_and_the_motion_is_not_late():
     noisy = clip(120.0, noise_m=0.0007)
     clean = clip(120.0)
-    left = steadied(noisy) - steadied(clean)
+    left = low_passed(noisy) - low_passed(clean)
     assert np.sqrt((left[10:-10] ** 2).mean()) < 0.5 * 0.0007
-    removed = steadied(clean) - clean.joints_m
+    removed = low_passed(clean) - clean.joints_m
     assert np.sqrt((removed**2).mean()) < 0.0006
-    kept = MotionClip(joints_m=noisy.joints_m, fps=120.0, label="walk", steady=False)
-    np.testing.assert_array_equal(steadied(kept), noisy.joints_m)
-    np.testing.assert_array_equal(steadied(clip(20.0)), walk(20.0))
+    kept = MotionClip(joints_m=noisy.joints_m, fps=120.0, label="walk", has_jitter=False)
+    np.testing.assert_array_equal(low_passed(kept), noisy.joints_m)
+    np.testing.assert_array_equal(low_passed(clip(20.0)), walk(20.0))
 
 
 def test_the_last_frame_lasts_too_and_no_longer():
     whole = clip(20.0)
     assert whole.duration_s == pytest.approx(2.0)
-    _, joints = densely(whole, 2.0)
+    _, joints = resampled_clip(whole, 2.0)
     assert np.isfinite(joints).all()
     assert figures(joints)[1] < 1.6 * figures(walk(TRUTH_FPS))[1]
     with pytest.raises(InputError, match=r"lasts 2\.00 s, 2\.10 s were asked for"):
@@ -72,5 +72,5 @@ def test_the_last_frame_lasts_too_and_no_longer():
 
 def test_two_frames_are_a_motion():
     joints = walk(20.0)[:2]
-    _, dense = densely(MotionClip(joints_m=joints, fps=20.0, label="step"), 0.1)
+    _, dense = resampled_clip(MotionClip(joints_m=joints, fps=20.0, label="step"), 0.1)
     assert np.isfinite(dense).all()

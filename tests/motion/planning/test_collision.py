@@ -6,6 +6,7 @@ import numpy as np
 
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto, Scene
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.collision import CollisionMap
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -24,11 +25,11 @@ def test_a_body_in_the_open_is_clear_and_one_in_the_wall_is_not():
     inside = (np.abs(x) < 0.15) & (y > 1.2) & (y < 2.5)
     assert inside.any()
     at = (float(np.median(x[inside])), float(np.median(y[inside])), scene.floor_z_m)
-    assert obstacles.deepest_m(standing_person(at, seconds=0.3)) == 0.0
+    assert obstacles.penetration_m(standing_person(at, seconds=0.3)) == 0.0
     wall = next(plane for plane in scene.planes if plane.kind == "wall")
     beside = wall.centre_m - 0.02 * wall.normal
     near = (float(beside[0]), float(beside[1]), scene.floor_z_m)
-    assert obstacles.deepest_m(standing_person(near, seconds=0.3)) > 0.05
+    assert obstacles.penetration_m(standing_person(near, seconds=0.3)) > 0.05
 
 
 def _before_a_board(height_m: float, away_m: float) -> Scene:
@@ -46,7 +47,7 @@ def test_a_margin_counts_what_is_near():
     obstacles = CollisionMap(_before_a_board(1.1, 2.0))
     scene = obstacles.scene
     pose = standing_person((0.0, 2.2, scene.floor_z_m), seconds=0.3)
-    gap = [margin for margin in np.arange(0.0, 0.2, 0.01) if obstacles.deepest_m(pose, margin_m=float(margin)) > 0]
+    gap = [margin for margin in np.arange(0.0, 0.2, 0.01) if obstacles.penetration_m(pose, margin_m=float(margin)) > 0]
     assert gap
     assert gap[0] > 0.0
 
@@ -54,17 +55,17 @@ def test_a_margin_counts_what_is_near():
 def test_thighs_may_sink_into_the_seat_but_not_into_the_table_before_it():
     """The same board: under the sitter at the height of a seat; before the belly at that of a table."""
     chair = seat(y_m=2.0)
-    sits = compose("a person sits", bare_room(seats=(chair,)), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
+    sits = compose(plan_motion("a person sits", 1.0), bare_room(seats=(chair,)), seed=0, range_window_m=WINDOW_M)
     place = (float(chair.position_m[0]), float(chair.position_m[1]))
     for height, touches in ((0.45, False), (0.62, True)):
         obstacles = CollisionMap(_before_a_board(height, 1.75))
-        assert (obstacles.deepest_m(sits.pose, (place,)) > 0.0) == touches
+        assert (obstacles.penetration_m(sits.pose, (place,)) > 0.0) == touches
 
 
 def test_a_table_behind_a_seat_is_no_back_of_it():
     """A board close behind the sitter: as wide as a table one must not lean into it, as narrow as a chair one may."""
     chair = seat(y_m=2.0)
-    sits = compose("a person sits", bare_room(seats=(chair,)), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
+    sits = compose(plan_motion("a person sits", 1.0), bare_room(seats=(chair,)), seed=0, range_window_m=WINDOW_M)
     place = (float(chair.position_m[0]), float(chair.position_m[1]))
     for width, touches in ((0.36, False), (1.4, True)):
         scene = _before_a_board(0.72, 2.08)
@@ -72,4 +73,4 @@ def test_a_table_behind_a_seat_is_no_back_of_it():
         half = round(width / 2 / 2.08 * 300.0)
         depth[:, : 160 - half] = depth[:, 160 + half :] = np.nan
         obstacles = CollisionMap(dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=depth)))
-        assert (obstacles.deepest_m(sits.pose, (place,)) > 0.0) == touches
+        assert (obstacles.penetration_m(sits.pose, (place,)) > 0.0) == touches

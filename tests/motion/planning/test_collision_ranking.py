@@ -10,7 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.motion.animation.root_path import RootPath
 from mmweaver.motion.planning.collision import CollisionMap
-from mmweaver.motion.planning.collision_ranking import MARGIN_M, most_clear
+from mmweaver.motion.planning.collision_ranking import MARGIN_M, least_collision
 from mmweaver.motion.planning.placement import Placement
 from tests.motion.rooms import room
 from tests.rooms import standing_person
@@ -21,30 +21,30 @@ POSE = standing_person((0.0, 2.0, -1.1), seconds=0.2)
 class _Known(CollisionMap):
     """Says what a pose's height says."""
 
-    def deepest_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0):
+    def penetration_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0):
         return max(pose.height_m - 1.0 + margin_m, 0.0)
 
 
-def _chosen(*deep_m: list[float]):
-    """`deep_m`: how deep the placements of each draw get in; further draws find no way."""
+def _chosen(*penetration_m: list[float]):
+    """`depth_m`: how deep the placements of each draw get in; further draws find no way."""
     drawn: list[int] = []
 
     def draw(again: int) -> list[Placement]:
         drawn.append(again)
-        if again >= len(deep_m):
+        if again >= len(penetration_m):
             raise InputError("no other")
-        return [_placement(deep) for deep in deep_m[again]]
+        return [_placement(deep) for deep in penetration_m[again]]
 
     def moved(placement: Placement) -> PoseSequence:
         return PoseSequence(
             joints_m=POSE.joints_m, time_s=POSE.time_s, height_m=1.0 + placement.path.heading_rad, subject=0
         )
 
-    return most_clear(draw, moved, _Known(room())), drawn
+    return least_collision(draw, moved, _Known(room())), drawn
 
 
-def _placement(deep_m: float) -> Placement:
-    path = RootPath(start_m=(0.0, 2.0), heading_rad=deep_m, moves=(), turns=())
+def _placement(penetration_m: float) -> Placement:
+    path = RootPath(start_m=(0.0, 2.0), heading_rad=penetration_m, moves=(), turns=())
     return Placement(path=path, moves=(), seat_height_m=(), seats_m=(), assumptions=())
 
 
@@ -76,19 +76,19 @@ def test_of_two_seats_the_one_where_the_trunk_is_seen_is_taken():
     def moved(placement: Placement) -> PoseSequence:
         return dataclasses.replace(poses[placement], height_m=0.8)
 
-    best = most_clear(lambda _again: seats, moved, _Known(room()))
+    best = least_collision(lambda _again: seats, moved, _Known(room()))
     assert best.placement.seats_m == ((0.0, 2.0),)
-    hidden = most_clear(lambda _again: seats[:1], moved, _Known(room()))
-    assert hidden.hidden_m > 0.03
+    hidden = least_collision(lambda _again: seats[:1], moved, _Known(room()))
+    assert hidden.trunk_cost_m > 0.03
     assert hidden.notes == ()  # nothing is known to be there
 
 
 @pytest.mark.parametrize("others", [[], [[0.08]]])
 def test_the_better_of_bad_ones_is_taken_and_said(others: list[list[float]]):
     best, _ = _chosen([0.07, 0.05], *others)
-    assert best.deep_m == pytest.approx(0.05, abs=1e-6)
+    assert best.penetration_m == pytest.approx(0.05, abs=1e-6)
     assert "5 cm into furniture" in best.notes[0]
 
 
 def test_numbers_are_numbers():
-    assert np.isfinite(_chosen([0.0])[0].deep_m)
+    assert np.isfinite(_chosen([0.0])[0].penetration_m)

@@ -7,6 +7,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
 from mmweaver.motion.empty_floor import act_out
+from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.planning.floor_map import FloorMap
 from rooms import WINDOW_M, room
 
@@ -48,10 +49,10 @@ def test_nobody_lies_in_furniture():
     scene = room(boxes=boxes)
     for seed in range(20):
         text = ("falls", "lies down", "falls forward")[seed % 3]
-        made = compose(text, scene, duration_s=4.0, seed=seed, range_window_m=WINDOW_M)
+        made = compose(plan_motion(text, 4.0), scene, seed=seed, range_window_m=WINDOW_M)
         floor = FloorMap(scene, WINDOW_M, made.pose.height_m)
         trunk_and_legs = made.pose.joints_m[:, :18]  # arms may reach over what is low
         assert floor.clearance_at(trunk_and_legs[..., :2]).min() > 0.0
     cell = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 2.4, 6.0)))
     with pytest.raises(InputError, match="no room"):
-        compose("lies down", cell, duration_s=4.0, seed=0, range_window_m=WINDOW_M)
+        compose(plan_motion("lies down", 4.0), cell, seed=0, range_window_m=WINDOW_M)

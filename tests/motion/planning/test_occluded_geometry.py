@@ -7,21 +7,21 @@ import pytest
 
 from mmweaver.core.records import CameraIntrinsics, Plane, RgbdPhoto, Scene
 from mmweaver.motion.planning.occluded_geometry import (
-    feet_of,
-    legs_of,
+    below_tops,
+    extended_to_floor,
     occluded_along,
     occluded_share,
-    pillars_of,
-    tops_of,
-    under,
+    table_legs,
+    table_tops,
     unseen_share,
+    upright_structures,
 )
 from tests.motion.rooms import FLOOR_Z_M, room
 
 
 def test_low_points_reach_the_floor_and_high_ones_do_not():
     points = np.array([[0.0, 2.0, FLOOR_Z_M + 0.1], [0.5, 2.0, FLOOR_Z_M + 0.7]])
-    feet = feet_of(points, FLOOR_Z_M)
+    feet = extended_to_floor(points, FLOOR_Z_M)
     assert set(feet[:, 0]) == {0.0}
     assert 0.03 < feet[:, 2].min() - FLOOR_Z_M < 0.07
 
@@ -41,15 +41,15 @@ def _with_table(seen_behind_m: float) -> Scene:
 
 
 def test_legs_stand_under_hidden_corners():
-    legs = legs_of(_with_table(1.0))
+    legs = table_legs(_with_table(1.0))
     assert np.allclose(sorted({round(float(x), 1) for x in np.abs(legs[:, 0])}), [0.5, 0.6])
     assert legs[:, 2].max() < FLOOR_Z_M + 0.7
     assert legs[:, 2].min() < FLOOR_Z_M + 0.1
 
 
 def test_no_legs_where_the_camera_looks_through_or_nothing_is_a_table():
-    assert len(legs_of(_with_table(4.5))) == 0
-    assert legs_of(room()).shape == (0, 3)
+    assert len(table_legs(_with_table(4.5))) == 0
+    assert table_legs(room()).shape == (0, 3)
 
 
 def _before_a_rim(width_m: float, thick_m: float = 0.04, *, above_m: float = 0.02) -> Scene:
@@ -68,7 +68,7 @@ def _tops(scene: Scene) -> np.ndarray:
     lens = scene.photo.intrinsics
     away = scene.photo.depth_m[rows, columns]
     points = np.column_stack([(columns - lens.cx) / lens.fx * away, away, -(rows - lens.cy) / lens.fy * away])
-    return tops_of(scene, points)
+    return table_tops(scene, points)
 
 
 def test_a_top_goes_on_behind_the_rim_that_hides_it():
@@ -89,8 +89,8 @@ def test_nothing_goes_on_where_the_camera_sees_farther():
     open_behind = dataclasses.replace(scene, photo=dataclasses.replace(scene.photo, depth_m=farther))
     rim = _tops(scene)
     rim = rim[rim[:, 1] < 2.01]
-    assert tops_of(scene, rim)[:, 1].max() > 2.5
-    assert tops_of(open_behind, rim)[:, 1].max() < 2.5
+    assert table_tops(scene, rim)[:, 1].max() > 2.5
+    assert table_tops(open_behind, rim)[:, 1].max() < 2.5
 
 
 def test_what_is_behind_a_thing_is_hidden():
@@ -111,10 +111,10 @@ def test_a_way_behind_a_thing_is_one_that_the_camera_does_not_see():
 
 def test_under_a_top_may_be_anything_that_is_not_seen_through():
     top = np.array([[0.0, 2.5, FLOOR_Z_M + 0.7]])
-    below = under(_with_table(2.0), top)
+    below = below_tops(_with_table(2.0), top)
     assert np.ptp(below[:, 2]) > 0.5
     assert below[:, 2].max() < FLOOR_Z_M + 0.7
-    assert len(under(_with_table(4.5), top)) == 0
+    assert len(below_tops(_with_table(4.5), top)) == 0
 
 
 def test_a_top_goes_on_behind_the_chairs_that_hide_a_part_of_it():
@@ -125,7 +125,7 @@ def test_a_top_goes_on_behind_the_chairs_that_hide_a_part_of_it():
     points = np.column_stack([x[seen], y[seen], np.full(int(seen.sum()), -0.4)])
     for before_m, hidden in ((1.2, True), (4.0, False)):
         photo = RgbdPhoto(rgb=np.zeros((240, 320, 3), np.uint8), depth_m=np.full((240, 320), before_m), intrinsics=lens)
-        tops = tops_of(dataclasses.replace(room(), photo=photo), points)
+        tops = table_tops(dataclasses.replace(room(), photo=photo), points)
         between = (np.abs(tops[:, 0]) < 0.1) & (np.abs(tops[:, 1] - 2.25) < 0.1)
         assert between.any() == hidden
 
@@ -138,7 +138,7 @@ def test_a_table_s_legs_are_pillars_and_a_seat_under_it_is_none():
     leg = np.column_stack([np.full(len(height), 0.5), np.full(len(height), 2.05), FLOOR_Z_M + height])
     seat = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, FLOOR_Z_M + 0.45)])
     seat = seat[np.abs(seat[:, 0]) < 0.2]
-    legs = pillars_of(scene, np.concatenate([top, leg, seat]))
+    legs = upright_structures(scene, np.concatenate([top, leg, seat]))
     assert len(legs) > 0
     assert np.abs(legs[:, 0] - 0.5).max() < 0.06
-    assert len(pillars_of(scene, np.concatenate([top, seat]))) == 0
+    assert len(upright_structures(scene, np.concatenate([top, seat]))) == 0

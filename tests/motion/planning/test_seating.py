@@ -5,24 +5,24 @@ import pytest
 
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.seating import Sitting, as_it_may_be, seats_of, some_of
+from mmweaver.motion.planning.seating import Sitting, random_subset, usable_seats, usual_variation
 from tests.motion.rooms import WINDOW_M, room, seat
 
 
 def _ways_of_sitting(sitting: Sitting) -> list[Sitting]:
     rng = np.random.default_rng(0)
-    return [as_it_may_be(sitting, rng) for _ in range(200)]
+    return [usual_variation(sitting, rng) for _ in range(200)]
 
 
 def test_a_seat_is_mostly_sat_on_as_it_is_made_for():
-    (sitting,) = seats_of(FloorMap(room(seats=(seat(),)), WINDOW_M, 1.75), SkeletonProportions(1.75))
+    (sitting,) = usable_seats(FloorMap(room(seats=(seat(),)), WINDOW_M, 1.75), SkeletonProportions(1.75))
     ways = _ways_of_sitting(sitting)
     assert 0.4 < np.mean([way is sitting for way in ways]) < 0.6
     assert all(way.cost > 0 for way in ways if way is not sitting)
 
 
 def test_turned_or_further_back_the_feet_stay_before_the_seat():
-    (sitting,) = seats_of(FloorMap(room(seats=(seat(),)), WINDOW_M, 1.75), SkeletonProportions(1.75))
+    (sitting,) = usable_seats(FloorMap(room(seats=(seat(),)), WINDOW_M, 1.75), SkeletonProportions(1.75))
     reach = float(np.hypot(*(sitting.feet_m - sitting.seat_m)))
     ways = _ways_of_sitting(sitting)
     assert {round(way.facing_rad - sitting.facing_rad, 1) for way in ways} >= {-0.4, 0.0, 0.4}
@@ -38,6 +38,6 @@ def test_nobody_sits_back_on_a_shallow_seat():
 
 
 def test_some_seats_are_left_out_but_never_all():
-    seats = seats_of(FloorMap(room(seats=(seat(-0.6), seat(0.6))), WINDOW_M, 1.75), SkeletonProportions(1.75))
-    kept = [some_of(seats, np.random.default_rng(k)) for k in range(50)]
+    seats = usable_seats(FloorMap(room(seats=(seat(-0.6), seat(0.6))), WINDOW_M, 1.75), SkeletonProportions(1.75))
+    kept = [random_subset(seats, np.random.default_rng(k)) for k in range(50)]
     assert {len(some) for some in kept} == {1, 2}

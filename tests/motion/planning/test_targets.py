@@ -11,7 +11,7 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.placement import place
-from mmweaver.motion.planning.targets import without_things
+from mmweaver.motion.planning.targets import without_targets
 from tests.motion.rooms import WINDOW_M, room, seat
 
 DOOR = Landmark(kind="door", position_m=np.array([0.9, 2.9, -0.1]), approach_m=(0.75, 2.5), facing_rad=1.2)
@@ -55,7 +55,7 @@ def test_what_the_room_lacks_is_refused_with_what_it_has():
 
 
 def test_without_a_photo_the_way_leads_anywhere_and_says_so():
-    plan = without_things(_plan("door"))
+    plan = without_targets(_plan("door"))
     assert [step.target for step in plan.steps] == ["", ""]
     assert plan.notes == ("for 'walks to the door': without a photo there is no door; the way leads where room is",)
-    assert without_things(plan) == plan
+    assert without_targets(plan) == plan

@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.controls import LEFT
-from mmweaver.motion.animation.kinematics import collar_frame, turned
+from mmweaver.motion.animation.kinematics import collar_frame, rotated
 from mmweaver.motion.animation.profiles import cap
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 
@@ -24,7 +24,7 @@ def reach(
     collar = body.offset_m[joint("left_collar")]
     rest = body.offset_m[joint("left_shoulder")]
     for _ in range(4):  # the shoulder rises with the arm: settle both
-        shoulder = collar + turned(collar_frame(angles, LEFT), rest)
+        shoulder = collar + rotated(collar_frame(angles, LEFT), rest)
         angles = _angles(body, target_m - shoulder, np.array(elbow))
     return angles
 

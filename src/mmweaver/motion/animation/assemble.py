@@ -42,13 +42,13 @@ def assemble(
     parts, starts, blends = [], [], []
     steps, moves, seat_height_m = _one_gait(steps, moves, seat_height_m)
     for k, step in enumerate(steps):
-        stage = StepContext(
+        context = StepContext(
             time_s=time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
             moves=moves[k], seat_height_m=seat_height_m[k], first=k == 0, last=k == len(steps) - 1,
         )  # fmt: skip
-        parts.append(perform(stage))
+        parts.append(perform(context))
         before = steps[k - 1].end_s - steps[k - 1].start_s if k else step.end_s
-        blends.append(float(min(LONGEST_BLEND_S, 0.6 * min(stage.duration_s, before))))
+        blends.append(float(min(LONGEST_BLEND_S, 0.6 * min(context.duration_s, before))))
         starts.append(step.start_s + 0.5 * blends[-1] if k else step.start_s)
     controls = blended(parts, starts, blends, time_s)
     joints_m = solve(body, controls)

@@ -43,7 +43,7 @@ def _about(angle: Angles, first: int, second: int) -> Frames:
     return frame
 
 
-def turned(frame: Frames, vector: Array) -> Vectors:
+def rotated(frame: Frames, vector: Array) -> Vectors:
     """Rotates one vector (3,) or one a frame (n, 3)."""
     if vector.ndim == 1:
         return frame @ vector
@@ -104,7 +104,7 @@ def _pelvis(body: SkeletonProportions, controls: Controls, frame: Frames, ankles
     limits = [pelvis[:, 2]]
     longest = (LONGEST_STANCE - 0.012 * controls.knee_room) * body.leg_m
     for side in (LEFT, RIGHT):
-        hip = turned(frame, body.offset_m[joint(f"{SIDES[side]}_hip")])
+        hip = rotated(frame, body.offset_m[joint(f"{SIDES[side]}_hip")])
         across = np.sum((pelvis[:, :2] + hip[:, :2] - ankles[side][:, :2]) ** 2, axis=1)
         height = np.sqrt(np.maximum(longest**2 - across, (0.3 * longest) ** 2))
         limits.append(ankles[side][:, 2] + height - hip[:, 2] + 0.2 * (1 - controls.contact[:, side]))
@@ -116,7 +116,7 @@ def _place_leg(
     joints: Joints, body: SkeletonProportions, controls: Controls, frame: Frames, side: int, ankle: Vectors
 ) -> None:
     name = SIDES[side]
-    hip = joints[:, 0] + turned(frame, body.offset_m[joint(f"{name}_hip")])
+    hip = joints[:, 0] + rotated(frame, body.offset_m[joint(f"{name}_hip")])
     away = ankle - hip
     distance = np.linalg.norm(away, axis=1)
     direction = away / distance[:, None]
@@ -132,7 +132,7 @@ def _place_leg(
     joints[:, joint(f"{name}_hip")] = hip
     joints[:, joint(f"{name}_knee")] = knee
     joints[:, joint(f"{name}_ankle")] = ankle
-    joints[:, joint(f"{name}_foot")] = ankle + turned(foot_frame, body.offset_m[joint(f"{name}_foot")])
+    joints[:, joint(f"{name}_foot")] = ankle + rotated(foot_frame, body.offset_m[joint(f"{name}_foot")])
 
 
 def _knee_direction(controls: Controls, side: int, leg: Vectors) -> Vectors:
@@ -151,24 +151,24 @@ def _place_trunk(joints: Joints, body: SkeletonProportions, controls: Controls, 
     third = roll_pitch_yaw(controls.spine_rad / 3)
     place = joints[:, 0]
     for name in ("spine1", "spine2", "spine3"):
-        place = place + turned(frame, body.offset_m[joint(name)])
+        place = place + rotated(frame, body.offset_m[joint(name)])
         joints[:, joint(name)] = place
         frame = frame @ third
     half = about_z(controls.head_rad[:, 1] / 2) @ about_y(controls.head_rad[:, 0] / 2)
-    neck = place + turned(frame, body.offset_m[joint("neck")])
+    neck = place + rotated(frame, body.offset_m[joint("neck")])
     joints[:, joint("neck")] = neck
-    joints[:, joint("head")] = neck + turned(frame @ half, body.offset_m[joint("head")])
+    joints[:, joint("head")] = neck + rotated(frame @ half, body.offset_m[joint("head")])
     return frame
 
 
 def _place_arm(joints: Joints, body: SkeletonProportions, controls: Controls, chest: Frames, side: int) -> None:
     name, arm = SIDES[side], controls.arm_rad[:, side]
-    collar = joints[:, joint("spine3")] + turned(chest, body.offset_m[joint(f"{name}_collar")])
-    shoulder = collar + turned(chest @ collar_frame(arm, side), body.offset_m[joint(f"{name}_shoulder")])
+    collar = joints[:, joint("spine3")] + rotated(chest, body.offset_m[joint(f"{name}_collar")])
+    shoulder = collar + rotated(chest @ collar_frame(arm, side), body.offset_m[joint(f"{name}_shoulder")])
     upper = chest @ arm_frame(arm, side)
-    elbow = shoulder + turned(upper, body.offset_m[joint(f"{name}_elbow")])
+    elbow = shoulder + rotated(upper, body.offset_m[joint(f"{name}_elbow")])
     lower = upper @ about_y(-arm[:, 3])
     joints[:, joint(f"{name}_collar")] = collar
     joints[:, joint(f"{name}_shoulder")] = shoulder
     joints[:, joint(f"{name}_elbow")] = elbow
-    joints[:, joint(f"{name}_wrist")] = elbow + turned(lower, body.offset_m[joint(f"{name}_wrist")])
+    joints[:, joint(f"{name}_wrist")] = elbow + rotated(lower, body.offset_m[joint(f"{name}_wrist")])

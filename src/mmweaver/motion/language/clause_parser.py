@@ -96,7 +96,7 @@ FLOOR_VERBS = {
 
 
 @dataclass
-class Reading:
+class ParsedClause:
     """What one clause says."""
 
     link: str
@@ -117,7 +117,7 @@ class Reading:
     def is_empty(self) -> bool:
         return self.adds_nothing and replace(self.about, clause="") == Step()
 
-    def absorb(self, more: "Reading") -> None:
+    def absorb(self, more: "ParsedClause") -> None:
         """Takes over what a clause without an activity says about the last step."""
         last, about = self.steps[-1], more.about
         if last.direction and about.direction and last.direction != about.direction:
@@ -153,16 +153,16 @@ class Reading:
         return True
 
 
-def read_clause(clause: Clause) -> Reading:
+def parse_clause(clause: Clause) -> ParsedClause:
     """Reads verbs and modifiers; raises InputError for what must not be acted out as if it were something known."""
     words = clause.words
-    reading = Reading(clause.link, clause.text)
+    parsed = ParsedClause(clause.link, clause.text)
     _refuse(clause)
     verbs = _verbs(words)
     if not verbs:
-        reading.about = modifiers(words, clause.text, reading.notes)
-        _note_unknown(words, clause, reading, has_verb=False)
-        return reading
+        parsed.about = modifiers(words, clause.text, parsed.notes)
+        _note_unknown(words, clause, parsed, has_verb=False)
+        return parsed
     for one, other in pairwise(verbs):  # "a hopping walk"
         if other == one + 1 and words[one].form == "ing" and words[other].form in ("base", "s"):
             raise InputError(not_known(clause.text, f"{words[one].text} {words[other].text}"))
@@ -172,18 +172,18 @@ def read_clause(clause: Clause) -> Reading:
             subject = words[at].form == "s" and words[at].text not in ("steps", "turns", "jumps")
             if not subject and any(word.is_verb and not word.is_activity for word in words[:at]):
                 raise InputError(not_known(clause.text, words[at - 1].text))
-    _note_unknown(words, clause, reading, has_verb=True)
-    reading.form = _form(words, verbs[0])
+    _note_unknown(words, clause, parsed, has_verb=True)
+    parsed.form = _form(words, verbs[0])
     # what stands before the first verb belongs to it
     starts = [0, *(_start_of(words, before, at) for before, at in pairwise(verbs))]
     ends = [*starts[1:], len(words)]
     for k, (at, end) in enumerate(zip(verbs, ends, strict=True)):
         begin = starts[k]
         own = words[begin:end]
-        about = modifiers(own, clause.text, reading.notes)
-        reading.steps.append(step_of(own, at - begin, about, clause.text))
-        reading.forms.append(_form(words[starts[k] :], at - starts[k]) if k else reading.form)
-    return reading
+        about = modifiers(own, clause.text, parsed.notes)
+        parsed.steps.append(step_of(own, at - begin, about, clause.text))
+        parsed.forms.append(_form(words[starts[k] :], at - starts[k]) if k else parsed.form)
+    return parsed
 
 
 def _start_of(words: list[Word], before: int, at: int) -> int:
@@ -312,11 +312,11 @@ def _form(words: list[Word], at: int) -> str:
     return light.form if light else words[at].form
 
 
-def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_verb: bool) -> None:
+def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, has_verb: bool) -> None:
     """Unknown words after a verb are told of, unless they look like another activity, which is an error."""
     unknown = [word.text for word in words if not _is_known(word)]
     if not has_verb:
-        reading.unknown = unknown + [word.text for word in words if word.is_verb]
+        parsed.unknown = unknown + [word.text for word in words if word.is_verb]
         return
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
     if moved is not None and any(not _is_known(word) or word.text in _THINGS for word in words[moved + 1 : moved + 3]):
@@ -343,10 +343,10 @@ def _note_unknown(words: list[Word], clause: Clause, reading: Reading, *, has_ve
         ):
             raise InputError(not_known(clause.text, text))
     if {word.text for word in words} & DISTANCES:
-        reading.notes.append(f"the distance in {clause.text!r} is not kept: time and speed give it")
+        parsed.notes.append(f"the distance in {clause.text!r} is not kept: time and speed give it")
     if unknown:
         listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
-        reading.notes.append(f"of the text, {listed} says nothing that can be acted out and was left aside")
+        parsed.notes.append(f"of the text, {listed} says nothing that can be acted out and was left aside")
 
 
 def _odd_way(words: list[Word]) -> str:

@@ -25,7 +25,7 @@ class Clause:
         return re.sub(r"\b(?:arc|deg)(\d+)", r"\1 degrees", text)
 
 
-def clauses_of(words: list[Word]) -> list[Clause]:
+def split_clauses(words: list[Word]) -> list[Clause]:
     """Splits at connectives and puts clauses into the order of time ("Before B, A" and "B after A" turned round)."""
     return _in_order(_split(words))
 

@@ -69,3 +69,4 @@ class MotionPlan:
     text: str
     steps: tuple[Step, ...]
     notes: tuple[str, ...] = ()
+    duration_s: float = 0.0  # 0 until the plan is scheduled

@@ -4,12 +4,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.clause_parser import Reading, read_clause
-from mmweaver.motion.language.clauses import clauses_of
+from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
+from mmweaver.motion.language.clauses import split_clauses
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures
-from mmweaver.motion.language.spelling import corrected
+from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verbs import RECOVERING
 from mmweaver.motion.language.words import Word, words_of
@@ -32,24 +32,24 @@ def parse(text: str) -> MotionPlan:
         raise InputError(f"the text is empty; say what the person does, for example {EXAMPLE!r}")
     if len(text) > LONGEST_TEXT:
         raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
-    text, notes = corrected(text)
+    text, notes = correct_spelling(text)
     words = words_of(text)
     _check_turning_jumps(text, words)
-    readings: list[Reading] = []
-    for clause in clauses_of(words):
-        reading = read_clause(clause)
-        notes += reading.notes
-        if reading.adds_nothing and readings and reading.link in ("and", "comma", "then", "while"):
-            readings[-1].absorb(reading)
-        elif reading.steps and not _is_its_end(readings, reading):
-            readings.append(reading)
-        elif reading.steps or (readings and _needs_no_step(readings[-1].steps[-1], reading)):
+    parsed_clauses: list[ParsedClause] = []
+    for clause in split_clauses(words):
+        parsed = parse_clause(clause)
+        notes += parsed.notes
+        if parsed.adds_nothing and parsed_clauses and parsed.link in ("and", "comma", "then", "while"):
+            parsed_clauses[-1].absorb(parsed)
+        elif parsed.steps and not _is_its_end(parsed_clauses, parsed):
+            parsed_clauses.append(parsed)
+        elif parsed.steps or (parsed_clauses and _needs_no_step(parsed_clauses[-1].steps[-1], parsed)):
             continue
-        elif not reading.is_empty:
+        elif not parsed.is_empty:
             raise InputError(not_known(clause.text))
-    if not readings:
+    if not parsed_clauses:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
-    sequence = _in_sequence(readings)
+    sequence = _in_sequence(parsed_clauses)
     for before, step in pairwise(sequence):
         if step.lower in ("lie", "lie_down") and before.seat:
             raise InputError(f"{step.clause!r}: lying is known on the floor only; leave out the {before.seat}")
@@ -59,13 +59,13 @@ def parse(text: str) -> MotionPlan:
     return MotionPlan(text=asked, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
 
 
-def _is_its_end(readings: list[Reading], reading: Reading) -> bool:
+def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> bool:
     """'Lifts a foot and puts it down again', 'is pushed and stumbles': one movement."""
-    if not readings:
+    if not parsed_clauses:
         return False
-    before, now = readings[-1].steps[-1], reading.steps[0]
-    if len(reading.steps) > 1 or before.upper:
-        return before.upper == "raise" and now.lower == "put_down" and len(reading.steps) == 1
+    before, now = parsed_clauses[-1].steps[-1], parsed.steps[0]
+    if len(parsed.steps) > 1 or before.upper:
+        return before.upper == "raise" and now.lower == "put_down" and len(parsed.steps) == 1
     return (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
 
 
@@ -75,9 +75,9 @@ def _check_turning_jumps(text: str, words: list[Word]) -> None:
         raise InputError(f"{text.strip()!r}: jumping with a turn is not known; say 'jumps, then turns'")
 
 
-def _needs_no_step(before: Step, reading: Reading) -> bool:
+def _needs_no_step(before: Step, parsed: ParsedClause) -> bool:
     """A raised hand comes down by itself; who was pushed catches the fall; a lowered leg is part of raising it."""
-    words = set(reading.unknown) | set(reading.text.split())
+    words = set(parsed.unknown) | set(parsed.text.split())
     if before.upper in ("raise", "arms_out") or before.lower == "raise_leg":
         return bool(LOWERING & words)
     return before.lower == "stumble" and bool(RECOVERING & words)
@@ -86,16 +86,16 @@ def _needs_no_step(before: Step, reading: Reading) -> bool:
 EXAMPLE = "a person walks towards the radar, then waves"
 
 
-def _in_sequence(readings: list[Reading]) -> list[Step]:
+def _in_sequence(parsed_clauses: list[ParsedClause]) -> list[Step]:
     """Overlays joined, everything else one after the other."""
     steps: list[Step] = []
-    for i, reading in enumerate(readings):
-        first, rest = reading.steps[0], reading.steps[1:]
-        if steps and _goes_together(readings[i - 1], reading):
+    for i, parsed in enumerate(parsed_clauses):
+        first, rest = parsed.steps[0], parsed.steps[1:]
+        if steps and _goes_together(parsed_clauses[i - 1], parsed):
             steps[-1:] = _joined(steps[-1], first)
         else:
             steps.append(first)
-        for step, form in zip(rest, reading.forms[1:], strict=True):
+        for step, form in zip(rest, parsed.forms[1:], strict=True):
             if form == "ing" or _can_overlay(steps[-1], step):  # "sits drinking water"
                 steps[-1:] = _joined(steps[-1], step)
             else:  # "walks forward turns around"
@@ -138,20 +138,20 @@ def _joined(one: Step, other: Step) -> list[Step]:
     return [overlay(one, other)]
 
 
-def _goes_together(before: Reading, reading: Reading) -> bool:
-    one, other = before.steps[-1], reading.steps[0]
-    if reading.link == "comma" and reading.form == "ing" and one.lower == other.lower == "walk" and not other.direction:
+def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
+    one, other = before.steps[-1], parsed.steps[0]
+    if parsed.link == "comma" and parsed.form == "ing" and one.lower == other.lower == "walk" and not other.direction:
         return True
-    if reading.link == "while":
+    if parsed.link == "while":
         return True
     compatible = _can_overlay(one, other)
-    if reading.link == "and":
+    if parsed.link == "and":
         if one.upper == "raise" and other.upper and {one.hand, other.hand} == {"left", "right"}:
             return True  # one hand stays up: overlay says that it cannot
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
-            return one.lower == "sit" or before.form == reading.form
-        return compatible and before.form == reading.form == "ing"
-    return reading.link == "comma" and compatible and reading.form == "ing" and before.form != "ing"
+            return one.lower == "sit" or before.form == parsed.form
+        return compatible and before.form == parsed.form == "ing"
+    return parsed.link == "comma" and compatible and parsed.form == "ing" and before.form != "ing"
 
 
 def _can_overlay(one: Step, other: Step) -> bool:

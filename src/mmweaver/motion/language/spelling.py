@@ -56,23 +56,23 @@ _MORE = "quarter quarters degrees degree circle circles clockwise counterclockwi
 _WORD = re.compile(r"[a-z]+")
 
 
-def corrected(text: str) -> tuple[str, list[str]]:
+def correct_spelling(text: str) -> tuple[str, list[str]]:
     """The text with slips mended, and a note for each."""
     notes: list[str] = []
 
-    def mend(match: re.Match[str]) -> str:
+    def replace_word(match: re.Match[str]) -> str:
         word = match.group()
-        better = mended(word.lower())
+        better = corrected_word(word.lower())
         if not better:
             return word
         notes.append(f"{word!r} is read as {better!r}")
         return better
 
-    return re.sub(r"[A-Za-z]+", mend, text), notes
+    return re.sub(r"[A-Za-z]+", replace_word, text), notes
 
 
 @lru_cache(maxsize=4096)
-def mended(word: str) -> str:
+def corrected_word(word: str) -> str:
     """The known word that an unknown one is a slip of, or "".
 
     >>> mended("forwads"), mended("walks"), mended("sings")

@@ -1,18 +1,37 @@
 """How long each step of a plan lasts: natural durations, stretched or squeezed into the time there is."""
 
+import math
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.sentence import parse
+
+LONGEST_S = 600.0
+
+
+def plan_motion(text: str, duration_s: float | None = None, fps: float = 10.0) -> MotionPlan:
+    """Parses a sentence and schedules its steps; without a duration they take as long as is natural.
+
+    This is the plan that `compose` takes. Raises InputError as `parse` and `schedule` do.
+
+    >>> plan = plan_motion("a person bows, then waves", 4.0)
+    >>> [(step.name, round(step.start_s, 2), round(step.end_s, 2)) for step in plan.steps]
+    [('bowing', 0.0, 2.2), ('waving', 2.2, 4.0)]
+    """
+    plan = parse(text)
+    return schedule(plan, natural_s(plan) if duration_s is None else duration_s, fps)
 
 
 def schedule(plan: MotionPlan, duration_s: float, fps: float = 10.0) -> MotionPlan:
-    """The plan with start and end of every step; `fps` is only for what an error says.
+    """Gives every step of a plan its start and end; `fps` is only used in the text of an error.
 
-    A single movement without a count may be cut short: a part of it is shown. Raises InputError where several
-    movements, or a number of repetitions, cannot fit.
+    A single movement without a count may be cut short: a part of it is shown. Raises InputError for a duration that
+    is not positive or above `LONGEST_S`, and where several movements, or a number of repetitions, do not fit into it.
     """
+    if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
+        raise InputError(f"a duration of {duration_s:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
     first = plan.steps[0]
     least: list[float] = [limits[0] for limits in map(_limits, plan.steps)]
     if sum(least) > duration_s + 1e-9 and (len(plan.steps) > 1 or first.count or first.seconds):
@@ -27,11 +46,11 @@ def schedule(plan: MotionPlan, duration_s: float, fps: float = 10.0) -> MotionPl
     for step, span in zip(plan.steps, spans, strict=True):
         steps.append(replace(step, start_s=start, end_s=start + span))
         start += span
-    return replace(plan, steps=tuple(steps))
+    return replace(plan, steps=tuple(steps), duration_s=duration_s)
 
 
 def natural_s(plan: MotionPlan) -> float:
-    """How long a plan takes when nobody says how long."""
+    """How long a plan takes when no duration is given, in seconds."""
     return sum(_limits(step)[1] for step in plan.steps)
 
 

@@ -66,9 +66,9 @@ def _in_place(step: Step, words: list[Word]) -> Step:
 def _going_step(step: Step, words: list[Word], at: int) -> Step:
     lemmas, texts = {word.lemma for word in words}, {word.text for word in words}
     direction = step.direction
-    for verb, way in (("approach", "towards"), ("retreat", "away"), ("advance", "forwards")):
+    for verb, implied in (("approach", "towards"), ("retreat", "away"), ("advance", "forwards")):
         if not direction and verb in lemmas:
-            direction = way
+            direction = implied
     if not direction and texts & RADAR and "to" in texts:
         direction = "towards"
     if direction == "around":
@@ -146,18 +146,18 @@ def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
             raise InputError(f"{step.clause!r}: hopping on one leg is done on the spot only; leave the direction out")
         return replace(step, lower="hop_one_leg", direction="", facing=_facing(words))
     if step.direction in ("left", "right", "forwards", "backwards", "back", "towards", "away"):
-        way = "backwards" if step.direction == "back" else step.direction
-        return replace(step, lower="leap", direction=way)
+        direction = "backwards" if step.direction == "back" else step.direction
+        return replace(step, lower="leap", direction=direction)
     return replace(step, direction="", facing=_facing(words))
 
 
 def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
-    way = {"back": "backwards", "towards": "forwards", "away": "backwards"}.get(step.direction, step.direction)
+    direction = {"back": "backwards", "towards": "forwards", "away": "backwards"}.get(step.direction, step.direction)
     known = ("left", "right", "forwards", "backwards")
     side = step.style == "side" or "sideways" in {word.text for word in words}
-    style = "side" if side and way not in known else ""
-    way = way if way in known else ""
-    return replace(step, direction=way, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
+    style = "side" if side and direction not in known else ""
+    direction = direction if direction in known else ""
+    return replace(step, direction=direction, style=style, count=0, arc_deg=0.0, turn_deg=0.0, hand="", foot="")
 
 
 def _floor_step(step: Step, words: list[Word], at: int) -> Step:

@@ -14,13 +14,13 @@ UPS = ("y", "z", "-y", "-z", "x", "-x")
 CLEAR = 0.8  # of the body's length must stand along one axis
 
 
-def unit_of(joints: Float[Array, "frame 22 3"], said: str | float | None, source: str) -> tuple[float, str]:
+def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, source: str) -> tuple[float, str]:
     """Metres in one unit of the file, and a note ("" where it was said).
 
     `said` is a name in UNITS_M or a number of metres. Guessed only where exactly one unit makes a body of 1.2 to 2.2 m.
     """
-    if said is not None:
-        return metres_of(said), ""
+    if given is not None:
+        return metres_of(given), ""
     size = body_height(joints)
     low, high = ALLOWED_M
     fits = [name for name, metres in UNITS_M.items() if low <= size * metres <= high]
@@ -33,31 +33,31 @@ def unit_of(joints: Float[Array, "frame 22 3"], said: str | float | None, source
     )
 
 
-def metres_of(said: str | float) -> float:
+def metres_of(given: str | float) -> float:
     """'cm' -> 0.01; a number of metres stays. Raises InputError.
 
     >>> metres_of("inch"), metres_of("0.056444")
     (0.0254, 0.056444)
     """
-    if isinstance(said, str) and said in UNITS_M:
-        return UNITS_M[said]
+    if isinstance(given, str) and given in UNITS_M:
+        return UNITS_M[given]
     try:
-        metres = float(said)
+        metres = float(given)
     except ValueError:
         metres = float("nan")
     if not 1e-6 < metres < 1e3:
         raise InputError(
-            f"{said!r} is no unit of length; choose {', '.join(UNITS_M)} or the metres in one unit of the file"
+            f"{given!r} is no unit of length; choose {', '.join(UNITS_M)} or the metres in one unit of the file"
         )
     return metres
 
 
-def up_of(joints: Float[Array, "frame 22 3"], said: str | None, source: str) -> tuple[str, str]:
+def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) -> tuple[str, str]:
     """The upward axis, and a note where it was read off the body."""
-    if said is not None:
-        if said not in UPS:
-            raise InputError(f"the upward axis is one of {', '.join(UPS)}, not {said!r}")
-        return said, ""
+    if given is not None:
+        if given not in UPS:
+            raise InputError(f"the upward axis is one of {', '.join(UPS)}, not {given!r}")
+        return given, ""
     feet = joints[:, [joint("left_ankle"), joint("right_ankle")]].mean(axis=1)
     stands = np.nanmedian(joints[:, joint("head")] - feet, axis=0)
     stands = stands / max(float(np.linalg.norm(stands)), 1e-12)
@@ -70,13 +70,13 @@ def up_of(joints: Float[Array, "frame 22 3"], said: str | None, source: str) -> 
     return up, f"{up} points up in {source}, for there the head is"
 
 
-def turned_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
+def with_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
     """The same with z up, by a rotation (never a mirror); y up becomes (x, -z, y)."""
     x, y, z = (joints[..., axis] for axis in range(3))
-    turned = {
+    rotated = {
         "z": (x, y, z), "-z": (x, -y, -z), "y": (x, -z, y), "-y": (x, z, -y), "x": (-z, y, x), "-x": (z, y, -x)
     }[up]  # fmt: skip
-    return np.stack(turned, axis=-1)
+    return np.stack(rotated, axis=-1)
 
 
 def is_reflected(joints: Float[Array, "frame 22 3"]) -> bool:

@@ -41,7 +41,7 @@ class MotionClip:
     fps: float
     label: str  # what it is called in titles and meta.json
     notes: tuple[str, ...] = ()  # sentences on what was assumed
-    steady: bool = True  # take marker jitter out (see dense.py)
+    has_jitter: bool = True  # take marker jitter out (see dense.py)
     file: Path | None = None  # where it was read from
     first_frame: int = 0  # of the file, as it begins here
 

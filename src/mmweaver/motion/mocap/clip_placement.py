@@ -15,7 +15,7 @@ from mmweaver.motion.animation.skeleton_proportions import ANKLE_HEIGHT
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.motion.mocap.clip_resampling import densely
+from mmweaver.motion.mocap.clip_resampling import resampled_clip
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
@@ -28,7 +28,7 @@ TO_RADAR_RAD = -math.pi / 2
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Track:
     """The pelvis over the floor from where it starts, and which way the body faces there."""
 
     shift_m: Float[Array, "point 2"]
@@ -54,7 +54,7 @@ def place_clip(
     free and in view. With `as_recorded` the clip's places are the radar's own (x right, y away, z up, metres) and
     nothing is moved or checked. Raises InputError where there is no room, saying what there is.
     """
-    time_s, joints_m = densely(clip, duration_s)
+    time_s, joints_m = resampled_clip(clip, duration_s)
     height_m = clip.height_m
     notes = list(clip.notes)
     if as_recorded:
@@ -62,9 +62,9 @@ def place_clip(
     else:
         joints_m = joints_m - np.array([0.0, 0.0, floor_under(clip.joints_m, height_m)])
         floor = FloorMap(scene, range_window_m, height_m)
-        way = _way_of(joints_m, time_s, duration_s)
-        start, heading = _found(way, floor, clip, seed=seed, start_m=start_m, heading_rad=heading_rad)
-        joints_m = _moved(joints_m, way, time_s, start, heading)
+        track = _track_of(joints_m, time_s, duration_s)
+        start, heading = _found(track, floor, clip, seed=seed, start_m=start_m, heading_rad=heading_rad)
+        joints_m = _moved(joints_m, track, time_s, start, heading)
         joints_m[..., 2] += scene.floor_z_m
         notes += _posture_note(clip, joints_m[..., 2] - scene.floor_z_m)
     pose = PoseSequence(time_s=time_s, joints_m=joints_m, height_m=height_m)
@@ -87,17 +87,17 @@ def facing_of(joints_m: Float[Array, "22 3"]) -> float:
     return float(np.arctan2(-across[0], across[1]))
 
 
-def _way_of(joints_m: Float[Array, "frame 22 3"], time_s: Float[Array, " frame"], duration_s: float) -> _Way:
+def _track_of(joints_m: Float[Array, "frame 22 3"], time_s: Float[Array, " frame"], duration_s: float) -> _Track:
     inside = (time_s >= -1e-9) & (time_s <= duration_s + 1e-9)
     shown = joints_m[inside]
     pelvis = shown[:, 0, :2]
     points = pelvis[np.unique(np.linspace(0, len(pelvis) - 1, WAY_POINTS).astype(int))]
     reach = np.linalg.norm(shown[..., :2] - pelvis[:, None], axis=-1).max(axis=1)
-    return _Way(shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95)))
+    return _Track(shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95)))
 
 
 def _found(
-    way: _Way,
+    track: _Track,
     floor: FloorMap,
     clip: MotionClip,
     *,
@@ -120,17 +120,17 @@ def _found(
         headings = np.array([heading_rad])
     best: tuple[float, Float[Array, 2], float] | None = None
     for heading in headings:
-        ways = starts[:, None] + _turned(way.shift_m, heading - way.facing_rad)
-        free = np.flatnonzero(floor.can_stand(ways).all(axis=1))
+        tracks = starts[:, None] + _turned(track.shift_m, heading - track.facing_rad)
+        free = np.flatnonzero(floor.can_stand(tracks).all(axis=1))
         if not len(free):
             continue
-        cost = _cost(ways[free], floor, way.reach_m, float(heading) if heading_rad is None else None)
+        cost = _cost(tracks[free], floor, track.reach_m, float(heading) if heading_rad is None else None)
         cost = cost + rng.uniform(0, 0.3, len(free))
         k = int(cost.argmin())
         if best is None or cost[k] < best[0]:
             best = float(cost[k]), starts[free[k]], float(heading)
     if best is None:
-        raise InputError(_no_room(way, floor, clip, start_m, heading_rad))
+        raise InputError(_no_room(track, floor, clip, start_m, heading_rad))
     return best[1], best[2]
 
 
@@ -138,7 +138,7 @@ def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
     spot = np.array(start_m, float)
     if bool(floor.can_stand(spot)):
         return
-    near = floor.nearest_place(spot)
+    near = floor.nearest_walkable_m(spot)
     hint = "" if near is None else f"; the nearest free place is {near[0]:.2f},{near[1]:.2f}"
     raise InputError(
         f"the start {spot[0]:g},{spot[1]:g} is not free, or out of the picture or the radar's window{hint}"
@@ -146,20 +146,20 @@ def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
 
 
 def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"]:
-    cells = floor.places_m[floor.walkable]
+    cells = floor.cell_centres_m[floor.walkable]
     if len(cells) > MOST_STARTS:
         cells = cells[np.sort(rng.choice(len(cells), MOST_STARTS, replace=False))]
     return cells
 
 
 def _cost(
-    ways: Float[Array, "start point 2"], floor: FloorMap, reach_m: float, heading: float | None
+    tracks: Float[Array, "start point 2"], floor: FloorMap, reach_m: float, heading: float | None
 ) -> Float[Array, " start"]:
     """Dislike of the places, limbs that would reach into things, and a back towards the radar."""
-    tight = np.clip(reach_m - floor.clearance_at(ways), 0.0, None).max(axis=1)
-    cost = floor.dislike_at(ways).mean(axis=1) + 2.0 * tight
+    tight = np.clip(reach_m - floor.clearance_at(tracks), 0.0, None).max(axis=1)
+    cost = floor.cost_at(tracks).mean(axis=1) + 2.0 * tight
     if heading is not None:
-        to_radar = np.arctan2(-ways[:, 0, 1], -ways[:, 0, 0])
+        to_radar = np.arctan2(-tracks[:, 0, 1], -tracks[:, 0, 0])
         cost = cost + 0.5 * (1 - np.cos(heading - to_radar))
     return cost
 
@@ -171,14 +171,14 @@ def _turned(shift_m: Float[Array, "*shape 2"], angle_rad: float) -> Float[Array,
 
 def _moved(
     joints_m: Float[Array, "frame 22 3"],
-    way: _Way,
+    track: _Track,
     time_s: Float[Array, " frame"],
     start_m: Float[Array, "2"],
     heading_rad: float,
 ) -> Float[Array, "frame 22 3"]:
     first = int(np.argmin(np.abs(time_s)))
     moved = joints_m.copy()
-    moved[..., :2] = start_m + _turned(joints_m[..., :2] - joints_m[first, 0, :2], heading_rad - way.facing_rad)
+    moved[..., :2] = start_m + _turned(joints_m[..., :2] - joints_m[first, 0, :2], heading_rad - track.facing_rad)
     return moved
 
 
@@ -194,13 +194,13 @@ def _posture_note(clip: MotionClip, height_over_floor: Float[Array, "frame 22"])
 
 
 def _no_room(
-    way: _Way,
+    track: _Track,
     floor: FloorMap,
     clip: MotionClip,
     start_m: tuple[float, float] | None,
     heading_rad: float | None,
 ) -> str:
-    spread = way.shift_m[:, None] - way.shift_m[None]
+    spread = track.shift_m[:, None] - track.shift_m[None]
     longest = float(np.linalg.norm(spread, axis=-1).max())
     free: Bool[Array, "y x"] = floor.walkable
     asked = "" if start_m is None else f" from {start_m[0]:g},{start_m[1]:g}"

@@ -28,12 +28,12 @@ def check_lasts(clip: MotionClip, duration_s: float) -> None:
         )
 
 
-def densely(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joints]:
+def resampled_clip(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joints]:
     """Times from just before 0 to just after `duration_s` at 120 Hz, and the joints there."""
     from scipy.interpolate import CubicSpline
 
     check_lasts(clip, duration_s)
-    joints = steadied(clip)
+    joints = low_passed(clip)
     margin = max(2, int(np.ceil(0.1 * clip.fps)))
     joints = _continued(joints, margin)
     frame_s = (np.arange(len(joints)) - min(margin, len(clip.joints_m) - 1)) / clip.fps
@@ -41,11 +41,11 @@ def densely(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joints]:
     return time_s, np.asarray(CubicSpline(frame_s, joints, axis=0)(time_s))
 
 
-def steadied(clip: MotionClip) -> Joints:
+def low_passed(clip: MotionClip) -> Joints:
     """The joints without jitter above 12 Hz (a Butterworth filter run both ways, so nothing is late)."""
     from scipy.signal import butter, sosfiltfilt
 
-    if not clip.steady or clip.fps < JITTERS_FROM_FPS:
+    if not clip.has_jitter or clip.fps < JITTERS_FROM_FPS:
         return clip.joints_m
     sections = butter(2, CUT_OFF_HZ / 0.802, fs=clip.fps, output="sos")  # twice run, it is down 3 dB at 12 Hz
     pad = min(len(clip.joints_m) - 1, int(clip.fps / 2))

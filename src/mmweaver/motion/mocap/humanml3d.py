@@ -43,12 +43,12 @@ def joints_from_features(features: Float[Array, "frame 263"]) -> Float[Array, "f
     """The joints that features stand for; the root starts at (0, y, 0) and looks along +z."""
     features = np.asarray(features, float)
     half = np.concatenate([[0.0], np.cumsum(features[:-1, 0])])
-    way = np.zeros((len(features), 3))
-    way[1:, 0], way[1:, 2] = features[:-1, 1], features[:-1, 2]
-    root = np.cumsum(_turned(way, -half), axis=0)
+    shift = np.zeros((len(features), 3))
+    shift[1:, 0], shift[1:, 2] = features[:-1, 1], features[:-1, 2]
+    root = np.cumsum(_rotated_about_y(shift, -half), axis=0)
     local = features[:, 4:67].reshape(-1, NUM_JOINTS - 1, 3)
     joints = np.empty((len(features), NUM_JOINTS, 3))
-    joints[:, 1:] = _turned(local, -half[:, None])
+    joints[:, 1:] = _rotated_about_y(local, -half[:, None])
     joints[:, 1:, 0] += root[:, None, 0]
     joints[:, 1:, 2] += root[:, None, 2]
     joints[:, 0] = root
@@ -68,14 +68,14 @@ def features_from_joints(joints: Float[Array, "frame 22 3"]) -> Float[Array, "fr
     half[0] = 0.0  # the format's own rule: nothing is turned in the first frame
     steps = np.diff(joints, axis=0)
     local = joints - joints[:, :1] * np.array([1.0, 0.0, 1.0])
-    local = _turned(local, half[:, None])
+    local = _rotated_about_y(local, half[:, None])
     features = np.empty((len(joints) - 1, NUM_FEATURES))
     features[:, 0] = np.arcsin(np.sin(np.diff(half)))
-    features[:, 1:3] = _turned(steps[:, 0], half[1:])[:, [0, 2]]
+    features[:, 1:3] = _rotated_about_y(steps[:, 0], half[1:])[:, [0, 2]]
     features[:, 3] = joints[:-1, 0, 1]
     features[:, 4:67] = local[:-1, 1:].reshape(len(steps), -1)
     features[:, ROTATIONS] = _rotations(joints, half)[:-1].reshape(len(steps), -1)
-    features[:, VELOCITIES] = _turned(steps, half[:-1, None]).reshape(len(steps), -1)
+    features[:, VELOCITIES] = _rotated_about_y(steps, half[:-1, None]).reshape(len(steps), -1)
     feet = steps[:, [joint(name) for name in FEET]]
     features[:, CONTACTS] = np.sum(feet**2, axis=-1) < RESTING_M2
     return features
@@ -86,7 +86,7 @@ def y_up(joints_m: Float[Array, "frame 22 3"]) -> Float[Array, "frame 22 3"]:
     return np.stack([joints_m[..., 0], joints_m[..., 2], -joints_m[..., 1]], axis=-1)
 
 
-def _turned(vectors: Float[Array, "*shape 3"], half_rad: Float[Array, "..."]) -> Float[Array, "*shape 3"]:
+def _rotated_about_y(vectors: Float[Array, "*shape 3"], half_rad: Float[Array, "..."]) -> Float[Array, "*shape 3"]:
     """Turned about y by twice `half_rad`."""
     cos, sin = np.cos(2 * half_rad), np.sin(2 * half_rad)
     x, y, z = (vectors[..., axis] for axis in range(3))
@@ -98,7 +98,7 @@ def _facing_z(joints: Float[Array, "frame 22 3"]) -> Float[Array, "frame 22 3"]:
     joints = joints - np.array([joints[0, 0, 0], joints[..., 1].min(), joints[0, 0, 2]])
     across = joints[0, 2] - joints[0, 1] + joints[0, 17] - joints[0, 16]  # to the right
     ahead = np.cross([0.0, 1.0, 0.0], across)
-    return _turned(joints, np.full(joints.shape[:2], -0.5 * np.arctan2(ahead[0], ahead[2])))
+    return _rotated_about_y(joints, np.full(joints.shape[:2], -0.5 * np.arctan2(ahead[0], ahead[2])))
 
 
 def _heading_rad(joints: Float[Array, "frame 22 3"]) -> Float[Array, " frame"]:

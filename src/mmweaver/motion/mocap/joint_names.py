@@ -136,11 +136,11 @@ def _fill_spine(joints: Float[Array, "frame 22 3"], chain: list[Float[Array, "fr
     """Three joints at the body's shares of the way from the pelvis over the file's own spine to the neck."""
     knots = np.stack([joints[:, 0], *chain, joints[:, joint("neck")]], axis=1)  # (frame, knot, 3)
     lengths = np.nanmedian(np.linalg.norm(np.diff(knots, axis=1), axis=-1), axis=0)
-    ways = np.concatenate([[0.0], np.cumsum(lengths)])
+    distances = np.concatenate([[0.0], np.cumsum(lengths)])
     for name, share in zip(("spine1", "spine2", "spine3"), SPINE_SHARES, strict=True):
-        at = share * ways[-1]
-        k = int(np.clip(np.searchsorted(ways, at, side="right") - 1, 0, len(lengths) - 1))
-        part = (at - ways[k]) / lengths[k] if lengths[k] > 0 else 0.0
+        at = share * distances[-1]
+        k = int(np.clip(np.searchsorted(distances, at, side="right") - 1, 0, len(lengths) - 1))
+        part = (at - distances[k]) / lengths[k] if lengths[k] > 0 else 0.0
         joints[:, joint(name)] = knots[:, k] + part * (knots[:, k + 1] - knots[:, k])
 
 

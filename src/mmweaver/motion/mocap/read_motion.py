@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.mocap.axes import is_reflected, turned_up, unit_of, up_of
+from mmweaver.motion.mocap.axes import is_reflected, unit_of, up_of, with_z_up
 from mmweaver.motion.mocap.bvh import read_bvh
 from mmweaver.motion.mocap.cleaning import check_bones, without_gaps, without_t_pose
 from mmweaver.motion.mocap.clip import MotionClip, RawMotion
@@ -78,7 +78,7 @@ def clear(
     notes.append(note)
     axis, note = up_of(joints, up if up is not None else raw.up, label)
     notes.append(note)
-    joints_m = turned_up(joints * metres, axis)
+    joints_m = with_z_up(joints * metres, axis)
     joints_m, mirrored = _as_right_handed(joints_m, label)
     shown, t_pose = without_t_pose(joints_m, rate, label)
     notes += [*gaps, *mirrored, *t_pose]

@@ -14,7 +14,7 @@ from jaxtyping import Float
 from mmweaver.core.errors import InputError
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.humanml3d import CONTACTS, FPS, NUM_FEATURES, joints_from_features
-from mmweaver.motion.motiongpt.bones import with_steady_bones
+from mmweaver.motion.motiongpt.bone_lengths import with_constant_bone_lengths
 from mmweaver.motion.motiongpt.checkpoint import (
     LANGUAGE,
     MEAN,
@@ -29,8 +29,8 @@ from mmweaver.motion.motiongpt.checkpoint import (
 )
 from mmweaver.motion.motiongpt.hub import looks_like_hub, published_checkpoint
 from mmweaver.motion.motiongpt.language_model import LONGEST_TEXT_TOKENS, add_motion_tokens, build_t5, sample_codes
+from mmweaver.motion.motiongpt.text_tokenizer import WORD_FILES, load_words, unknown_words, wrapped
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
-from mmweaver.motion.motiongpt.tokens_to_motion import WORD_FILES, load_words, unknown_words, wrapped
 
 if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
@@ -127,7 +127,9 @@ class MotionGPT:
         if odd:
             notes.append(f"the motion model has never seen: {', '.join(odd)}")
         z_up = np.stack([joints[..., 0], -joints[..., 2], joints[..., 1]], axis=-1)
-        return MotionClip(joints_m=with_steady_bones(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes))
+        return MotionClip(
+            joints_m=with_constant_bone_lengths(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes)
+        )
 
     def features_of(self, codes: list[int]) -> Float[Array, "frame 263"]:
         """HumanML3D features of motion codes, four frames each."""

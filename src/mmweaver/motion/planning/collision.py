@@ -9,32 +9,51 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence, Scene
-from mmweaver.core.skeleton import joint
+from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
 from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.geometry.body_capsules import capsule_between, part_of, scale_of
 from mmweaver.motion.planning.occluded_geometry import (
-    feet_of,
-    legs_of,
+    below_tops,
+    extended_to_floor,
     occluded_share,
-    pillars_of,
-    tops_of,
-    under,
+    table_legs,
+    table_tops,
     unseen_share,
+    upright_structures,
 )
 
 Array = np.ndarray
-# Radii of a person of 1.75 m about the bones, and what may be pressed by them.
-_LIMBS = (
-    ("pelvis", "spine3", 0.12), ("spine3", "neck", 0.11), ("neck", "head", 0.08), ("left_hip", "right_hip", 0.105),
-    ("left_collar", "left_shoulder", 0.07), ("right_collar", "right_shoulder", 0.07),
-    ("left_hip", "left_knee", 0.075), ("right_hip", "right_knee", 0.075),
-    ("left_knee", "left_ankle", 0.05), ("right_knee", "right_ankle", 0.05),
-    ("left_ankle", "left_foot", 0.04), ("right_ankle", "right_foot", 0.04),
-    ("left_shoulder", "left_elbow", 0.05), ("right_shoulder", "right_elbow", 0.05),
-    ("left_elbow", "left_wrist", 0.04), ("right_elbow", "right_wrist", 0.04),
+# Limbs are tested as cylinders between two joints; each has one radius.
+_LIMB_ENDS = (
+    ("pelvis", "spine3"), ("spine3", "neck"), ("neck", "head"), ("left_hip", "right_hip"),
+    ("left_collar", "left_shoulder"), ("right_collar", "right_shoulder"),
+    ("left_hip", "left_knee"), ("right_hip", "right_knee"), ("left_knee", "left_ankle"), ("right_knee", "right_ankle"),
+    ("left_ankle", "left_foot"), ("right_ankle", "right_foot"),
+    ("left_shoulder", "left_elbow"), ("right_shoulder", "right_elbow"),
+    ("left_elbow", "left_wrist"), ("right_elbow", "right_wrist"),
 )  # fmt: skip
-_HAND_M = 0.15  # beyond the wrist
+# Where a mean of the capsules is too thin: the shoulder blades, and a head wider than the neck that carries it.
+_THICKER_M = {"neck": 0.02, "head": 0.015, "shoulder": 0.005}
+_RADIUS_STEP_M = 0.005  # mean radii are rounded up to it
+
+
+def _limb_radius_m(start: str, end: str) -> float:
+    """The mean radius of the capsules from joint to joint, at reference height, rounded up."""
+    if part_of(start) == part_of(end) == "hip":
+        return capsule_between(start, start).start_radius_m
+    radii_m = []
+    child = joint(end)
+    while child != joint(start):
+        capsule = capsule_between(JOINT_NAMES[PARENTS[child]], JOINT_NAMES[child])
+        radii_m += [capsule.start_radius_m, capsule.end_radius_m]
+        child = PARENTS[child]
+    mean_m = float(np.mean(radii_m)) + _THICKER_M.get(part_of(end), 0.0)
+    return round(float(np.ceil(round(mean_m / _RADIUS_STEP_M, 6))) * _RADIUS_STEP_M, 3)
+
+
+_LIMBS = tuple((start, end, _limb_radius_m(start, end)) for start, end in _LIMB_ENDS)
+_HAND_M = capsule_between("left_wrist", "left_wrist").extend_m + 0.03  # beyond the wrist, most of its round tip too
 _SEATED = ("pelvis", "spine3", "left_hip", "right_hip", "left_collar", "right_collar")
-_REFERENCE_HEIGHT_M = 1.75
 _SHARES = np.array([0.0, 0.33, 0.67, 1.0])
 _STEP_S = 0.1
 _ALLOWED_M, _ON_SEAT_M, _SEAT_REACH_M = 0.01, 0.16, 0.65
@@ -79,12 +98,12 @@ class CollisionMap:
     @cached_property
     def _tops_m(self) -> Float[Array, "point 3"]:
         """Of tables, also where a top hides itself: nobody's trunk leans into them as into the back of a seat."""
-        return tops_of(self.scene, self._measured_m)
+        return table_tops(self.scene, self._measured_m)
 
     @cached_property
     def _legs_m(self) -> Float[Array, "point 3"]:
         """Upright things, tables' legs among them: no thigh sinks into those as into a seat."""
-        return np.concatenate([pillars_of(self.scene, self._measured_m), legs_of(self.scene)])
+        return np.concatenate([upright_structures(self.scene, self._measured_m), table_legs(self.scene)])
 
     @cached_property
     def _solid_m(self) -> Float[Array, "point 3"]:
@@ -97,7 +116,7 @@ class CollisionMap:
         solid = np.concatenate([points, behind, self._tops_m, *below])
         solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
         solid = np.concatenate(
-            [solid, feet_of(np.concatenate([points, behind]), self.scene.floor_z_m), legs_of(self.scene)]
+            [solid, extended_to_floor(np.concatenate([points, behind]), self.scene.floor_z_m), table_legs(self.scene)]
         )
         _, one_each = np.unique(np.rint(solid / _GRAIN_M).astype(int) @ _GRAINS, return_index=True)
         return solid[one_each]
@@ -110,11 +129,11 @@ class CollisionMap:
         return KDTree(self._solid_m)
 
     @cached_property
-    def _under(self) -> Any:
+    def _below_tops(self) -> Any:
         """For the nearest point that may be something under a table's top, for whoever does not sit there."""
         from scipy.spatial import KDTree
 
-        return KDTree(under(self.scene, self._tops_m))
+        return KDTree(below_tops(self.scene, self._tops_m))
 
     def _not_of_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> tuple[tuple[Any, float], ...]:
         """For the nearest point about a seat that is not the seat's own: what is before it, above its surface, and
@@ -137,14 +156,14 @@ class CollisionMap:
         quick = {"balanced_tree": False, "compact_nodes": False}  # each is asked but once
         return (KDTree(hard, **quick), 0.0), (KDTree(tops[behind], **quick), _BEHIND_M)
 
-    def hidden(self, pose: PoseSequence) -> tuple[float, float]:
+    def occluded_shares(self, pose: PoseSequence) -> tuple[float, float]:
         """Where the pelvis is lowest: how much of the trunk is hidden, and of the legs hidden or outside the photo."""
         lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
         trunk = _along(lowest, "pelvis", "spine3", "neck")
         legs = [_along(lowest, f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("left", "right")]
         return occluded_share(self.scene, trunk), unseen_share(self.scene, np.concatenate(legs))
 
-    def deepest_m(
+    def penetration_m(
         self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
     ) -> float:
         """How far the body, thicker by a margin, gets into anything, at worst; 0 where it stays clear.
@@ -153,7 +172,7 @@ class CollisionMap:
         """
         rows = np.unique(np.searchsorted(pose.time_s, np.arange(max(pose.time_s[0], 0.0), pose.time_s[-1], _STEP_S)))
         joints = pose.joints_m[np.minimum(rows, len(pose.time_s) - 1)].astype(float)
-        scale = pose.height_m / _REFERENCE_HEIGHT_M
+        scale = scale_of(pose.height_m)
         points, radius, soft = [], [], []
         for start, end, thick in _LIMBS:
             first, last = joints[:, joint(start)], joints[:, joint(end)]
@@ -183,7 +202,7 @@ class CollisionMap:
             before, _ = tree.query(points[at_seat], distance_upper_bound=_FARTHEST_M)
             worst = max(worst, float((radius[at_seat] + besides_m - before - allowed[at_seat]).max(initial=0.0)))
             sits |= at_seat
-        unknown, _ = self._under.query(points[~sits], distance_upper_bound=_FARTHEST_M)
+        unknown, _ = self._below_tops.query(points[~sits], distance_upper_bound=_FARTHEST_M)
         worst = max(worst, float((radius[~sits] - unknown - allowed[~sits]).max(initial=0.0)))
         for seat, *_ in tables:
             at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M

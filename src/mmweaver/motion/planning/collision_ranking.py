@@ -1,4 +1,4 @@
-"""Of many ways through a room the one on which the body keeps clear of what stands there."""
+"""Chooses, among many placements of a motion, the one whose body collides least with the room."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -9,86 +9,93 @@ from mmweaver.core.records import PoseSequence
 from mmweaver.motion.planning.collision import CollisionMap
 from mmweaver.motion.planning.placement import Placement
 
-MOST_MOVED, WORTH_A_NOTE_M = 40, 0.03
-MARGIN_M = 0.03  # depth is noisy, and what stands there is seen from one side
-_HIDDEN_M, _LEGS_HIDDEN_M = 0.075, 0.04  # a sitter's hidden trunk and legs count as this far in: none knows into what
-_LITTLE_M = 0.01  # of it is no reason to look for another place
-_AGAIN_M = 0.0  # whoever gets in is placed once more, with other ways and ways to sit
+MOST_ANIMATED = 40  # placements that are animated and tested, of those that an attempt gives
+REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
+MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
+# A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
+_OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
+_NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
+# The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
+_ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
 
 
 @dataclass(frozen=True, kw_only=True)
 class RankedPlacement:
-    """A placement, the body moved along it, and how far that gets into things (negative: how far it keeps away)."""
+    """A placement, the body animated along it, and how deep that collides (negative: the distance it keeps)."""
 
     placement: Placement
     pose: PoseSequence
-    deep_m: float
-    hidden_m: float = 0.0  # added for a hidden trunk
-    legs_hidden_m: float = 0.0  # added for hidden legs: under a table's top they often are
+    penetration_m: float
+    trunk_cost_m: float = 0.0  # for an occluded trunk
+    legs_cost_m: float = 0.0  # for occluded legs, which those under a table often are
 
     @property
-    def bad_m(self) -> float:
-        """By what placements are compared."""
-        return self.deep_m + self.hidden_m + self.legs_hidden_m
+    def cost_m(self) -> float:
+        """What placements are ranked by."""
+        return self.penetration_m + self.trunk_cost_m + self.legs_cost_m
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What to say where the body gets in."""
-        if self.deep_m <= WORTH_A_NOTE_M:
+        """What is reported to the user where the body collides."""
+        if self.penetration_m <= REPORTED_PENETRATION_M:
             return ()
-        deep_cm = 100 * self.deep_m
-        return (f"the body gets {deep_cm:.0f} cm into furniture or a wall, for the room leaves no better place",)
+        penetration_cm = 100 * self.penetration_m
+        return (
+            f"the body gets {penetration_cm:.0f} cm into furniture or a wall, because the room leaves no better place",
+        )  # fmt: skip
 
 
-def most_clear(
-    draw: Callable[[int], Sequence[Placement]], moved: Callable[[Placement], PoseSequence], obstacles: CollisionMap
+def least_collision(
+    candidates: Callable[[int], Sequence[Placement]],
+    animate: Callable[[Placement], PoseSequence],
+    obstacles: CollisionMap,
 ) -> RankedPlacement:
-    """The first placement whose motion keeps a margin to everything, hands and all; else the one that comes nearest.
+    """The first placement whose motion keeps a margin to everything, hands included; else the one that costs least.
 
-    `draw(0)` gives placements, the best first; where none of them keeps clear, `draw(1)` gives others, and where those
-    get in so far that it must be said, `draw(2)` such that leave the room's seats.
+    `candidates(attempt)` gives placements, the best first. Attempt 1 is made where none of attempt 0 is clear, attempt
+    2, which leaves the room's seats, where the collision is so deep that it would be reported.
     """
-    best = _best(draw(0), moved, obstacles)
-    for again in (1, 2):
-        # For hidden legs alone nobody leaves the room's seats.
-        bad_m, enough_m = (best.bad_m, _AGAIN_M) if again == 1 else (best.deep_m + best.hidden_m, WORTH_A_NOTE_M)
-        if bad_m <= enough_m:
+    best = _best(candidates(0), animate, obstacles)
+    for attempt in (1, 2):
+        # Occluded legs alone are no reason to leave the room's seats.
+        cost_m = best.cost_m if attempt == 1 else best.penetration_m + best.trunk_cost_m
+        if cost_m <= _ENOUGH_M[attempt]:
             break
         try:
-            other = _best(draw(again), moved, obstacles)
-        except InputError:  # there is no other way
+            other = _best(candidates(attempt), animate, obstacles)
+        except InputError:  # this attempt finds no placement
             continue
-        best = other if other.bad_m < best.bad_m else best
+        best = other if other.cost_m < best.cost_m else best
     return best
 
 
 def _best(
-    placements: Sequence[Placement], moved: Callable[[Placement], PoseSequence], obstacles: CollisionMap
+    placements: Sequence[Placement], animate: Callable[[Placement], PoseSequence], obstacles: CollisionMap
 ) -> RankedPlacement:
     best: RankedPlacement | None = None
-    for placement in _varied(placements)[:MOST_MOVED]:
-        pose = moved(placement)
-        # From the margin on all are alike.
-        deep_m = obstacles.deepest_m(pose, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
-        trunk, legs = obstacles.hidden(pose) if placement.seats_m else (0.0, 0.0)
-        one = RankedPlacement(
-            placement=placement, pose=pose, deep_m=deep_m, hidden_m=_HIDDEN_M * trunk,
-            legs_hidden_m=_LEGS_HIDDEN_M * legs,
+    for placement in _seats_varied(placements)[:MOST_ANIMATED]:
+        pose = animate(placement)
+        # Beyond the margin all are equally good.
+        penetration_m = obstacles.penetration_m(pose, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
+        trunk, legs = obstacles.occluded_shares(pose) if placement.seats_m else (0.0, 0.0)
+        ranked = RankedPlacement(
+            placement=placement, pose=pose, penetration_m=penetration_m, trunk_cost_m=_OCCLUDED_TRUNK_M * trunk,
+            legs_cost_m=_OCCLUDED_LEGS_M * legs,
         )  # fmt: skip
-        if best is None or one.bad_m < best.bad_m:
-            best = one
-        if one.deep_m <= -MARGIN_M and one.hidden_m + one.legs_hidden_m <= _LITTLE_M:
+        if best is None or ranked.cost_m < best.cost_m:
+            best = ranked
+        if ranked.penetration_m <= -MARGIN_M and ranked.trunk_cost_m + ranked.legs_cost_m <= _NEGLIGIBLE_M:
             break
     assert best is not None
     return best
 
 
-def _varied(placements: Sequence[Placement]) -> list[Placement]:
-    """The same in their order, but after two of a seat the others of that seat last."""
+def _seats_varied(placements: Sequence[Placement]) -> list[Placement]:
+    """In the same order, but all beyond the first two of each way to sit come last."""
     count: Counter[tuple[object, ...]] = Counter()
     first, later = [], []
     for placement in placements:
-        sat = (*placement.seats_m, round(placement.path.heading_rad, 2))
-        count[sat] += 1
-        (later if placement.seats_m and count[sat] > 2 else first).append(placement)
+        sitting = (*placement.seats_m, round(placement.path.heading_rad, 2))
+        count[sitting] += 1
+        (later if placement.seats_m and count[sitting] > 2 else first).append(placement)
     return first + later

@@ -13,8 +13,8 @@ from mmweaver.motion.planning.trajectory import (
     NoTrajectory,
     Trajectory,
     face_along,
+    preferred_speed_mps,
     ramps_of,
-    wished_speed,
 )
 
 Array = np.ndarray
@@ -23,42 +23,44 @@ LYING_ROOM_M = 0.22  # free on either side of who lies
 STEP_ASIDE_M = 0.3
 
 
-def is_other(step: Step) -> bool:
+def is_curved_or_lateral(step: Step) -> bool:
     """Whether `lay_other` is what lays this step out."""
     return step.lower in SPECIAL or (bool(step.arc_deg) and step.direction != "circle")
 
 
-def lay_other(way: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
+def lay_curved_or_lateral(
+    trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool
+) -> None:
     """Lays out a step of `is_other`; `direction_rad` is what the sentence says, None where it says nothing."""
     if step.arc_deg:
-        _walk_bend(way, step, direction_rad, first=first, last=last)
+        _walk_bend(trajectory, step, direction_rad, first=first, last=last)
     elif step.lower == "sidestep":
-        _walk_sideways(way, step, direction_rad, first=first, last=last)
+        _walk_sideways(trajectory, step, direction_rad, first=first, last=last)
     else:
-        _jolt(way, step, direction_rad)
+        _short_move(trajectory, step, direction_rad)
 
 
-def _relative(way: Trajectory, step: Step, direction_rad: float | None) -> float | None:
+def _relative(trajectory: Trajectory, step: Step, direction_rad: float | None) -> float | None:
     """Forwards and backwards are seen from where the person faces, also at the very start."""
     if step.direction == "forwards":
-        return way.heading_rad
+        return trajectory.heading_rad
     if step.direction in ("backwards", "back"):
-        return way.heading_rad + np.pi
+        return trajectory.heading_rad + np.pi
     return direction_rad
 
 
-def _walk_bend(way: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
+def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
     """A bend of the angle asked for, as wide as time and room allow."""
     direction = direction_rad
     if direction is None or step.direction in ("left", "right"):
-        direction = float(way.rng.uniform(0, 2 * np.pi)) if first else way.heading_rad
+        direction = float(trajectory.rng.uniform(0, 2 * np.pi)) if first else trajectory.heading_rad
     backwards = step.direction == "backwards"
-    begin = face_along(way, step, direction, step.start_s, first=first)
+    begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
     lasts = step.end_s - begin - sum(ramps) / 2
-    either = float(way.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
+    either = float(trajectory.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
     bend = either * np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
-    speed, slowest = wished_speed(step, way.rng), SLOWEST_MPS.get(step.lower, 0.5)
+    speed, slowest = preferred_speed_mps(step, trajectory.rng), SLOWEST_MPS.get(step.lower, 0.5)
     for radius in (speed * lasts / abs(bend), 1.3, 1.0, 0.8, 0.65, 0.5, 0.4):
         length = min(radius * abs(bend), speed * lasts)
         if length < slowest * min(lasts, 1.0):
@@ -70,74 +72,74 @@ def _walk_bend(way: Trajectory, step: Step, direction_rad: float | None, *, firs
             start_s=begin, end_s=begin + span, length_m=length, direction_rad=direction, ramp_in_s=ramps[0],
             ramp_out_s=min(RAMP_S, 0.4 * span) if stops else ramps[1], curvature_per_m=bend / length,
         )  # fmt: skip
-        places = way.place + move.shift_m(np.linspace(begin, begin + span, 60))
-        if way.floor.can_stand(places).all():
-            _take(way, move, places, extra_cost=0.5 * stops)
-            way.heading_rad += bend
-            way.last_direction_rad = None
+        places = trajectory.position_m + move.shift_m(np.linspace(begin, begin + span, 60))
+        if trajectory.floor.can_stand(places).all():
+            _append_move(trajectory, move, places, extra_cost=0.5 * stops)
+            trajectory.heading_rad += bend
+            trajectory.last_direction_rad = None
             return
     raise NoTrajectory("no room for the bend")
 
 
-def _walk_sideways(way: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
+def _walk_sideways(trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
     """Facing as before, to the side that is said or any."""
     direction = direction_rad
     if direction is None or step.direction in ("forwards", "backwards", "back", "towards", "away"):
-        direction = way.heading_rad + float(way.rng.choice([-0.5, 0.5])) * np.pi
+        direction = trajectory.heading_rad + float(trajectory.rng.choice([-0.5, 0.5])) * np.pi
     else:  # square to where the person faces, on the side that is said
-        left = way.heading_rad + 0.5 * np.pi
+        left = trajectory.heading_rad + 0.5 * np.pi
         direction = left if np.cos(direction - left) > 0 else left - np.pi
     begin, span = step.start_s, step.end_s - step.start_s
-    speed = float(way.rng.uniform(*((0.3, 0.4), (0.4, 0.6), (0.65, 0.85))[step.speed + 1]))
+    speed = float(trajectory.rng.uniform(*((0.3, 0.4), (0.4, 0.6), (0.65, 0.85))[step.speed + 1]))
     steps = step.count if step.count and not step.upper else 0
     if steps:
         span = min(span, 0.75 * steps + 0.3)
     ramps = ramps_of(span, first=first and not steps, last=last and not steps)
     wanted = steps * STEP_ASIDE_M if steps else speed * (span - sum(ramps) / 2)
-    length = way.free_length_m(direction, wanted)
+    length = trajectory.free_length_m(direction, wanted)
     if length < min(0.25, 0.6 * wanted):
         raise NoTrajectory(f"only {length:.1f} m")
-    way.cost += 2.0 * (1 - length / wanted)
-    way.go(step, direction, length, (begin, begin + span), ramps)
+    trajectory.cost += 2.0 * (1 - length / wanted)
+    trajectory.go(step, direction, length, (begin, begin + span), ramps)
 
 
-def _jolt(way: Trajectory, step: Step, direction_rad: float | None) -> None:
+def _short_move(trajectory: Trajectory, step: Step, direction_rad: float | None) -> None:
     """A short way in a short time: caught after a push, or jumped."""
-    direction = _relative(way, step, direction_rad)
+    direction = _relative(trajectory, step, direction_rad)
     if direction is None:
-        ways = (0.5 * np.pi, -0.5 * np.pi) if step.style == "side" else (0.0, np.pi, np.pi)
-        direction = way.heading_rad + float(way.rng.choice(ways))
+        directions_rad = (0.5 * np.pi, -0.5 * np.pi) if step.style == "side" else (0.0, np.pi, np.pi)
+        direction = trajectory.heading_rad + float(trajectory.rng.choice(directions_rad))
     if step.lower == "stumble":
-        length, span = float(way.rng.uniform(0.3, 0.6)), min(step.end_s - step.start_s, 1.2)
+        length, span = float(trajectory.rng.uniform(0.3, 0.6)), min(step.end_s - step.start_s, 1.2)
         begin = step.start_s + 0.12
     else:
         each = (0.2, 0.35) if step.speed < 0 else (0.3, 0.6)
-        length = float(way.rng.uniform(*each)) * max(step.count, 1)
+        length = float(trajectory.rng.uniform(*each)) * max(step.count, 1)
         begin, span = step.start_s, step.end_s - step.start_s
-    free = way.free_length_m(direction, length)
+    free = trajectory.free_length_m(direction, length)
     if free < 0.6 * length:
         raise NoTrajectory(f"only {free:.1f} m")
     ramp = min(0.3, 0.4 * span)
-    way.go(step, direction, free, (begin, begin + span), (ramp, ramp))
+    trajectory.go(step, direction, free, (begin, begin + span), (ramp, ramp))
 
 
-def _take(way: Trajectory, move: Move, places: Float[Array, "n 2"], extra_cost: float) -> None:
-    way.moves[-1].append(move)
-    way.place = way.place + move.end_shift_m
-    way.cost += float(way.floor.dislike_at(places).mean()) + extra_cost
-    way.from_seat = False
+def _append_move(trajectory: Trajectory, move: Move, places: Float[Array, "n 2"], extra_cost: float) -> None:
+    trajectory.moves[-1].append(move)
+    trajectory.position_m = trajectory.position_m + move.end_shift_m
+    trajectory.cost += float(trajectory.floor.cost_at(places).mean()) + extra_cost
+    trajectory.from_seat = False
 
 
-def turn_by(way: Trajectory, step: Step) -> None:
+def turn_by(trajectory: Trajectory, step: Step) -> None:
     """Turns by an angle that may be more than half a turn, to the left where positive, within the step."""
-    either = float(way.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
+    either = float(trajectory.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
     angle_rad, start_s, span_s = either * np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s
     lasts = min(0.25 + abs(angle_rad) / 3.2, max(span_s, 0.6))
-    way.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle_rad))
-    way.heading_rad += angle_rad
+    trajectory.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle_rad))
+    trajectory.heading_rad += angle_rad
 
 
-def check_floor(way: Trajectory, step: Step, body: SkeletonProportions) -> None:
+def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProportions) -> None:
     """Raises NoTrajectory where somebody who kneels, falls or lies would be in furniture or out of view."""
     if step.posture not in ("floor", "knees") and step.lower not in ("kneel_up", "get_up"):
         return
@@ -148,8 +150,10 @@ def check_floor(way: Trajectory, step: Step, body: SkeletonProportions) -> None:
         low, high = 0.0, (BELLY_AHEAD_M + 0.8) * h  # the arms lie ahead
     else:
         low, high = -(BACK_BEHIND_M + 0.5) * h, 0.15 * h
-    along = np.linspace(low, high, 24)[:, None] * np.array([np.cos(way.heading_rad), np.sin(way.heading_rad)])
-    places = way.place + along
-    if float(way.floor.clearance_at(places).min()) < LYING_ROOM_M:
+    along = np.linspace(low, high, 24)[:, None] * np.array(
+        [np.cos(trajectory.heading_rad), np.sin(trajectory.heading_rad)]
+    )
+    places = trajectory.position_m + along
+    if float(trajectory.floor.clearance_at(places).min()) < LYING_ROOM_M:
         raise NoTrajectory("no floor to lie on")
-    way.cost += float(way.floor.dislike_at(places).mean())
+    trajectory.cost += float(trajectory.floor.cost_at(places).mean())

@@ -10,7 +10,7 @@ from mmweaver.core.records import Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 Array = np.ndarray
-Places = Float[Array, "*shape 2"]
+Positions = Float[Array, "*shape 2"]
 
 BODY_RADIUS_M = 0.25  # half the width of the shoulders
 AZIMUTH_LIMIT_RAD = np.radians(40.0)
@@ -33,7 +33,7 @@ class FloorMap:
         return float(x[1] - x[0]) if len(x) > 1 else 0.1
 
     @cached_property
-    def places_m(self) -> Float[Array, "y x 2"]:
+    def cell_centres_m(self) -> Float[Array, "y x 2"]:
         """Centres of the cells."""
         free = self.scene.free_space
         return np.stack(np.meshgrid(free.x_m, free.y_m), axis=-1).astype(float)
@@ -50,28 +50,30 @@ class FloorMap:
     @cached_property
     def in_view(self) -> Bool[Array, "y x"]:
         """Cells where a standing body is seen by the radar and the camera."""
-        return self.sees(self.places_m)
+        return self.sees(self.cell_centres_m)
 
     @cached_property
     def walkable(self) -> Bool[Array, "y x"]:
         return (self.clearance_m >= BODY_RADIUS_M) & self.in_view
 
     @cached_property
-    def dislike(self) -> Float[Array, "y x"]:
+    def cell_cost(self) -> Float[Array, "y x"]:
         """Soft reasons against a cell: assumed not seen, aside, feet or head out of the window or the picture."""
-        ground = np.hypot(self.places_m[..., 0], self.places_m[..., 1])
+        ground = np.hypot(self.cell_centres_m[..., 0], self.cell_centres_m[..., 1])
         floor = self.scene.floor_z_m
         farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
         low, high = self.range_window_m
-        dislike = _UNSEEN * self._unseen_share
-        dislike = (
-            dislike + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
+        cell_cost = _UNSEEN * self._unseen_share
+        cell_cost = (
+            cell_cost + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
         )
-        azimuth = np.degrees(np.abs(np.arctan2(self.places_m[..., 0], self.places_m[..., 1])))
-        dislike = dislike + np.clip((azimuth - 12) / 20, 0, 1.4)  # the antennas look straight ahead
+        azimuth = np.degrees(np.abs(np.arctan2(self.cell_centres_m[..., 0], self.cell_centres_m[..., 1])))
+        cell_cost = cell_cost + np.clip((azimuth - 12) / 20, 0, 1.4)  # the antennas look straight ahead
         for height in (0.03, self.height_m):
-            dislike = dislike + 0.8 * ~self._in_picture(self.places_m, floor + height, margin=0.01, vertical=True)
-        return dislike
+            cell_cost = cell_cost + 0.8 * ~self._in_picture(
+                self.cell_centres_m, floor + height, margin=0.01, vertical=True
+            )
+        return cell_cost
 
     @cached_property
     def _unseen_share(self) -> Float[Array, "y x"]:
@@ -81,17 +83,17 @@ class FloorMap:
         across = 2 * round(BODY_RADIUS_M / self.cell_m) + 1
         return np.asarray(uniform_filter((~self.scene.free_space.is_seen).astype(float), across, mode="nearest"))
 
-    def sees(self, places: Places) -> Bool[Array, "*shape"]:
+    def sees(self, positions_m: Positions) -> Bool[Array, "*shape"]:
         """The torso is inside the range window, within 40 degrees of the axis and the picture's width."""
         z = self.scene.floor_z_m + TORSO_HEIGHT * self.height_m
-        distance = np.sqrt(places[..., 0] ** 2 + places[..., 1] ** 2 + z**2)
+        distance = np.sqrt(positions_m[..., 0] ** 2 + positions_m[..., 1] ** 2 + z**2)
         low, high = self.range_window_m
         inside = (distance - TORSO_HALF_DEPTH_M >= low) & (distance + TORSO_HALF_DEPTH_M <= high)
-        ahead = np.abs(np.arctan2(places[..., 0], places[..., 1])) <= AZIMUTH_LIMIT_RAD
-        return np.asarray(inside & ahead & self._in_picture(places, z, margin=0.06, vertical=False))
+        ahead = np.abs(np.arctan2(positions_m[..., 0], positions_m[..., 1])) <= AZIMUTH_LIMIT_RAD
+        return np.asarray(inside & ahead & self._in_picture(positions_m, z, margin=0.06, vertical=False))
 
-    def _in_picture(self, places: Places, z: float, *, margin: float, vertical: bool) -> Bool[Array, "*shape"]:
-        points = np.concatenate([places, np.full((*places.shape[:-1], 1), z)], axis=-1)
+    def _in_picture(self, positions_m: Positions, z: float, *, margin: float, vertical: bool) -> Bool[Array, "*shape"]:
+        points = np.concatenate([positions_m, np.full((*positions_m.shape[:-1], 1), z)], axis=-1)
         pixels, depth_m = AlignedPhoto.of(self.scene).project(points)
         intrinsics = self.scene.photo.intrinsics
         u, v = pixels[..., 0] / intrinsics.width, pixels[..., 1] / intrinsics.height
@@ -100,44 +102,44 @@ class FloorMap:
             inside &= (v >= margin) & (v <= 1 - margin)
         return np.asarray(inside)
 
-    def _cells(self, places: Places) -> tuple[Array, Array, Array]:
+    def _cells(self, positions_m: Positions) -> tuple[Array, Array, Array]:
         """Row and column of each place, and whether it is on the grid."""
         free = self.scene.free_space
-        column = np.rint((places[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
-        row = np.rint((places[..., 1] - free.y_m[0]) / self.cell_m).astype(int)
+        column = np.rint((positions_m[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
+        row = np.rint((positions_m[..., 1] - free.y_m[0]) / self.cell_m).astype(int)
         inside = (column >= 0) & (column < len(free.x_m)) & (row >= 0) & (row < len(free.y_m))
         return np.where(inside, row, 0), np.where(inside, column, 0), np.asarray(inside)
 
-    def can_stand(self, places: Places) -> Bool[Array, "*shape"]:
-        row, column, inside = self._cells(places)
+    def can_stand(self, positions_m: Positions) -> Bool[Array, "*shape"]:
+        row, column, inside = self._cells(positions_m)
         return np.asarray(inside & self.walkable[row, column])
 
-    def clearance_at(self, places: Places) -> Float[Array, "*shape"]:
-        row, column, inside = self._cells(places)
+    def clearance_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
+        row, column, inside = self._cells(positions_m)
         return np.where(inside, self.clearance_m[row, column], 0.0)
 
-    def dislike_at(self, places: Places) -> Float[Array, "*shape"]:
-        row, column, inside = self._cells(places)
-        return np.where(inside, self.dislike[row, column], 3.0)
+    def cost_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
+        row, column, inside = self._cells(positions_m)
+        return np.where(inside, self.cell_cost[row, column], 3.0)
 
     def free_length_m(
-        self, place: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
+        self, position_m: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
     ) -> float:
         """How far a body can go straight from a place, at most `wanted_m`.
 
         Within `excused_m` of the place it may be closer to things than a body's radius (a seat just left).
         """
         steps = np.append(np.arange(0.0, wanted_m, 0.04), wanted_m)
-        way = place + steps[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
-        excused = (steps < excused_m) & (self.clearance_at(way) > 0.05)
-        blocked = np.flatnonzero(~(self.can_stand(way) | excused))
+        line_m = position_m + steps[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
+        excused = (steps < excused_m) & (self.clearance_at(line_m) > 0.05)
+        blocked = np.flatnonzero(~(self.can_stand(line_m) | excused))
         if not len(blocked):
             return float(wanted_m)
         return float(steps[blocked[0] - 1]) if blocked[0] else 0.0
 
-    def nearest_place(self, place: Float[Array, "2"]) -> Float[Array, "2"] | None:
+    def nearest_walkable_m(self, position_m: Float[Array, "2"]) -> Float[Array, "2"] | None:
         """The walkable cell nearest to a place."""
         if not self.walkable.any():
             return None
-        places = self.places_m[self.walkable]
-        return places[np.argmin(np.hypot(*(places - place).T))]
+        positions_m = self.cell_centres_m[self.walkable]
+        return positions_m[np.argmin(np.hypot(*(positions_m - position_m).T))]

@@ -22,14 +22,14 @@ _LEGS_M, _ASIDE_M = (0.15, 0.35, 0.55, 0.75), 0.2  # where legs are as somebody 
 _UNDER_STEP_M, _UNDER_GRAIN_M = 0.05, 0.05
 
 
-def feet_of(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
+def extended_to_floor(points: Points, floor_z_m: float) -> Float[np.ndarray, "below 3"]:
     """Below points that are seen low over the floor: what ends there reaches the floor."""
     low = points[points[:, 2] < floor_z_m + _FOOT_M]
     down = np.concatenate([low - np.array([0.0, 0.0, step]) for step in _FEET_DOWN_M])
     return down[down[:, 2] > floor_z_m + _SOLE_M]
 
 
-def legs_of(scene: Scene) -> Points:
+def table_legs(scene: Scene) -> Points:
     """Legs under the corners of level tops, but where the camera sees that none are."""
     legs = [
         _leg(scene, plane, u, v) for plane in scene.planes if _is_table(scene, plane) for u in (-1, 1) for v in (-1, 1)
@@ -50,7 +50,7 @@ def _leg(scene: Scene, plane: Plane, u: int, v: int) -> Points:
     return np.concatenate([np.column_stack([np.tile(side[:2], (len(height), 1)), height]) for side in sides])
 
 
-def tops_of(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
+def table_tops(scene: Scene, points: Points) -> Float[np.ndarray, "top 3"]:
     """Of the points those on tops and rims of tables, thin and long; and the tops behind rims that hide their own."""
     height = points[:, 2] - scene.floor_z_m
     column, row = np.floor((points[:, :2].T + _REACH_M) / _SQUARE_M).astype(int)
@@ -142,7 +142,7 @@ def occluded_along(scene: Scene, tracks_m: Float[np.ndarray, "way place 2"]) -> 
     return hidden.reshape(*tracks_m.shape[:2], -1).mean(axis=-1)
 
 
-def pillars_of(scene: Scene, points: Points) -> Float[np.ndarray, "leg 3"]:
+def upright_structures(scene: Scene, points: Points) -> Float[np.ndarray, "leg 3"]:
     """Of points those of upright things, tables' legs mostly, and what is just behind them: no cushion of a seat."""
     side = int(2 * _REACH_M / _SQUARE_M)
     low, high = np.zeros((side, side), bool), np.zeros((side, side), bool)
@@ -162,7 +162,7 @@ def _squares(points: Points, side: int) -> tuple[np.ndarray, np.ndarray]:
     return np.where(inside[:, None], square, 0), inside
 
 
-def under(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
+def below_tops(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
     """What may be under tables' tops: everything but where something farther was seen below them."""
     _, one_each = np.unique(np.rint(tops[:, :2] / _UNDER_GRAIN_M).astype(int), axis=0, return_index=True)
     tops = tops[one_each]

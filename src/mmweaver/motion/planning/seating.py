@@ -54,7 +54,7 @@ def _on_bed(seat: Sitting, scene: Scene) -> bool:
     return any(float(np.hypot(*(seat.seat_m - mark.position_m[:2]))) < _BED_REACH_M for mark in beds)
 
 
-def seats_of(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
+def usable_seats(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
     """The scene's seats that a person can use inside the radar's window."""
     found = []
     for seat in floor.scene.seats:
@@ -79,7 +79,7 @@ def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
     )
 
 
-def as_it_may_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
+def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     """The same seat sat on as it is made for, as often as not; else turned aside or sat on further back."""
     kind = int(rng.integers(4))
     if kind < 2 or (kind == 3 and sitting.depth_m < _ROOM_BEHIND_M):
@@ -91,7 +91,7 @@ def as_it_may_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     return _turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
 
 
-def as_it_can_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
+def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     """The same seat sat on in any way that one can: turned, and forward or back, left or right of its middle."""
     ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
     aside = np.array([-ahead[1], ahead[0]])
@@ -102,7 +102,7 @@ def as_it_can_be(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     return _turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
 
 
-def some_of(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
+def random_subset(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
     """The seats without some, at random; at least one stays."""
     kept = [seat for seat in seats if rng.random() > _LEFT_OUT]
     return kept or seats
@@ -138,6 +138,6 @@ def stool_note(stool: Sitting, *, none_at_all: bool) -> str:
 
 def reachable(floor: FloorMap, place: Float[Array, "2"], sitting: Sitting) -> bool:
     """Whether one can go straight to a seat; close to it, being free is enough: its own edge is near."""
-    way = place + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - place)
-    near = np.hypot(*(way - sitting.feet_m).T) < 0.6
-    return bool((floor.can_stand(way) | (near & (floor.clearance_at(way) > 0.0))).all())
+    line_m = place + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - place)
+    near = np.hypot(*(line_m - sitting.feet_m).T) < 0.6
+    return bool((floor.can_stand(line_m) | (near & (floor.clearance_at(line_m) > 0.0))).all())

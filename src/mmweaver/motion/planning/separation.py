@@ -5,31 +5,28 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
+from mmweaver.geometry.body_capsules import TRUNK, TRUNK_WIDTH_PER_DEPTH, capsule_between, part_of, scale_of
 
 Array = np.ndarray
-PELVISES_APART_M, BODIES_APART_M = 0.5, 0.02
-LOOK_HZ = 20.0  # how often bodies are held against each other: a limb at 3 m/s moves 15 cm between
-REFERENCE_HEIGHT_M = 1.75
-PER_BONE = 4  # spheres along a bone
+LEAST_PELVIS_DISTANCE_M, LEAST_SURFACE_DISTANCE_M = 0.5, 0.02
+CHECK_RATE_HZ = 20.0  # how often the bodies are compared: a limb at 3 m/s moves 15 cm in between
+SPHERES_PER_BONE = 4
 
-# How thick a 1.75 m person is about each bone (named by its far joint), from near to far; the trunk at its widest.
-_THICKNESS_M = {
-    "hip": (0.13, 0.105), "spine1": (0.156, 0.144), "spine2": (0.144, 0.144), "spine3": (0.144, 0.156),
-    "neck": (0.15, 0.06), "head": (0.055, 0.085), "collar": (0.12, 0.08), "shoulder": (0.08, 0.06),
-    "knee": (0.085, 0.058), "ankle": (0.055, 0.038), "foot": (0.038, 0.06), "elbow": (0.05, 0.042),
-    "wrist": (0.042, 0.035),
-}  # fmt: skip
-CROWN_M, CROWN_RADIUS_M = 0.1, 0.095  # past the head joint
-HAND_M, HAND_RADIUS_M = 0.13, 0.03  # past the wrist
+# Bones inside the trunk that no capsule follows: radius at the near and the far joint.
+_TRUNK_BONES_M = {"hip": (0.13, capsule_between("left_hip", "left_hip").start_radius_m), "collar": (0.12, 0.08)}
+# Added to a capsule's radius at the near and the far joint, for a row of spheres has no caps: the back of the head,
+# the shoulder's muscle, toes and palm.
+_MARGIN_M = {"head": (0.0, 0.01), "shoulder": (0.01, 0.0), "foot": (0.0, 0.025), "wrist": (0.0, 0.005)}
+_HAND_LONGER_M, _HAND_THINNER_M = 0.01, 0.01  # than its capsule: an outstretched, flat hand
 
 
-def are_apart(one: PoseSequence, other: PoseSequence) -> bool:
+def are_separate(one: PoseSequence, other: PoseSequence) -> bool:
     """Whether two people never come too near to each other."""
-    pelvis_m, body_m = gaps_m(one, other)
-    return pelvis_m >= PELVISES_APART_M and body_m >= BODIES_APART_M
+    pelvis_m, body_m = separations_m(one, other)
+    return pelvis_m >= LEAST_PELVIS_DISTANCE_M and body_m >= LEAST_SURFACE_DISTANCE_M
 
 
-def gaps_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
+def separations_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
     """The least distance over time of the pelvises (on the floor), and of the bodies' surfaces (negative: inside)."""
     time_s = _common_times(one, other)
     first, second = (_at(pose, time_s) for pose in (one, other))
@@ -43,16 +40,16 @@ def gaps_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
     return float(pelvises.min()), least
 
 
-def keeps_clear(track_m: Float[Array, "time 2"], time_s: Float[Array, " time"], other: PoseSequence) -> bool:
+def is_clear_of(track_m: Float[Array, "time 2"], time_s: Float[Array, " time"], other: PoseSequence) -> bool:
     """Whether a way over the floor stays clear of somebody's pelvis and, by half a body's width, of every joint."""
     joints_m = _at(other, time_s)[:, :, :2]
     apart = np.linalg.norm(joints_m - track_m[:, None], axis=-1)
-    return bool(apart[:, joint("pelvis")].min() >= PELVISES_APART_M + 0.15 and apart.min() >= 0.4)
+    return bool(apart[:, joint("pelvis")].min() >= LEAST_PELVIS_DISTANCE_M + 0.15 and apart.min() >= 0.4)
 
 
 def _common_times(one: PoseSequence, other: PoseSequence) -> Float[Array, " time"]:
     first, last = max(one.time_s[0], other.time_s[0]), min(one.time_s[-1], other.time_s[-1])
-    return np.linspace(first, last, max(2, int(np.ceil((last - first) * LOOK_HZ)) + 1))
+    return np.linspace(first, last, max(2, int(np.ceil((last - first) * CHECK_RATE_HZ)) + 1))
 
 
 def _at(pose: PoseSequence, time_s: Float[Array, " time"]) -> Float[Array, "time 22 3"]:
@@ -60,24 +57,44 @@ def _at(pose: PoseSequence, time_s: Float[Array, " time"]) -> Float[Array, "time
     return np.asarray(pose.joints_m[nearest], dtype=float)
 
 
+def _bone_radii_m(parent: str, child: str) -> tuple[float, float]:
+    """Half the body's width about a bone at its near and far joint, at reference height."""
+    part = part_of(child)
+    if part in _TRUNK_BONES_M:
+        return _TRUNK_BONES_M[part]
+    capsule, margin = capsule_between(parent, child), _MARGIN_M.get(part, (0.0, 0.0))
+    near = capsule.start_radius_m * (TRUNK_WIDTH_PER_DEPTH if parent in TRUNK else 1.0) + margin[0]
+    far = capsule.end_radius_m * (TRUNK_WIDTH_PER_DEPTH if child in TRUNK else 1.0) + margin[1]
+    return round(near, 3), round(far, 3)
+
+
+def _tip_m(child: str) -> tuple[float, float] | None:
+    """How far the body reaches past its last joint, and the radius there; None where the bone ends the chain."""
+    if part_of(child) not in ("head", "wrist"):
+        return None
+    tip = capsule_between(child, child)
+    if part_of(child) == "head":
+        return tip.extend_m, tip.end_radius_m
+    return round(tip.extend_m + _HAND_LONGER_M, 3), round(tip.end_radius_m - _HAND_THINNER_M, 3)
+
+
 def _spheres(
     joints_m: Float[Array, "time 22 3"], height_m: float
 ) -> tuple[Float[Array, "time sphere 3"], Float[Array, " sphere"]]:
-    """A body as spheres along its bones."""
+    """A body as spheres along its bones: centres and radii, in metres."""
     centres, radii = [], []
-    scale = height_m / REFERENCE_HEIGHT_M
+    scale = scale_of(height_m)
     for child, parent in enumerate(PARENTS):
         if parent < 0:
             continue
-        name = JOINT_NAMES[child].removeprefix("left_").removeprefix("right_")
-        near, far = _THICKNESS_M[name]
-        for share in np.linspace(0, 1, PER_BONE):
+        near, far = _bone_radii_m(JOINT_NAMES[parent], JOINT_NAMES[child])
+        for share in np.linspace(0, 1, SPHERES_PER_BONE):
             centres.append(joints_m[:, parent] + share * (joints_m[:, child] - joints_m[:, parent]))
             radii.append(near + share * (far - near))
-        past = {"head": (CROWN_M, CROWN_RADIUS_M), "wrist": (HAND_M, HAND_RADIUS_M)}.get(name)
-        if past:
+        tip = _tip_m(JOINT_NAMES[child])
+        if tip:
             bone = joints_m[:, child] - joints_m[:, parent]
             unit = bone / np.maximum(np.linalg.norm(bone, axis=-1, keepdims=True), 1e-6)
-            centres += [joints_m[:, child] + share * past[0] * scale * unit for share in (0.5, 1.0)]
-            radii += [past[1], past[1]]
+            centres += [joints_m[:, child] + share * tip[0] * scale * unit for share in (0.5, 1.0)]
+            radii += [tip[1], tip[1]]
     return np.stack(centres, axis=1), np.array(radii) * scale

@@ -15,9 +15,9 @@ from mmweaver.motion.planning.trajectory import (
     TURN_RATE,
     NoTrajectory,
     Trajectory,
-    angle_between,
     face_along,
-    wished_speed,
+    preferred_speed_mps,
+    signed_angle_rad,
 )
 
 Array = np.ndarray
@@ -29,12 +29,12 @@ _SHORTEST_M, _NEAR_M = 0.35, 0.45
 _CORNERS = 24
 
 
-def kinds_for(target: str) -> tuple[str, ...]:
+def kinds_of(target: str) -> tuple[str, ...]:
     """The Landmark.kinds that a word means."""
     return ALIKE.get(target, (target,))
 
 
-def goes_to_thing(step: Step) -> bool:
+def goes_to_target(step: Step) -> bool:
     """Whether a step names a thing that is no seat."""
     return bool(step.target) and step.target not in SEATS
 
@@ -42,17 +42,17 @@ def goes_to_thing(step: Step) -> bool:
 def check_targets(plan: MotionPlan, scene: Scene) -> None:
     """Raises InputError where a step goes to something that the room does not show, naming what it has."""
     for step in plan.steps:
-        if step.moves and goes_to_thing(step) and not _marks(scene, step):
-            told = f"--landmark {kinds_for(step.target)[0]}=X,Y (metres right of and ahead of the radar)"
+        if step.moves and goes_to_target(step) and not _landmarks(scene, step):
             raise InputError(
-                f"for {step.clause or step.target!r}: no {step.target} was found in the photo; {_what_there_is(scene)};"
-                f" where one is can be told by {told} or a class mask (--classes)"
+                f"for {step.clause or step.target!r}: no {step.target} was found in the photo;"
+                f" {_what_was_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
+                " right of and ahead of the radar) or a class mask (--classes)"
             )
 
 
-def without_things(plan: MotionPlan) -> MotionPlan:
+def without_targets(plan: MotionPlan) -> MotionPlan:
     """For where no photo is: each way to a thing leads anywhere instead, and a note says so."""
-    lost = [step for step in plan.steps if step.moves and goes_to_thing(step)]
+    lost = [step for step in plan.steps if step.moves and goes_to_target(step)]
     notes = tuple(
         f"for {step.clause or step.target!r}: without a photo there is no {step.target}; the way leads where room is"
         for step in lost
@@ -61,9 +61,9 @@ def without_things(plan: MotionPlan) -> MotionPlan:
     return replace(plan, steps=steps, notes=plan.notes + notes)
 
 
-def start_for(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:
+def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:
     """A place from which a walk of the step's time ends at its target; None where it has none."""
-    marks = _marks(floor.scene, step)
+    marks = _landmarks(floor.scene, step)
     if not marks:
         return None
     mark = marks[int(rng.integers(len(marks)))]
@@ -71,22 +71,25 @@ def start_for(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Ar
     return np.array(mark.approach_m) + length * np.array([np.cos(angle), np.sin(angle)])
 
 
-def walk_to_target(way: Trajectory, step: Step, *, first: bool) -> None:
+def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
     """Lays the way to the nearest landmark that can be reached in time, and turns to face it.
 
     Raises NoTrajectory where there is none from here.
     """
-    marks = sorted(_marks(way.floor.scene, step), key=lambda mark: float(np.hypot(*(mark.approach_m - way.place))))
+    marks = sorted(
+        _landmarks(trajectory.floor.scene, step),
+        key=lambda mark: float(np.hypot(*(mark.approach_m - trajectory.position_m))),
+    )
     for mark in marks:
-        goal = _standing_place(way.floor, mark)
-        corners = None if goal is None else _corners(way, goal)
-        if corners is not None and _lay(way, step, corners, mark, first=first):
+        goal = _standing_place(trajectory.floor, mark)
+        corners = None if goal is None else _corners(trajectory, goal)
+        if corners is not None and _lay_legs(trajectory, step, corners, mark, first=first):
             return
     raise NoTrajectory(f"no way to the {step.target}")
 
 
-def _marks(scene: Scene, step: Step) -> list[Landmark]:
-    kinds = kinds_for(step.target)
+def _landmarks(scene: Scene, step: Step) -> list[Landmark]:
+    kinds = kinds_of(step.target)
     return [mark for mark in scene.landmarks if mark.kind in kinds] if step.target else []
 
 
@@ -95,21 +98,21 @@ def _standing_place(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] | None
     approach = np.array(mark.approach_m, dtype=float)
     if bool(floor.can_stand(approach)):
         return approach
-    near = floor.nearest_place(approach)
+    near = floor.nearest_walkable_m(approach)
     return near if near is not None and float(np.hypot(*(near - approach))) < _NEAR_M else None
 
 
-def _corners(way: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
+def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
     """The goal, with one corner before it where things stand between; None where that is not enough."""
-    if _is_free(way.floor, way.place, goal):
+    if _is_free(trajectory.floor, trajectory.position_m, goal):
         return [goal]
-    places = way.floor.places_m[way.floor.walkable]
+    places = trajectory.floor.cell_centres_m[trajectory.floor.walkable]
     if not len(places):
         return None
-    some = places[way.rng.integers(len(places), size=_CORNERS)]
-    order = np.argsort(np.hypot(*(some - way.place).T) + np.hypot(*(some - goal).T))
+    some = places[trajectory.rng.integers(len(places), size=_CORNERS)]
+    order = np.argsort(np.hypot(*(some - trajectory.position_m).T) + np.hypot(*(some - goal).T))
     for corner in some[order]:
-        if _is_free(way.floor, way.place, corner) and _is_free(way.floor, corner, goal):
+        if _is_free(trajectory.floor, trajectory.position_m, corner) and _is_free(trajectory.floor, corner, goal):
             return [corner, goal]
     return None
 
@@ -120,37 +123,39 @@ def _is_free(floor: FloorMap, start: Float[Array, "2"], end: Float[Array, "2"]) 
     return floor.free_length_m(start, float(np.arctan2(gap[1], gap[0])), length) >= length - 1e-6
 
 
-def _lay(way: Trajectory, step: Step, corners: list[Float[Array, "2"]], mark: Landmark, *, first: bool) -> bool:
+def _lay_legs(
+    trajectory: Trajectory, step: Step, corners: list[Float[Array, "2"]], mark: Landmark, *, first: bool
+) -> bool:
     """The legs one after the other, shared out by length; False where the time does not fit."""
-    gaps = np.diff(np.stack([way.place, *corners]), axis=0)
+    gaps = np.diff(np.stack([trajectory.position_m, *corners]), axis=0)
     lengths = np.hypot(*gaps.T)
     directions = np.arctan2(gaps[:, 1], gaps[:, 0])
-    turned = abs(angle_between(float(directions[-1]), mark.facing_rad))
+    turned = abs(signed_angle_rad(float(directions[-1]), mark.facing_rad))
     at_end = 0.25 + turned / TURN_RATE if turned > 0.15 else 0.1
     spare = step.end_s - step.start_s - at_end - 0.5 * (len(corners) - 1) - (0.0 if first else 0.3)
     total = float(lengths.sum())
     if spare < 0.6 or total < _SHORTEST_M:
         return False
-    speed = min(wished_speed(step, way.rng), _FASTEST_MPS.get(step.lower, 1.6))
+    speed = min(preferred_speed_mps(step, trajectory.rng), _FASTEST_MPS.get(step.lower, 1.6))
     needed = total / max(spare - 0.5 * RAMP_S * (2 * len(corners) - first), 0.2)
     if needed > _FASTEST_MPS.get(step.lower, 1.6):
         return False
     speed = max(speed, needed)
-    way.cost += 0.6 * max(0.0, speed - needed) + 0.4 * (len(corners) - 1)
+    trajectory.cost += 0.6 * max(0.0, speed - needed) + 0.4 * (len(corners) - 1)
     time = step.start_s
     for leg, (length, direction) in enumerate(zip(lengths, directions, strict=True)):
-        begin = face_along(way, step, float(direction), time, first=first and leg == 0)
+        begin = face_along(trajectory, step, float(direction), time, first=first and leg == 0)
         ramps = (0.0 if first and leg == 0 else RAMP_S, RAMP_S)
         lasts = float(length) / speed + sum(ramps) / 2
         if begin + lasts > step.end_s + 0.05:
             return False
-        way.go(step, float(direction), float(length), (begin, begin + lasts), ramps)
+        trajectory.go(step, float(direction), float(length), (begin, begin + lasts), ramps)
         time = begin + lasts
-    way.turn_to(mark.facing_rad, time - 0.1)
+    trajectory.turn_to(mark.facing_rad, time - 0.1)
     return True
 
 
-def _what_there_is(scene: Scene) -> str:
+def _what_was_found(scene: Scene) -> str:
     counts = Counter(mark.kind for mark in scene.landmarks)
     if scene.seats:
         counts["seat"] = len(scene.seats)

@@ -22,12 +22,12 @@ class NoTrajectory(Exception):  # noqa: N818 - a candidate that does not work ou
     """This candidate leads nowhere; the message says why."""
 
 
-def angle_between(one: float, other: float) -> float:
+def signed_angle_rad(one: float, other: float) -> float:
     """The turn from one direction to another, in (-pi, pi]."""
     return float((other - one + np.pi) % (2 * np.pi) - np.pi)
 
 
-def wished_speed(step: Step, rng: np.random.Generator) -> float:
+def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
     if step.lower == "jog":
         low, high = ((1.3, 1.5), (1.5, 1.9), (1.9, 2.2))[step.speed + 1]
     elif step.lower in ("limp", "stagger"):
@@ -43,7 +43,7 @@ class Trajectory:
 
     floor: FloorMap
     rng: np.random.Generator
-    place: Float[Array, "2"]
+    position_m: Float[Array, "2"]
     heading_rad: float
     start_m: tuple[float, float] = (0.0, 0.0)
     start_heading_rad: float = 0.0
@@ -57,7 +57,7 @@ class Trajectory:
     from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
 
     def __post_init__(self) -> None:
-        self.start_m = (float(self.place[0]), float(self.place[1]))
+        self.start_m = (float(self.position_m[0]), float(self.position_m[1]))
         self.start_heading_rad = self.heading_rad
 
     def path(self) -> RootPath:
@@ -69,11 +69,13 @@ class Trajectory:
         )
 
     def free_length_m(self, direction_rad: float, wanted_m: float) -> float:
-        return self.floor.free_length_m(self.place, direction_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0)
+        return self.floor.free_length_m(
+            self.position_m, direction_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0
+        )
 
     def turn_to(self, heading_rad: float, start_s: float) -> float:
         """Turns on the spot the shorter way, returns how long it takes."""
-        angle = angle_between(self.heading_rad, heading_rad)
+        angle = signed_angle_rad(self.heading_rad, heading_rad)
         if abs(angle) < 0.02:
             self.heading_rad = self.heading_rad + angle
             if angle:
@@ -94,48 +96,48 @@ class Trajectory:
             ramp_in_s=ramps[0], ramp_out_s=ramps[1],
         )  # fmt: skip
         self.moves[-1].append(move)
-        samples = self.place + np.linspace(0, length_m, 8)[:, None] * np.array(
+        samples = self.position_m + np.linspace(0, length_m, 8)[:, None] * np.array(
             [np.cos(direction_rad), np.sin(direction_rad)]
         )
-        self.cost += float(self.floor.dislike_at(samples).mean())
-        self.place = self.place + move.end_shift_m
+        self.cost += float(self.floor.cost_at(samples).mean())
+        self.position_m = self.position_m + move.end_shift_m
         self.last_direction_rad = direction_rad
         self.from_seat = False
 
 
-def face_along(way: Trajectory, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
+def face_along(trajectory: Trajectory, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
     """Turns into (or, going backwards, against) the direction; returns when the first stride can begin."""
     heading = direction_rad + np.pi if step.direction == "backwards" else direction_rad
     if first:
-        way.start_heading_rad = way.heading_rad = heading
+        trajectory.start_heading_rad = trajectory.heading_rad = heading
         return start_s
-    return start_s + 0.5 * way.turn_to(heading, start_s - 0.1)
+    return start_s + 0.5 * trajectory.turn_to(heading, start_s - 0.1)
 
 
-def walk_straight(way: Trajectory, step: Step, direction_rad: float, *, first: bool, last: bool) -> None:
+def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, first: bool, last: bool) -> None:
     """Goes in a given direction for the step's time, slower where the room is short; then stands still.
 
     Raises NoTrajectory where even half a metre per second is too fast and there is hardly a step to go.
     """
-    begin = face_along(way, step, direction_rad, step.start_s, first=first)
+    begin = face_along(trajectory, step, direction_rad, step.start_s, first=first)
     end = _stop_s(step, begin)
     ramps = ramps_of(end - begin, first=first, last=last and end >= step.end_s - 1e-9)
     effective = end - begin - sum(ramps) / 2
-    speed = wished_speed(step, way.rng)
+    speed = preferred_speed_mps(step, trajectory.rng)
     wanted = speed * effective
-    free = way.free_length_m(direction_rad, wanted)
+    free = trajectory.free_length_m(direction_rad, wanted)
     if free >= max(SLOWEST_MPS[step.lower], 0.6 * speed) * effective:
-        way.cost += 2.0 * (1 - free / wanted)
-        way.go(step, direction_rad, free, (begin, end), ramps)
+        trajectory.cost += 2.0 * (1 - free / wanted)
+        trajectory.go(step, direction_rad, free, (begin, end), ramps)
         return
     if free < SHORTEST_WALK_M * SLOWEST_MPS[step.lower] / SLOWEST_MPS["walk"]:
         raise NoTrajectory(f"only {free:.1f} m")
     stop_ramps = (ramps[0], RAMP_S)
     speed = max(0.85 * speed, SLOWEST_MPS[step.lower])
     lasts = free / speed + sum(stop_ramps) / 2
-    way.cost += 1.5 + 2.0 * (1 - free / wanted)
-    way.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
-    way.notes.append(
+    trajectory.cost += 1.5 + 2.0 * (1 - free / wanted)
+    trajectory.go(step, direction_rad, free, (begin, begin + lasts), stop_ramps)
+    trajectory.notes.append(
         f"there is room to go {free:.1f} m for {step.clause!r}; after that the person stands still until"
         f" {step.end_s:.1f} s"
     )
@@ -156,14 +158,14 @@ def ramps_of(span_s: float, *, first: bool, last: bool) -> tuple[float, float]:
     return (0.0 if first else ramp), (0.0 if last else ramp)
 
 
-def walk_anywhere(way: Trajectory, step: Step, *, first: bool, last: bool) -> None:
+def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
     """No direction was said: goes straight as long as there is room, then turns and goes on, to and fro."""
-    speed = wished_speed(step, way.rng)
+    speed = preferred_speed_mps(step, trajectory.rng)
     time, begun = step.start_s, first
     for _ in range(40):
         left = step.end_s - time
-        direction, free = _open_direction(way, speed * left, keep_heading=not first and time == step.start_s)
-        begin = face_along(way, step, direction, time, first=begun)
+        direction, free = _open_direction(trajectory, speed * left, keep_heading=not first and time == step.start_s)
+        begin = face_along(trajectory, step, direction, time, first=begun)
         left = step.end_s - begin
         final = free >= 0.75 * speed * (left - RAMP_S / 2)
         if final:
@@ -171,7 +173,7 @@ def walk_anywhere(way: Trajectory, step: Step, *, first: bool, last: bool) -> No
             length = min(free, speed * (left - sum(ramps) / 2))
             if length < SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2):
                 raise NoTrajectory(f"only {free:.1f} m")
-            way.go(step, direction, length, (begin, step.end_s), ramps)
+            trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
         if free < PACING_LEG_M:
             raise NoTrajectory(f"only {free:.1f} m")
@@ -182,46 +184,46 @@ def walk_anywhere(way: Trajectory, step: Step, *, first: bool, last: bool) -> No
         length = min(free, speed * (lasts - sum(ramps) / 2))
         if lasts < 0.8 or length < SHORTEST_LEG_M:
             raise NoTrajectory(f"only {free:.1f} m")
-        way.go(step, direction, length, (begin, begin + lasts), ramps)
-        way.cost += 0.15
+        trajectory.go(step, direction, length, (begin, begin + lasts), ramps)
+        trajectory.cost += 0.15
         time, begun = begin + lasts - 0.15, False
         if step.end_s - time < 0.3:
             return
     raise NoTrajectory("too many turns")
 
 
-def _open_direction(way: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:
+def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:
     """A direction with room, at random among the better ones; after another step rather straight on."""
     wanted_m = min(wanted_m, 5.0)
     if keep_heading:
-        free = way.free_length_m(way.heading_rad, wanted_m)
+        free = trajectory.free_length_m(trajectory.heading_rad, wanted_m)
         if free >= 0.8 * wanted_m:
-            return way.heading_rad, free
-    directions = way.rng.uniform(0, 2 * np.pi) + np.arange(12) * np.pi / 6
-    free = np.array([way.free_length_m(float(angle), wanted_m) for angle in directions])
-    pick = int(np.argmax(free * way.rng.uniform(0.6, 1.0, len(free))))
+            return trajectory.heading_rad, free
+    directions = trajectory.rng.uniform(0, 2 * np.pi) + np.arange(12) * np.pi / 6
+    free = np.array([trajectory.free_length_m(float(angle), wanted_m) for angle in directions])
+    pick = int(np.argmax(free * trajectory.rng.uniform(0.6, 1.0, len(free))))
     return float(directions[pick]), float(free[pick])
 
 
-def walk_circle(way: Trajectory, step: Step, *, first: bool, last: bool) -> None:
+def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
     """Round and round, as wide as the room allows."""
-    rng = way.rng
+    rng = trajectory.rng
     side = float(np.sign(step.arc_deg)) or (1.0 if rng.random() < 0.5 else -1.0)
-    direction = way.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
-    begin = face_along(way, step, direction, step.start_s, first=first)
+    direction = trajectory.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
+    begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
-    speed = min(wished_speed(step, rng), 1.1 if step.lower == "walk" else 1.6)
+    speed = min(preferred_speed_mps(step, rng), 1.1 if step.lower == "walk" else 1.6)
     for radius in (0.9, 0.75, 0.6, 0.5, 0.4):
         move = Move(
             start_s=begin, end_s=step.end_s, length_m=speed * (step.end_s - begin - sum(ramps) / 2),
             direction_rad=direction, ramp_in_s=ramps[0], ramp_out_s=ramps[1], curvature_per_m=side / radius,
         )  # fmt: skip
-        round_ = way.place + move.shift_m(np.linspace(begin, step.end_s, 60))
-        if way.floor.can_stand(round_).all():
-            way.moves[-1].append(move)
-            way.place = way.place + move.end_shift_m
-            way.heading_rad = direction + move.curvature_per_m * move.length_m
-            way.last_direction_rad = None
-            way.cost += float(way.floor.dislike_at(round_).mean()) + 0.3 * (0.9 - radius)
+        round_ = trajectory.position_m + move.shift_m(np.linspace(begin, step.end_s, 60))
+        if trajectory.floor.can_stand(round_).all():
+            trajectory.moves[-1].append(move)
+            trajectory.position_m = trajectory.position_m + move.end_shift_m
+            trajectory.heading_rad = direction + move.curvature_per_m * move.length_m
+            trajectory.last_direction_rad = None
+            trajectory.cost += float(trajectory.floor.cost_at(round_).mean()) + 0.3 * (0.9 - radius)
             return
     raise NoTrajectory("no room for a circle of 0.4 m")

@@ -5,13 +5,14 @@ import pytest
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from rooms import WINDOW_M, room
 
 LEFT_WRIST, RIGHT_WRIST = joint("left_wrist"), joint("right_wrist")
 
 
 def joints(text: str, seed: int, duration_s: float = 3.0) -> np.ndarray:
-    return compose(text, room(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M).pose.joints_m
+    return compose(plan_motion(text, duration_s), room(), seed=seed, range_window_m=WINDOW_M).pose.joints_m
 
 
 def to_left(pose: np.ndarray) -> np.ndarray:

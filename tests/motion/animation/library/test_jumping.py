@@ -5,11 +5,12 @@ import pytest
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
+from mmweaver.motion.language.timing import plan_motion
 from rooms import FLOOR_Z_M, WINDOW_M, room
 
 
 def made(text: str, seed: int, duration_s: float):
-    return compose(text, room(), duration_s=duration_s, seed=seed, range_window_m=WINDOW_M).pose
+    return compose(plan_motion(text, duration_s), room(), seed=seed, range_window_m=WINDOW_M).pose
 
 
 def knee_deg(joints: np.ndarray, side: str) -> np.ndarray:

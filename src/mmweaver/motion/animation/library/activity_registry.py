@@ -11,7 +11,7 @@ from mmweaver.motion.animation.library import (
     dancing,
     gait,
     gestures,
-    hand_work,
+    hand_activities,
     jumping,
     legs,
     on_the_floor,
@@ -72,20 +72,20 @@ GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
         ("raise", gestures.raising),
         ("arms_out", pointing_and_nodding.arms_out),
         ("drink", gestures.drinking),
-        ("eat", hand_work.eating),
-        ("type", hand_work.typing),
-        ("read", hand_work.reading),
-        ("phone", hand_work.phoning),
-        ("text", hand_work.texting),
-        ("brush_teeth", hand_work.brushing_teeth),
-        ("comb", hand_work.combing),
-        ("wipe", hand_work.wiping),
-        ("write", hand_work.writing),
-        ("stir", hand_work.stirring),
-        ("knock", hand_work.knocking),
-        ("open_door", hand_work.opening_door),
-        ("guitar", hand_work.playing_guitar),
-        ("violin", hand_work.playing_violin),
+        ("eat", hand_activities.eating),
+        ("type", hand_activities.typing),
+        ("read", hand_activities.reading),
+        ("phone", hand_activities.phoning),
+        ("text", hand_activities.texting),
+        ("brush_teeth", hand_activities.brushing_teeth),
+        ("comb", hand_activities.combing),
+        ("wipe", hand_activities.wiping),
+        ("write", hand_activities.writing),
+        ("stir", hand_activities.stirring),
+        ("knock", hand_activities.knocking),
+        ("open_door", hand_activities.opening_door),
+        ("guitar", hand_activities.playing_guitar),
+        ("violin", hand_activities.playing_violin),
         ("point", pointing_and_nodding.pointing),
         ("nod", pointing_and_nodding.nodding),
         ("shake_head", pointing_and_nodding.shaking_head),
@@ -106,10 +106,10 @@ GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
 )
 
 
-def perform(stage: StepContext) -> Controls:
+def perform(context: StepContext) -> Controls:
     """The Controls of one step over the times of its stage."""
     with np.errstate(all="raise", under="ignore"):
-        controls = POSTURES[stage.step.lower](stage)
-        if stage.step.upper:
-            controls = GESTURES[stage.step.upper](stage, controls)
+        controls = POSTURES[context.step.lower](context)
+        if context.step.upper:
+            controls = GESTURES[context.step.upper](context, controls)
     return controls

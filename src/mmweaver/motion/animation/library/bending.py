@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.limbs import crouched, mix_arm, repeats, shift_pelvis, sides
+from mmweaver.motion.animation.library.movement_primitives import crouched, mix_arm, repeats, shift_pelvis, sides
 from mmweaver.motion.animation.library.standing import upright
 from mmweaver.motion.animation.profiles import plateau
 from mmweaver.motion.animation.step_context import StepContext
@@ -11,12 +11,12 @@ from mmweaver.motion.animation.step_context import StepContext
 PerTime = np.ndarray
 
 
-def bowing(stage: StepContext) -> Controls:
+def bowing(context: StepContext) -> Controls:
     """The trunk leans forward from the hips, straight, the hips going back a little; stays, and comes up."""
-    controls, time_s, h = upright(stage), stage.time_s, stage.body.height_m
-    deep = float(stage.rng.uniform(0.55, 0.95))
-    way = int(stage.rng.integers(3))  # arms at the sides, hands on the thighs, one hand before the belly
-    for begin, lasts in repeats(stage, 2.1, 1.25, 3.2):
+    controls, time_s, h = upright(context), context.time_s, context.body.height_m
+    deep = float(context.rng.uniform(0.55, 0.95))
+    way = int(context.rng.integers(3))  # arms at the sides, hands on the thighs, one hand before the belly
+    for begin, lasts in repeats(context, 2.1, 1.25, 3.2):
         down = plateau(time_s, begin, begin + lasts, 0.38 * lasts, 0.4 * lasts)
         _hinge(controls, h, down, deep)
         if way == 1:
@@ -38,11 +38,11 @@ def _hinge(controls: Controls, height_m: float, down: PerTime, angle_rad: float)
     controls.knee_room[:] = np.maximum(controls.knee_room, 0.5 * down)
 
 
-def bending(stage: StepContext) -> Controls:
+def bending(context: StepContext) -> Controls:
     """Far down with nearly straight legs, the hands towards the feet, and up again."""
-    controls, time_s, h = upright(stage), stage.time_s, stage.body.height_m
-    deep = float(stage.rng.uniform(1.35, 1.75))
-    for begin, lasts in repeats(stage, 2.3, 1.5, 3.4):
+    controls, time_s, h = upright(context), context.time_s, context.body.height_m
+    deep = float(context.rng.uniform(1.35, 1.75))
+    for begin, lasts in repeats(context, 2.3, 1.5, 3.4):
         down = plateau(time_s, begin, begin + lasts, 0.42 * lasts, 0.42 * lasts)
         _hinge(controls, h, down, deep)
         shift_pelvis(controls, 0.0, 0.0, -0.025 * h * down)
@@ -50,36 +50,36 @@ def bending(stage: StepContext) -> Controls:
     return controls
 
 
-def picking_up(stage: StepContext) -> Controls:
+def picking_up(context: StepContext) -> Controls:
     """Knees and hips bend, the hand goes to the floor before the feet, and brings something up before the body."""
-    controls, time_s = upright(stage), stage.time_s
-    arms = sides(stage)
+    controls, time_s = upright(context), context.time_s
+    arms = sides(context)
     hold_s = 0.0
-    for begin, lasts in repeats(stage, 2.3, 1.6, 3.4):
+    for begin, lasts in repeats(context, 2.3, 1.6, 3.4):
         down = plateau(time_s, begin, begin + 0.92 * lasts, 0.44 * lasts, 0.44 * lasts)
-        _to_the_floor(controls, stage, down, arms)
+        _to_the_floor(controls, context, down, arms)
         hold_s = begin + 0.5 * lasts
-    carried = plateau(time_s, hold_s, stage.end_s + 0.2, 0.7, 0.5)
-    _hold(controls, stage, carried, arms)
+    carried = plateau(time_s, hold_s, context.end_s + 0.2, 0.7, 0.5)
+    _hold(controls, context, carried, arms)
     return controls
 
 
-def putting_down(stage: StepContext) -> Controls:
+def putting_down(context: StepContext) -> Controls:
     """Something is held before the body, goes to the floor, and the body comes up without it."""
-    controls, time_s = upright(stage), stage.time_s
-    arms = sides(stage)
-    hold_s = stage.end_s
-    for begin, lasts in repeats(stage, 2.3, 1.6, 3.4):
-        _to_the_floor(controls, stage, plateau(time_s, begin, begin + lasts, 0.44 * lasts, 0.44 * lasts), arms)
+    controls, time_s = upright(context), context.time_s
+    arms = sides(context)
+    hold_s = context.end_s
+    for begin, lasts in repeats(context, 2.3, 1.6, 3.4):
+        _to_the_floor(controls, context, plateau(time_s, begin, begin + lasts, 0.44 * lasts, 0.44 * lasts), arms)
         hold_s = begin + 0.5 * lasts
-    _hold(controls, stage, plateau(time_s, stage.start_s - 0.4, hold_s, 0.5, 0.7), arms)
+    _hold(controls, context, plateau(time_s, context.start_s - 0.4, hold_s, 0.5, 0.7), arms)
     return controls
 
 
-def _to_the_floor(controls: Controls, stage: StepContext, down: PerTime, arms: tuple[int, ...]) -> None:
+def _to_the_floor(controls: Controls, context: StepContext, down: PerTime, arms: tuple[int, ...]) -> None:
     """Deep enough that the hands come near the floor: by the knees or by the back, as the seed has it."""
-    depth = float(stage.rng.uniform(0.72, 0.95))
-    crouched(controls, stage.body, depth * down, lean_rad=1.5 / depth)
+    depth = float(context.rng.uniform(0.72, 0.95))
+    crouched(controls, context.body, depth * down, lean_rad=1.5 / depth)
     for side in (LEFT, RIGHT):
         if side in arms:
             controls.arm_rad[:, side, 0] += 1.5 * down
@@ -91,7 +91,7 @@ def _to_the_floor(controls: Controls, stage: StepContext, down: PerTime, arms: t
         controls.spine_rad[:, 0] += (0.12 if arms[0] == RIGHT else -0.12) * down
 
 
-def _hold(controls: Controls, stage: StepContext, share: PerTime, arms: tuple[int, ...]) -> None:
+def _hold(controls: Controls, context: StepContext, share: PerTime, arms: tuple[int, ...]) -> None:
     """Forearms level before the belly, once the trunk is upright."""
     up = share * np.clip(1 - 0.8 * controls.pelvis_rad[:, 1], 0, 1)
     for side in arms:

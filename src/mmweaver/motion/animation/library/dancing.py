@@ -4,7 +4,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.limbs import shift_foot, shift_pelvis, vary
+from mmweaver.motion.animation.library.movement_primitives import shift_foot, shift_pelvis, vary
 from mmweaver.motion.animation.library.standing import SIDE_SIGN, upright
 from mmweaver.motion.animation.profiles import bump, plateau, rise
 from mmweaver.motion.animation.step_context import StepContext
@@ -12,22 +12,22 @@ from mmweaver.motion.animation.step_context import StepContext
 Array = np.ndarray
 
 
-def dancing(stage: StepContext) -> Controls:
+def dancing(context: StepContext) -> Controls:
     """Step-touch: on every second beat a foot goes out and comes back while the weight is on the other one."""
-    controls, time_s, rng, h = upright(stage), stage.time_s, stage.rng, stage.body.height_m
-    beat_hz = stage.tempo(1.4, 1.8, 2.2)
+    controls, time_s, rng, h = upright(context), context.time_s, context.rng, context.body.height_m
+    beat_hz = context.tempo(1.4, 1.8, 2.2)
     on = np.ones_like(time_s)
-    if not stage.first:
-        on = rise((time_s - stage.start_s) / 0.5)
-    if not stage.last:
-        on = on * rise((stage.end_s - time_s) / 0.5)
-    beat = beat_hz * (time_s - stage.start_s)
+    if not context.first:
+        on = rise((time_s - context.start_s) / 0.5)
+    if not context.last:
+        on = on * rise((context.end_s - time_s) / 0.5)
+    beat = beat_hz * (time_s - context.start_s)
     lead = float(rng.choice([-1.0, 1.0]))
     sway = lead * np.sin(np.pi * beat) * on  # +1: the weight is on the left
     shift_pelvis(controls, 0.0, 0.042 * h * sway, -on * h * (0.014 + 0.011 * (0.5 - 0.5 * np.cos(2 * np.pi * beat))))
     controls.knee_room[:] = np.maximum(controls.knee_room, on)
-    _feet(controls, stage, beat, lead, on)
-    hip, chest = vary(stage, 0.14), vary(stage, 0.18)
+    _feet(controls, context, beat, lead, on)
+    hip, chest = vary(context, 0.14), vary(context, 0.18)
     controls.pelvis_rad[:, 2] += hip * sway
     controls.spine_rad[:, 2] -= 1.6 * chest * sway
     controls.spine_rad[:, 0] -= 0.1 * sway
@@ -38,10 +38,10 @@ def dancing(stage: StepContext) -> Controls:
 
 
 def _feet(
-    controls: Controls, stage: StepContext, beat: Float[Array, " n"], lead: float, on: Float[Array, " n"]
+    controls: Controls, context: StepContext, beat: Float[Array, " n"], lead: float, on: Float[Array, " n"]
 ) -> None:
     """The free foot goes out, touches and returns within its beat."""
-    h, wide, ahead = stage.body.height_m, vary(stage, 0.055), float(stage.rng.uniform(-0.04, 0.05))
+    h, wide, ahead = context.body.height_m, vary(context, 0.055), float(context.rng.uniform(-0.04, 0.05))
     for side in (LEFT, RIGHT):
         first = 0.0 if lead * SIDE_SIGN[side] < 0 else 1.0  # free while the weight is on the other side
         within = (beat - first) % 2.0

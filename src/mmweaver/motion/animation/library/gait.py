@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, HALF_STANCE, SIDE_SIGN, TOES_OUT_RAD, upright
 from mmweaver.motion.animation.profiles import bump, plateau, rise, travel
@@ -57,13 +58,13 @@ class Style:
     weave_m: float = 0.0  # how far the whole body sways to the sides of its way
 
 
-def walking_style(stage: StepContext, speed_mps: float) -> Style:
+def walking_style(context: StepContext, speed_mps: float) -> Style:
     """Step rate from speed (walk ratio about 0.42 m s, longer legs step slower), the rest from the rate."""
-    rng, height_m = stage.rng, stage.body.height_m
+    rng, height_m = context.rng, context.body.height_m
     share = min(speed_mps / 1.3, 1.4)
-    steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (1.75 / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
+    steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (REFERENCE_HEIGHT_M / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
     vigour = share**1.5 * np.exp(rng.normal(0, 0.3))
-    leg_m, reach_m = stage.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
+    leg_m, reach_m = context.body.leg_m, 0.46 * speed_mps / float(steps_hz)  # of the leading leg when its heel strikes
     drop_m = leg_m - (leg_m**2 - min(reach_m, 0.5 * leg_m) ** 2) ** 0.5
     return Style(
         steps_hz=float(steps_hz), double_support=-0.045, half_stance_m=0.034 * height_m,
@@ -77,10 +78,10 @@ def walking_style(stage: StepContext, speed_mps: float) -> Style:
     )  # fmt: skip
 
 
-def jogging_style(stage: StepContext, speed_mps: float) -> Style:
+def jogging_style(context: StepContext, speed_mps: float) -> Style:
     """Short contacts with flight between them; the pelvis bobs so that in flight it falls freely."""
-    rng, height_m = stage.rng, stage.body.height_m
-    steps_hz = stage.tempo(2.35, 2.6, 2.9, 0.08)
+    rng, height_m = context.rng, context.body.height_m
+    steps_hz = context.tempo(2.35, 2.6, 2.9, 0.08)
     share = min(speed_mps / 2.0, 1.7)  # of an easy indoor jog
     vigour = np.exp(rng.normal(0, 0.12))
     return Style(
@@ -106,50 +107,50 @@ class Footfall:
     yaw_rad: float
 
 
-def walking(stage: StepContext) -> Controls:
-    return stepping(stage, walking_style(stage, max(cruise_mps(stage), 0.7)), jog=False)
+def walking(context: StepContext) -> Controls:
+    return stepping(context, walking_style(context, max(cruise_mps(context), 0.7)), jog=False)
 
 
-def jogging(stage: StepContext) -> Controls:
-    return stepping(stage, jogging_style(stage, cruise_mps(stage)), jog=True)
+def jogging(context: StepContext) -> Controls:
+    return stepping(context, jogging_style(context, cruise_mps(context)), jog=True)
 
 
-def turning(stage: StepContext) -> Controls:
+def turning(context: StepContext) -> Controls:
     """Small steps on the spot; as in a slow walk."""
-    return stepping(stage, walking_style(stage, 0.9), jog=False)
+    return stepping(context, walking_style(context, 0.9), jog=False)
 
 
-def cruise_mps(stage: StepContext) -> float:
+def cruise_mps(context: StepContext) -> float:
     """The fastest that the step's way is gone, between its ramps."""
-    return max((move.speed_mps for move in stage.moves), default=0.0)
+    return max((move.speed_mps for move in context.moves), default=0.0)
 
 
-def stepping(stage: StepContext, style: Style, *, jog: bool) -> Controls:
+def stepping(context: StepContext, style: Style, *, jog: bool) -> Controls:
     """Steps along the root's path. A foot whose next place is its old one stays where it is, unless jogging."""
-    controls = upright(stage)
-    time_s = stage.time_s
-    first_side = int(stage.rng.integers(2))
-    strikes = _clock(stage, style, first_side)
-    aside = _weave(controls, stage, style)
-    moving = _moving(stage, time_s, jog)
+    controls = upright(context)
+    time_s = context.time_s
+    first_side = int(context.rng.integers(2))
+    strikes = _clock(context, style, first_side)
+    aside = _weave(controls, context, style)
+    moving = _moving(context, time_s, jog)
     for side in (LEFT, RIGHT):
         own = [k for k in range(len(strikes) - 2) if (k + first_side) % 2 == side]
-        falls = [_footfall(stage, style, strikes, k, side, aside) for k in own]
+        falls = [_footfall(context, style, strikes, k, side, aside) for k in own]
         _write_foot(controls, time_s, falls, side, style, jog)
     from scipy.interpolate import CubicSpline
 
     phase = np.asarray(CubicSpline(strikes, np.arange(len(strikes)) + first_side)(time_s))
-    _write_trunk_and_arms(controls, stage, style, phase, moving)
+    _write_trunk_and_arms(controls, context, style, phase, moving)
     return controls
 
 
-def _clock(stage: StepContext, style: Style, first_side: int) -> Float[Array, " k"]:
+def _clock(context: StepContext, style: Style, first_side: int) -> Float[Array, " k"]:
     """Times of the foot strikes, alternating feet, from well before the stage to well after it."""
     period = 1 / style.steps_hz
     # After standing, the first foot leaves the floor at once; under way already, any phase will do.
-    lead = stage.rng.uniform(0, period) if stage.first else period * (1 - style.double_support) - 0.02
-    begin, end = float(stage.time_s[0]), float(stage.time_s[-1])
-    anchor = stage.start_s + lead
+    lead = context.rng.uniform(0, period) if context.first else period * (1 - style.double_support) - 0.02
+    begin, end = float(context.time_s[0]), float(context.time_s[-1])
+    anchor = context.start_s + lead
     low = int(np.floor((begin - anchor) / period)) - 4
     high = int(np.ceil((end - anchor) / period)) + 5
     strikes = anchor + np.arange(low, high) * period
@@ -157,32 +158,34 @@ def _clock(stage: StepContext, style: Style, first_side: int) -> Float[Array, " 
     return strikes + style.uneven * period * right
 
 
-def _weave(controls: Controls, stage: StepContext, style: Style) -> Callable[[Float[Array, " k"]], Float[Array, " k"]]:
+def _weave(
+    controls: Controls, context: StepContext, style: Style
+) -> Callable[[Float[Array, " k"]], Float[Array, " k"]]:
     """Sways the pelvis to the sides; returns how far, to the left, so that the feet come along."""
-    phase, rate = stage.rng.uniform(0, 2 * np.pi, 2), stage.rng.uniform(0.35, 0.6)
+    phase, rate = context.rng.uniform(0, 2 * np.pi, 2), context.rng.uniform(0.35, 0.6)
 
     def aside(time_s: Float[Array, " k"]) -> Float[Array, " k"]:
         slow = np.sin(2 * np.pi * rate * time_s + phase[0]) + 0.5 * np.sin(4.4 * np.pi * rate * time_s + phase[1])
         return style.weave_m * slow
 
     if style.weave_m:
-        left = aside(stage.time_s)
+        left = aside(context.time_s)
         controls.pelvis_m[:, 0] -= left * np.sin(controls.heading_rad)
         controls.pelvis_m[:, 1] += left * np.cos(controls.heading_rad)
     return aside
 
 
 def _footfall(
-    stage: StepContext, style: Style, strikes: Float[Array, " k"], k: int, side: int,
+    context: StepContext, style: Style, strikes: Float[Array, " k"], k: int, side: int,
     weave: Callable[[Float[Array, " k"]], Float[Array, " k"]],
 ) -> Footfall:  # fmt: skip
     period = float(strikes[k + 1] - strikes[k])
     stance = (1 + style.double_support) * period
     middle = np.array([strikes[k] + stance / 2])
-    path: RootPath = stage.path
+    path: RootPath = context.path
     root, heading = path.position_m(middle)[0], float(path.facing_rad(middle)[0])
     share = float(rise(path.speed_mps(middle) / 0.6)[0])
-    height_m = stage.body.height_m
+    height_m = context.body.height_m
     aside = SIDE_SIGN[side] * (HALF_STANCE * height_m * (1 - share) + style.half_stance_m * share)
     aside = aside + float(weave(middle)[0])
     velocity = path.position_m(middle + 0.01)[0] - path.position_m(middle - 0.01)[0]
@@ -194,14 +197,14 @@ def _footfall(
     return Footfall(strike_s=float(strikes[k]), off_s=float(strikes[k]) + stance, place_m=place, yaw_rad=yaw)
 
 
-def _moving(stage: StepContext, time_s: Float[Array, " n"], jog: bool) -> Float[Array, " n"]:
+def _moving(context: StepContext, time_s: Float[Array, " n"], jog: bool) -> Float[Array, " n"]:
     """1 while the root goes or turns, 0 while it stands, before and after and where the room ends early; C2."""
-    if jog and stage.step.direction == "spot":
-        start = np.ones_like(time_s) if stage.first else rise((time_s - stage.start_s) / 0.35)
-        end = np.ones_like(time_s) if stage.last else rise((stage.end_s - time_s) / 0.35)
+    if jog and context.step.direction == "spot":
+        start = np.ones_like(time_s) if context.first else rise((time_s - context.start_s) / 0.35)
+        end = np.ones_like(time_s) if context.last else rise((context.end_s - time_s) / 0.35)
         return np.asarray(start * end)
-    turning = np.abs(stage.path.facing_rad(time_s + 1e-3) - stage.path.facing_rad(time_s - 1e-3)) / 2e-3
-    going = stage.path.speed_mps(time_s) / max(0.8 * cruise_mps(stage), 0.7)
+    turning = np.abs(context.path.facing_rad(time_s + 1e-3) - context.path.facing_rad(time_s - 1e-3)) / 2e-3
+    going = context.path.speed_mps(time_s) / max(0.8 * cruise_mps(context), 0.7)
     return np.asarray(1 - (1 - rise(going)) * (1 - rise(turning / 3.0)))
 
 
@@ -252,10 +255,10 @@ def _pitch(
 
 
 def _write_trunk_and_arms(
-    controls: Controls, stage: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
+    controls: Controls, context: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
 ) -> None:
     """Phase counts steps: even at the left foot's strike, odd at the right one's."""
-    body, heading = stage.body, controls.heading_rad
+    body, heading = context.body, controls.heading_rad
     left_ahead = np.cos(np.pi * phase) * moving  # the left leg is in front at its strike
     right_stance = -np.sin(np.pi * (phase - 0.1)) * moving  # +1 over the right foot, -1 over the left one
     high = np.cos(2 * np.pi * (phase - style.highest)) * moving
@@ -265,7 +268,7 @@ def _write_trunk_and_arms(
     sway = -style.sway_m * right_stance
     controls.pelvis_m[:, 0] -= sway * np.sin(heading)
     controls.pelvis_m[:, 1] += sway * np.cos(heading)
-    _surge(controls, stage, style, phase, moving)
+    _surge(controls, context, style, phase, moving)
     controls.pelvis_rad[:, 0] -= 0.05 * right_stance
     controls.pelvis_rad[:, 1] += 0.4 * style.lean_rad * moving
     controls.pelvis_rad[:, 2] -= style.pelvis_yaw_rad * left_ahead
@@ -285,15 +288,15 @@ def _write_trunk_and_arms(
 
 
 def _surge(
-    controls: Controls, stage: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
+    controls: Controls, context: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
 ) -> None:
     """The pelvis is ahead of its even way and behind it once a step; the trunk gives half of that back."""
     surge_m = style.surge_mps / (2 * np.pi * style.steps_hz)
     turn = 2 * np.pi * (phase - style.fastest)
     ahead = surge_m * (np.sin(turn) + 0.5 * style.surge_sharp * np.sin(2 * turn)) * moving
-    way = stage.path.position_m(stage.time_s + 0.01) - stage.path.position_m(stage.time_s - 0.01)
+    way = context.path.position_m(context.time_s + 0.01) - context.path.position_m(context.time_s - 0.01)
     gone = np.linalg.norm(way, axis=1)
     along = way / np.maximum(gone, 1e-6)[:, None] * np.tanh(gone / 0.005)[:, None]
     controls.pelvis_m[:, :2] += ahead[:, None] * along
     forward = along[:, 0] * np.cos(controls.heading_rad) + along[:, 1] * np.sin(controls.heading_rad)
-    controls.spine_rad[:, 1] -= NOD * ahead * forward / (0.2 * stage.body.height_m)
+    controls.spine_rad[:, 1] -= NOD * ahead * forward / (0.2 * context.body.height_m)

@@ -9,7 +9,7 @@ from jaxtyping import Float
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.arm_reach import reach
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.limbs import cycles, mix_arm, sides
+from mmweaver.motion.animation.library.movement_primitives import cycles, mix_arm, sides
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import StepContext
@@ -18,14 +18,14 @@ Array = np.ndarray
 PerTime = Float[Array, " n"]
 
 
-def waving(stage: StepContext, controls: Controls) -> Controls:
+def waving(context: StepContext, controls: Controls) -> Controls:
     """Upper arm out and ahead, the forearm up and swinging from side to side; the upper arm rolls, so the hand nods."""
-    time_s, rng = stage.time_s, stage.rng
-    rate, end = cycles(stage, stage.tempo(1.0, 1.6, 2.2), 0.8, 2.5)
+    time_s, rng = context.time_s, context.rng
+    rate, end = cycles(context, context.tempo(1.0, 1.6, 2.2), 0.8, 2.5)
     swing = float(rng.uniform(0.35, 0.5)) * min(1.0, 1.5 / rate)
-    on = rise((end + 0.25 - time_s) / 0.5) if stage.step.count else np.ones_like(time_s)
-    begin = stage.start_s
-    for side in sides(stage):
+    on = rise((end + 0.25 - time_s) / 0.5) if context.step.count else np.ones_like(time_s)
+    begin = context.start_s
+    for side in sides(context):
         phase = 2 * np.pi * rate * (time_s - begin) + (rng.uniform(0, 0.6) if side else 0.0)
         abduction, flexion = rng.uniform(0.95, 1.4), rng.uniform(0.2, 0.8)
         nod, late = float(rng.uniform(0.06, 0.3)) * min(1.0, 1.5 / rate), rng.uniform(-0.6, 0.6)
@@ -43,12 +43,12 @@ def waving(stage: StepContext, controls: Controls) -> Controls:
     return controls
 
 
-def clapping(stage: StepContext, controls: Controls) -> Controls:
+def clapping(context: StepContext, controls: Controls) -> Controls:
     """Palms meet in front of the chest, never crossing: each wrist keeps to its own side of the middle."""
-    time_s, rng, body = stage.time_s, stage.rng, stage.body
-    rate, end = cycles(stage, stage.tempo(1.2, 2.0, 2.8), 0.9, 3.5)
-    on = rise((end + 0.2 - time_s) / 0.5) if stage.step.count else np.ones_like(time_s)
-    phase = 2 * np.pi * rate * (time_s - stage.start_s)
+    time_s, rng, body = context.time_s, context.rng, context.body
+    rate, end = cycles(context, context.tempo(1.2, 2.0, 2.8), 0.9, 3.5)
+    on = rise((end + 0.2 - time_s) / 0.5) if context.step.count else np.ones_like(time_s)
+    phase = 2 * np.pi * rate * (time_s - context.start_s)
     apart = (0.5 + 0.5 * np.cos(phase)) ** 1.0  # 0 when the palms meet
     open_m = float(rng.uniform(0.08, 0.13)) * min(1.0, 2.0 / rate) * body.height_m
     ahead, up = rng.uniform(0.16, 0.19), rng.uniform(0.02, 0.07)
@@ -62,19 +62,19 @@ def clapping(stage: StepContext, controls: Controls) -> Controls:
     return controls
 
 
-def raising(stage: StepContext, controls: Controls) -> Controls:
+def raising(context: StepContext, controls: Controls) -> Controls:
     """The arm goes up straight in front or at the side, stays, and comes down at the end of the step."""
-    time_s, rng = stage.time_s, stage.rng
-    count = max(stage.step.count, 1)
-    each = float(min(stage.duration_s / count, 6.0 if count == 1 else 3.5))
-    move = float(np.clip(stage.tempo(1.2, 0.85, 0.6) * min(1.0, each / 2.0), 0.42, 1.6))
+    time_s, rng = context.time_s, context.rng
+    count = max(context.step.count, 1)
+    each = float(min(context.duration_s / count, 6.0 if count == 1 else 3.5))
+    move = float(np.clip(context.tempo(1.2, 0.85, 0.6) * min(1.0, each / 2.0), 0.42, 1.6))
     up = np.zeros_like(time_s)
     for k in range(count):
-        begin = stage.start_s + k * each
+        begin = context.start_s + k * each
         up += plateau(time_s, begin, max(begin + each - 0.02, begin + 2 * move), move, move)
     side_way = rng.random() < 0.3
     top = float(rng.uniform(2.75, 2.98))
-    for side in sides(stage):
+    for side in sides(context):
         arm = controls.arm_rad[:, side].copy()
         arm[:, 1 if side_way else 0] = top
         arm[:, 0 if side_way else 1] = 0.12 if side_way else 0.08
@@ -82,31 +82,31 @@ def raising(stage: StepContext, controls: Controls) -> Controls:
         arm[:, 2] = 0.0
         mix_arm(controls, side, arm, up)
         controls.arm_rad[:, side, 3] += 0.8 * np.sin(np.pi * up) * (not side_way)
-        controls.spine_rad[:, 0] += 0.05 * up * (-1 if side == LEFT else 1) * (len(sides(stage)) == 1)
+        controls.spine_rad[:, 0] += 0.05 * up * (-1 if side == LEFT else 1) * (len(sides(context)) == 1)
     return controls
 
 
 def mouth_in_chest_m(body: SkeletonProportions, controls: Controls) -> Float[Array, "n 3"]:
     """The mouth seen from spine3 in the chest's frame, metres."""
-    from mmweaver.motion.animation.kinematics import about_y, about_z, turned
+    from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
 
     half = about_z(controls.head_rad[:, 1] / 2) @ about_y(controls.head_rad[:, 0] / 2)
-    head = body.offset_m[joint("neck")] + turned(half, body.offset_m[joint("head")])
-    return head + turned(half @ half, body.mouth_m)
+    head = body.offset_m[joint("neck")] + rotated(half, body.offset_m[joint("head")])
+    return head + rotated(half @ half, body.mouth_m)
 
 
-def drinking(stage: StepContext, controls: Controls) -> Controls:
+def drinking(context: StepContext, controls: Controls) -> Controls:
     """A cup held before the belly goes to the mouth, the head tilts back for the sip, and the cup comes down."""
-    time_s, rng, body = stage.time_s, stage.rng, stage.body
-    side = sides(stage)[0]
-    sip_s = stage.tempo(3.4, 2.6, 1.9)
-    count = stage.step.count or max(1, int(stage.duration_s / sip_s + 0.3))
-    sip_s = float(np.clip(stage.duration_s / count, 1.3, 4.5))
+    time_s, rng, body = context.time_s, context.rng, context.body
+    side = sides(context)[0]
+    sip_s = context.tempo(3.4, 2.6, 1.9)
+    count = context.step.count or max(1, int(context.duration_s / sip_s + 0.3))
+    sip_s = float(np.clip(context.duration_s / count, 1.3, 4.5))
     lift = np.zeros_like(time_s)
     tilt = np.zeros_like(time_s)
     for k in range(count):
-        begin = stage.start_s + (k + 0.04) * sip_s
-        end = stage.start_s + (k + 0.96) * sip_s
+        begin = context.start_s + (k + 0.04) * sip_s
+        end = context.start_s + (k + 0.96) * sip_s
         lift += plateau(time_s, begin, end, 0.36 * sip_s, 0.36 * sip_s)
         tilt += plateau(time_s, begin + 0.28 * sip_s, end - 0.28 * sip_s, 0.2 * sip_s, 0.2 * sip_s)
     sign = 1.0 if side == LEFT else -1.0
@@ -122,10 +122,10 @@ def drinking(stage: StepContext, controls: Controls) -> Controls:
     return controls
 
 
-def _sway(controls: Controls, stage: StepContext, lunge_m: PerTime) -> None:
+def _sway(controls: Controls, context: StepContext, lunge_m: PerTime) -> None:
     """A boxer's trunk is never at rest: it goes with each blow and sways between them, over feet that stay."""
-    rng, time_s = stage.rng, stage.time_s
-    calm = 0.3 if stage.step.hand in ("left", "right") else 1.0  # one hand alone is shown, not a fight
+    rng, time_s = context.rng, context.time_s
+    calm = 0.3 if context.step.hand in ("left", "right") else 1.0  # one hand alone is shown, not a fight
     ahead = lunge_m + calm * float(rng.uniform(0.015, 0.075)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.5)
     aside = calm * float(rng.uniform(0.02, 0.07)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.2)
     cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
@@ -135,28 +135,28 @@ def _sway(controls: Controls, stage: StepContext, lunge_m: PerTime) -> None:
     controls.spine_rad[:, 0] -= 1.5 * aside
 
 
-def punching(stage: StepContext, controls: Controls) -> Controls:
+def punching(context: StepContext, controls: Controls) -> Controls:
     """Fists before the face; one after the other shoots forward at shoulder height and comes back."""
-    time_s, rng, body = stage.time_s, stage.rng, stage.body
-    rate, _ = cycles(stage, stage.tempo(1.1, 1.7, 2.3), 0.9, 2.6)
+    time_s, rng, body = context.time_s, context.rng, context.body
+    rate, _ = cycles(context, context.tempo(1.1, 1.7, 2.3), 0.9, 2.6)
     period = 1 / rate
-    count = stage.step.count or int(np.ceil(stage.duration_s / period - 0.2))
-    arms = sides(stage) if stage.step.hand in ("left", "right") else (LEFT, RIGHT)
+    count = context.step.count or int(np.ceil(context.duration_s / period - 0.2))
+    arms = sides(context) if context.step.hand in ("left", "right") else (LEFT, RIGHT)
     first = int(rng.integers(2))
     out = [np.zeros_like(time_s), np.zeros_like(time_s)]
     strike = float(np.clip(0.75 * period, 0.34, 0.62))
     for k in range(max(count, 1)):
-        begin = stage.start_s + 0.06 + k * period
+        begin = context.start_s + 0.06 + k * period
         side = arms[(k + first) % len(arms)]
         out[side] += plateau(time_s, begin, begin + strike, 0.48 * strike, 0.52 * strike)
     twist = float(rng.uniform(0.35, 0.7)) * (out[RIGHT] - out[LEFT])
     controls.spine_rad[:, 2] += twist
     controls.head_rad[:, 1] -= 0.8 * twist
     controls.spine_rad[:, 1] += 0.06
-    _sway(controls, stage, float(rng.uniform(0.02, 0.06)) * (out[RIGHT] + out[LEFT]))
+    _sway(controls, context, float(rng.uniform(0.02, 0.06)) * (out[RIGHT] + out[LEFT]))
     guard = np.array([rng.uniform(0.13, 0.175), rng.uniform(0.04, 0.09), rng.uniform(0.06, 0.15)])
     hook = float(rng.choice([0.0, 0.0, rng.uniform(0.04, 0.12)]))  # round the side rather than straight
-    restless = float(rng.uniform(0.004, 0.02)) * (stage.step.count == 0 and len(arms) == 2)
+    restless = float(rng.uniform(0.004, 0.02)) * (context.step.count == 0 and len(arms) == 2)
     for side in (LEFT, RIGHT):
         aim = np.array([rng.uniform(0.25, 0.29), 0.035, 0.08 + rng.normal(0, 0.03)])
         target = guard + out[side][:, None] * (aim - guard)

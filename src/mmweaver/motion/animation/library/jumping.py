@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.limbs import shift_pelvis
+from mmweaver.motion.animation.library.movement_primitives import shift_pelvis
 from mmweaver.motion.animation.library.standing import STAND_STRETCH, home_feet, upright
 from mmweaver.motion.animation.profiles import plateau, rise, through, travel
 from mmweaver.motion.animation.root_path import RootPath
@@ -69,7 +69,7 @@ class Hop:
 
 def hop_all(
     controls: Controls,
-    stage: StepContext,
+    context: StepContext,
     hops: list[Hop],
     dips_m: list[tuple[float, float, float]],
     ready_m: float = -0.02,
@@ -80,7 +80,7 @@ def hop_all(
     Take-off and landing are `ready_m` above the standing height: heels up, knees not quite straight, so that the
     soles can pick up the pelvis's speed within some hundredths of a second.
     """
-    time_s, body = stage.time_s, stage.body
+    time_s, body = context.time_s, context.body
     stand = body.pelvis_height_m(STAND_STRETCH)
     knots: list[Knot] = [(time, stand - depth, 0.0, push) for time, depth, push in dips_m]
     for hop in hops:
@@ -95,48 +95,48 @@ def hop_all(
         controls.contact[:] -= hop.air(time_s)[:, None]
 
 
-def jumping(stage: StepContext) -> Controls:
+def jumping(context: StepContext) -> Controls:
     """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
     # Whoever jumps on and on mostly hops from the ankles, two a second, with quiet arms.
-    if not stage.step.count and stage.duration_s > 1.8 and stage.rng.random() < 0.5:
-        return hopping(stage)
-    return _jumps(stage)[0]
+    if not context.step.count and context.duration_s > 1.8 and context.rng.random() < 0.5:
+        return hopping(context)
+    return _jumps(context)[0]
 
 
-def hopping(stage: StepContext) -> Controls:
+def hopping(context: StepContext) -> Controls:
     """Small quick jumps from the ankles, about two a second, the arms bent and almost still."""
-    controls = upright(stage)
-    bounce(controls, stage, one_leg=False)
-    controls.arm_rad[:, :, 3] += float(stage.rng.uniform(0.0, 1.1))
+    controls = upright(context)
+    bounce(controls, context, one_leg=False)
+    controls.arm_rad[:, :, 3] += float(context.rng.uniform(0.0, 1.1))
     controls.arm_rad[:, :, 0] += 0.1
     return controls
 
 
-def bounce(controls: Controls, stage: StepContext, *, one_leg: bool) -> None:
+def bounce(controls: Controls, context: StepContext, *, one_leg: bool) -> None:
     """A row of hops at an even rate over the stage's time."""
-    rate = stage.tempo(1.7, 2.05, 2.35)
-    count = stage.step.count or max(1, round((stage.duration_s - 0.45) * rate))
-    period = float(np.clip((stage.duration_s - 0.45) / count, 0.4, 0.62)) if stage.step.count else 1 / rate
-    high = float(stage.rng.uniform(0.025, 0.085)) * (0.8 if one_leg else 1.0)
+    rate = context.tempo(1.7, 2.05, 2.35)
+    count = context.step.count or max(1, round((context.duration_s - 0.45) * rate))
+    period = float(np.clip((context.duration_s - 0.45) / count, 0.4, 0.62)) if context.step.count else 1 / rate
+    high = float(context.rng.uniform(0.025, 0.085)) * (0.8 if one_leg else 1.0)
     ground = period - Hop(off_s=0.0, rise_m=high).flight_s
-    first = stage.start_s + 0.3
+    first = context.start_s + 0.3
     hops = [Hop(off_s=first + k * period, rise_m=high) for k in range(count)]
     dips = [(first - 0.3, 0.0, 0.0)]
     dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
     dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
-    hop_all(controls, stage, hops, dips, ready_m=-0.04, heels=0.8)
+    hop_all(controls, context, hops, dips, ready_m=-0.04, heels=0.8)
     # nobody hops quite straight: the trunk swings to and fro with each
-    turn = 2 * np.pi * (stage.time_s - first) / period + stage.rng.uniform(0, 2 * np.pi)
-    shift_pelvis(controls, float(stage.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
+    turn = 2 * np.pi * (context.time_s - first) / period + context.rng.uniform(0, 2 * np.pi)
+    shift_pelvis(controls, float(context.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
 
 
-def leaping(stage: StepContext) -> Controls:
+def leaping(context: StepContext) -> Controls:
     """Jumps that lead somewhere: the way of the step is gone in the air, in equal parts."""
-    time_s, path = stage.time_s, stage.path
-    ends = np.array([stage.start_s - 0.001, stage.end_s])
+    time_s, path = context.time_s, context.path
+    ends = np.array([context.start_s - 0.001, context.end_s])
     start, heading = path.position_m(ends)[0], float(path.facing_rad(ends)[0])
     here = RootPath(start_m=(float(start[0]), float(start[1])), heading_rad=heading)
-    controls, hops = _jumps(replace(stage, path=here))
+    controls, hops = _jumps(replace(context, path=here))
     feet = sum(rise((time_s - hop.off_s) / hop.flight_s) for hop in hops) / len(hops)
     body = sum(_carried(time_s, hop) for hop in hops) / len(hops)
     way = path.position_m(ends)[1] - start
@@ -151,29 +151,29 @@ def _carried(time_s: Float[Array, " n"], hop: Hop) -> Float[Array, " n"]:
     return travel(np.clip((time_s - hop.off_s + LAUNCH_S) / whole_s, 0, 1), LAUNCH_S / whole_s, CATCH_S / whole_s)
 
 
-def _jumps(stage: StepContext) -> tuple[Controls, list[Hop]]:
-    controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    height_m = float(rng.uniform(0.2, 0.42)) * (0.7, 1.0, 1.1)[stage.step.speed + 1]
+def _jumps(context: StepContext) -> tuple[Controls, list[Hop]]:
+    controls, time_s, rng = upright(context), context.time_s, context.rng
+    height_m = float(rng.uniform(0.2, 0.42)) * (0.7, 1.0, 1.1)[context.step.speed + 1]
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
     crouch_s, push_s, absorb_s, recover_s = 0.34, 0.25, 0.24, 0.36
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
-    count = stage.step.count or max(1, int((stage.duration_s - edge_s - flight_s) / between_s + 1.25))
-    spare = max(stage.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
+    count = context.step.count or max(1, int((context.duration_s - edge_s - flight_s) / between_s + 1.25))
+    spare = max(context.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
     slower = min(0.5 * spare, 0.4)  # who has time goes down and comes up without haste
     crouch_s, recover_s, spare = crouch_s + slower, recover_s + slower, spare - 2 * slower
     period = between_s + (min(spare / (count - 1), 0.35) if count > 1 else 0.0)
     depth = float(rng.uniform(0.19, 0.25))
-    first = stage.start_s + crouch_s + push_s
+    first = context.start_s + crouch_s + push_s
     hops = [Hop(off_s=first + k * period, rise_m=height_m) for k in range(count)]
     rest = hops[-1].land_s + absorb_s + recover_s
-    dips = [(stage.start_s, 0.0, 0.0), (stage.start_s + crouch_s, depth, 9.0)]
+    dips = [(context.start_s, 0.0, 0.0), (context.start_s + crouch_s, depth, 9.0)]
     dips += [(hop.off_s - (period - flight_s) / 2, depth, 9.0) for hop in hops[1:]]
     dips += [(hops[-1].land_s + absorb_s, 0.8 * depth, 7.0), (rest, 0.0, 0.0)]
-    hop_all(controls, stage, hops, dips, ready_m=-0.02 - 0.15 * max(height_m - 0.16, 0.0))
+    hop_all(controls, context, hops, dips, ready_m=-0.02 - 0.15 * max(height_m - 0.16, 0.0))
     pitch_rad, nod = float(rng.uniform(0.4, 0.75)), float(rng.uniform(0.1, 0.45))
-    trunk = plateau(time_s, stage.start_s, first + 0.08, crouch_s, push_s + 0.2)
+    trunk = plateau(time_s, context.start_s, first + 0.08, crouch_s, push_s + 0.2)
     forth = np.zeros_like(time_s)
-    back = plateau(time_s, stage.start_s, first + 0.06, crouch_s, push_s + 0.25)
+    back = plateau(time_s, context.start_s, first + 0.06, crouch_s, push_s + 0.25)
     for hop in hops:
         gap = absorb_s if hop is hops[-1] else (period - flight_s) / 2
         after = recover_s if hop is hops[-1] else gap
@@ -195,31 +195,33 @@ def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> N
     controls.head_rad[:, 0] -= 0.7 * pitch_rad * amount
 
 
-def jumping_jacks(stage: StepContext) -> Controls:
+def jumping_jacks(context: StepContext) -> Controls:
     """Legs apart with the arms overhead, and back, a small hop for each."""
-    controls, time_s, rng = upright(stage), stage.time_s, stage.rng
-    half_s = 0.5 / stage.tempo(0.78, 0.92, 1.05)
-    count = stage.step.count
+    controls, time_s, rng = upright(context), context.time_s, context.rng
+    half_s = 0.5 / context.tempo(0.78, 0.92, 1.05)
+    count = context.step.count
     if count:
-        lead = 0.0 if stage.first else 0.35
-        half_s = float(np.clip((stage.duration_s - lead) / (2 * count), 0.46, 0.7))
+        lead = 0.0 if context.first else 0.35
+        half_s = float(np.clip((context.duration_s - lead) / (2 * count), 0.46, 0.7))
     height_m = float(rng.uniform(0.03, 0.045))
     flight_s = Hop(off_s=0.0, rise_m=height_m).flight_s
-    hops_wanted = 2 * count if count else 2 * max(1, int(np.ceil(stage.duration_s / (2 * half_s) - 0.35)))
+    hops_wanted = 2 * count if count else 2 * max(1, int(np.ceil(context.duration_s / (2 * half_s) - 0.35)))
     ground_s = half_s - flight_s
-    begin = stage.start_s + ground_s * 0.5 + (0.0 if stage.first else 0.35)  # arms of what was before come down first
+    begin = (
+        context.start_s + ground_s * 0.5 + (0.0 if context.first else 0.35)
+    )  # arms of what was before come down first
     hops = [Hop(off_s=begin + k * half_s, rise_m=height_m) for k in range(hops_wanted)]
-    dips = [(stage.start_s - 0.2, 0.0, 0.0)]
+    dips = [(context.start_s - 0.2, 0.0, 0.0)]
     dips += [(hop.off_s - ground_s / 2, 0.08, 5.0) for hop in hops]
     dips += [(hops[-1].land_s + ground_s / 2, 0.07, 5.0), (hops[-1].land_s + ground_s / 2 + 0.3, 0.0, 0.0)]
-    hop_all(controls, stage, hops, dips, ready_m=-0.045, heels=0.95)
+    hop_all(controls, context, hops, dips, ready_m=-0.045, heels=0.95)
     spread, lift = np.zeros_like(time_s), np.zeros_like(time_s)
     for k, hop in enumerate(hops):
         sign = 1.0 if k % 2 == 0 else -1.0
         spread += sign * rise((time_s - hop.off_s) / hop.flight_s)
         centre, wide = (hop.off_s + hop.land_s) / 2, half_s
         lift += sign * rise((time_s - centre) / wide + 0.5)
-    _spread_feet(controls, stage, spread, float(rng.uniform(0.115, 0.145)))
+    _spread_feet(controls, context, spread, float(rng.uniform(0.115, 0.145)))
     top = float(rng.uniform(2.55, 2.85))
     controls.arm_rad[:, :, 1] += (top * lift)[:, None]
     controls.arm_rad[:, :, 3] += (0.25 * lift)[:, None]
@@ -227,26 +229,26 @@ def jumping_jacks(stage: StepContext) -> Controls:
     return controls
 
 
-def _spread_feet(controls: Controls, stage: StepContext, spread: Float[Array, " n"], half: float) -> None:
+def _spread_feet(controls: Controls, context: StepContext, spread: Float[Array, " n"], half: float) -> None:
     """Half the distance between the feet grows by `half` (a share of the height) as `spread` goes to 1."""
-    position, heading = stage.path.position_m(stage.time_s), stage.path.facing_rad(stage.time_s)
-    near = home_feet(stage.body, position, heading)
-    wide = home_feet(stage.body, position, heading, 0.056 + half)
+    position, heading = context.path.position_m(context.time_s), context.path.facing_rad(context.time_s)
+    near = home_feet(context.body, position, heading)
+    wide = home_feet(context.body, position, heading, 0.056 + half)
     controls.foot_m[:, :, :2] += (spread[:, None, None] * (wide - near))[:, :, :2]
     for side, sign in ((LEFT, 1.0), (RIGHT, -1.0)):
         controls.foot_rad[:, side, 0] += sign * 0.25 * spread
     controls.knee_out_rad[:] += 0.2 * spread[:, None]
 
 
-def squatting(stage: StepContext) -> Controls:
+def squatting(context: StepContext) -> Controls:
     """Down until the knees are bent about 100 degrees, the arms forward for balance, and up again."""
-    controls, time_s, rng, body = upright(stage), stage.time_s, stage.rng, stage.body
-    period = 1 / stage.tempo(0.36, 0.5, 0.65)
-    count = stage.step.count or max(1, round(stage.duration_s / period))
-    period = float(np.clip(stage.duration_s / count, 1.05, 3.2))
+    controls, time_s, rng, body = upright(context), context.time_s, context.rng, context.body
+    period = 1 / context.tempo(0.36, 0.5, 0.65)
+    count = context.step.count or max(1, round(context.duration_s / period))
+    period = float(np.clip(context.duration_s / count, 1.05, 3.2))
     down = np.zeros_like(time_s)
     for k in range(count):
-        begin = stage.start_s + k * period
+        begin = context.start_s + k * period
         down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
     knee = np.radians(rng.uniform(94, 112))
     back = float(rng.uniform(0.085, 0.125)) * body.height_m

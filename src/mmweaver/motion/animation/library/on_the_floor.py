@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.limbs import flowing, shift_foot, shift_pelvis
+from mmweaver.motion.animation.library.movement_primitives import shift_foot, shift_pelvis, spline_through
 from mmweaver.motion.animation.library.standing import STAND_STRETCH, upright
 from mmweaver.motion.animation.profiles import bump, rise
 from mmweaver.motion.animation.step_context import StepContext
@@ -21,25 +21,25 @@ BACK_BEHIND_M = 0.36  # of the height: the pelvis of who lies on the back behind
 BELLY_AHEAD_M = 0.648  # of the height: the pelvis of who lies on the belly ahead of the root
 
 
-def kneeling_down(stage: StepContext) -> Controls:
-    lasts = float(np.clip(0.9 * stage.duration_s, 1.3, (2.8, 2.2, 1.5)[stage.step.speed + 1]))
-    return _kneeling(stage, (stage.time_s - stage.start_s) / lasts)
+def kneeling_down(context: StepContext) -> Controls:
+    lasts = float(np.clip(0.9 * context.duration_s, 1.3, (2.8, 2.2, 1.5)[context.step.speed + 1]))
+    return _kneeling(context, (context.time_s - context.start_s) / lasts)
 
 
-def kneeling(stage: StepContext) -> Controls:
-    return _kneeling(stage, np.ones_like(stage.time_s))
+def kneeling(context: StepContext) -> Controls:
+    return _kneeling(context, np.ones_like(context.time_s))
 
 
-def rising_from_knees(stage: StepContext) -> Controls:
-    lasts = float(np.clip(0.9 * stage.duration_s, 1.3, (2.8, 2.2, 1.5)[stage.step.speed + 1]))
-    return _kneeling(stage, 1 - (stage.time_s - stage.start_s) / lasts)
+def rising_from_knees(context: StepContext) -> Controls:
+    lasts = float(np.clip(0.9 * context.duration_s, 1.3, (2.8, 2.2, 1.5)[context.step.speed + 1]))
+    return _kneeling(context, 1 - (context.time_s - context.start_s) / lasts)
 
 
-def _kneeling(stage: StepContext, u: PerTime) -> Controls:
+def _kneeling(context: StepContext, u: PerTime) -> Controls:
     """u = 0 standing, 1 on the knees: one foot goes back, its knee down, then the other's."""
-    controls, body, h = upright(stage), stage.body, stage.body.height_m
-    first = LEFT if stage.step.foot == "left" else RIGHT
-    feet = ((first, 0.0),) if stage.step.style == "knee" else ((first, 0.0), (1 - first, 0.45))
+    controls, body, h = upright(context), context.body, context.body.height_m
+    first = LEFT if context.step.foot == "left" else RIGHT
+    feet = ((first, 0.0),) if context.step.style == "knee" else ((first, 0.0), (1 - first, 0.45))
     for side, begin in feet:
         step = (u - begin) / 0.5
         shift_foot(controls, side, -0.318 * h * rise(step), 0.0, 0.035 * h * bump(step))
@@ -55,34 +55,34 @@ def _kneeling(stage: StepContext, u: PerTime) -> Controls:
     return controls
 
 
-def lying_down(stage: StepContext) -> Controls:
-    lasts = float(np.clip(0.95 * stage.duration_s, 2.3, (5.0, 3.6, 2.5)[stage.step.speed + 1]))
-    return _down(stage, (stage.time_s - stage.start_s) / lasts, falls=False)
+def lying_down(context: StepContext) -> Controls:
+    lasts = float(np.clip(0.95 * context.duration_s, 2.3, (5.0, 3.6, 2.5)[context.step.speed + 1]))
+    return _down(context, (context.time_s - context.start_s) / lasts, falls=False)
 
 
-def falling(stage: StepContext) -> Controls:
+def falling(context: StepContext) -> Controls:
     """Out of balance and down within about a second."""
-    lasts = float(np.clip(0.9 * stage.duration_s, 1.15, (1.7, 1.4, 1.2)[stage.step.speed + 1]))
-    return _down(stage, (stage.time_s - stage.start_s) / lasts, falls=True)
+    lasts = float(np.clip(0.9 * context.duration_s, 1.15, (1.7, 1.4, 1.2)[context.step.speed + 1]))
+    return _down(context, (context.time_s - context.start_s) / lasts, falls=True)
 
 
-def lying(stage: StepContext) -> Controls:
+def lying(context: StepContext) -> Controls:
     """Still but for breathing and a little of the arms."""
-    return _down(stage, np.ones_like(stage.time_s), falls=False)
+    return _down(context, np.ones_like(context.time_s), falls=False)
 
 
-def getting_up(stage: StepContext) -> Controls:
-    lasts = float(np.clip(0.95 * stage.duration_s, 2.5, (5.0, 3.8, 2.7)[stage.step.speed + 1]))
-    return _down(stage, 1 - (stage.time_s - stage.start_s) / lasts, falls=False)
+def getting_up(context: StepContext) -> Controls:
+    lasts = float(np.clip(0.95 * context.duration_s, 2.5, (5.0, 3.8, 2.7)[context.step.speed + 1]))
+    return _down(context, 1 - (context.time_s - context.start_s) / lasts, falls=False)
 
 
-def _down(stage: StepContext, u: PerTime, *, falls: bool) -> Controls:
-    return _on_belly(stage, u, falls=falls) if stage.step.style == "front" else _on_back(stage, u, falls=falls)
+def _down(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
+    return _on_belly(context, u, falls=falls) if context.step.style == "front" else _on_back(context, u, falls=falls)
 
 
-def _on_back(stage: StepContext, u: PerTime, *, falls: bool) -> Controls:
+def _on_back(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
     """Down over the heels to sit on the floor, then the trunk goes back; the knees stay bent, the soles down."""
-    controls, body, h = upright(stage), stage.body, stage.body.height_m
+    controls, body, h = upright(context), context.body, context.body.height_m
     stand = body.pelvis_height_m(STAND_STRETCH)
     at = [0.0, 0.3, 0.55, 0.75, 1.0]
     u = np.clip(u, 0.0, 1.0)
@@ -91,40 +91,40 @@ def _on_back(stage: StepContext, u: PerTime, *, falls: bool) -> Controls:
     back = [0.0, -0.13, -0.32, -0.35, -BACK_BEHIND_M]
     pitch = [0.0, 0.55, 0.1, -0.75, -1.5] if not falls else [0.0, 0.3, -0.25, -1.0, -1.5]
     curl = [0.0, 0.55, 0.75, 0.5, 0.05]
-    controls.pelvis_m[:, 2] += flowing(u, at, heights) - stand
-    shift_pelvis(controls, flowing(u, at, back) * h, 0.0, 0.0)
-    controls.pelvis_rad[:, 1] += flowing(u, at, pitch)
-    controls.spine_rad[:, 1] += flowing(u, at, curl)
-    controls.head_rad[:, 0] += flowing(u, at, [0.0, 0.0, 0.25, 0.45, 0.0])
+    controls.pelvis_m[:, 2] += spline_through(u, at, heights) - stand
+    shift_pelvis(controls, spline_through(u, at, back) * h, 0.0, 0.0)
+    controls.pelvis_rad[:, 1] += spline_through(u, at, pitch)
+    controls.spine_rad[:, 1] += spline_through(u, at, curl)
+    controls.head_rad[:, 0] += spline_through(u, at, [0.0, 0.0, 0.25, 0.45, 0.0])
     controls.knee_up_rad[:] += 0.5 * np.pi * rise(u / 0.6)
     controls.knee_out_rad[:] *= 1 - rise(u / 0.6)[:, None]
     out = 0.6 if falls else 0.25
-    controls.arm_rad[:, :, 0] += flowing(u, at, [0.0, 0.7, 0.15 if not falls else 0.6, 0.0 if falls else -0.1, -0.03])[
-        :, None
-    ]
-    controls.arm_rad[:, :, 1] += flowing(u, at, [0.0, out, 0.55, 0.4, 0.22])[:, None]
-    controls.arm_rad[:, :, 3] += flowing(u, at, [0.0, 0.2, 0.1, 0.0, -0.05])[:, None]
+    controls.arm_rad[:, :, 0] += spline_through(
+        u, at, [0.0, 0.7, 0.15 if not falls else 0.6, 0.0 if falls else -0.1, -0.03]
+    )[:, None]
+    controls.arm_rad[:, :, 1] += spline_through(u, at, [0.0, out, 0.55, 0.4, 0.22])[:, None]
+    controls.arm_rad[:, :, 3] += spline_through(u, at, [0.0, 0.2, 0.1, 0.0, -0.05])[:, None]
     return controls
 
 
-def _on_belly(stage: StepContext, u: PerTime, *, falls: bool) -> Controls:
+def _on_belly(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
     """Forward: the knees give, the trunk tips over the toes, the arms go ahead, and the body lies stretched out."""
-    controls, body, h = upright(stage), stage.body, stage.body.height_m
+    controls, body, h = upright(context), context.body, context.body.height_m
     stand = body.pelvis_height_m(STAND_STRETCH)
     at = [0.0, 0.3, 0.52, 0.78, 1.0]
     u = np.clip(u, 0.0, 1.0)
-    controls.pelvis_m[:, 2] += flowing(u, at, [stand, 0.43 * h, 0.305 * h, 0.168 * h, LYING_M * h]) - stand
-    shift_pelvis(controls, flowing(u, at, [0.0, 0.1, 0.35, 0.605, BELLY_AHEAD_M]) * h, 0.0, 0.0)
-    controls.pelvis_rad[:, 1] += flowing(u, at, [0.0, 0.3, 0.62, 1.25, 1.5])
-    controls.spine_rad[:, 1] += flowing(u, at, [0.0, 0.25, 0.2, 0.0, -0.05])
-    controls.head_rad[:, 0] -= flowing(u, at, [0.0, 0.2, 0.4, 0.5, 0.35])
+    controls.pelvis_m[:, 2] += spline_through(u, at, [stand, 0.43 * h, 0.305 * h, 0.168 * h, LYING_M * h]) - stand
+    shift_pelvis(controls, spline_through(u, at, [0.0, 0.1, 0.35, 0.605, BELLY_AHEAD_M]) * h, 0.0, 0.0)
+    controls.pelvis_rad[:, 1] += spline_through(u, at, [0.0, 0.3, 0.62, 1.25, 1.5])
+    controls.spine_rad[:, 1] += spline_through(u, at, [0.0, 0.25, 0.2, 0.0, -0.05])
+    controls.head_rad[:, 0] -= spline_through(u, at, [0.0, 0.2, 0.4, 0.5, 0.35])
     for side in (LEFT, RIGHT):
-        controls.foot_rad[:, side, 1] += flowing(u, at, [0.0, 0.8, 1.4, 2.0, 2.2])
+        controls.foot_rad[:, side, 1] += spline_through(u, at, [0.0, 0.8, 1.4, 2.0, 2.2])
         controls.foot_m[:, side, 2] += 0.012 * h * rise(u)
-    controls.knee_up_rad[:] -= flowing(u, at, [0.0, 0.0, 0.2, 0.9, 1.45])
+    controls.knee_up_rad[:] -= spline_through(u, at, [0.0, 0.0, 0.2, 0.9, 1.45])
     controls.knee_room[:] = np.maximum(controls.knee_room, rise(3 * u))
     arms = [0.0, 0.8, 1.5, 2.3, 2.95] if falls else [0.0, 0.7, 1.35, 2.2, 2.95]
-    controls.arm_rad[:, :, 0] += flowing(u, at, arms)[:, None]
-    controls.arm_rad[:, :, 1] += flowing(u, at, [0.0, 0.1, 0.2, 0.3, 0.3])[:, None]
-    controls.arm_rad[:, :, 3] += flowing(u, at, [0.0, 0.3, 0.3, 0.1, -0.1])[:, None]
+    controls.arm_rad[:, :, 0] += spline_through(u, at, arms)[:, None]
+    controls.arm_rad[:, :, 1] += spline_through(u, at, [0.0, 0.1, 0.2, 0.3, 0.3])[:, None]
+    controls.arm_rad[:, :, 3] += spline_through(u, at, [0.0, 0.3, 0.3, 0.1, -0.1])[:, None]
     return controls

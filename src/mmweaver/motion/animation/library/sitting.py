@@ -21,34 +21,34 @@ def pelvis_behind_feet_m(body: SkeletonProportions, seat_height_m: float) -> flo
     return float(np.sqrt(body.thigh_m**2 - min(drop, 0.7 * body.thigh_m) ** 2) + ANKLE_BEHIND * body.height_m - 0.03)
 
 
-def sitting(stage: StepContext) -> Controls:
-    return _seated(stage, np.ones_like(stage.time_s))
+def sitting(context: StepContext) -> Controls:
+    return _seated(context, np.ones_like(context.time_s))
 
 
-def sitting_down(stage: StepContext) -> Controls:
+def sitting_down(context: StepContext) -> Controls:
     """Hips back over the seat while the trunk leans forward, then down."""
-    begin = _settled_s(stage)
-    lasts = float(np.clip(stage.end_s - begin - 0.1, 0.75, 1.3 if stage.step.speed >= 0 else 2.0))
-    return _seated(stage, (stage.time_s - begin) / lasts)
+    begin = _settled_s(context)
+    lasts = float(np.clip(context.end_s - begin - 0.1, 0.75, 1.3 if context.step.speed >= 0 else 2.0))
+    return _seated(context, (context.time_s - begin) / lasts)
 
 
-def standing_up(stage: StepContext) -> Controls:
-    lasts = float(np.clip(stage.duration_s - 0.1, 0.75, 1.2 if stage.step.speed >= 0 else 1.9))
-    return _seated(stage, 1 - (stage.time_s - stage.start_s) / lasts)
+def standing_up(context: StepContext) -> Controls:
+    lasts = float(np.clip(context.duration_s - 0.1, 0.75, 1.2 if context.step.speed >= 0 else 1.9))
+    return _seated(context, 1 - (context.time_s - context.start_s) / lasts)
 
 
-def _seated(stage: StepContext, u: Float[Array, " n"]) -> Controls:
+def _seated(context: StepContext, u: Float[Array, " n"]) -> Controls:
     """u = 0 standing, 1 seated; between, the way of the pelvis from one to the other."""
-    controls, body = upright(stage), stage.body
+    controls, body = upright(context), context.body
     heading = controls.heading_rad
-    back = rise(u / 0.85) * pelvis_behind_feet_m(body, stage.seat_height_m)
-    seat = stage.seat_height_m + PELVIS_OVER_SEAT * body.height_m
+    back = rise(u / 0.85) * pelvis_behind_feet_m(body, context.seat_height_m)
+    seat = context.seat_height_m + PELVIS_OVER_SEAT * body.height_m
     down = rise((u - 0.08) / 0.92)
     controls.pelvis_m[:, 2] += down * (seat - controls.pelvis_m[:, 2])
     controls.pelvis_m[:, 0] -= back * np.cos(heading)
     controls.pelvis_m[:, 1] -= back * np.sin(heading)
     lean = bump(np.clip(u, 0, 1) * 0.88 + 0.06) - bump(np.array(0.06))
-    slouch = float(stage.rng.uniform(0.05, 0.18))
+    slouch = float(context.rng.uniform(0.05, 0.18))
     controls.pelvis_rad[:, 1] += 0.5 * lean - slouch * down
     controls.spine_rad[:, 1] += 0.35 * lean + 1.3 * slouch * down
     controls.head_rad[:, 0] -= 0.5 * lean
@@ -60,9 +60,9 @@ def _seated(stage: StepContext, u: Float[Array, " n"]) -> Controls:
     return controls
 
 
-def _settled_s(stage: StepContext) -> float:
+def _settled_s(context: StepContext) -> float:
     """When the root has all but stopped turning, in seconds; a seat is taken only then."""
-    late = stage.start_s + np.linspace(0, max(stage.duration_s, 0.1), 60)
-    left = np.abs(stage.path.facing_rad(late) - stage.path.facing_rad(late[-1:])[0])
+    late = context.start_s + np.linspace(0, max(context.duration_s, 0.1), 60)
+    left = np.abs(context.path.facing_rad(late) - context.path.facing_rad(late[-1:])[0])
     turning = np.flatnonzero(left > 0.6)
-    return float(late[turning[-1]]) if len(turning) else stage.start_s
+    return float(late[turning[-1]]) if len(turning) else context.start_s

@@ -33,11 +33,11 @@ def home_feet(
     return np.stack([x, y, np.zeros_like(x)], axis=-1)
 
 
-def upright(stage: StepContext) -> Controls:
+def upright(context: StepContext) -> Controls:
     """Standing at the root, arms hanging, with sway and breathing."""
-    body, time_s, rng = stage.body, stage.time_s, stage.rng
+    body, time_s, rng = context.body, context.time_s, context.rng
     n = len(time_s)
-    position, heading = stage.path.position_m(time_s), stage.path.facing_rad(time_s)
+    position, heading = context.path.position_m(time_s), context.path.facing_rad(time_s)
     pelvis = np.zeros((n, 3))
     pelvis[:, :2] = position
     pelvis[:, 2] = body.pelvis_height_m(STAND_STRETCH)
@@ -77,8 +77,8 @@ def _sway(controls: Controls, time_s: Float[Array, " n"], rng: np.random.Generat
         controls.arm_rad[:, side, 3] += 0.03 * rng.normal()
 
 
-def standing(stage: StepContext) -> Controls:
+def standing(context: StepContext) -> Controls:
     """Standing still; turning on the spot is stepping, not this."""
-    controls = upright(stage)
-    controls.head_rad[:, 1] += 0.1 * wander(stage.time_s, stage.rng, slow_hz=0.05, fast_hz=0.25)
+    controls = upright(context)
+    controls.head_rad[:, 1] += 0.1 * wander(context.time_s, context.rng, slow_hz=0.05, fast_hz=0.25)
     return controls

@@ -4,7 +4,16 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.limbs import flowing, hand_to, mix_arm, one_side, place, repeats, sides, vary
+from mmweaver.motion.animation.library.movement_primitives import (
+    hand_to,
+    mix_arm,
+    one_side,
+    place,
+    repeats,
+    sides,
+    spline_through,
+    vary,
+)
 from mmweaver.motion.animation.profiles import plateau
 from mmweaver.motion.animation.step_context import StepContext
 
@@ -22,83 +31,83 @@ _UNDER = ((0.0, -0.02, 0.13, 0.0, 0.22), (0.4, -0.75, 0.25, 0.0, 0.2), (0.66, 1.
 def keyed_arm(time_s: PerTime, begin_s: float, lasts_s: float, keys: tuple[tuple[float, ...], ...]) -> Array:
     """Arm angles (n, 4) that flow through keys of (share of the time, flexion, abduction, twist, elbow)."""
     at = [begin_s + key[0] * lasts_s for key in keys]
-    return np.stack([flowing(time_s, at, [key[angle] for key in keys]) for angle in range(1, 5)], axis=1)
+    return np.stack([spline_through(time_s, at, [key[angle] for key in keys]) for angle in range(1, 5)], axis=1)
 
 
-def throwing(stage: StepContext, controls: Controls) -> Controls:
+def throwing(context: StepContext, controls: Controls) -> Controls:
     """The hand goes back beside the ear, the trunk turns with it, then both shoot forward and follow through."""
-    time_s, side = stage.time_s, one_side(stage)
+    time_s, side = context.time_s, one_side(context)
     sign = 1.0 if side == LEFT else -1.0
-    under = stage.step.style == "under" or stage.rng.random() < 0.2
-    for begin, lasts in repeats(stage, 1.6, 1.3, 2.3):
+    under = context.step.style == "under" or context.rng.random() < 0.2
+    for begin, lasts in repeats(context, 1.6, 1.3, 2.3):
         at = [begin + share * lasts for share in (0.0, 0.4, 0.66, 0.8, 1.0)]
         on = plateau(time_s, begin, begin + lasts, 0.2 * lasts, 0.2 * lasts)
         mix_arm(controls, side, keyed_arm(time_s, begin, lasts, _UNDER if under else _OVER), on)
-        turn = vary(stage, 0.5) * flowing(time_s, at, [0.0, 1.0, -0.7, -0.8, 0.0])
+        turn = vary(context, 0.5) * spline_through(time_s, at, [0.0, 1.0, -0.7, -0.8, 0.0])
         controls.spine_rad[:, 2] += sign * turn
         controls.pelvis_rad[:, 2] += 0.25 * sign * turn
         controls.head_rad[:, 1] -= sign * 0.9 * turn
-        controls.spine_rad[:, 1] += flowing(time_s, at, [0.0, -0.08, 0.14, 0.2, 0.0])
+        controls.spine_rad[:, 1] += spline_through(time_s, at, [0.0, -0.08, 0.14, 0.2, 0.0])
     return controls
 
 
-def pushing(stage: StepContext, controls: Controls) -> Controls:
+def pushing(context: StepContext, controls: Controls) -> Controls:
     """Palms before the chest, then away with the trunk leaning in, and back."""
-    time_s, n = stage.time_s, len(stage.time_s)
-    hands = sides(stage) if stage.step.hand else (LEFT, RIGHT)
-    for begin, lasts in repeats(stage, 1.6, 1.1, 2.6):
+    time_s, n = context.time_s, len(context.time_s)
+    hands = sides(context) if context.step.hand else (LEFT, RIGHT)
+    for begin, lasts in repeats(context, 1.6, 1.1, 2.6):
         on = plateau(time_s, begin, begin + lasts, 0.28 * lasts, 0.28 * lasts)
         out = plateau(time_s, begin + 0.25 * lasts, begin + 0.85 * lasts, 0.28 * lasts, 0.3 * lasts)
         target = place(0.13 + 0.15 * out, 0.08, 0.02 + 0.03 * out, n)
         for side in hands:
-            hand_to(controls, stage.body, side, target, on, (-0.5, 0.8, -0.8))
+            hand_to(controls, context.body, side, target, on, (-0.5, 0.8, -0.8))
         controls.spine_rad[:, 1] += 0.22 * out - 0.06 * on
     return controls
 
 
-def pulling(stage: StepContext, controls: Controls) -> Controls:
+def pulling(context: StepContext, controls: Controls) -> Controls:
     """Stretched hands close on something ahead and draw it to the body, the trunk leaning back, again and again."""
-    time_s, n = stage.time_s, len(stage.time_s)
-    hands = sides(stage) if stage.step.hand else (LEFT, RIGHT)
-    each = stage.tempo(1.8, 1.4, 1.1)
-    count = stage.step.count or max(1, round(stage.duration_s / each))
-    each = float(np.clip(stage.duration_s / count, 1.0, 2.4))
+    time_s, n = context.time_s, len(context.time_s)
+    hands = sides(context) if context.step.hand else (LEFT, RIGHT)
+    each = context.tempo(1.8, 1.4, 1.1)
+    count = context.step.count or max(1, round(context.duration_s / each))
+    each = float(np.clip(context.duration_s / count, 1.0, 2.4))
     draw = np.zeros(n)
     for k in range(count):
-        begin = stage.start_s + (k + 0.1) * each
+        begin = context.start_s + (k + 0.1) * each
         draw += plateau(time_s, begin, begin + 0.88 * each, 0.42 * each, 0.42 * each)
     target = place(0.27 - 0.15 * draw, 0.06, -0.02 - 0.05 * draw, n)
     for side in hands:
-        hand_to(controls, stage.body, side, target, np.ones(n), (-0.7, 0.6, -0.7))
+        hand_to(controls, context.body, side, target, np.ones(n), (-0.7, 0.6, -0.7))
     controls.spine_rad[:, 1] += 0.12 - 0.26 * draw
     return controls
 
 
-def carrying(stage: StepContext, controls: Controls) -> Controls:
+def carrying(context: StepContext, controls: Controls) -> Controls:
     """Something before the belly in both hands, which swing with nothing but the trunk; or hanging from one hand."""
-    n = len(stage.time_s)
-    if stage.step.hand in ("left", "right"):
-        side = LEFT if stage.step.hand == "left" else RIGHT
+    n = len(context.time_s)
+    if context.step.hand in ("left", "right"):
+        side = LEFT if context.step.hand == "left" else RIGHT
         mix_arm(controls, side, np.tile([0.0, 0.16, 0.0, 0.08], (n, 1)), np.ones(n))
         controls.spine_rad[:, 0] += 0.06 * (1 if side == LEFT else -1)
         return controls
-    target = place(vary(stage, 0.17, 0.05), vary(stage, 0.085), float(stage.rng.uniform(-0.13, -0.05)), n)
+    target = place(vary(context, 0.17, 0.05), vary(context, 0.085), float(context.rng.uniform(-0.13, -0.05)), n)
     for side in (LEFT, RIGHT):
-        hand_to(controls, stage.body, side, target, np.ones(n), (-0.7, 0.35, -1.0))
+        hand_to(controls, context.body, side, target, np.ones(n), (-0.7, 0.35, -1.0))
     controls.spine_rad[:, 1] -= 0.05
     return controls
 
 
-def reaching(stage: StepContext, controls: Controls) -> Controls:
+def reaching(context: StepContext, controls: Controls) -> Controls:
     """A hand goes to something ahead at table height, closes, and comes back with it."""
-    time_s, n, hands = stage.time_s, len(stage.time_s), sides(stage)
-    up = float(stage.rng.uniform(-0.08, 0.03))
-    for begin, lasts in repeats(stage, 1.7, 1.1, 2.6):
+    time_s, n, hands = context.time_s, len(context.time_s), sides(context)
+    up = float(context.rng.uniform(-0.08, 0.03))
+    for begin, lasts in repeats(context, 1.7, 1.1, 2.6):
         on = plateau(time_s, begin, begin + lasts, 0.3 * lasts, 0.3 * lasts)
         out = plateau(time_s, begin, begin + 0.78 * lasts, 0.36 * lasts, 0.34 * lasts)
         target = place(0.15 + 0.13 * out, 0.07, up + 0.02 - 0.02 * out, n)
         for side in hands:
-            hand_to(controls, stage.body, side, target, on, (-0.5, 0.6, -1.0))
+            hand_to(controls, context.body, side, target, on, (-0.5, 0.6, -1.0))
         controls.spine_rad[:, 1] += 0.24 * out
         controls.head_rad[:, 0] += 0.12 * out
     return controls
@@ -111,16 +120,16 @@ _NEAR = ((0.0, 0.45, -0.1, 0.0, 0.15), (0.18, 0.45, -0.1, 0.0, 0.1), (0.48, 1.1,
          (0.66, 0.45, -0.12, 0.0, 0.1), (0.84, 1.35, -0.55, 0.0, 0.2), (1.0, 0.45, -0.1, 0.0, 0.15))  # fmt: skip
 
 
-def golf_swing(stage: StepContext, controls: Controls) -> Controls:
+def golf_swing(context: StepContext, controls: Controls) -> Controls:
     """Both hands together before the trunk: back up over one shoulder, down through, and up over the other."""
-    time_s = stage.time_s
-    near, back = (LEFT, 1.0) if stage.step.hand == "left" else (RIGHT, -1.0)  # to the right of a right-handed player
-    for begin, lasts in repeats(stage, 2.1, 1.6, 3.0):
+    time_s = context.time_s
+    near, back = (LEFT, 1.0) if context.step.hand == "left" else (RIGHT, -1.0)  # to the right of a right-handed player
+    for begin, lasts in repeats(context, 2.1, 1.6, 3.0):
         at = [begin + share * lasts for share in (0.0, 0.18, 0.48, 0.66, 0.84, 1.0)]
         on = plateau(time_s, begin - 0.1, begin + lasts + 0.1, 0.2 * lasts, 0.2 * lasts)
         for side in (LEFT, RIGHT):
             mix_arm(controls, side, keyed_arm(time_s, begin, lasts, _NEAR if side == near else _FAR), on)
-        turn = back * flowing(time_s, at, [0.0, 0.0, 0.85, 0.0, -0.85, 0.0])
+        turn = back * spline_through(time_s, at, [0.0, 0.0, 0.85, 0.0, -0.85, 0.0])
         controls.spine_rad[:, 2] += turn
         controls.pelvis_rad[:, 2] += 0.3 * turn
         controls.head_rad[:, 1] -= turn

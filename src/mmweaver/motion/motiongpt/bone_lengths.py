@@ -9,7 +9,7 @@ from jaxtyping import Float
 from mmweaver.core.skeleton import PARENTS
 
 
-def with_steady_bones(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
+def with_constant_bone_lengths(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
     """The same directions of all bones, each of its median length; the pelvis stays where it is, and so does the height
     of the lower foot over the floor."""
     steady = joints.copy()

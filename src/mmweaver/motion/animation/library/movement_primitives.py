@@ -17,7 +17,7 @@ PerTime = Float[Array, " n"]
 OUTWARD = (1.0, -1.0)  # the sign of the body's y for what is outward on the left, on the right
 
 
-def flowing(time_s: PerTime, times: Sequence[float], values: Sequence[float]) -> PerTime:
+def spline_through(time_s: PerTime, times: Sequence[float], values: Sequence[float]) -> PerTime:
     """A curve through (times, values) that starts and ends at rest and stays there; C2 everywhere, smoother inside."""
     from scipy.interpolate import make_interp_spline
 
@@ -26,45 +26,45 @@ def flowing(time_s: PerTime, times: Sequence[float], values: Sequence[float]) ->
     return np.asarray(curve(np.clip(time_s, times[0], times[-1])))
 
 
-def sides(stage: StepContext) -> tuple[int, ...]:
+def sides(context: StepContext) -> tuple[int, ...]:
     """Which arms act: as the sentence says, else as the seed has it (five of six people are right-handed)."""
-    chosen = stage.step.hand or ("right" if stage.rng.random() < 5 / 6 else "left")
+    chosen = context.step.hand or ("right" if context.rng.random() < 5 / 6 else "left")
     return {"left": (LEFT,), "right": (RIGHT,), "both": (LEFT, RIGHT)}[chosen]
 
 
-def one_side(stage: StepContext) -> int:
+def one_side(context: StepContext) -> int:
     """The one arm that acts; of both, the right."""
-    return sides(stage)[-1]
+    return sides(context)[-1]
 
 
-def leg_side(stage: StepContext) -> int:
+def leg_side(context: StepContext) -> int:
     """The leg that acts: as said, else the right of five out of six."""
-    chosen = stage.step.foot or ("right" if stage.rng.random() < 5 / 6 else "left")
+    chosen = context.step.foot or ("right" if context.rng.random() < 5 / 6 else "left")
     return LEFT if chosen == "left" else RIGHT
 
 
-def repeats(stage: StepContext, natural_s: float, least_s: float, most_s: float) -> list[tuple[float, float]]:
+def repeats(context: StepContext, natural_s: float, least_s: float, most_s: float) -> list[tuple[float, float]]:
     """(start, seconds) of each repetition: as many as asked for, else one, in its natural time."""
-    count = max(stage.step.count, 1)
-    slower = (1.35, 1.0, 0.8)[stage.step.speed + 1]
-    wanted = natural_s * slower * float(np.exp(stage.rng.normal(0, 0.07)))
-    each = float(np.clip(min(wanted, stage.duration_s / count), least_s, most_s))
-    spare = 0.0 if count > 1 else max(stage.duration_s - each, 0.0)
-    begin = stage.start_s + min(0.1, 0.3 * spare)
+    count = max(context.step.count, 1)
+    slower = (1.35, 1.0, 0.8)[context.step.speed + 1]
+    wanted = natural_s * slower * float(np.exp(context.rng.normal(0, 0.07)))
+    each = float(np.clip(min(wanted, context.duration_s / count), least_s, most_s))
+    spare = 0.0 if count > 1 else max(context.duration_s - each, 0.0)
+    begin = context.start_s + min(0.1, 0.3 * spare)
     return [(begin + k * each, each) for k in range(count)]
 
 
-def cycles(stage: StepContext, rate_hz: float, low_hz: float, high_hz: float) -> tuple[float, float]:
+def cycles(context: StepContext, rate_hz: float, low_hz: float, high_hz: float) -> tuple[float, float]:
     """Rate and end of a repeated movement: a count asked for fixes the rate as far as nature allows."""
-    if not stage.step.count:
-        return rate_hz, stage.end_s
-    rate = float(np.clip(stage.step.count / max(stage.duration_s - 0.2, 0.1), low_hz, high_hz))
-    return rate, stage.start_s + stage.step.count / rate
+    if not context.step.count:
+        return rate_hz, context.end_s
+    rate = float(np.clip(context.step.count / max(context.duration_s - 0.2, 0.1), low_hz, high_hz))
+    return rate, context.start_s + context.step.count / rate
 
 
-def vary(stage: StepContext, value: float, spread: float = 0.12) -> float:
+def vary(context: StepContext, value: float, spread: float = 0.12) -> float:
     """A value with the natural variation between people and moments, never beyond twice the spread."""
-    return value * float(np.exp(np.clip(stage.rng.normal(0, spread), -2 * spread, 2 * spread)))
+    return value * float(np.exp(np.clip(context.rng.normal(0, spread), -2 * spread, 2 * spread)))
 
 
 def shift_pelvis(controls: Controls, ahead: PerTime | float, left: PerTime | float, up: PerTime | float) -> None:
