@@ -1,24 +1,41 @@
 """What `Weaver` takes and returns: the room of a photo, and one generated sequence."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.record_display import ShownByFacts
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
+from mmweaver.figures.preview import preview_figure
 from mmweaver.result_folder import file_digest, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from torch import Tensor
+    from xarray import Dataset
 
-@dataclass(frozen=True, kw_only=True)
-class Room:
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Room(ShownByFacts):
     """A photo, read and reconstructed; can be used for any number of sequences."""
 
     scene: Scene
     inputs: dict[str, Any]
     seconds: dict[str, float]
+
+    def facts(self) -> dict[str, str]:
+        """The photo's and the scene's."""
+        size = self.scene.photo.facts()["size"]
+        return {"photo": size, **self.scene.facts(), "inputs": ", ".join(self.inputs)}
+
+    def _repr_html_(self) -> str:
+        return _with_picture(super()._repr_html_(), _png_of(self.scene.photo.rgb))
 
     def with_landmarks(self, *given: tuple[str, tuple[float, float]]) -> "Room":
         """The room with landmarks at known places: `("door", (0.9, 2.8))`, metres right of and ahead of the radar.
@@ -43,8 +60,8 @@ class Room:
         return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Generation:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Generation(ShownByFacts):
     """One generated sequence. `poses` hold each person's joints at the radar's frames, `motions` densely in time."""
 
     cube: RadarCube
@@ -54,7 +71,53 @@ class Generation:
     motions: tuple[PoseSequence, ...]
     scene: Scene
     meta: dict[str, Any]
-    stages: Stages = field(repr=False)
+    stages: Stages
+
+    def facts(self) -> dict[str, str]:
+        """What was asked for and what came of it."""
+        shape = " x ".join(map(str, self.cube.values.shape))
+        return {
+            "text": " | ".join([self.meta["text"]] if isinstance(self.meta["text"], str) else self.meta["text"]),
+            "cube": f"{shape} (frame, range, doppler, antenna)",
+            "points": str(len(self.points.frame)),
+            "people": str(len(self.poses)),
+            "ADC samples": "none" if self.adc is None else " x ".join(map(str, self.adc.samples.shape)),
+            "method": str(self.meta["method"]),
+            "radar": self.cube.config.name,
+            "seed": str(self.meta["seed"]),
+        }
+
+    def _repr_html_(self) -> str:
+        from io import BytesIO
+
+        page = BytesIO()
+        self.plot().savefig(page, format="png", dpi=60)
+        return _with_picture(super()._repr_html_(), page.getvalue())
+
+    def plot(self) -> "Figure":
+        """The page of preview.png as a matplotlib figure."""
+        return preview_figure(self.figure_data)
+
+    def to_xarray(self) -> "Dataset":
+        """Cube, joints and points as an xarray Dataset, in SI units; needs the extra 'xarray'.
+
+        `cube` has the dimensions frame_time (s), range (m), radial_velocity (m/s) and antenna, `joints`
+        person, frame_time, joint and axis; columns of the point cloud have the dimension point.
+        """
+        from mmweaver.conversions import to_dataset
+
+        return to_dataset(self.cube, self.points, self.poses, self.adc, self.meta)
+
+    def to_torch(self) -> "dict[str, Tensor]":
+        """Tensors that share the arrays' memory where they can, in SI units.
+
+        `cube` complex64 (frame, range, doppler, antenna) with the axes `frame_time_s`, `range_m`,
+        `radial_velocity_mps`, `antenna_position_m`; `joints_m` (person, frame, 22, 3); `points` (point, 6): frame,
+        x_m, y_m, z_m, radial_velocity_mps, snr_db; `adc` (frame, loop, tx, rx, sample) where there are samples.
+        """
+        from mmweaver.conversions import to_tensors
+
+        return to_tensors(self.cube, self.points, self.poses, self.adc)
 
     @property
     def pose(self) -> PoseSequence:
@@ -105,3 +168,22 @@ def _recording_digest(place: Path) -> dict[str, str]:
     """Path and, of a file or of a folder's radar.npz, sha256 of a recording."""
     file = next((one for one in (place, place / "radar.npz") if one.is_file()), None)
     return {"path": str(place)} if file is None else file_digest(file)
+
+
+def _png_of(rgb: np.ndarray, width: int = 320) -> bytes:
+    """A small PNG of a picture (height, width, 3)."""
+    from io import BytesIO
+
+    from PIL import Image
+
+    picture = Image.fromarray(rgb)
+    picture.thumbnail((width, width))
+    out = BytesIO()
+    picture.save(out, format="PNG")
+    return out.getvalue()
+
+
+def _with_picture(table: str, png: bytes) -> str:
+    from base64 import b64encode
+
+    return f"{table}<img src='data:image/png;base64,{b64encode(png).decode()}' style='max-width:100%'/>"

@@ -1,4 +1,4 @@
-"""The records that cross rooms. A room takes some of these and gives some of these, and nothing else.
+"""The records that packages exchange.
 
 Frame of reference for every position: the radar's. x right, y away from the radar, z up (against gravity), metres,
 origin at the radar. Radial velocity positive = moving away.
@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.record_display import ShownByFacts, span
 from mmweaver.core.shapes import (
     AdcValues,
     AntennaPositions,
@@ -59,8 +60,8 @@ class CubeGrid:
         )  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class AdcCube:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class AdcCube(ShownByFacts):
     """What the receivers' converters wrote: complex64 (frame, loop, tx, rx, sample).
 
     `tx` counts physical transmitters, not turns. `scale` says what 1.0 means: the amplitude at the receiver's port in
@@ -71,9 +72,15 @@ class AdcCube:
     config: RadarConfig
     scale: float
 
+    def facts(self) -> dict[str, str]:
+        """Sizes, type and radar."""
+        names = ("frames", "loops", "transmitters", "receivers", "samples")
+        sizes = {name: str(size) for name, size in zip(names, self.samples.shape, strict=True)}
+        return {**sizes, "type": str(self.samples.dtype), "radar": self.config.name}
 
-@dataclass(frozen=True, kw_only=True)
-class RadarCube:
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class RadarCube(ShownByFacts):
     """Range-Doppler spectrum of every virtual antenna: complex64 (frame, range, doppler, antenna).
 
     TDM phase is compensated, so antennas of one cell differ by their places alone. `scale` as in AdcCube.
@@ -84,9 +91,20 @@ class RadarCube:
     config: RadarConfig
     scale: float
 
+    def facts(self) -> dict[str, str]:
+        """Axes, type and radar."""
+        return {
+            "frames": span(self.grid.frame_time_s, "s"),
+            "range": span(self.grid.range_m, "m"),
+            "doppler": span(self.grid.radial_velocity_mps, "m/s"),
+            "antennas": str(self.values.shape[3]),
+            "type": str(self.values.dtype),
+            "radar": self.config.name,
+        }
 
-@dataclass(frozen=True, kw_only=True)
-class PointCloud:
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class PointCloud(ShownByFacts):
     """Detections of all frames, one row each."""
 
     frame: np.ndarray  # (point,) int, index of the frame
@@ -96,10 +114,20 @@ class PointCloud:
     radial_velocity_mps: PerPoint
     snr_db: PerPoint
 
+    def facts(self) -> dict[str, str]:
+        """How many points, and where."""
+        bounds = {"x": (self.x_m, "m"), "y": (self.y_m, "m"), "z": (self.z_m, "m")}
+        bounds |= {"velocity": (self.radial_velocity_mps, "m/s"), "SNR": (self.snr_db, "dB")}
+        return {
+            "points": str(len(self.frame)),
+            "frames": str(len(np.unique(self.frame))),
+            **{name: _bounds(values, unit) for name, (values, unit) in bounds.items()},
+        }
+
 
 # Motion -------------------------------------------------------------------------------------------------------------
-@dataclass(frozen=True, kw_only=True)
-class PoseSequence:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class PoseSequence(ShownByFacts):
     """Joints of one person at given times, in the radar's frame; SMPL order, see core.skeleton.
 
     A motion room gives it densely (100 Hz and more), so that slow time can be interpolated; `joints_m` at the radar's
@@ -110,6 +138,15 @@ class PoseSequence:
     joints_m: Joints
     height_m: float
     subject: int = 0  # names the body: its surface points and micro-phases
+
+    def facts(self) -> dict[str, str]:
+        """Times, joints and the body."""
+        return {
+            "frames": span(self.time_s, "s"),
+            "joints": str(self.joints_m.shape[1]),
+            "height": f"{self.height_m:.2f} m",
+            "subject": str(self.subject),
+        }
 
 
 # Scene --------------------------------------------------------------------------------------------------------------
@@ -133,14 +170,23 @@ class ClassMask:
     names: tuple[str, ...]  # names[0] is "unlabeled"
 
 
-@dataclass(frozen=True, kw_only=True)
-class RgbdPhoto:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class RgbdPhoto(ShownByFacts):
     """A colour picture and its depth along the optical axis in metres; nan = no measurement."""
 
     rgb: RgbPixels
     depth_m: DepthPixels
     intrinsics: CameraIntrinsics
     classes: ClassMask | None = None  # where somebody said what is what
+
+    def facts(self) -> dict[str, str]:
+        """Size, and how much of it has a depth."""
+        height, width = self.depth_m.shape
+        return {
+            "size": f"{width} x {height} pixels",
+            "with depth": f"{100 * np.isfinite(self.depth_m).mean():.0f} %",
+            "classes": "none" if self.classes is None else str(len(self.classes.names)),
+        }
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,9 +231,9 @@ class Landmark:
     facing_rad: float  # direction one looks there, from +x (right) towards +y (away from the radar)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scene:
-    """The room of one photo, as the ray caster and the motion room need it."""
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Scene(ShownByFacts):
+    """The room of one photo, as ray caster and motion planner need it."""
 
     photo: RgbdPhoto
     radar_from_camera: Rotation  # camera x right, y down, z forward -> radar frame (same origin)
@@ -203,6 +249,26 @@ class Scene:
     landmarks: tuple[Landmark, ...] = ()
     empty_recording: RadarCube | None = None  # the same radar in the same place, with nobody there
 
+    def facts(self) -> dict[str, str]:
+        """Sizes, and what a sentence can refer to."""
+        return {
+            "vertices": str(len(self.vertices_m)),
+            "planes": _counted([plane.kind for plane in self.planes]),
+            "floor": f"{self.floor_z_m:.2f} m",
+            "seats": str(len(self.seats)),
+            "landmarks": _counted([landmark.kind for landmark in self.landmarks]),
+        }
+
     @property
     def floor(self) -> Plane:
         return next(plane for plane in self.planes if plane.kind == "floor")
+
+
+def _counted(kinds: list[str]) -> str:
+    """'floor, 3 wall' of ["wall", "floor", "wall", "wall"]."""
+    counts = {kind: kinds.count(kind) for kind in sorted(set(kinds))}
+    return ", ".join(kind if count == 1 else f"{count} {kind}" for kind, count in counts.items()) or "none"
+
+
+def _bounds(values: np.ndarray, unit: str) -> str:
+    return f"{values.min():.2f} to {values.max():.2f} {unit}" if len(values) else "none"

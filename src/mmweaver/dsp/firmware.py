@@ -27,7 +27,7 @@ FRAMES_A_BLOCK = 10
 Spectrum = Complex[np.ndarray, "frame range doppler antenna"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FirmwareCloud(PointCloud):
     """A PointCloud with what the firmware sends besides: `intensity` in the device's own counts (mean of antennas).
 

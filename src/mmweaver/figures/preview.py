@@ -41,18 +41,26 @@ def draw_preview(view: FigureData, path: Path) -> None:
     """Writes the page as a PNG, 1600 pixels wide; with a photo 900 high, without one 700."""
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    with matplotlib.rc_context(STYLE):
+        canvas = FigureCanvasAgg(preview_figure(view))
+        canvas.print_png(path, metadata={"Software": "mmWeaver"}, pil_kwargs={"compress_level": 2})
+
+
+def preview_figure(view: FigureData) -> "Figure":
+    """The page as a figure of matplotlib."""
+    import matplotlib
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
         photo = view.photo is not None
         figure = Figure(figsize=(16.0, 9.0 if photo else 7.0), dpi=DPI, facecolor="white")
-        canvas = FigureCanvasAgg(figure)
         figure.suptitle(
             shortened(view.heading, 150), x=0.04, y=0.98, ha="left", va="top", fontsize=13, fontweight="bold"
         )
         for drawer, axes in _layout(figure, photo):
             drawer(axes, view)
-        canvas.print_png(path, metadata={"Software": "mmWeaver"}, pil_kwargs={"compress_level": 2})
+    return figure
 
 
 def _layout(figure: "Figure", photo: bool) -> "list[tuple[Callable[[Axes, FigureData], None], Axes]]":

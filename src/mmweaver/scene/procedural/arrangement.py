@@ -1,6 +1,6 @@
-"""Where the furniture stands: groups are tried at walls and in the middle until nothing overlaps and one can walk.
+"""Arranges furniture by rejection sampling: groups at walls and in the middle, without overlap, with room to walk.
 
-Room frame: x along the wall that the radar looks at, y towards it, z up; origin in the corner behind the radar's left.
+Room frame: x along the wall that the radar faces, y towards it, z up; origin in the corner behind the radar's left.
 """
 
 from collections.abc import Sequence
@@ -13,33 +13,33 @@ from mmweaver.core.shapes import Array
 from mmweaver.scene.procedural import objects
 from mmweaver.scene.procedural.groups import BACK, MIDDLE, FurnitureGroup
 from mmweaver.scene.procedural.palette import Palette
-from mmweaver.scene.procedural.parts import Boxes, Piece, Placed, outlines_of
-from mmweaver.scene.procedural.room_kinds import Kind
+from mmweaver.scene.procedural.parts import Boxes, Piece, PlacedPiece, bounding_boxes
+from mmweaver.scene.procedural.room_kinds import RoomKind
 
-HEAD_M, STEP_OVER_M = 1.9, 0.03  # what stands between these heights is in a walker's way
+HEAD_M, STEP_OVER_M = 1.9, 0.03  # what stands between these heights obstructs a walker
 BODY_RADIUS_M = 0.25
-WINDOW_M = (0.7, 3.45)  # ground distance, of the radar's range bins
+WINDOW_M = (0.7, 3.45)  # ground distance covered by the radar's range bins
 HALF_VIEW_RAD = float(np.deg2rad(38))
 MIN_FREE_M2, MIN_WALKABLE_M2 = 2.0, 0.8
 CELL_M = 0.05
-_DRAWS, _ENOUGH, _TRIES, _PATIENCE = 60, 5, 150, 15
+_MAX_DRAWS, _NUM_CANDIDATES, _MAX_ATTEMPTS, _ATTEMPTS_PER_SHELL = 60, 5, 150, 15
 
 
 @dataclass(frozen=True, kw_only=True)
 class Shell:
-    """The empty room: its inner size, what is fixed to it, and the radar's place (z = 0 on the floor)."""
+    """The empty room in its own frame (z = 0 on the floor) and the radar in it."""
 
-    size_m: tuple[float, float, float]
+    size_m: tuple[float, float, float]  # inner width, depth, height
     openings: tuple[Piece, ...]  # door and windows
     lamp: Piece
-    fixed: tuple[Placed, ...]  # lamps and, once placed, doors and windows
+    fixed: tuple[PlacedPiece, ...]  # lamps and, once placed, doors and windows
     radar_m: tuple[float, float, float]
     radar_yaw_rad: float  # from +y towards -x
 
 
 @dataclass(frozen=True, kw_only=True)
 class FreeFloor:
-    """Squares of the floor in the room's frame, and which are free; those in view hold the radar's window."""
+    """Squares of the floor in the room's frame: which are free, and which are in the radar's window and the picture."""
 
     x_m: Float[Array, " x"]
     y_m: Float[Array, " y"]
@@ -48,12 +48,12 @@ class FreeFloor:
 
     @property
     def free_m2(self) -> float:
-        """Free floor in the radar's window and the picture."""
+        """Area of the free floor in view, m2."""
         return float((self.is_free & self.in_view).sum() * CELL_M**2)
 
     @property
     def walkable_m2(self) -> float:
-        """The largest connected part of it where a body's middle may be."""
+        """Area of the largest connected part of it for the middle of a body, m2."""
         from scipy import ndimage
 
         inner = np.asarray(ndimage.distance_transform_edt(np.pad(self.is_free, 1)))[1:-1, 1:-1] * CELL_M > BODY_RADIUS_M
@@ -61,10 +61,17 @@ class FreeFloor:
         return float(np.bincount(labels.ravel())[1:].max(initial=0) * CELL_M**2)
 
 
-def draw_shell(kind: Kind, palette: Palette, rng: np.random.Generator, layout: np.random.Generator) -> Shell:
-    """Size, door and windows belong to the room; the radar's place and turn, and theirs in the walls, to the layout."""
+def sample_shell(kind: RoomKind, palette: Palette, rng: np.random.Generator, layout: np.random.Generator) -> Shell:
+    """Samples the empty room.
+
+    Its size, door and windows are sampled from `rng`; the radar's position and yaw from `layout`.
+    """
     behind = float(rng.uniform(0.3, 1.4))
-    size = (float(rng.uniform(*kind.width_m)), behind + float(rng.uniform(*kind.back_m)), float(rng.uniform(2.4, 2.8)))
+    size = (
+        float(rng.uniform(*kind.width_m)),
+        behind + float(rng.uniform(*kind.wall_distance_m)),
+        float(rng.uniform(2.4, 2.8)),
+    )
     openings = [objects.door(palette, rng, float(rng.uniform(0.8, 0.95)))]
     openings += [objects.window(palette, rng, float(rng.uniform(1.1, 1.7))) for _ in range(kind.num_windows)]
     empty = Shell(
@@ -79,62 +86,62 @@ def draw_shell(kind: Kind, palette: Palette, rng: np.random.Generator, layout: n
 
 
 def with_radar(shell: Shell, rng: np.random.Generator) -> Shell:
-    """The shell with the radar somewhere in the middle third and turned a little; less of both in a corridor."""
+    """Samples the radar's position in the middle third of the room and its yaw; less of both in a corridor."""
     narrow = shell.size_m[0] < 2.6
     across = rng.uniform(0.42, 0.58) if narrow else rng.uniform(0.32, 0.68)
-    turn = rng.uniform(-5, 5) if narrow else rng.uniform(-14, 14)
+    yaw_deg = rng.uniform(-5, 5) if narrow else rng.uniform(-14, 14)
     _, y, z = shell.radar_m
-    return replace(shell, radar_m=(shell.size_m[0] * float(across), y, z), radar_yaw_rad=float(np.deg2rad(turn)))
+    return replace(shell, radar_m=(shell.size_m[0] * float(across), y, z), radar_yaw_rad=float(np.deg2rad(yaw_deg)))
 
 
 def with_openings(shell: Shell, rng: np.random.Generator) -> Shell:
-    """The shell with lamps, and its door and windows put into walls; one that finds no place is left out."""
+    """Samples the places of door and windows in the walls, and adds lamps; an opening without a place is omitted."""
     width, depth, height = shell.size_m
-    fixed = [Placed(piece=shell.lamp, x_m=width / 2, y_m=y * depth, z_m=height) for y in (0.3, 0.75)]
+    fixed = [PlacedPiece(piece=shell.lamp, x_m=width / 2, y_m=y * depth, z_m=height) for y in (0.3, 0.75)]
     for piece in shell.openings:
-        for _ in range(_DRAWS):
+        for _ in range(_MAX_DRAWS):
             wall = ("left", "right", "back")[int(rng.choice(3, p=(0.35, 0.35, 0.3)))]
             nearest = shell.radar_m[1] + 0.9
             along = float(rng.uniform(0.5, width - 0.5) if wall == "back" else rng.uniform(nearest, depth - 0.5))
-            there = _at_wall((Placed(piece=piece, x_m=0.0, y_m=0.0),), wall, along, shell.size_m)
+            candidate = _at_wall((PlacedPiece(piece=piece, x_m=0.0, y_m=0.0),), wall, along, shell.size_m)
             if (
-                _fits(outlines_of(there), shell.size_m)
-                and not outlines_of(there).overlap(outlines_of(fixed), -0.15).any()
+                _fits(bounding_boxes(candidate), shell.size_m)
+                and not bounding_boxes(candidate).overlap(bounding_boxes(fixed), -0.15).any()
             ):
-                fixed += there
+                fixed += candidate
                 break
     return replace(shell, fixed=tuple(fixed))
 
 
 def arrange(
-    kind: Kind, shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator
-) -> tuple[Shell, tuple[Placed, ...], FreeFloor]:
-    """Puts in door and windows, then the groups, those marked True always, so that enough floor stays free.
+    kind: RoomKind, shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator
+) -> tuple[Shell, tuple[PlacedPiece, ...], FreeFloor]:
+    """Places door and windows, then the groups of furniture (with whether each is required), keeping floor free.
 
-    Where that does not work out for long, the radar moves, and then the room becomes wider. Raises RuntimeError where
-    no try of many works out, which has not been seen.
+    After several failed attempts the radar is moved, and then the room widened. Raises RuntimeError where all attempts
+    fail, which has not been observed.
     """
-    for attempt in range(_TRIES):
-        if attempt >= _PATIENCE:
+    for attempt in range(_MAX_ATTEMPTS):
+        if attempt >= _ATTEMPTS_PER_SHELL:
             width, depth, height = shell.size_m
-            wider = 0.25 if attempt % _PATIENCE == 0 and attempt > _PATIENCE else 0.0
+            wider = 0.25 if attempt % _ATTEMPTS_PER_SHELL == 0 and attempt > _ATTEMPTS_PER_SHELL else 0.0
             shell = with_radar(replace(shell, size_m=(width + wider, depth, height)), rng)
-        there = with_openings(shell, rng)
-        placed = _once(there, wanted, rng, leave_out=min(attempt / 40, 1.0))
-        if placed is None or not _in_window(there, placed):
+        furnished = with_openings(shell, rng)
+        placed = _try_once(furnished, wanted, rng, omit_share=min(attempt / 40, 1.0))
+        if placed is None or not _has_furniture_in_view(furnished, placed):
             continue
-        floor = free_floor(there, placed)
+        floor = free_floor(furnished, placed)
         if floor.free_m2 >= MIN_FREE_M2 and floor.walkable_m2 >= MIN_WALKABLE_M2:
-            return there, placed, floor
-    raise RuntimeError(f"no arrangement of a {kind.name} leaves room to walk")
+            return furnished, placed, floor
+    raise RuntimeError(f"no arrangement of a {kind.name} leaves enough floor to walk")
 
 
-def free_floor(shell: Shell, placed: Sequence[Placed]) -> FreeFloor:
-    """Squares where nothing stands up to head height, more than half a metre from the radar."""
+def free_floor(shell: Shell, placed: Sequence[PlacedPiece]) -> FreeFloor:
+    """Squares without anything up to head height, more than half a metre from the radar."""
     width, depth, _ = shell.size_m
     x_m = np.arange(CELL_M / 2, width, CELL_M)
     y_m = np.arange(CELL_M / 2, depth, CELL_M)
-    is_free = ~covered(outlines_of([*shell.fixed, *placed]), x_m, y_m)
+    is_free = ~covered(bounding_boxes([*shell.fixed, *placed]), x_m, y_m)
     x, y = np.meshgrid(x_m - shell.radar_m[0], y_m - shell.radar_m[1])
     distance = np.hypot(x, y)
     bearing = np.arctan2(-x, y) - shell.radar_yaw_rad
@@ -143,7 +150,7 @@ def free_floor(shell: Shell, placed: Sequence[Placed]) -> FreeFloor:
 
 
 def covered(boxes: Boxes, x_m: Float[Array, " x"], y_m: Float[Array, " y"]) -> Bool[Array, "y x"]:
-    """Squares over which something stands that stops a walker."""
+    """Squares (y, x) covered by a box that obstructs a walker; centres in metres."""
     low, high = boxes.centre_m[:, 2] - boxes.half_m[:, 2], boxes.centre_m[:, 2] + boxes.half_m[:, 2]
     stops = (high > STEP_OVER_M) & (low < HEAD_M)
     x, y = np.meshgrid(x_m, y_m)
@@ -156,51 +163,51 @@ def covered(boxes: Boxes, x_m: Float[Array, " x"], y_m: Float[Array, " y"]) -> B
     return taken
 
 
-def _once(
-    shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator, leave_out: float
-) -> tuple[Placed, ...] | None:
-    """One try: the pieces; None where a group that must stand found no place."""
-    placed: list[Placed] = []
-    taken = _joined(outlines_of(shell.fixed), _kept_free(shell))
-    for group, is_needed in wanted:
-        if not is_needed and rng.random() < leave_out:
+def _try_once(
+    shell: Shell, wanted: Sequence[tuple[FurnitureGroup, bool]], rng: np.random.Generator, omit_share: float
+) -> tuple[PlacedPiece, ...] | None:
+    """One attempt: the placed pieces; None where a required group found no place."""
+    placed: list[PlacedPiece] = []
+    taken = _concatenated(bounding_boxes(shell.fixed), _clear_zones(shell))
+    for group, is_required in wanted:
+        if not is_required and rng.random() < omit_share:
             continue
         found = _best_place(shell, group, taken, rng)
-        if found is None and is_needed:
+        if found is None and is_required:
             return None
         if found is not None:
-            taken = _joined(taken, outlines_of(found))
+            taken = _concatenated(taken, bounding_boxes(found))
             placed += found
     return tuple(placed)
 
 
 def _best_place(
     shell: Shell, group: FurnitureGroup, taken: Boxes, rng: np.random.Generator
-) -> tuple[Placed, ...] | None:
-    """Of the first few places without overlap the one that the radar sees best."""
+) -> tuple[PlacedPiece, ...] | None:
+    """Among the first few samples without overlap, the one most central in the radar's view."""
     best, found = None, 0
-    for _ in range(_DRAWS):
-        there = _candidate(shell, group, rng)
-        boxes = outlines_of(there)
+    for _ in range(_MAX_DRAWS):
+        candidate = _candidate(shell, group, rng)
+        boxes = bounding_boxes(candidate)
         if not _fits(boxes, shell.size_m) or boxes.overlap(taken, -0.01).any():
             continue
         middle = boxes.centre_m[:, :2].mean(axis=0) - shell.radar_m[:2]
         bearing = np.arctan2(-middle[0], middle[1]) - shell.radar_yaw_rad
         score = abs(float(bearing)) + max(0.0, float(np.hypot(*middle)) - 3.2) + float(rng.uniform(0, 0.5))
         if best is None or score < best[0]:
-            best = (score, there)
+            best = (score, candidate)
         found += 1
-        if found >= _ENOUGH:
+        if found >= _NUM_CANDIDATES:
             break
     return None if best is None else best[1]
 
 
-def _candidate(shell: Shell, group: FurnitureGroup, rng: np.random.Generator) -> tuple[Placed, ...]:
+def _candidate(shell: Shell, group: FurnitureGroup, rng: np.random.Generator) -> tuple[PlacedPiece, ...]:
     width, depth, _ = shell.size_m
     if group.site == MIDDLE:
-        turn = float(rng.integers(4)) * np.pi / 2 + float(rng.normal(0, 0.05))
+        yaw_rad = float(rng.integers(4)) * np.pi / 2 + float(rng.normal(0, 0.05))
         x, y = float(rng.uniform(0.3, width - 0.3)), float(rng.uniform(shell.radar_m[1] + 0.6, depth - 0.3))
-        return tuple(item.moved(x, y, turn) for item in group.items)
+        return tuple(item.transformed(x, y, yaw_rad) for item in group.items)
     sites = ("back",) if group.site == BACK else ("back", "left", "right")
     wall = sites[int(rng.integers(len(sites)))]
     along = float(rng.uniform(0.0, width) if wall == "back" else rng.uniform(shell.radar_m[1] + 0.5, depth))
@@ -208,14 +215,14 @@ def _candidate(shell: Shell, group: FurnitureGroup, rng: np.random.Generator) ->
 
 
 def _at_wall(
-    items: Sequence[Placed], wall: str, along_m: float, size_m: tuple[float, float, float]
-) -> tuple[Placed, ...]:
-    x, y, turn = {
+    items: Sequence[PlacedPiece], wall: str, along_m: float, size_m: tuple[float, float, float]
+) -> tuple[PlacedPiece, ...]:
+    x, y, yaw_rad = {
         "back": (along_m, size_m[1], 0.0),
         "left": (0.0, along_m, np.pi / 2),
         "right": (size_m[0], along_m, -np.pi / 2),
     }[wall]
-    return tuple(item.moved(x, y, float(turn)) for item in items)
+    return tuple(item.transformed(x, y, float(yaw_rad)) for item in items)
 
 
 def _fits(boxes: Boxes, size_m: tuple[float, float, float]) -> bool:
@@ -225,8 +232,8 @@ def _fits(boxes: Boxes, size_m: tuple[float, float, float]) -> bool:
     return bool(inside and (corners[..., 1] < size_m[1] + 1e-6).all() and top < size_m[2])
 
 
-def _kept_free(shell: Shell) -> Boxes:
-    """Before doors, and about and before the radar."""
+def _clear_zones(shell: Shell) -> Boxes:
+    """Zones without furniture: in front of doors, and around and in front of the radar."""
     zones = [(shell.radar_m[0], shell.radar_m[1] + 0.35, 0.45, 0.85, 0.0)]
     for item in shell.fixed:
         if item.piece.landmark == "door":
@@ -235,12 +242,12 @@ def _kept_free(shell: Shell) -> Boxes:
     return Boxes(
         centre_m=np.array([(x, y, 1.03) for x, y, _, _, _ in zones]),
         half_m=np.array([(a, b, 0.97) for _, _, a, b, _ in zones]),
-        yaw_rad=np.array([turn for *_, turn in zones], float),
+        yaw_rad=np.array([yaw_rad for *_, yaw_rad in zones], float),
     )
 
 
-def _in_window(shell: Shell, placed: Sequence[Placed]) -> bool:
-    """Whether some furniture stands where the radar looks."""
+def _has_furniture_in_view(shell: Shell, placed: Sequence[PlacedPiece]) -> bool:
+    """Whether some furniture is near and in the radar's view."""
     for item in placed:
         x, y = item.x_m - shell.radar_m[0], item.y_m - shell.radar_m[1]
         bearing = np.arctan2(-x, y) - shell.radar_yaw_rad
@@ -249,7 +256,7 @@ def _in_window(shell: Shell, placed: Sequence[Placed]) -> bool:
     return False
 
 
-def _joined(one: Boxes, other: Boxes) -> Boxes:
+def _concatenated(one: Boxes, other: Boxes) -> Boxes:
     return Boxes(
         centre_m=np.concatenate([one.centre_m, other.centre_m]),
         half_m=np.concatenate([one.half_m, other.half_m]),

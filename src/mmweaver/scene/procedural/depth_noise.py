@@ -1,4 +1,4 @@
-"""What a stereo depth camera like the RealSense D455 makes of a true depth."""
+"""Noise model of a stereo depth camera such as the RealSense D455."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -19,7 +19,11 @@ def measured_depth(
     cos_view: Float[Array, "height width"],
     seed: int,
 ) -> DepthPixels:
-    """Errors and steps in disparity; nan beside near edges, on glass, on grazing surfaces, in speckles."""
+    """Simulates the measurement of a true depth, metres: noise and quantization of the disparity, and holes (nan).
+
+    Holes are occlusions of the second camera, glass, surfaces seen at grazing angles (`cos_view`: cosine between ray
+    and normal), and speckles.
+    """
     rng = stream(seed, "procedural", "depth")
     height, width = depth_m.shape
     blocks = (-(-height // 4), -(-width // 4))
@@ -29,19 +33,19 @@ def measured_depth(
     disparity = disparity + coarse + rng.normal(0, _NOISE_PX / 3, depth_m.shape)
     disparity = np.round(disparity / _STEP_PX) * _STEP_PX
     measured = baseline / np.maximum(disparity, _STEP_PX)
-    lost = _shadow(baseline / depth_m) | (measured < _NEAREST_M) | (measured > _FARTHEST_M)
+    lost = _occluded(baseline / depth_m) | (measured < _NEAREST_M) | (measured > _FARTHEST_M)
     lost |= np.kron(rng.random(blocks) < 0.002, np.ones((4, 4), bool))[:height, :width]
     lost |= (cos_view < _GRAZING) & (np.kron(rng.random(blocks), np.ones((4, 4)))[:height, :width] < 0.5)
     lost |= is_glass & (np.kron(rng.random(blocks), np.ones((4, 4)))[:height, :width] < 0.85)
     return np.where(lost, np.nan, measured)
 
 
-def _shadow(disparity: Float[Array, "height width"]) -> Bool[Array, "height width"]:
-    """What the second eye does not see: a strip at the left of near things, as wide as the step in disparity."""
-    hidden = np.zeros_like(disparity, dtype=bool)
+def _occluded(disparity: Float[Array, "height width"]) -> Bool[Array, "height width"]:
+    """Pixels occluded in the second camera: a strip left of near objects, as wide as the step in disparity."""
+    occluded = np.zeros_like(disparity, dtype=bool)
     jump = disparity[:, 1:] - disparity[:, :-1]
-    last = hidden.shape[-1] - 1
+    last = occluded.shape[-1] - 1
     for columns in range(1, 24):
         near = jump[:, columns - 1 :] > max(columns, 1.5)
-        hidden[:, : last - columns + 1] |= near
-    return hidden
+        occluded[:, : last - columns + 1] |= near
+    return occluded

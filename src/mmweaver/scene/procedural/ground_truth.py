@@ -1,24 +1,24 @@
-"""The true Scene of a procedural room: the whole mesh with its materials, planes, free floor, seats and landmarks."""
+"""Ground truth of a procedural room in the radar's frame: materials, planes, free floor, seats and landmarks."""
 
 import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
 from mmweaver.core.shapes import Array, PerFace, Vec3
-from mmweaver.scene.layout.height_map import CELL_M, HALF_WIDTH_M, LENGTH_M
+from mmweaver.scene.layout.height_map import grid_axes
 from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
 from mmweaver.scene.procedural.arrangement import Shell, covered
 from mmweaver.scene.procedural.meshing import Mesh
 from mmweaver.scene.procedural.palette import Palette
-from mmweaver.scene.procedural.parts import Boxes, Placed
+from mmweaver.scene.procedural.parts import Boxes, PlacedPiece
 
 _MIN_FACE_M2 = 0.15  # of furniture, to count as a flat rectangle of the room
-_NEAREST_M = 0.5
-_ARM_M = 0.45  # how far from a thing one stands to use it
+_MIN_DISTANCE_M = 0.5  # of a body from the radar
+_REACH_M = 0.45  # from which one uses a landmark
 
 
 class RadarFrame:
-    """Between the room's frame (z = 0 on the floor) and the radar's."""
+    """The transform from the room's frame (z = 0 on the floor) to the radar's."""
 
     def __init__(self, shell: Shell):
         cosine, sine = np.cos(shell.radar_yaw_rad), np.sin(shell.radar_yaw_rad)
@@ -27,19 +27,19 @@ class RadarFrame:
         self.yaw_rad = shell.radar_yaw_rad
 
     def points(self, room_m: Float[Array, "*n 3"]) -> Float[Array, "*n 3"]:
-        """Points of the room's frame in the radar's."""
+        """Transforms points, metres."""
         return (room_m - self.origin_m) @ self.room_from_radar
 
     def vectors(self, room: Float[Array, "*n 3"]) -> Float[Array, "*n 3"]:
-        """Directions of the room's frame in the radar's."""
+        """Transforms directions."""
         return room @ self.room_from_radar
 
     def angle(self, room_rad: float) -> float:
-        """A direction from +x towards +y."""
+        """Transforms an azimuth, from +x towards +y, to -pi to pi."""
         return float(np.angle(np.exp(1j * (room_rad - self.yaw_rad))))
 
     def boxes(self, boxes: Boxes) -> Boxes:
-        """Boxes of the room's frame in the radar's."""
+        """Transforms boxes."""
         return Boxes(
             centre_m=self.points(boxes.centre_m),
             half_m=boxes.half_m,
@@ -51,12 +51,12 @@ class RadarFrame:
 
 def face_materials(mesh: Mesh) -> PerFace:
     """Index into MATERIAL_NAMES of every face."""
-    index = np.array([MATERIAL_NAMES.index(look.material) for look in mesh.looks])
-    return index[mesh.look]
+    index = np.array([MATERIAL_NAMES.index(appearance.material) for appearance in mesh.appearances])
+    return index[mesh.appearance]
 
 
-def planes_of(shell: Shell, placed: tuple[Placed, ...], palette: Palette, frame: RadarFrame) -> tuple[Plane, ...]:
-    """Floor, ceiling, walls, and the large faces of box-shaped furniture: tops and panels."""
+def planes_of(shell: Shell, placed: tuple[PlacedPiece, ...], palette: Palette, frame: RadarFrame) -> tuple[Plane, ...]:
+    """Floor, ceiling, walls, and the large faces of box-shaped furniture, as tops and panels."""
     w, d, h = shell.size_m
     x, y, z = np.eye(3)
     found = [
@@ -70,24 +70,25 @@ def planes_of(shell: Shell, placed: tuple[Placed, ...], palette: Palette, frame:
     for item in placed:
         for part in item.piece.parts:
             if part.shape == "box":
-                found += _faces(item, np.array(part.low_m), np.array(part.high_m), part.look.material, frame)
+                found += _faces(item, np.array(part.low_m), np.array(part.high_m), part.appearance.material, frame)
     return tuple(found)
 
 
 def _faces(
-    item: Placed, low: Float[Array, "3"], high: Float[Array, "3"], material: str, frame: RadarFrame
+    item: PlacedPiece, low: Float[Array, "3"], high: Float[Array, "3"], material: str, frame: RadarFrame
 ) -> list[Plane]:
+    """The large faces, except the lower one, of a box from `low` to `high` in the piece's frame, metres."""
     half, middle = (high - low) / 2, (low + high) / 2
     found = []
-    for axis, sign, run in ((2, 1.0, 0), (0, 1.0, 1), (0, -1.0, 1), (1, 1.0, 0), (1, -1.0, 0)):
-        other = 3 - axis - run
-        if 4 * half[run] * half[other] < _MIN_FACE_M2:
+    for axis, sign, along_axis in ((2, 1.0, 0), (0, 1.0, 1), (0, -1.0, 1), (1, 1.0, 0), (1, -1.0, 0)):
+        other = 3 - axis - along_axis
+        if 4 * half[along_axis] * half[other] < _MIN_FACE_M2:
             continue
         normal, along = np.zeros(3), np.zeros(3)
-        normal[axis], along[run] = sign, 1.0
+        normal[axis], along[along_axis] = sign, 1.0
         ends = item.points(np.stack([middle + sign * half[axis] * np.eye(3)[axis], normal, along, np.zeros(3)]))
         kind = "top" if axis == 2 else "panel"
-        size = (float(half[run]), float(half[other]))
+        size = (float(half[along_axis]), float(half[other]))
         found.append(_plane(kind, ends[0], ends[1] - ends[3], ends[2] - ends[3], size, material, frame))
     return found
 
@@ -113,8 +114,8 @@ def _plane(
     )
 
 
-def seats_of(placed: tuple[Placed, ...], frame: RadarFrame) -> tuple[Seat, ...]:
-    """Every place to sit of the room's furniture."""
+def seats_of(placed: tuple[PlacedPiece, ...], frame: RadarFrame) -> tuple[Seat, ...]:
+    """All seats of the furniture."""
     seats = []
     for item in placed:
         for seat in item.piece.seats:
@@ -129,8 +130,8 @@ def seats_of(placed: tuple[Placed, ...], frame: RadarFrame) -> tuple[Seat, ...]:
     return tuple(seats)
 
 
-def landmarks_of(placed: tuple[Placed, ...], free: FreeSpace, frame: RadarFrame) -> tuple[Landmark, ...]:
-    """Doors, windows, tables, beds and counters; one stands before their front, or where there is room beside them."""
+def landmarks_of(placed: tuple[PlacedPiece, ...], free: FreeSpace, frame: RadarFrame) -> tuple[Landmark, ...]:
+    """Doors, windows, tables, beds and counters, approached from the front or from the side with the most room."""
     found = []
     for item in placed:
         if not item.piece.landmark:
@@ -142,13 +143,13 @@ def landmarks_of(placed: tuple[Placed, ...], free: FreeSpace, frame: RadarFrame)
             if item.piece.on_wall and side:
                 break
             stand = middle.copy()
-            stand[0] += u * ((high[0] - low[0]) / 2 + _ARM_M)
-            stand[1] = middle[1] + v * ((high[1] - low[1]) / 2 + _ARM_M)
+            stand[0] += u * ((high[0] - low[0]) / 2 + _REACH_M)
+            stand[1] = middle[1] + v * ((high[1] - low[1]) / 2 + _REACH_M)
             stand[2] = 0.0
-            there, ahead = frame.points(item.points(np.stack([stand, stand - np.array([u, v, 0.0])])))
-            room = _clearance(free, there[:2])
-            if best is None or room > best[0] + 0.1 * side:
-                best = (room, there, ahead - there)
+            approach, ahead = frame.points(item.points(np.stack([stand, stand - np.array([u, v, 0.0])])))
+            free_share = _free_share(free, approach[:2])
+            if best is None or free_share > best[0] + 0.1 * side:
+                best = (free_share, approach, ahead - approach)
         assert best is not None
         found.append(
             Landmark(
@@ -161,7 +162,7 @@ def landmarks_of(placed: tuple[Placed, ...], free: FreeSpace, frame: RadarFrame)
     return tuple(found)
 
 
-def _clearance(free: FreeSpace, place: Float[Array, "2"]) -> float:
+def _free_share(free: FreeSpace, place: Float[Array, "2"]) -> float:
     """Share of the squares within a body's reach of a place that are free."""
     x, y = np.meshgrid(free.x_m - place[0], free.y_m - place[1])
     near = np.hypot(x, y) < 0.28
@@ -169,9 +170,8 @@ def _clearance(free: FreeSpace, place: Float[Array, "2"]) -> float:
 
 
 def free_space_of(shell: Shell, boxes: Boxes, frame: RadarFrame) -> FreeSpace:
-    """On the grid that reconstructed scenes have; all of the free floor counts as seen. Boxes in the radar's frame."""
-    x_m = np.arange(-HALF_WIDTH_M, HALF_WIDTH_M - 1e-9, CELL_M) + CELL_M / 2
-    y_m = np.arange(0, LENGTH_M - 1e-9, CELL_M) + CELL_M / 2
+    """Free floor on the grid of reconstructed scenes, all of it marked as seen; boxes in the radar's frame."""
+    x_m, y_m = grid_axes()
     above = Boxes(
         centre_m=boxes.centre_m + np.array([0.0, 0.0, shell.radar_m[2]]), half_m=boxes.half_m, yaw_rad=boxes.yaw_rad
     )
@@ -179,5 +179,5 @@ def free_space_of(shell: Shell, boxes: Boxes, frame: RadarFrame) -> FreeSpace:
     in_room = np.stack([x, y, np.zeros_like(x)], axis=-1) @ frame.room_from_radar.T + frame.origin_m
     inside = (in_room[..., 0] > 0) & (in_room[..., 0] < shell.size_m[0])
     inside &= (in_room[..., 1] > 0) & (in_room[..., 1] < shell.size_m[1])
-    is_free = inside & ~covered(above, x_m, y_m) & (np.hypot(x, y) > _NEAREST_M)
+    is_free = inside & ~covered(above, x_m, y_m) & (np.hypot(x, y) > _MIN_DISTANCE_M)
     return FreeSpace(x_m=x_m, y_m=y_m, is_free=is_free, is_seen=is_free.copy())

@@ -1,4 +1,4 @@
-"""Furniture that belongs together. Origin of a group: on the floor at the wall behind it, its front towards -y.
+"""Groups of furniture. The origin of a group is on the floor at the wall behind it, its front towards -y.
 
 Groups for the middle of a room have their origin at their own middle.
 """
@@ -10,36 +10,36 @@ import numpy as np
 
 from mmweaver.scene.procedural import objects, seat_furniture, storage_furniture, table_furniture
 from mmweaver.scene.procedural.palette import Palette
-from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, Placed, outlines_of
+from mmweaver.scene.procedural.parts import OVERLAP_M, Piece, PlacedPiece, bounding_boxes
 
 WALL, BACK, SIDE, MIDDLE = "wall", "back", "side", "middle"
-_DRAWS = 20
+_MAX_DRAWS = 20
 GAP_M = 0.02  # between furniture and the wall behind it
 
 
 @dataclass(frozen=True, kw_only=True)
 class FurnitureGroup:
-    """Pieces in the group's own frame, and where in a room it may stand."""
+    """Pieces in the group's own frame, and where in a room the group may stand."""
 
-    items: tuple[Placed, ...]
+    items: tuple[PlacedPiece, ...]
     site: str = WALL  # wall (any), back, side, middle
 
 
 Maker = Callable[[Palette, np.random.Generator], FurnitureGroup]
 
 
-def at(piece: Piece, x: float | int, y: float | int, z: float = 0.0, turn_deg: float = 0.0) -> Placed:
-    """A piece at a place of its group."""
-    return Placed(piece=piece, x_m=float(x), y_m=float(y), z_m=float(z), yaw_rad=float(np.deg2rad(turn_deg)))
+def at(piece: Piece, x: float | int, y: float | int, z: float = 0.0, turn_deg: float = 0.0) -> PlacedPiece:
+    """A piece at a position in its group's frame."""
+    return PlacedPiece(piece=piece, x_m=float(x), y_m=float(y), z_m=float(z), yaw_rad=float(np.deg2rad(turn_deg)))
 
 
-def at_wall(piece: Piece, x: float = 0.0) -> Placed:
-    """With its back close to the wall."""
+def at_wall(piece: Piece, x: float = 0.0) -> PlacedPiece:
+    """A piece with its back close to the wall."""
     return at(piece, x, -float(piece.high_m[1]) - GAP_M)
 
 
 def _top_m(piece: Piece, lowest: float = 0.0) -> float:
-    """Height of the surface one puts things on: the highest top of at least 0.2 m2."""
+    """Height of the surface for objects, metres: the highest box top larger than 0.1 m2."""
     areas = [
         part.high_m[2]
         for part in piece.parts
@@ -48,11 +48,11 @@ def _top_m(piece: Piece, lowest: float = 0.0) -> float:
     return max(top for top in areas if top > lowest)
 
 
-def drawn(make: Maker, palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A group whose own pieces do not cut into each other; drawn again until they do not."""
-    for _ in range(_DRAWS):
+def sample_group(make: Maker, palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
+    """Samples a group until its pieces do not penetrate each other."""
+    for _ in range(_MAX_DRAWS):
         group = make(palette, rng)
-        boxes = outlines_of(group.items)
+        boxes = bounding_boxes(group.items)
         piece = np.array(boxes.piece)
         if not (boxes.overlap(boxes, OVERLAP_M) & (piece[:, None] != piece[None, :])).any():
             return group
@@ -61,7 +61,7 @@ def drawn(make: Maker, palette: Palette, rng: np.random.Generator) -> FurnitureG
 
 # Work ---------------------------------------------------------------------------------------------------------------
 def desk_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """Desk, monitor, keyboard, a cup, a chair drawn back from it."""
+    """Desk with monitor, keyboard and cup, and an office chair."""
     desk = table_furniture.desk(palette, rng, float(rng.uniform(1.2, 1.6)))
     wall = at_wall(desk)
     top, half = _top_m(desk), float(desk.high_m[0])
@@ -84,7 +84,7 @@ def desk_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def laptop_desk(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """Desk with a laptop and a lamp, a plain chair."""
+    """Desk with laptop and lamp, and a plain chair."""
     desk = table_furniture.desk(palette, rng, float(rng.uniform(1.0, 1.25)))
     wall, top = at_wall(desk), _top_m(desk)
     away = float(-desk.low_m[1]) + rng.uniform(0.24, 0.4)
@@ -100,7 +100,7 @@ def laptop_desk(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def bench_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A laboratory's bench with instruments and a stool."""
+    """Laboratory bench with instruments and a stool."""
     made = table_furniture.lab_bench(palette, rng, float(rng.uniform(1.5, 2.1)))
     wall, half = at_wall(made), float(made.high_m[0])
     items = [wall, at(objects.instrument(palette, rng), -half + 0.4, wall.y_m - 0.05, 0.90)]
@@ -112,7 +112,7 @@ def bench_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def workbench_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """Workbench, a carton on it, a stool."""
+    """Workbench with a carton, and a stool."""
     made = table_furniture.workbench(palette, rng, float(rng.uniform(1.4, 1.8)))
     wall = at_wall(made)
     top = float(made.parts[4].high_m[2])
@@ -135,7 +135,7 @@ def meeting_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def pupils(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A school table for two with two chairs; its pupils look at the wall behind it."""
+    """A school table for two with two chairs, facing the wall behind it."""
     made = table_furniture.table(palette, rng, (1.3, 0.55), name="school table")
     items = [at(made, 0, 0), at(objects.books(palette, rng), -0.3, 0.0, _top_m(made))]
     for x in (-0.33, 0.33):
@@ -146,7 +146,7 @@ def pupils(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def teacher(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A whiteboard with a desk before it."""
+    """A whiteboard with a desk in front of it."""
     made = table_furniture.desk(palette, rng, 1.3)
     y = -1.25
     items = (
@@ -165,7 +165,7 @@ def board(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 # Home ---------------------------------------------------------------------------------------------------------------
 def sofa_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """Sofa, a low table before it on a rug, a lamp beside it."""
+    """A sofa with a coffee table, often with a floor lamp."""
     made = seat_furniture.sofa(palette, rng, 2 + int(rng.random() < 0.45))
     wall = at_wall(made)
     front = wall.y_m + float(made.low_m[1])
@@ -180,12 +180,12 @@ def sofa_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def sofa_alone(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A sofa with nothing before it."""
+    """A sofa without a table."""
     return FurnitureGroup(items=(at_wall(seat_furniture.sofa(palette, rng, 2)),))
 
 
 def armchair_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """An armchair, a little turned."""
+    """An armchair at a small angle to the wall."""
     made = seat_furniture.armchair(palette, rng)
     return FurnitureGroup(items=(at(made, 0, -0.62, 0.0, rng.uniform(-20, 20)),))
 
@@ -198,7 +198,7 @@ def television_place(palette: Palette, rng: np.random.Generator) -> FurnitureGro
 
 
 def television_on_wall(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """Flat on the wall."""
+    """A television mounted on the wall."""
     return FurnitureGroup(items=(at(objects.television(palette, rng, on_wall=True), 0, 0),))
 
 
@@ -216,7 +216,7 @@ def bed_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def dining_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A table laid, with four chairs."""
+    """A dining table with a bowl and four chairs."""
     size = (float(rng.uniform(1.2, 1.5)), float(rng.uniform(0.8, 0.95)))
     made = table_furniture.table(palette, rng, size, name="dining table")
     items = [at(made, 0, 0), at(objects.bowl(palette, rng), rng.uniform(-0.2, 0.2), 0.0, _top_m(made))]
@@ -258,7 +258,7 @@ def kitchen_row(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
 
 
 def kitchen_counter(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A counter alone, cabinets above."""
+    """A counter with cabinets above."""
     width = float(rng.uniform(1.2, 1.6))
     wall = at_wall(table_furniture.counter(palette, rng, width))
     return FurnitureGroup(items=(wall, at(objects.wall_cabinet(palette, rng, width), 0, 0)))
@@ -266,17 +266,17 @@ def kitchen_counter(palette: Palette, rng: np.random.Generator) -> FurnitureGrou
 
 # One piece at a wall -------------------------------------------------------------------------------------------------
 def single(make: Callable[[Palette, np.random.Generator], Piece], site: str = WALL) -> Maker:
-    """One thing with its back at the wall."""
+    """A group of one piece with its back at the wall."""
     return lambda palette, rng: FurnitureGroup(items=(at_wall(make(palette, rng)),), site=site)
 
 
-def hung(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
-    """One thing on a wall."""
+def on_wall_group(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
+    """A group of one piece mounted on a wall."""
     return lambda palette, rng: FurnitureGroup(items=(at(make(palette, rng), 0, 0),))
 
 
-def standing(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
-    """One thing in the open."""
+def freestanding(make: Callable[[Palette, np.random.Generator], Piece]) -> Maker:
+    """A group of one piece in the open."""
     return lambda palette, rng: FurnitureGroup(items=(at(make(palette, rng), 0, 0),), site=MIDDLE)
 
 
@@ -294,5 +294,5 @@ def shelves(count: int) -> Maker:
 
 
 def treadmill_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """With its front into the room."""
+    """A treadmill with its front towards the room."""
     return FurnitureGroup(items=(at(objects.treadmill(palette, rng), 0, -0.85),))

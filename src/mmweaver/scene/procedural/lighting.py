@@ -1,4 +1,4 @@
-"""Light of several times of day, and how much of it falls on what the camera sees."""
+"""Named lightings, and the irradiance from area lights and ambient light."""
 
 from dataclasses import dataclass
 
@@ -8,16 +8,16 @@ from jaxtyping import Float
 from mmweaver.core.registry import Registry
 from mmweaver.core.shapes import Array, Points
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.scene.procedural.parts import Colour, Placed
+from mmweaver.scene.procedural.parts import Colour, PlacedPiece
 
-Light = Float[Array, "point 3"]
+Irradiance = Float[Array, "point 3"]  # red, green, blue
 Picture = Float[Array, "row column 3"]
 _SAMPLES, _OCCLUSION_M = 2, 0.9
 
 
 @dataclass(frozen=True, kw_only=True)
 class Lighting:
-    """How strongly windows, ceiling lamps and small lamps shine, in which colour; what comes from all sides."""
+    """Radiance (red, green, blue) of windows, ceiling lamps, small lamps and the surroundings, and the exposure."""
 
     name: str
     window: Colour
@@ -27,57 +27,53 @@ class Lighting:
     exposure: float = 1.0
 
 
-LIGHTINGS: Registry[Lighting] = Registry(
-    "lighting",
-    [
-        (one.name, one)
-        for one in (
-            Lighting(
-                name="day",
-                window=(5.0, 5.5, 6.2),
-                ceiling=(0.6, 0.6, 0.6),
-                lamp=(0.3, 0.25, 0.2),
-                ambient=(0.40, 0.42, 0.45),
-            ),
-            Lighting(
-                name="lamps",
-                window=(0.4, 0.5, 0.8),
-                ceiling=(6.5, 5.9, 4.9),
-                lamp=(5.0, 3.9, 2.5),
-                ambient=(0.36, 0.33, 0.28),
-            ),
-            Lighting(
-                name="evening",
-                window=(0.9, 0.6, 0.5),
-                ceiling=(1.6, 1.25, 0.8),
-                lamp=(9.0, 6.6, 3.8),
-                ambient=(0.24, 0.19, 0.14),
-                exposure=1.5,
-            ),
-            Lighting(
-                name="tubes",
-                window=(2.5, 2.8, 3.2),
-                ceiling=(6.0, 6.4, 6.6),
-                lamp=(0.5, 0.5, 0.4),
-                ambient=(0.42, 0.44, 0.45),
-            ),
-        )
-    ],
+_LIGHTINGS = (
+    Lighting(
+        name="day",
+        window=(5.0, 5.5, 6.2),
+        ceiling=(0.6, 0.6, 0.6),
+        lamp=(0.3, 0.25, 0.2),
+        ambient=(0.40, 0.42, 0.45),
+    ),
+    Lighting(
+        name="lamps",
+        window=(0.4, 0.5, 0.8),
+        ceiling=(6.5, 5.9, 4.9),
+        lamp=(5.0, 3.9, 2.5),
+        ambient=(0.36, 0.33, 0.28),
+    ),
+    Lighting(
+        name="evening",
+        window=(0.9, 0.6, 0.5),
+        ceiling=(1.6, 1.25, 0.8),
+        lamp=(9.0, 6.6, 3.8),
+        ambient=(0.24, 0.19, 0.14),
+        exposure=1.5,
+    ),
+    Lighting(
+        name="tubes",
+        window=(2.5, 2.8, 3.2),
+        ceiling=(6.0, 6.4, 6.6),
+        lamp=(0.5, 0.5, 0.4),
+        ambient=(0.42, 0.44, 0.45),
+    ),
 )
+
+LIGHTINGS: Registry[Lighting] = Registry("lighting", [(lighting.name, lighting) for lighting in _LIGHTINGS])
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lamp:
-    """A rectangle that shines to one side; in the room's frame."""
+class AreaLight:
+    """A rectangle that emits to one side, in the room's frame; without a normal it emits to both."""
 
     corner_m: Float[Array, "3"]
     edges_m: Float[Array, "2 3"]
     normal: Float[Array, "3"]
-    light: Float[Array, "3"]
+    radiance: Float[Array, "3"]
 
 
-def lamps_of(placed: tuple[Placed, ...], lighting: Lighting) -> list[Lamp]:
-    """The windows, ceiling lamps and lamp shades of a room."""
+def area_lights(placed: tuple[PlacedPiece, ...], lighting: Lighting) -> list[AreaLight]:
+    """The windows, ceiling lamps and lamp shades of a room as area lights."""
     lamps = []
     for item in placed:
         name, low, high = item.piece.name, item.piece.low_m, item.piece.high_m
@@ -88,37 +84,42 @@ def lamps_of(placed: tuple[Placed, ...], lighting: Lighting) -> list[Lamp]:
                 (pane.high_m[0], -0.06, pane.low_m[2]),
                 (pane.low_m[0], -0.06, pane.high_m[2]),
             ]
-            lamps.append(_lamp(item, corners, (0.0, -1.0, 0.0), lighting.window))
+            lamps.append(_area_light(item, corners, (0.0, -1.0, 0.0), lighting.window))
         elif name == "ceiling lamp":
             corners = [(low[0], low[1], -0.05), (high[0], low[1], -0.05), (low[0], high[1], -0.05)]
-            lamps.append(_lamp(item, corners, (0.0, 0.0, -1.0), lighting.ceiling))
+            lamps.append(_area_light(item, corners, (0.0, 0.0, -1.0), lighting.ceiling))
         elif name in ("floor lamp", "table lamp"):
             top, wide = float(high[2]) + 0.01, 0.14
             corners = [(-wide, -wide, top), (wide, -wide, top), (-wide, wide, top)]
-            lamps.append(_lamp(item, corners, (0.0, 0.0, 0.0), lighting.lamp))
+            lamps.append(_area_light(item, corners, (0.0, 0.0, 0.0), lighting.lamp))
     return lamps
 
 
-def _lamp(item: Placed, corners: list, normal: Colour, light: Colour) -> Lamp:
+def _area_light(item: PlacedPiece, corners: list, normal: Colour, radiance: Colour) -> AreaLight:
     points = item.points(np.array(corners, float))
     ends = item.points(np.array([normal, (0.0, 0.0, 0.0)], float))
-    return Lamp(
+    return AreaLight(
         corner_m=points[0],
         edges_m=np.stack([points[1] - points[0], points[2] - points[0]]),
         normal=ends[0] - ends[1],
-        light=np.array(light, float),
+        radiance=np.array(radiance, float),
     )
 
 
-def light_on(
-    caster: RayCaster, lamps: list[Lamp], lighting: Lighting, points: Points, normals: Points, rng: np.random.Generator
-) -> Light:
-    """Light that falls on points: from the lamps, and from all sides where corners do not take it."""
+def irradiance(
+    caster: RayCaster,
+    lamps: list[AreaLight],
+    lighting: Lighting,
+    points: Points,
+    normals: Points,
+    rng: np.random.Generator,
+) -> Irradiance:
+    """Irradiance of points with normals: shadowed light of the lamps by stratified sampling, and ambient light."""
     total = np.zeros_like(points)
     for lamp in lamps:
         area = float(np.linalg.norm(np.cross(*lamp.edges_m)))
-        for turn in range(_SAMPLES):
-            u, v = (turn + rng.random(len(points))) / _SAMPLES, rng.random(len(points))
+        for stratum in range(_SAMPLES):
+            u, v = (stratum + rng.random(len(points))) / _SAMPLES, rng.random(len(points))
             place = lamp.corner_m + u[:, None] * lamp.edges_m[0] + v[:, None] * lamp.edges_m[1]
             between = place - points
             distance = np.linalg.norm(between, axis=1)
@@ -128,28 +129,28 @@ def light_on(
             share = received * sent * area / (np.pi * np.maximum(distance, 0.3) ** 2)
             lit = np.flatnonzero(share > 2e-4)
             clear = caster.is_clear(points[lit] + 2e-3 * normals[lit], place[lit], 0.01)
-            total[lit[clear]] += (share[lit[clear]] / _SAMPLES)[:, None] * lamp.light
-    return total + _openness(caster, points, normals, rng)[:, None] * np.array(lighting.ambient)
+            total[lit[clear]] += (share[lit[clear]] / _SAMPLES)[:, None] * lamp.radiance
+    return total + _ambient_visibility(caster, points, normals, rng)[:, None] * np.array(lighting.ambient)
 
 
-def _openness(caster: RayCaster, points: Points, normals: Points, rng: np.random.Generator) -> np.ndarray:
-    """1 in the open, less in corners: how far two rays over the hemisphere go."""
+def _ambient_visibility(caster: RayCaster, points: Points, normals: Points, rng: np.random.Generator) -> np.ndarray:
+    """Ambient occlusion from two rays over the hemisphere: 1 in the open, less in corners, (point,)."""
     total = np.zeros(len(points))
-    for turn in range(2):
-        height = np.sqrt((turn + rng.random(len(points))) / 2)
+    for stratum in range(2):
+        height = np.sqrt((stratum + rng.random(len(points))) / 2)
         angle = 2 * np.pi * rng.random(len(points))
         helper = np.where(np.abs(normals[:, :1]) > 0.8, np.array([[0.0, 1, 0]]), np.array([[1.0, 0, 0]]))
         tangent = np.cross(normals, helper)
         tangent /= np.linalg.norm(tangent, axis=1)[:, None]
         flat = np.cos(angle)[:, None] * tangent + np.sin(angle)[:, None] * np.cross(normals, tangent)
-        way = np.sqrt(1 - height**2)[:, None] * flat + height[:, None] * normals
-        reach = caster.distance_m(points + 2e-3 * normals, way)
+        directions = np.sqrt(1 - height**2)[:, None] * flat + height[:, None] * normals
+        reach = caster.distance_m(points + 2e-3 * normals, directions)
         total += np.clip(reach / _OCCLUSION_M, 0.25, 1.0)
     return total / 2
 
 
-def smoothed(light: Picture, points: Picture, normals: Picture) -> Picture:
-    """Light averaged along surfaces: an a-trous filter that stops where the place or the direction jumps.
+def denoised(light: Picture, points: Picture, normals: Picture) -> Picture:
+    """Removes sampling noise by an edge-avoiding a-trous filter, guided by the points (metres) and normals.
 
     Reference: Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform (2010).
     """

@@ -1,4 +1,4 @@
-"""Triangles of the room: furniture cut into small faces with edges of their own, walls as whole rectangles."""
+"""Triangle mesh of a room: furniture tessellated into small faces, walls as whole rectangles."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,37 +8,37 @@ from jaxtyping import Float, Int
 
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
 from mmweaver.scene.procedural.palette import Palette
-from mmweaver.scene.procedural.parts import Appearance, Part, Placed
+from mmweaver.scene.procedural.parts import Appearance, Part, PlacedPiece
 
-FACE_M = 0.25  # longest side: the simulator's edges are those of small faces
+FACE_M = 0.25  # longest side: the simulator finds the edges of small faces
 _ROWS, _COLUMNS, _RING = 9, 20, 20
-_SIDES = (  # axis that stays, its sign, the two that run, so that their product points outward
+_SIDES = (  # normal axis, its sign, and the two tangent axes, whose cross product points outward
     (0, -1, 2, 1), (0, 1, 1, 2), (1, -1, 0, 2), (1, 1, 2, 0), (2, -1, 1, 0), (2, 1, 0, 1),
 )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mesh:
-    """Triangles in the room's frame; `look` and `piece` of each face (piece -1: walls, floor, ceiling)."""
+    """Triangles in the room's frame."""
 
     vertices_m: Vertices
     faces: Faces
-    look: PerFace
-    piece: PerFace
-    looks: tuple[Appearance, ...]
+    appearance: PerFace  # index into `appearances`
+    piece: PerFace  # index of the piece; -1 for walls, floor and ceiling
+    appearances: tuple[Appearance, ...]
 
 
-def mesh_of(size_m: tuple[float, float, float], placed: Sequence[Placed], palette: Palette) -> Mesh:
-    """The shell and everything in it."""
-    vertices, faces, look, piece = [], [], [], []
-    looks: dict[Appearance, int] = {}
+def make_room_mesh(size_m: tuple[float, float, float], placed: Sequence[PlacedPiece], palette: Palette) -> Mesh:
+    """The mesh of the empty room and of all pieces in it."""
+    vertices, faces, appearance, piece = [], [], [], []
+    appearances: dict[Appearance, int] = {}
     count = 0
 
     def add(corners: np.ndarray, triangles: np.ndarray, of: Appearance, number: int) -> None:
         nonlocal count
         vertices.append(corners)
         faces.append(triangles + count)
-        look.append(np.full(len(triangles), looks.setdefault(of, len(looks))))
+        appearance.append(np.full(len(triangles), appearances.setdefault(of, len(appearances))))
         piece.append(np.full(len(triangles), number))
         count += len(corners)
 
@@ -47,13 +47,13 @@ def mesh_of(size_m: tuple[float, float, float], placed: Sequence[Placed], palett
     for number, item in enumerate(placed):
         for part in item.piece.parts:
             corners, triangles = _triangles(part)
-            add(item.points(corners), triangles, part.look, number)
+            add(item.points(corners), triangles, part.appearance, number)
     return Mesh(
         vertices_m=np.concatenate(vertices),
         faces=np.concatenate(faces),
-        look=np.concatenate(look),
+        appearance=np.concatenate(appearance),
         piece=np.concatenate(piece),
-        looks=tuple(looks),
+        appearances=tuple(appearances),
     )
 
 
@@ -67,7 +67,7 @@ def _shell(size_m: tuple[float, float, float], palette: Palette) -> list[tuple[n
         ([(w, 0, 0), (w, 0, h), (w, d, h), (w, d, 0)], palette.wall),
         ([(0, 0, 0), (0, 0, h), (w, 0, h), (w, 0, 0)], palette.wall),
     ]
-    return [(np.array(corners, float), look) for corners, look in quads]
+    return [(np.array(corners, float), appearance) for corners, appearance in quads]
 
 
 def _triangles(part: Part) -> tuple[Vertices, Faces]:
@@ -101,30 +101,30 @@ def _quads(*corners: Int[Array, "..."]) -> Faces:
 
 
 def _rounded(low: Float[Array, "3"], high: Float[Array, "3"]) -> tuple[Vertices, Faces]:
-    """A ball pulled apart along its symmetry planes: a box with rounded edges."""
+    """A sphere split at its symmetry planes and moved apart: a box with rounded edges."""
     polar = np.concatenate([[1e-3], (np.arange(1, _ROWS) + 0.0) / _ROWS * np.pi, [np.pi - 1e-3]])
     polar = np.where(np.abs(polar - np.pi / 2) < 1e-9, np.pi / 2 + 1e-6, polar)
-    turn = (np.arange(_COLUMNS) + 0.5) / _COLUMNS * 2 * np.pi
-    p, t = np.meshgrid(polar, turn, indexing="ij")
-    ball = np.stack([np.sin(p) * np.cos(t), np.sin(p) * np.sin(t), np.cos(p)], axis=-1).reshape(-1, 3)
+    azimuth = (np.arange(_COLUMNS) + 0.5) / _COLUMNS * 2 * np.pi
+    p, t = np.meshgrid(polar, azimuth, indexing="ij")
+    sphere = np.stack([np.sin(p) * np.cos(t), np.sin(p) * np.sin(t), np.cos(p)], axis=-1).reshape(-1, 3)
     half = (high - low) / 2
     bevel = min(0.07, 0.6 * float(half.min()))
-    index = np.arange(ball.shape[0]).reshape(len(polar), _COLUMNS)
+    index = np.arange(sphere.shape[0]).reshape(len(polar), _COLUMNS)
     after = np.roll(index, -1, axis=1)
     caps = [np.stack([np.full(_COLUMNS - 2, index[0, 0]), index[0, 1:-1], index[0, 2:]], 1)]
     caps.append(np.stack([np.full(_COLUMNS - 2, index[-1, 0]), index[-1, 2:], index[-1, 1:-1]], 1))
     faces = np.concatenate([_quads(index[:-1], index[1:], after[1:], after[:-1]), *caps])
-    # Stretched so that the ball's outermost vertices reach the box.
-    ball = ball / np.abs(ball).max(axis=0)
-    return (low + high) / 2 + np.sign(ball) * (half - bevel) + bevel * ball, faces
+    # Scaled so that the sphere's outermost vertices reach the box.
+    sphere = sphere / np.abs(sphere).max(axis=0)
+    return (low + high) / 2 + np.sign(sphere) * (half - bevel) + bevel * sphere, faces
 
 
 def _cylinder(low: Float[Array, "3"], high: Float[Array, "3"], top: float) -> tuple[Vertices, Faces]:
-    """Round, inscribed in the box; a cone's narrow end is at the bottom for pots and at the top for shades."""
-    turn = np.arange(_RING) / _RING * 2 * np.pi
-    ring = np.stack([np.cos(turn), np.sin(turn)], axis=1) * (high - low)[:2] / 2
+    """A cylinder or truncated cone inscribed in the box; `top` is the ratio of its radii."""
+    azimuth = np.arange(_RING) / _RING * 2 * np.pi
+    ring = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=1) * (high - low)[:2] / 2
     middle = (low + high)[:2] / 2
-    # What stands on the floor narrows downwards, what hangs narrows upwards.
+    # Pots, on the floor, taper downwards; lamp shades taper upwards.
     bottom_share, top_share = (top, 1.0) if low[2] < 0.1 else (1.0, top)
     below = np.column_stack([middle + bottom_share * ring, np.full(_RING, low[2])])
     above = np.column_stack([middle + top_share * ring, np.full(_RING, high[2])])

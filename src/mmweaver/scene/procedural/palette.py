@@ -1,4 +1,4 @@
-"""The looks of one room: its woods, cloths, paints, walls and floor, drawn from its seed."""
+"""The palette of a room: woods, fabrics, paints, walls and floor, sampled from its seed."""
 
 from dataclasses import dataclass, replace
 
@@ -49,7 +49,7 @@ _WALLS: dict[str, tuple[str, str, str]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Palette:
-    """Looks to build with; `named` gives one the class of the thing it is used for."""
+    """Appearances to build furniture with; `labelled` sets the class of the object that one is used for."""
 
     wood: Appearance
     dark_wood: Appearance
@@ -63,23 +63,23 @@ class Palette:
     ceiling: Appearance
 
     @staticmethod
-    def named(look: Appearance, coco: str) -> Appearance:
-        return replace(look, coco=coco)
+    def labelled(appearance: Appearance, coco: str) -> Appearance:
+        return replace(appearance, coco=coco)
 
 
-def draw_palette(rng: np.random.Generator, walls: tuple[str, ...], floors: tuple[str, ...]) -> Palette:
-    """Walls and floor of one of the named sorts, everything else as it comes."""
+def sample_palette(rng: np.random.Generator, walls: tuple[str, ...], floors: tuple[str, ...]) -> Palette:
+    """Samples a palette with walls and a floor of the given kinds."""
     wood, dark = _WOODS[int(rng.integers(len(_WOODS)))], _WOODS[2 + int(rng.integers(2))]
     cloth, accent = (_CLOTHS[int(i)] for i in rng.permutation(len(_CLOTHS))[:2])
-    sort = _WALLS[walls[int(rng.integers(len(walls)))]]
+    wall_kind = _WALLS[walls[int(rng.integers(len(walls)))]]
     floor = _FLOORS[floors[int(rng.integers(len(floors)))]]
     colour, material, coco, pattern = floor[int(rng.integers(len(floor)))]
     wall = _PAINTS[int(rng.integers(len(_PAINTS)))]
-    if sort[2] == "brick":
+    if wall_kind[2] == "brick":
         wall = (0.38, 0.16, 0.10)
-    elif sort[2] == "panels":
+    elif wall_kind[2] == "panels":
         wall = wood
-    elif sort[2] == "concrete":
+    elif wall_kind[2] == "concrete":
         wall = (0.48, 0.47, 0.45)
     return Palette(
         wood=Appearance(_varied(rng, wood), "wood", "furniture-other", "grain"),
@@ -89,7 +89,7 @@ def draw_palette(rng: np.random.Generator, walls: tuple[str, ...], floors: tuple
         metal=Appearance((0.35, 0.35, 0.36), "metal", "furniture-other"),
         dark=Appearance((0.03, 0.03, 0.032), "chipboard", "furniture-other"),
         white=Appearance(_varied(rng, (0.66, 0.65, 0.62)), "chipboard", "furniture-other"),
-        wall=Appearance(_varied(rng, wall), sort[0], sort[1], sort[2]),
+        wall=Appearance(_varied(rng, wall), wall_kind[0], wall_kind[1], wall_kind[2]),
         floor=Appearance(_varied(rng, colour), material, coco, pattern),
         ceiling=Appearance((0.82, 0.82, 0.80), "ceiling_board", "ceiling-other", "plaster"),
     )

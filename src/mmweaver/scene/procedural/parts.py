@@ -1,4 +1,4 @@
-"""What furniture is built of: boxes, rounded boxes and cylinders with a look; and how pieces are put into a room."""
+"""Building blocks of furniture: boxes, rounded boxes and cylinders, composed to pieces that are placed in a room."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -17,29 +17,29 @@ SHAPES = ("box", "rounded", "cylinder", "cone")
 
 @dataclass(frozen=True)
 class Appearance:
-    """Colour in linear light, pattern, what it is made of and what COCO-Stuff calls it."""
+    """Material appearance of a surface: colour in linear RGB, texture, radar material, and COCO-Stuff class."""
 
     colour: Colour
     material: str
     coco: str
     pattern: str = "plain"  # a name in textures.PATTERNS
-    glow: float = 0.0  # light of its own
-    is_glass: bool = False  # depth cameras measure nothing there
+    emission: float = 0.0  # relative to the colour
+    is_glass: bool = False  # depth cameras mostly measure nothing
 
 
 @dataclass(frozen=True)
 class Part:
-    """One body of a piece, inscribed in the box from `low_m` to `high_m` of the piece's own frame."""
+    """A primitive inscribed in the box from `low_m` to `high_m` in the piece's own frame."""
 
     low_m: Point
     high_m: Point
-    look: Appearance
+    appearance: Appearance
     shape: str = "box"  # one of SHAPES
 
 
 @dataclass(frozen=True)
 class LocalSeat:
-    """A place to sit on a piece, looking to the piece's front (-y)."""
+    """A seat of a piece, in its own frame; the sitter faces the piece's front (-y)."""
 
     x_m: float
     y_m: float
@@ -50,13 +50,13 @@ class LocalSeat:
 
 @dataclass(frozen=True, kw_only=True)
 class Piece:
-    """A thing as it comes from the shop. Own frame: origin on the floor, front towards -y, z up."""
+    """A piece of furniture in its own frame: origin on the floor, front towards -y, z up."""
 
     name: str
     parts: tuple[Part, ...]
     seats: tuple[LocalSeat, ...] = ()
-    landmark: str = ""  # the Landmark.kind, if it is one
-    on_wall: bool = False  # hangs at y = 0, its front towards -y
+    landmark: str = ""  # Landmark.kind, if it is a landmark
+    on_wall: bool = False  # mounted on a wall at y = 0
 
     @property
     def low_m(self) -> Float[Array, "3"]:
@@ -68,8 +68,8 @@ class Piece:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Placed:
-    """A piece in the room: its origin there, and its turn about the vertical."""
+class PlacedPiece:
+    """A piece in the room: the position of its origin, and its rotation about the vertical."""
 
     piece: Piece
     x_m: float
@@ -77,10 +77,10 @@ class Placed:
     z_m: float = 0.0
     yaw_rad: float = 0.0
 
-    def moved(self, x_m: float, y_m: float, yaw_rad: float) -> "Placed":
-        """The same, carried along when its group's origin is put to (x, y) and turned."""
+    def transformed(self, x_m: float, y_m: float, yaw_rad: float) -> "PlacedPiece":
+        """The piece after its group, of which it was in the frame, is rotated and moved to (x, y)."""
         cosine, sine = float(np.cos(yaw_rad)), float(np.sin(yaw_rad))
-        return Placed(
+        return PlacedPiece(
             piece=self.piece,
             x_m=x_m + cosine * self.x_m - sine * self.y_m,
             y_m=y_m + sine * self.x_m + cosine * self.y_m,
@@ -89,27 +89,27 @@ class Placed:
         )
 
     def points(self, local_m: Float[Array, "*point 3"]) -> Float[Array, "*point 3"]:
-        """Points of the piece's own frame in the room's."""
+        """Transforms points, metres, of the piece's own frame to the room's."""
         cosine, sine = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
-        turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-        return local_m @ turn.T + np.array([self.x_m, self.y_m, self.z_m])
+        rotation = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        return local_m @ rotation.T + np.array([self.x_m, self.y_m, self.z_m])
 
 
 @dataclass(frozen=True, kw_only=True)
 class Boxes:
-    """Upright boxes, one row each: turned about the vertical only."""
+    """Boxes rotated about the vertical, one row each."""
 
     centre_m: Float[Array, "box 3"]
     half_m: Float[Array, "box 3"]
     yaw_rad: Float[Array, " box"]
     names: tuple[str, ...] = field(default=())  # of the pieces they belong to
-    piece: tuple[int, ...] = field(default=())  # which piece of the room
+    piece: tuple[int, ...] = field(default=())  # index of the piece in the room
 
     def __len__(self) -> int:
         return len(self.centre_m)
 
     def corners_m(self) -> Float[Array, "box 4 2"]:
-        """Of the footprints."""
+        """Corners of the footprints (x, y), metres."""
         signs = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
         local = signs * self.half_m[:, None, :2]
         cosine, sine = np.cos(self.yaw_rad)[:, None], np.sin(self.yaw_rad)[:, None]
@@ -118,25 +118,33 @@ class Boxes:
         return np.stack([x, y], axis=-1) + self.centre_m[:, None, :2]
 
     def overlap(self, other: "Boxes", slack_m: float = 0.0) -> Bool[Array, "box other"]:
-        """Which boxes cut into which by more than the slack (less than touching, if it is negative)."""
+        """Which boxes penetrate which by more than `slack_m`; if it is negative, which are closer than that.
+
+        Separating-axis theorem in the plane.
+        """
         gap = np.abs(self.centre_m[:, None, 2] - other.centre_m[None, :, 2])
-        apart = gap >= self.half_m[:, None, 2] + other.half_m[None, :, 2] - slack_m
+        is_separate = gap >= self.half_m[:, None, 2] + other.half_m[None, :, 2] - slack_m
         here, there = self.corners_m(), other.corners_m()
         for axes in (_axes(self.yaw_rad)[:, None], _axes(other.yaw_rad)[None, :]):
             for k in range(2):
                 axis = axes[..., k, :]
                 one = np.einsum("acx,abx->abc", here, np.broadcast_to(axis, (len(self), len(other), 2)))
                 two = np.einsum("bcx,abx->abc", there, np.broadcast_to(axis, (len(self), len(other), 2)))
-                apart |= one.max(-1) - slack_m <= two.min(-1)
-                apart |= two.max(-1) - slack_m <= one.min(-1)
-        return ~apart
+                is_separate |= one.max(-1) - slack_m <= two.min(-1)
+                is_separate |= two.max(-1) - slack_m <= one.min(-1)
+        return ~is_separate
 
     def distance_m(self, points_m: Float[Array, "point 3"]) -> Float[Array, "point box"]:
-        """From each point to each box's skin; negative inside."""
-        away = points_m[:, None] - self.centre_m[None]
+        """Signed distance of each point to each box's surface, metres; negative inside."""
+        offset = points_m[:, None] - self.centre_m[None]
         cosine, sine = np.cos(self.yaw_rad), np.sin(self.yaw_rad)
         local = np.stack(
-            [cosine * away[..., 0] + sine * away[..., 1], cosine * away[..., 1] - sine * away[..., 0], away[..., 2]], -1
+            [
+                cosine * offset[..., 0] + sine * offset[..., 1],
+                cosine * offset[..., 1] - sine * offset[..., 0],
+                offset[..., 2],
+            ],
+            -1,
         )
         beyond = np.abs(local) - self.half_m
         return np.linalg.norm(np.maximum(beyond, 0), axis=-1) + np.minimum(beyond.max(axis=-1), 0)
@@ -147,8 +155,8 @@ def _axes(yaw_rad: Float[Array, " box"]) -> Float[Array, "box 2 2"]:
     return np.stack([np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)], axis=1)
 
 
-def boxes_of(placed: Sequence[Placed], first: int = 0) -> Boxes:
-    """The boxes of all parts of some pieces; `first` numbers the first piece."""
+def part_boxes(placed: Sequence[PlacedPiece], first: int = 0) -> Boxes:
+    """The boxes of all parts of some pieces, numbered from `first`."""
     low, high, yaw, names, index, origin = [], [], [], [], [], []
     for number, item in enumerate(placed, start=first):
         for part in item.piece.parts:
@@ -159,36 +167,36 @@ def boxes_of(placed: Sequence[Placed], first: int = 0) -> Boxes:
             names.append(item.piece.name)
             index.append(number)
     low_m, high_m = np.array(low, float).reshape(-1, 3), np.array(high, float).reshape(-1, 3)
-    turn, local = np.array(yaw, float), (low_m + high_m) / 2
-    x = np.cos(turn) * local[:, 0] - np.sin(turn) * local[:, 1]
-    y = np.sin(turn) * local[:, 0] + np.cos(turn) * local[:, 1]
+    yaw_rad, local = np.array(yaw, float), (low_m + high_m) / 2
+    x = np.cos(yaw_rad) * local[:, 0] - np.sin(yaw_rad) * local[:, 1]
+    y = np.sin(yaw_rad) * local[:, 0] + np.cos(yaw_rad) * local[:, 1]
     return Boxes(
         centre_m=np.stack([x, y, local[:, 2]], axis=1) + np.array(origin, float).reshape(-1, 3),
         half_m=(high_m - low_m) / 2,
-        yaw_rad=turn,
+        yaw_rad=yaw_rad,
         names=tuple(names),
         piece=tuple(index),
     )
 
 
-def outlines_of(placed: Sequence[Placed]) -> Boxes:
-    """The same, but of pieces with very many parts (shelves full of books) only the one box about them."""
+def bounding_boxes(placed: Sequence[PlacedPiece]) -> Boxes:
+    """The boxes of all parts; of pieces with many parts (shelves full of books) only their bounding box."""
     whole = []
     for item in placed:
         piece = item.piece
         if len(piece.parts) > _MANY_PARTS:
             low, high = (tuple(float(v) for v in end) for end in (piece.low_m, piece.high_m))
-            piece = replace(piece, parts=(Part(low, high, piece.parts[0].look),))  # type: ignore[arg-type]
+            piece = replace(piece, parts=(Part(low, high, piece.parts[0].appearance),))  # type: ignore[arg-type]
         whole.append(replace(item, piece=piece))
-    return boxes_of(whole)
+    return part_boxes(whole)
 
 
-# Shorthands of the furniture files -----------------------------------------------------------------------------------
+# Shorthands for the furniture modules ---------------------------------------------------------------------------------
 def block(
-    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], look: Appearance, shape: str = "box"
+    x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], appearance: Appearance, shape: str = "box"
 ) -> Part:
     """A part from its three extents."""
-    return Part((x[0], y[0], z[0]), (x[1], y[1], z[1]), look, shape)
+    return Part((x[0], y[0], z[0]), (x[1], y[1], z[1]), appearance, shape)
 
 
 def legs(
@@ -196,12 +204,12 @@ def legs(
     y: tuple[float, float],
     height_m: float,
     thick_m: float,
-    look: Appearance,
+    appearance: Appearance,
     shape: str = "box",
 ) -> tuple[Part, ...]:
     """Four legs at the corners of a rectangle, inside it."""
     return tuple(
-        block((a, a + thick_m), (b, b + thick_m), (0.0, height_m), look, shape)
+        block((a, a + thick_m), (b, b + thick_m), (0.0, height_m), appearance, shape)
         for a in (x[0], x[1] - thick_m)
         for b in (y[0], y[1] - thick_m)
     )

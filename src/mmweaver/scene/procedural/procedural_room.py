@@ -1,4 +1,4 @@
-"""A furnished room made from its kind, layout and seed. Read this file first: `make_room` names the steps in order."""
+"""A furnished room from its kind, layout and seed. Read this file first: `make_room` names the steps in order."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,7 +12,7 @@ from mmweaver.core.shapes import DepthPixels, Faces, PerFace, Rotation, Vertices
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
 from mmweaver.scene.photo.camera_file import d455_intrinsics
-from mmweaver.scene.procedural.arrangement import Shell, arrange, draw_shell
+from mmweaver.scene.procedural.arrangement import Shell, arrange, sample_shell
 from mmweaver.scene.procedural.depth_noise import measured_depth
 from mmweaver.scene.procedural.ground_truth import (
     RadarFrame,
@@ -22,24 +22,24 @@ from mmweaver.scene.procedural.ground_truth import (
     planes_of,
     seats_of,
 )  # fmt: skip
-from mmweaver.scene.procedural.groups import drawn
+from mmweaver.scene.procedural.groups import FurnitureGroup, sample_group
 from mmweaver.scene.procedural.lighting import LIGHTINGS
-from mmweaver.scene.procedural.meshing import Mesh, mesh_of
-from mmweaver.scene.procedural.palette import Palette, draw_palette
-from mmweaver.scene.procedural.parts import Boxes, Placed, boxes_of
-from mmweaver.scene.procedural.rendering import CameraView, class_mask, developed, look_at
-from mmweaver.scene.procedural.room_kinds import KINDS, Kind
+from mmweaver.scene.procedural.meshing import Mesh, make_room_mesh
+from mmweaver.scene.procedural.palette import Palette, sample_palette
+from mmweaver.scene.procedural.parts import Boxes, PlacedPiece, part_boxes
+from mmweaver.scene.procedural.rendering import CameraView, cast_view, render_classes, render_rgb
+from mmweaver.scene.procedural.room_kinds import KINDS, RoomKind
 
 MAX_LAYOUTS = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
 class ProceduralRoom:
-    """A room whose every truth is known. Everything is in the radar's frame (see core.records).
+    """A room with complete ground truth, in the radar's frame (see core.records).
 
     `boxes` are those of all parts of the furniture, doors and windows, with the names of their pieces; `planes` the
-    walls, floor, ceiling and the large faces of furniture. `photo` is what a camera at the radar sees, `scene` the
-    room as it truly is; `reconstruction.reconstruct(room.photo())` is the room as the product sees it.
+    walls, floor, ceiling and the large faces of furniture. `photo` renders what a camera at the radar sees, `scene` is
+    the true room; `reconstruction.reconstruct(room.photo())` is the room as reconstructed from the photo.
     """
 
     kind: str
@@ -56,37 +56,37 @@ class ProceduralRoom:
     landmarks: tuple[Landmark, ...]
     free_space: FreeSpace
     free_m2: float  # in the radar's window and the picture
-    walkable_m2: float  # the largest connected part of it that a body's middle may use
+    walkable_m2: float  # the largest connected part of it for the middle of a body
     intrinsics: CameraIntrinsics
     radar_from_camera: Rotation
-    pieces: tuple[Placed, ...] = field(repr=False)  # in the room's own frame
+    pieces: tuple[PlacedPiece, ...] = field(repr=False)  # in the room's own frame
     shell: Shell = field(repr=False)
-    mesh: Mesh = field(repr=False)  # in the room's own frame, with looks
+    mesh: Mesh = field(repr=False)  # in the room's own frame
 
     def photo(self, lighting: str = "day", noise: bool = False) -> RgbdPhoto:
-        """Colour, depth and classes (640 x 480, a D455's view). With `noise` the depth errs and has holes.
+        """Renders colour, depth and classes (640 x 480, a D455's view). With `noise` the depth has errors and holes.
 
         Raises InputError for a lighting that is not in LIGHTINGS.
         """
         if lighting not in LIGHTINGS:
             raise InputError(f"unknown lighting {lighting!r}; known: {', '.join(LIGHTINGS)}")
         view, mesh = self._view, self.mesh
-        own = int(stream(self.seed, "procedural", self.kind, self.layout, "photo").integers(2**31))
+        photo_seed = int(stream(self.seed, "procedural", self.kind, self.layout, "photo").integers(2**31))
         depth_m = view.depth_m
         if noise:
-            is_glass = np.array([look.is_glass for look in mesh.looks])[mesh.look[view.face]]
-            away = view.points_m - np.array(self.shell.radar_m)
-            cos_view = np.abs((away * view.normals).sum(axis=-1)) / np.linalg.norm(away, axis=-1)
-            depth_m = measured_depth(depth_m, self.intrinsics.fx, is_glass, cos_view, own)
+            is_glass = np.array([appearance.is_glass for appearance in mesh.appearances])[mesh.appearance[view.face]]
+            offset = view.points_m - np.array(self.shell.radar_m)
+            cos_view = np.abs((offset * view.normals).sum(axis=-1)) / np.linalg.norm(offset, axis=-1)
+            depth_m = measured_depth(depth_m, self.intrinsics.fx, is_glass, cos_view, photo_seed)
         return RgbdPhoto(
-            rgb=developed(mesh, self._caster, view, self.pieces, lighting, own),
+            rgb=render_rgb(mesh, self._caster, view, self.pieces, lighting, photo_seed),
             depth_m=depth_m,
             intrinsics=self.intrinsics,
-            classes=class_mask(mesh, view),
+            classes=render_classes(mesh, view),
         )
 
     def scene(self, lighting: str = "day") -> Scene:
-        """The true room: what the radar really sees, behind what the camera sees too."""
+        """The true room, including what the camera cannot see."""
         return Scene(
             photo=self.photo(lighting),
             radar_from_camera=self.radar_from_camera,
@@ -104,7 +104,7 @@ class ProceduralRoom:
 
     @property
     def true_depth_m(self) -> DepthPixels:
-        """Of every pixel along the optical axis, without the camera's errors."""
+        """True depth of every pixel along the optical axis, (480, 640) metres."""
         return self._view.depth_m
 
     @cached_property
@@ -113,30 +113,30 @@ class ProceduralRoom:
 
     @cached_property
     def _view(self) -> CameraView:
-        turn = RadarFrame(self.shell).room_from_radar @ self.radar_from_camera
-        return look_at(self.mesh, self._caster, self.intrinsics, turn, np.array(self.shell.radar_m))
+        room_from_camera = RadarFrame(self.shell).room_from_radar @ self.radar_from_camera
+        return cast_view(self.mesh, self._caster, self.intrinsics, room_from_camera, np.array(self.shell.radar_m))
 
 
 def make_room(kind: str, layout: int = 0, seed: int = 0) -> ProceduralRoom:
-    """The room of that kind, arranged in that way; the same three give the same bits.
+    """Makes the room of a kind, layout and seed; the same three give the same bits.
 
-    The seed draws the room (size, door, windows, colours, furniture), the layout how it is arranged and where in it
-    the radar stands. Raises InputError for an unknown kind, a layout outside 0 to 999, or a negative seed.
+    The seed determines the room (size, door, windows, colours, furniture), the layout its arrangement and the position
+    of the radar. Raises InputError for an unknown kind, a layout outside 0 to 999, or a negative seed.
     """
-    recipe = KINDS[kind]
+    room_kind = KINDS[kind]
     if not 0 <= layout < MAX_LAYOUTS:
         raise InputError(f"the layout must be 0 to {MAX_LAYOUTS - 1}, not {layout}")
     if seed < 0:
         raise InputError(f"the seed must be 0 or above, not {seed}")
-    palette = draw_palette(stream(seed, "procedural", kind, "palette"), recipe.walls, recipe.floors)
-    shell = draw_shell(
-        recipe, palette, stream(seed, "procedural", kind, "shell"), stream(seed, "procedural", kind, layout, "radar")
+    palette = sample_palette(stream(seed, "procedural", kind, "palette"), room_kind.walls, room_kind.floors)
+    shell = sample_shell(
+        room_kind, palette, stream(seed, "procedural", kind, "shell"), stream(seed, "procedural", kind, layout, "radar")
     )
-    wanted = _furniture(recipe, palette, seed)
-    shell, placed, floor = arrange(recipe, shell, wanted, stream(seed, "procedural", kind, layout, "arrangement"))
+    wanted = _sample_furniture(room_kind, palette, seed)
+    shell, placed, floor = arrange(room_kind, shell, wanted, stream(seed, "procedural", kind, layout, "arrangement"))
     pieces = (*shell.fixed, *placed)
-    mesh, frame = mesh_of(shell.size_m, pieces, palette), RadarFrame(shell)
-    boxes = frame.boxes(boxes_of(pieces))
+    mesh, frame = make_room_mesh(shell.size_m, pieces, palette), RadarFrame(shell)
+    boxes = frame.boxes(part_boxes(pieces))
     free = free_space_of(shell, boxes, frame)
     return ProceduralRoom(
         kind=kind, layout=layout, seed=seed,
@@ -145,24 +145,24 @@ def make_room(kind: str, layout: int = 0, seed: int = 0) -> ProceduralRoom:
         floor_z_m=-shell.radar_m[2], seats=seats_of(pieces, frame), landmarks=landmarks_of(pieces, free, frame),
         free_space=free, free_m2=floor.free_m2, walkable_m2=floor.walkable_m2,
         intrinsics=d455_intrinsics(640, 480),
-        radar_from_camera=_camera(shell, stream(seed, "procedural", kind, layout, "camera")),
+        radar_from_camera=_camera_rotation(shell, stream(seed, "procedural", kind, layout, "camera")),
         pieces=pieces, shell=shell, mesh=mesh,
     )  # fmt: skip
 
 
-def _furniture(recipe: Kind, palette: Palette, seed: int) -> list:
-    """The room's groups, in the order in which they are placed: those that must stand first."""
-    rng = stream(seed, "procedural", recipe.name, "furniture")
-    wanted = [(drawn(make, palette, rng), True) for make in recipe.always]
-    for share, make in recipe.sometimes:
-        group = drawn(make, palette, rng)
+def _sample_furniture(room_kind: RoomKind, palette: Palette, seed: int) -> list[tuple[FurnitureGroup, bool]]:
+    """The room's groups and whether each is required, in the order in which they are placed: required ones first."""
+    rng = stream(seed, "procedural", room_kind.name, "furniture")
+    wanted = [(sample_group(make, palette, rng), True) for make in room_kind.required]
+    for share, make in room_kind.optional:
+        group = sample_group(make, palette, rng)
         if rng.random() < share:
             wanted.append((group, False))
     return wanted
 
 
-def _camera(shell: Shell, rng: np.random.Generator) -> Rotation:
-    """Looks where the radar looks, down by more the higher it stands, leaning a little as tripods do."""
+def _camera_rotation(shell: Shell, rng: np.random.Generator) -> Rotation:
+    """The camera's rotation: along the radar's axis, pitched down the more the higher it stands, with a small roll."""
     pitch = np.deg2rad(2.0 + 12.0 * (shell.radar_m[2] - 0.5) + rng.uniform(-2, 5))
     roll = np.deg2rad(rng.uniform(-1.0, 1.0))
     level = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])

@@ -1,4 +1,4 @@
-"""The photo of a procedural room: what each pixel meets, its colour under a lighting, its depth and its class."""
+"""Renders the photo of a procedural room by ray casting: colour under a lighting, depth and class of each pixel."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,11 @@ from jaxtyping import Float, Int
 from mmweaver.core.records import CameraIntrinsics, ClassMask
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array, DepthPixels, RgbPixels, Rotation, Vec3
-from mmweaver.geometry.pinhole import unproject
+from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.scene.procedural.lighting import LIGHTINGS, Lighting, lamps_of, light_on, smoothed
+from mmweaver.scene.procedural.lighting import LIGHTINGS, Lighting, area_lights, denoised, irradiance
 from mmweaver.scene.procedural.meshing import Mesh
-from mmweaver.scene.procedural.parts import Placed
+from mmweaver.scene.procedural.parts import PlacedPiece
 from mmweaver.scene.procedural.textures import albedo
 
 _SENSOR_NOISE = 0.008
@@ -20,23 +20,23 @@ _SENSOR_NOISE = 0.008
 
 @dataclass(frozen=True, kw_only=True)
 class CameraView:
-    """What each pixel sees, in the room's frame."""
+    """The surface point of each pixel, in the room's frame."""
 
-    face: Int[Array, "row column"]
+    face: Int[Array, "row column"]  # of the mesh
     depth_m: DepthPixels  # along the optical axis
     points_m: Float[Array, "row column 3"]
     normals: Float[Array, "row column 3"]  # towards the camera
 
 
-def look_at(
+def cast_view(
     mesh: Mesh, caster: RayCaster, camera: CameraIntrinsics, room_from_camera: Rotation, eye_m: Vec3
 ) -> CameraView:
-    """Casts a ray through the middle of every pixel."""
-    rays = unproject(np.ones((camera.height, camera.width)), camera).reshape(-1, 3) @ room_from_camera.T
+    """Casts a ray through the centre of every pixel from `eye_m`, the camera's position in metres."""
+    rays = viewing_rays(camera).reshape(-1, 3) @ room_from_camera.T
     length = np.linalg.norm(rays, axis=1)
     distance, face = caster.first_hit(np.broadcast_to(eye_m, rays.shape), rays / length[:, None])
     if (face < 0).any():
-        # A ray may slip through the seam of two walls; its neighbour's answer will do.
+        # A ray may slip between two adjacent walls; take its neighbour's hit.
         hit = np.flatnonzero(face >= 0)
         lost = np.flatnonzero(face < 0)
         other = hit[np.minimum(np.searchsorted(hit, lost), len(hit) - 1)]
@@ -53,21 +53,21 @@ def look_at(
     )
 
 
-def developed(
-    mesh: Mesh, caster: RayCaster, view: CameraView, placed: tuple[Placed, ...], lighting: str, seed: int
+def render_rgb(
+    mesh: Mesh, caster: RayCaster, view: CameraView, placed: tuple[PlacedPiece, ...], lighting: str, seed: int
 ) -> RgbPixels:
-    """The colour picture under a named lighting."""
+    """The colour picture, sRGB uint8 (row, column, 3), under a named lighting."""
     light = LIGHTINGS[lighting]
-    look = mesh.look[view.face]
-    colour, glow = _colours(mesh, view, look, light)
+    appearance = mesh.appearance[view.face]
+    colour, emission = _reflectance_and_emission(mesh, view, appearance, light)
     half = (slice(0, None, 2), slice(0, None, 2))
     points, normals = view.points_m[half], view.normals[half]
     rng = stream(seed, "procedural", "light")
-    received = light_on(
-        caster, lamps_of(placed, light), light, points.reshape(-1, 3), normals.reshape(-1, 3), rng
+    received = irradiance(
+        caster, area_lights(placed, light), light, points.reshape(-1, 3), normals.reshape(-1, 3), rng
     ).reshape(points.shape)  # fmt: skip
-    received = _widened(smoothed(received, points, normals), view)
-    radiance = colour * (1.15 * received + 0.02) + glow
+    received = _upsampled(denoised(received, points, normals), view)
+    radiance = colour * (1.15 * received + 0.02) + emission
     value = 1.7 * light.exposure * radiance
     value = value * (1 + value / 9) / (1 + 0.75 * value)
     value = np.clip(value + _SENSOR_NOISE * rng.standard_normal(value.shape, dtype=np.float32), 0, 1)
@@ -75,11 +75,11 @@ def developed(
     return np.round(255 * value).astype(np.uint8)
 
 
-def class_mask(mesh: Mesh, view: CameraView) -> ClassMask:
-    """The COCO-Stuff class of every pixel; all classes of the room's looks are named, in alphabetical order."""
-    names = ("unlabeled", *sorted({look.coco for look in mesh.looks}))
-    index = np.array([names.index(look.coco) for look in mesh.looks], np.uint8)
-    return ClassMask(index=index[mesh.look[view.face]], names=names)
+def render_classes(mesh: Mesh, view: CameraView) -> ClassMask:
+    """The COCO-Stuff class of every pixel; the mask names all classes of the room, in alphabetical order."""
+    names = ("unlabeled", *sorted({appearance.coco for appearance in mesh.appearances}))
+    index = np.array([names.index(appearance.coco) for appearance in mesh.appearances], np.uint8)
+    return ClassMask(index=index[mesh.appearance[view.face]], names=names)
 
 
 def _normals(mesh: Mesh) -> Float[Array, "face 3"]:
@@ -88,26 +88,28 @@ def _normals(mesh: Mesh) -> Float[Array, "face 3"]:
     return normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-15)[:, None]
 
 
-def _colours(mesh: Mesh, view: CameraView, look: np.ndarray, light: Lighting) -> tuple[np.ndarray, np.ndarray]:
-    """Colour and light of its own of every pixel."""
-    flat_look = look.ravel()
+def _reflectance_and_emission(
+    mesh: Mesh, view: CameraView, appearance: np.ndarray, light: Lighting
+) -> tuple[np.ndarray, np.ndarray]:
+    """Reflectance and emitted light of every pixel, (row, column, 3) each, linear RGB."""
+    flat_index = appearance.ravel()
     points, normals = view.points_m.reshape(-1, 3), view.normals.reshape(-1, 3)
-    colour, glow = np.zeros(points.shape, np.float32), np.zeros(points.shape, np.float32)
-    order = np.argsort(flat_look, kind="stable")
-    bounds = np.searchsorted(flat_look[order], np.arange(len(mesh.looks) + 1))
-    for index, one in enumerate(mesh.looks):
+    colour, emission = np.zeros(points.shape, np.float32), np.zeros(points.shape, np.float32)
+    order = np.argsort(flat_index, kind="stable")
+    bounds = np.searchsorted(flat_index[order], np.arange(len(mesh.appearances) + 1))
+    for index, one in enumerate(mesh.appearances):
         chosen = order[bounds[index] : bounds[index + 1]]
         if not len(chosen):
             continue
-        plane = _flat(points[chosen], normals[chosen])
+        plane = _surface_coordinates(points[chosen], normals[chosen])
         colour[chosen] = albedo(one, plane.astype(np.float32))
-        if one.glow:
-            glow[chosen] = one.glow * colour[chosen] * _own_light(one.pattern, light)
-    return colour.reshape(*look.shape, 3), glow.reshape(*look.shape, 3)
+        if one.emission:
+            emission[chosen] = one.emission * colour[chosen] * _emission(one.pattern, light)
+    return colour.reshape(*appearance.shape, 3), emission.reshape(*appearance.shape, 3)
 
 
-def _own_light(pattern: str, light: Lighting) -> np.ndarray:
-    """How bright a pane, a ceiling panel, a lamp shade or a screen is under a lighting."""
+def _emission(pattern: str, light: Lighting) -> np.ndarray:
+    """Brightness of an emitting pane, ceiling panel, lamp shade or screen under a lighting, (3,)."""
     if pattern == "sky":
         return np.minimum(np.array(light.window) / 5, 1.5)
     if pattern == "panel":
@@ -115,15 +117,15 @@ def _own_light(pattern: str, light: Lighting) -> np.ndarray:
     return np.ones(3) if pattern == "screen" else np.minimum(np.array(light.lamp) / 4, 1.5)
 
 
-def _flat(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """The two coordinates along the surface: those that the normal points along least; heights come second."""
+def _surface_coordinates(points: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Two coordinates along the surface, (point, 2) metres: all but the normal's dominant axis; heights come second."""
     drop = np.argmax(np.abs(normals), axis=1)
     kept = np.array([[1, 2], [0, 2], [0, 1]])[drop]
     return np.take_along_axis(points, kept, axis=1)
 
 
-def _widened(light: np.ndarray, view: CameraView) -> np.ndarray:
-    """Light of every second pixel -> of every pixel, from those of four neighbours that lie on the same surface."""
+def _upsampled(light: np.ndarray, view: CameraView) -> np.ndarray:
+    """Joint bilateral upsampling of light from every second pixel: from the four neighbours on the same surface."""
     rows, columns = view.depth_m.shape
     low_row, low_column = np.arange(rows) // 2, np.arange(columns) // 2
     points, normals = view.points_m.astype(np.float32), view.normals.astype(np.float32)

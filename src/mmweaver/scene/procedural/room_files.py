@@ -1,4 +1,4 @@
-"""A procedural room as files: what `mmweaver generate` reads, the class mask, and the truth."""
+"""Writes a procedural room as files: the input of `mmweaver generate`, the class mask, and the ground truth."""
 
 import json
 from pathlib import Path
@@ -10,12 +10,12 @@ from mmweaver.core.records import RgbdPhoto
 from mmweaver.geometry.rotations import pitch_and_roll_rad
 from mmweaver.scene.procedural.procedural_room import ProceduralRoom
 
-DEPTH_UNIT_M = 0.0002  # 16 bits reach 13 m, the step is far below a sensor's noise
+DEPTH_UNIT_M = 0.0002  # 16 bits reach 13 m; the step is far below a sensor's noise
 TRUTH_VERSION = 1
 
 
 def write_room(folder: Path, room: ProceduralRoom, photo: RgbdPhoto, lighting: str) -> None:
-    """Writes rgb.png, depth.png, camera.json, classes.png, classes.json and truth.json into a folder that exists."""
+    """Writes rgb.png, depth.png, camera.json, classes.png, classes.json and truth.json into an existing folder."""
     from PIL import Image
 
     Image.fromarray(photo.rgb).save(folder / "rgb.png")
@@ -27,11 +27,11 @@ def write_room(folder: Path, room: ProceduralRoom, photo: RgbdPhoto, lighting: s
         Image.fromarray(photo.classes.index).save(folder / "classes.png")
         names = {str(number): name for number, name in enumerate(photo.classes.names)}
         (folder / "classes.json").write_text(json.dumps(names, indent=1) + "\n", encoding="utf-8")
-    (folder / "truth.json").write_text(json.dumps(truth_of(room, lighting), indent=1) + "\n", encoding="utf-8")
+    (folder / "truth.json").write_text(json.dumps(ground_truth_of(room, lighting), indent=1) + "\n", encoding="utf-8")
 
 
-def truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
-    """What is true of a room, for JSON; metres in the radar's frame (x right, y away, z up), radians."""
+def ground_truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
+    """The ground truth of a room for JSON: metres in the radar's frame (x right, y away, z up), radians."""
     pitch, roll = pitch_and_roll_rad(room.radar_from_camera)
     boxes = room.boxes
     return {
@@ -40,22 +40,26 @@ def truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
         "layout": room.layout,
         "seed": room.seed,
         "lighting": lighting,
-        "floor_z_m": _short(room.floor_z_m),
-        "camera_pitch_rad": _short(pitch),
-        "camera_roll_rad": _short(roll),
+        "floor_z_m": _rounded_list(room.floor_z_m),
+        "camera_pitch_rad": _rounded_list(pitch),
+        "camera_roll_rad": _rounded_list(roll),
         "radar_from_camera": np.round(room.radar_from_camera, 6).tolist(),
-        "free_floor_m2": _short(room.free_m2),
-        "walkable_m2": _short(room.walkable_m2),
+        "free_floor_m2": _rounded_list(room.free_m2),
+        "walkable_m2": _rounded_list(room.walkable_m2),
         "seats": [
-            {"position_m": _short(s.position_m), "facing_rad": _short(s.facing_rad), "size_m": _short(s.size_m)}
+            {
+                "position_m": _rounded_list(s.position_m),
+                "facing_rad": _rounded_list(s.facing_rad),
+                "size_m": _rounded_list(s.size_m),
+            }
             for s in room.seats
         ],
         "landmarks": [
             {
                 "kind": mark.kind,
-                "position_m": _short(mark.position_m),
-                "approach_m": _short(mark.approach_m),
-                "facing_rad": _short(mark.facing_rad),
+                "position_m": _rounded_list(mark.position_m),
+                "approach_m": _rounded_list(mark.approach_m),
+                "facing_rad": _rounded_list(mark.facing_rad),
             }
             for mark in room.landmarks
         ],
@@ -63,9 +67,9 @@ def truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
             {
                 "name": name,
                 "piece": piece,
-                "centre_m": _short(centre),
-                "half_size_m": _short(half),
-                "yaw_rad": _short(yaw),
+                "centre_m": _rounded_list(centre),
+                "half_size_m": _rounded_list(half),
+                "yaw_rad": _rounded_list(yaw),
             }
             for name, piece, centre, half, yaw in zip(
                 boxes.names, boxes.piece, boxes.centre_m, boxes.half_m, boxes.yaw_rad, strict=True
@@ -74,5 +78,5 @@ def truth_of(room: ProceduralRoom, lighting: str) -> dict[str, Any]:
     }
 
 
-def _short(value: Any) -> Any:
+def _rounded_list(value: Any) -> Any:
     return np.round(np.asarray(value, float), 4).tolist()

@@ -1,4 +1,4 @@
-"""Things to sit and lie on."""
+"""Furniture to sit and lie on."""
 
 import numpy as np
 
@@ -8,12 +8,12 @@ from mmweaver.scene.procedural.parts import LocalSeat, Part, Piece, block, legs
 
 def chair(palette: Palette, rng: np.random.Generator) -> Piece:
     """Four legs, a seat, a slatted or a solid back."""
-    wood, height = palette.named(palette.wood, "chair"), float(rng.uniform(0.43, 0.48))
-    seat_look = palette.named(palette.accent, "chair") if rng.random() < 0.4 else wood
+    wood, height = palette.labelled(palette.wood, "chair"), float(rng.uniform(0.43, 0.48))
+    seat_appearance = palette.labelled(palette.accent, "chair") if rng.random() < 0.4 else wood
     half, depth, back = float(rng.uniform(0.19, 0.23)), 0.40, float(rng.uniform(0.84, 0.98))
     parts = [
         *legs((-half, half), (-depth / 2, depth / 2), height - 0.03, 0.035, wood),
-        block((-half, half), (-depth / 2, depth / 2), (height - 0.03, height), seat_look),
+        block((-half, half), (-depth / 2, depth / 2), (height - 0.03, height), seat_appearance),
         block((-half, -half + 0.035), (depth / 2 - 0.035, depth / 2), (height, back), wood),
         block((half - 0.035, half), (depth / 2 - 0.035, depth / 2), (height, back), wood),
     ]
@@ -26,7 +26,7 @@ def chair(palette: Palette, rng: np.random.Generator) -> Piece:
 
 def office_chair(palette: Palette, rng: np.random.Generator) -> Piece:
     """Star foot, column, upholstered seat and back, often armrests."""
-    cloth, dark = palette.named(palette.accent, "chair"), palette.named(palette.dark, "chair")
+    cloth, dark = palette.labelled(palette.accent, "chair"), palette.labelled(palette.dark, "chair")
     height, half = float(rng.uniform(0.44, 0.50)), 0.24
     parts = [
         block((-0.29, 0.29), (-0.03, 0.03), (0.03, 0.08), dark),
@@ -50,7 +50,7 @@ def office_chair(palette: Palette, rng: np.random.Generator) -> Piece:
 
 def sofa(palette: Palette, rng: np.random.Generator, places: int = 2) -> Piece:
     """Arms, seat cushions, back cushions, short feet; its back at y = 0.45."""
-    cloth = palette.named(palette.cloth, "couch")
+    cloth = palette.labelled(palette.cloth, "couch")
     width, depth, height = 0.62 * places + 0.36, float(rng.uniform(0.82, 0.95)), float(rng.uniform(0.40, 0.46))
     back = float(rng.uniform(0.78, 0.90))
     left, front, rear = -width / 2, -depth / 2, depth / 2
@@ -60,7 +60,7 @@ def sofa(palette: Palette, rng: np.random.Generator, places: int = 2) -> Piece:
             (front + 0.06, rear - 0.04),
             0.08,
             0.05,
-            palette.named(palette.dark_wood, "couch"),
+            palette.labelled(palette.dark_wood, "couch"),
         ),
         block((left + 0.1, -left - 0.1), (front + 0.03, rear), (0.08, height - 0.14), cloth),
         block((left + 0.1, -left - 0.1), (rear - 0.13, rear), (height - 0.14, back - 0.06), cloth, "rounded"),
@@ -78,7 +78,7 @@ def sofa(palette: Palette, rng: np.random.Generator, places: int = 2) -> Piece:
         seats.append(LocalSeat(start + each / 2, front + 0.32, height, each, depth - 0.27))
     name = "sofa" if places > 1 else "armchair"
     if places > 1 and rng.random() < 0.7:
-        pillow = palette.named(palette.accent, "pillow")
+        pillow = palette.labelled(palette.accent, "pillow")
         x = left + 0.22 + float(rng.uniform(0, 0.1))
         parts.append(
             block((x, x + 0.38), (rear - 0.40, rear - 0.26), (height - 0.005, height + 0.34), pillow, "rounded")
@@ -87,13 +87,13 @@ def sofa(palette: Palette, rng: np.random.Generator, places: int = 2) -> Piece:
 
 
 def armchair(palette: Palette, rng: np.random.Generator) -> Piece:
-    """A sofa for one."""
+    """A sofa with one seat."""
     return sofa(palette, rng, 1)
 
 
 def stool(palette: Palette, rng: np.random.Generator) -> Piece:
-    """Three legs are four here; a round or a square top, no back."""
-    wood, height, half = palette.named(palette.wood, "chair"), float(rng.uniform(0.43, 0.50)), 0.17
+    """Four legs and a round or square top, no back."""
+    wood, height, half = palette.labelled(palette.wood, "chair"), float(rng.uniform(0.43, 0.50)), 0.17
     shape = "cylinder" if rng.random() < 0.6 else "box"
     top = block((-half, half), (-half, half), (height - 0.035, height), wood, shape)
     leg = legs((-0.12, 0.12), (-0.12, 0.12), height - 0.035, 0.03, wood)
@@ -103,7 +103,7 @@ def stool(palette: Palette, rng: np.random.Generator) -> Piece:
 def bench(palette: Palette, rng: np.random.Generator) -> Piece:
     """A plank on two trestles."""
     wood, height, half = (
-        palette.named(palette.wood, "bench"),
+        palette.labelled(palette.wood, "bench"),
         float(rng.uniform(0.42, 0.47)),
         float(rng.uniform(0.5, 0.7)),
     )
@@ -115,8 +115,8 @@ def bench(palette: Palette, rng: np.random.Generator) -> Piece:
 
 
 def bed(palette: Palette, rng: np.random.Generator) -> Piece:
-    """Head at the wall (y = 1), frame, mattress, pillows, a blanket; one can sit on its foot end."""
-    wood, white = palette.named(palette.wood, "bed"), palette.named(palette.white, "bed")
+    """Frame, mattress, pillows and blanket, its head at y = 1; one can sit on the foot end."""
+    wood, white = palette.labelled(palette.wood, "bed"), palette.labelled(palette.white, "bed")
     half, height = (0.50 if rng.random() < 0.5 else 0.72), float(rng.uniform(0.46, 0.54))
     parts: list[Part] = [
         *legs((-half, half), (-1.0, 1.0), 0.14, 0.06, wood),
@@ -127,21 +127,21 @@ def bed(palette: Palette, rng: np.random.Generator) -> Piece:
             (-half + 0.005, half - 0.005),
             (-0.99, 0.35),
             (0.33, height + 0.02),
-            palette.named(palette.cloth, "blanket"),
+            palette.labelled(palette.cloth, "blanket"),
             "rounded",
         ),
     ]
     centres = (0.0,) if half < 0.6 else (-0.36, 0.36)
     for x in centres:
-        pillow = palette.named(palette.white, "pillow")
+        pillow = palette.labelled(palette.white, "pillow")
         parts.append(block((x - 0.30, x + 0.30), (0.48, 0.90), (height - 0.01, height + 0.11), pillow, "rounded"))
     seat = LocalSeat(0.0, -0.72, height + 0.02, 2 * half, 0.5)
     return Piece(name="bed", parts=tuple(parts), seats=(seat,), landmark="bed")
 
 
 def weight_bench(palette: Palette, rng: np.random.Generator) -> Piece:
-    """A padded bench of a gym."""
-    dark, metal = palette.named(palette.dark, "bench"), palette.named(palette.metal, "bench")
+    """A padded bench for a gym."""
+    dark, metal = palette.labelled(palette.dark, "bench"), palette.labelled(palette.metal, "bench")
     height = float(rng.uniform(0.42, 0.46))
     parts = (
         block((-0.14, 0.14), (-0.6, 0.6), (height - 0.08, height), dark, "rounded"),

@@ -1,4 +1,4 @@
-"""Shelves, cupboards and large appliances; all stand with their back at y = depth / 2."""
+"""Shelves, cupboards and large appliances, with their back at y = depth / 2."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ _SPINES: tuple[Colour, ...] = (
 
 def bookcase(palette: Palette, rng: np.random.Generator, width_m: float = 0.9, height_m: float = 1.9) -> Piece:
     """Sides, back, shelves, and rows of books of different heights."""
-    wood, x, y = palette.named(palette.wood, "shelf"), width_m / 2, 0.15
+    wood, x, y = palette.labelled(palette.wood, "shelf"), width_m / 2, 0.15
     parts: list[Part] = [
         block((-x, -x + 0.02), (-y, y), (0.0, height_m), wood),
         block((x - 0.02, x), (-y, y), (0.0, height_m), wood),
@@ -45,8 +45,8 @@ def _books(
         if x + width > end:
             return parts
         height, depth = float(rng.uniform(0.62, 0.95)) * room_m, float(rng.uniform(0.14, 0.20))
-        look = Appearance(_SPINES[int(rng.integers(len(_SPINES)))], "wood", "book", "books")
-        parts.append(block((x, x + width), (back - depth, back), (foot, foot + height), look))
+        appearance = Appearance(_SPINES[int(rng.integers(len(_SPINES)))], "wood", "book", "books")
+        parts.append(block((x, x + width), (back - depth, back), (foot, foot + height), appearance))
         x += width + (0.0 if rng.random() < 0.85 else float(rng.uniform(0.03, 0.12)))
 
 
@@ -57,15 +57,15 @@ def cabinet(
     *,
     name: str = "cabinet",
     coco: str = "cabinet",
-    look: Appearance | None = None,
+    appearance: Appearance | None = None,
     drawers: int = 0,
 ) -> Piece:
-    """A body with doors, or with drawers; size across, deep, high."""
-    body = palette.named(look or (palette.wood if rng.random() < 0.5 else palette.white), coco)
+    """A body with doors or drawers; `size_m` is width, depth, height."""
+    body = palette.labelled(appearance or (palette.wood if rng.random() < 0.5 else palette.white), coco)
     x, y, height = size_m[0] / 2, size_m[1] / 2, size_m[2]
-    handle = palette.named(palette.metal, coco)
+    handle = palette.labelled(palette.metal, coco)
     parts = [
-        block((-x + 0.02, x - 0.02), (-y + 0.04, y), (0.0, 0.06), palette.named(palette.dark, coco)),
+        block((-x + 0.02, x - 0.02), (-y + 0.04, y), (0.0, 0.06), palette.labelled(palette.dark, coco)),
         block((-x, x), (-y + 0.02, y), (0.06, height), body),
     ]
     if drawers:
@@ -87,7 +87,7 @@ def cabinet(
 
 
 def wardrobe(palette: Palette, rng: np.random.Generator) -> Piece:
-    """Two doors, as high as a person and more."""
+    """A tall cabinet with two doors."""
     return cabinet(
         palette,
         rng,
@@ -98,8 +98,8 @@ def wardrobe(palette: Palette, rng: np.random.Generator) -> Piece:
 
 
 def locker(palette: Palette, rng: np.random.Generator) -> Piece:
-    """A steel cupboard."""
-    return cabinet(palette, rng, (0.8, 0.42, 1.85), name="steel cupboard", look=palette.metal)
+    """A steel cabinet."""
+    return cabinet(palette, rng, (0.8, 0.42, 1.85), name="steel cupboard", appearance=palette.metal)
 
 
 def dresser(palette: Palette, rng: np.random.Generator) -> Piece:
@@ -108,18 +108,18 @@ def dresser(palette: Palette, rng: np.random.Generator) -> Piece:
 
 
 def nightstand(palette: Palette, rng: np.random.Generator) -> Piece:
-    """Beside a bed."""
+    """A small cabinet next to a bed."""
     return cabinet(palette, rng, (0.42, 0.38, 0.48), name="nightstand", drawers=2)
 
 
 def pedestal(palette: Palette, rng: np.random.Generator) -> Piece:
     """A filing cabinet."""
-    return cabinet(palette, rng, (0.42, 0.55, 1.05), name="filing cabinet", look=palette.metal, drawers=3)
+    return cabinet(palette, rng, (0.42, 0.55, 1.05), name="filing cabinet", appearance=palette.metal, drawers=3)
 
 
 def fridge(palette: Palette, rng: np.random.Generator) -> Piece:
     """A tall white or steel box with two doors."""
-    steel = palette.named(palette.metal, "refrigerator")
+    steel = palette.labelled(palette.metal, "refrigerator")
     body = steel if rng.random() < 0.5 else Appearance((0.72, 0.72, 0.72), "metal", "refrigerator")
     height = float(rng.uniform(1.65, 1.85))
     parts = (
@@ -146,8 +146,8 @@ def oven(palette: Palette, rng: np.random.Generator) -> Piece:
 
 
 def steel_rack(palette: Palette, rng: np.random.Generator) -> Piece:
-    """Four posts, four shelves, boxes on them."""
-    metal = palette.named(palette.metal, "shelf")
+    """Four posts and four shelves with boxes."""
+    metal = palette.labelled(palette.metal, "shelf")
     carton = Appearance((0.42, 0.28, 0.16), "chipboard", "cardboard")
     x, y, height = float(rng.uniform(0.42, 0.55)), 0.20, 1.75
     parts = [block((a, a + 0.03), (b, b + 0.03), (0.0, height), metal) for a in (-x, x - 0.03) for b in (-y, y - 0.03)]
@@ -167,14 +167,14 @@ def steel_rack(palette: Palette, rng: np.random.Generator) -> Piece:
 
 
 def dumbbell_rack(palette: Palette, rng: np.random.Generator) -> Piece:
-    """Two rows of weights."""
-    metal = palette.named(palette.metal, "furniture-other")
+    """A rack with two rows of weights."""
+    metal = palette.labelled(palette.metal, "furniture-other")
     parts = [block((a, a + 0.06), (-0.22, 0.22), (0.0, 0.80), metal) for a in (-0.62, 0.56)]
     for row, (front, foot) in enumerate(((-0.20, 0.32), (0.0, 0.70))):
         parts.append(block((-0.56, 0.56), (front, front + 0.20), (foot, foot + 0.03), metal))
         for k in range(4):
             at, wide = -0.46 + k * 0.27, 0.05 + 0.012 * k + 0.01 * row
-            dark = palette.named(palette.dark, "sports ball")
+            dark = palette.labelled(palette.dark, "sports ball")
             parts.append(
                 block(
                     (at - wide, at + wide),

@@ -1,4 +1,4 @@
-"""Patterns of surfaces: from places on them to colours, by smooth random numbers on a lattice."""
+"""Procedural textures: reflectance from surface coordinates, by value noise on a lattice."""
 
 from collections.abc import Callable
 
@@ -16,7 +16,7 @@ _TABLE = stream(0, "procedural", "lattice").uniform(-1, 1, (64, 64)).astype(np.f
 
 
 def lattice_noise(points: Plane2, scale_m: float | tuple[float, float]) -> Shade:
-    """Smooth noise in -1 to 1 over the plane: random values on a lattice, blended."""
+    """Value noise in -1 to 1 over the plane: random values on a lattice with spacing `scale_m`, interpolated."""
     place = points / np.asarray(scale_m, np.float32)
     cell = np.floor(place)
     fraction = place - cell
@@ -29,15 +29,15 @@ def lattice_noise(points: Plane2, scale_m: float | tuple[float, float]) -> Shade
     return low + (high - low) * blend[:, 1]
 
 
-def albedo(look: Appearance, plane: Plane2) -> Rgb:
-    """Colour of points of one look in linear light; `plane` are their two coordinates along the surface, in metres."""
-    colour = np.asarray(look.colour, np.float32)
-    made = PATTERNS[look.pattern](plane, colour)
+def albedo(appearance: Appearance, plane: Plane2) -> Rgb:
+    """Reflectance (point, 3) in linear RGB at surface coordinates `plane`, (point, 2) metres."""
+    colour = np.asarray(appearance.colour, np.float32)
+    made = PATTERNS[appearance.pattern](plane, colour)
     return made if made.ndim == 2 else colour * made[:, None]
 
 
 def _random(cell: np.ndarray, other: np.ndarray) -> Shade:
-    """A number in 0 to 1 for each pair of whole numbers."""
+    """A random number in 0 to 1 for each pair of integers."""
     return _TABLE[(cell * 7 + other * 13).astype(int) & 63, (cell * 3 - other * 5).astype(int) & 63] / 2 + 0.5
 
 
@@ -78,7 +78,7 @@ def _leaves(plane: Plane2, colour: np.ndarray) -> Shade:
 
 
 def _boards(plane: Plane2, colour: np.ndarray) -> Shade:
-    """14 cm wide, 1.1 m long, staggered."""
+    """Floorboards, 14 cm wide, 1.1 m long, staggered."""
     board = np.floor(plane[:, 0] / 0.14)
     along = plane[:, 1] / 1.1 + _random(board, board * 0)
     piece = np.floor(along)
@@ -116,7 +116,7 @@ def _panels(plane: Plane2, colour: np.ndarray) -> Shade:
 
 
 def _books(plane: Plane2, colour: np.ndarray) -> Rgb:
-    """A row of spines some 3 cm wide: each with a shade of its own, and a title's band."""
+    """A row of book spines about 3 cm wide: each with its own shade and a band for the title."""
     spine = np.floor(plane[:, 0] / 0.031)
     tint = np.stack([_random(spine, spine * 0 + k) for k in range(3)], axis=1)
     band = np.abs((plane[:, 1] % 0.33) - 0.2) < 0.012
@@ -163,8 +163,7 @@ def _keys(plane: Plane2, colour: np.ndarray) -> Shade:
 
 PATTERNS: dict[str, Callable[[np.ndarray, np.ndarray], np.ndarray]] = {
     "plain": _plain, "panel": _plain, "grain": _grain, "upright": _upright, "weave": _weave, "pile": _pile,
-    "plaster": _plaster,    "concrete": _concrete, "speckle": _speckle, "leaves": _leaves, "boards": _boards,
-    "tiles": _tiles, "brick": _brick,
-    "panels": _panels, "books": _books, "screen": _screen, "scribbles": _scribbles, "picture": _picture, "sky": _sky,
-    "keys": _keys,
+    "plaster": _plaster, "concrete": _concrete, "speckle": _speckle, "leaves": _leaves, "boards": _boards,
+    "tiles": _tiles, "brick": _brick, "panels": _panels, "books": _books, "screen": _screen, "scribbles": _scribbles,
+    "picture": _picture, "sky": _sky, "keys": _keys,
 }  # fmt: skip
