@@ -1,6 +1,6 @@
 """What a sequence costs on the CPU and on a GPU if there is one: made from a prepared room, and by the network.
 
-Rooms, motions and weights are made up here, as large as real ones, so that it runs where nothing but numpy, scipy,
+Rooms, motions and weights are synthetic, as large as real ones, so that it runs where nothing but numpy, scipy,
 torch and transformers is installed: no ray caster. Writes results/benchmark/devices_<device>.json and prints the same
 as a table.
 """
@@ -20,7 +20,7 @@ from measuring import report, results_folder
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import Plane
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.dsp.cube_torch import torch_cube
+from mmweaver.dsp.cube import cube_values
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.scene_tensors import (
@@ -32,24 +32,24 @@ from mmweaver.models.scene_tensors import (
     POINT_FEATURES,
     SceneTensors,
 )
-from mmweaver.paths.adc_synthesis import EchoRows, FrameClock, synthesise
-from mmweaver.paths.adc_synthesis_torch import TorchSynthesis
+from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS
 from mmweaver.paths.body_paths import GHOST_POINTS
+from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.image_method import SpecularReflector
+from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.receiver import IDEAL, Receiver
 from mmweaver.paths.resynthesis import Resynthesis, TracedMotion
-from mmweaver.paths.static_paths import PreparedRoom, StaticEchoes, path_lengths_m
+from mmweaver.paths.static_paths import PreparedRoom, scattered_paths
 from mmweaver.paths.visibility import Visibility
 
-NUM_FRAMES, ECHOES, FACES, HIDDEN, ROWS = 20, 8300, 5, 400, 900
+NUM_FRAMES, STATIC_PATHS, FACES, OCCLUDED, MOVING_PATHS = 20, 8300, 5, 400, 900
 
 
-def made_up_room(rng: np.random.Generator) -> PreparedRoom:
-    place = rng.uniform((-2, 0.7, -1), (2, 4.0, 1.2), (ECHOES, 3))
-    amplitude = 1e-3 * (rng.normal(size=ECHOES) + 1j * rng.normal(size=ECHOES))
-    echoes = StaticEchoes(way_m=path_lengths_m(place, AWR1843), amplitude=amplitude, first_m=place, last_m=place)
-    mirrors = []
+def synthetic_room(rng: np.random.Generator) -> PreparedRoom:
+    place = rng.uniform((-2, 0.7, -1), (2, 4.0, 1.2), (STATIC_PATHS, 3))
+    amplitude = 1e-3 * (rng.normal(size=STATIC_PATHS) + 1j * rng.normal(size=STATIC_PATHS))
+    reflectors = []
     for turn in np.linspace(-1.2, 1.2, FACES):
         normal = -np.array([np.sin(turn), np.cos(turn), 0.0])
         along = np.array([-normal[1], normal[0], 0.0])
@@ -58,47 +58,53 @@ def made_up_room(rng: np.random.Generator) -> PreparedRoom:
             kind="wall", centre_m=-3.5 * normal, normal=normal, axis_u=along, axis_v=up, half_size_m=(2.5, 1.3),
             material="plasterboard",
         )  # fmt: skip
-        mirrors.append(SpecularReflector(plane=plane, offset_m=-3.5))
-    return PreparedRoom(AWR1843, mirrors, echoes, {"diffuse": ECHOES, "specular": 0, "edges": 0})
+        reflectors.append(SpecularReflector(plane=plane, offset_m=-3.5))
+    return PreparedRoom(AWR1843, reflectors, scattered_paths(place, amplitude, Interaction.DIFFUSE, AWR1843))
 
 
-def made_up_look(rng: np.random.Generator, clock: FrameClock) -> TracedMotion:
+def synthetic_motion(rng: np.random.Generator, clock: FrameClock) -> TracedMotion:
     time_s = np.arange(NUM_FRAMES)[:, None] * AWR1843.frame_period_s + clock.node_s
     joints = rng.normal((0.0, 2.3, -0.2), (0.2, 0.1, 0.4), (NUM_JOINTS, 3))
     joints_m = joints + np.array([0.1, -0.4, 0.0]) * time_s[..., None, None]
-    hidden = np.zeros((NUM_FRAMES, ECHOES), bool)
-    hidden[:, :HIDDEN] = True
+    occluded = np.zeros((NUM_FRAMES, STATIC_PATHS), bool)
+    occluded[:, :OCCLUDED] = True
     visibility = Visibility(
         skin=rng.random((NUM_FRAMES, DEFAULT_NUM_POINTS)) < 0.4,
         over_faces=rng.random((NUM_FRAMES, FACES, GHOST_POINTS)) < 0.5,
-        hidden=hidden,
+        occluded=occluded,
     )
     return TracedMotion(joints_m=joints_m.astype(np.float32), visibility=visibility, subject=0, height_m=1.75, seed=0)
 
 
 def error(device: str) -> float:
-    """Relative error of the device's samples of moving echoes against the numpy synthesis."""
-    rng, clock = np.random.default_rng(1), FrameClock(AWR1843)
-    start, speed = rng.uniform((-2, 0.7, -1), (2, 3.5, 1), (ROWS, 3)), rng.normal(0, 2, (ROWS, 3))
-    place = start[:, None] + speed[:, None] * clock.node_s[None, :, None]
-    amplitude = rng.normal(size=ROWS) + 1j * rng.normal(size=ROWS)
-    rows = EchoRows(out_m=place, back_m=place, amplitude=amplitude, is_mixed=rng.random(ROWS) < 0.5)
-    wanted = synthesise(rows, clock)
-    got = TorchSynthesis(clock, device).moving([rows])[0].cpu().numpy()
-    return float(np.sqrt((np.abs(got - wanted) ** 2).sum() / (np.abs(wanted) ** 2).sum()))
+    """Relative error of the device's samples of moving paths against those of the CPU."""
+    paths = synthetic_paths(np.random.default_rng(1), 1)
+    wanted = AdcSynthesis(AWR1843).moving(paths)
+    got = AdcSynthesis(AWR1843, device).moving(paths).cpu()
+    return float((got - wanted).norm() / wanted.norm())
+
+
+def synthetic_paths(rng: np.random.Generator, num_frames: int) -> Paths:
+    """Direct paths within 4 m, as fast as limbs, (frame, path)."""
+    shape = (num_frames, MOVING_PATHS)
+    motion = np.zeros((*shape, 3, 3))
+    motion[..., 0, :] = rng.uniform((-2, 0.7, -1), (2, 3.5, 1), (*shape, 3))
+    motion[..., 1, :] = rng.normal(0, 2, (*shape, 3))
+    amplitude = rng.normal(size=shape) + 1j * rng.normal(size=shape)
+    return Paths.direct(torch.from_numpy(amplitude), ApparentPoint.of(motion))
 
 
 def measured(device: str) -> dict[str, float]:
     rng = np.random.default_rng(0)
-    replay, other = Resynthesis(made_up_room(rng), device), Resynthesis(made_up_room(rng), device, IDEAL)
-    look, frames = made_up_look(rng, replay.synthesis.clock), np.arange(NUM_FRAMES)
+    room, other = Resynthesis(synthetic_room(rng), device), Resynthesis(synthetic_room(rng), device, IDEAL)
+    motion, frames = synthetic_motion(rng, room.synthesis.clock), np.arange(NUM_FRAMES)
 
-    def cube(of: Resynthesis, twin: int) -> Callable[[], object]:
-        return lambda: torch_cube(of.samples(look, frames, twin=twin), AWR1843).cpu()
+    def cube(of: Resynthesis, number: int) -> Callable[[], object]:
+        return lambda: cube_values(of.samples(motion, frames, realization=number), AWR1843).cpu()
 
-    values = {"relative_error_of_moving_echoes": error(device)}
+    values = {"relative_error_of_moving_paths": error(device)}
     for name, function in {
-        "sequence": cube(replay, 1), "sequence_noise_from_streams": cube(replay, 0), "sequence_ideal": cube(other, 0),
+        "sequence": cube(room, 1), "sequence_noise_from_streams": cube(room, 0), "sequence_ideal": cube(other, 0),
     }.items():  # fmt: skip
         cpu, wall = [], []
         for _ in range(12):
@@ -107,7 +113,7 @@ def measured(device: str) -> dict[str, float]:
             cpu.append(time.process_time() - began[0])
             wall.append(time.perf_counter() - began[1])
         values |= {f"{name}_cpu_s": min(cpu), f"{name}_wall_s": min(wall)}
-    values["synthesis_of_rows_wall_s"] = rows_seconds(replay, look)
+    values["synthesis_of_paths_wall_s"] = synthesis_seconds(room)
     values |= network_seconds(device)
     if device == "cuda":
         values["peak_device_memory_gb"] = torch.cuda.max_memory_allocated() / 1e9
@@ -115,7 +121,7 @@ def measured(device: str) -> dict[str, float]:
 
 
 def network_seconds(device: str) -> dict[str, float]:
-    """Motion to cube by the network, the room encoded once; its echoes are drawn and rendered on the CPU."""
+    """Motion to cube by the network, the room encoded once; its paths are sampled and rendered on the CPU."""
     generator = torch.Generator().manual_seed(0)
     view = SceneTensors(
         image=torch.rand(5, IMAGE_ROWS, IMAGE_COLUMNS, generator=generator),
@@ -145,19 +151,17 @@ def network_seconds(device: str) -> dict[str, float]:
     return {"network_motion_to_cube_cpu_s": min(cpu), "network_motion_to_cube_wall_s": min(wall)}
 
 
-def rows_seconds(replay: Resynthesis, look: TracedMotion) -> float:
-    """Wall seconds of the device's share of 20 frames: synthesis, room, receiver, transforms."""
-    rng, synthesis = np.random.default_rng(2), replay.synthesis
-    nodes = len(synthesis.clock.node_s)
-    place = rng.uniform((-2, 0.7, -1), (2, 3.5, 1), (NUM_FRAMES, ROWS, 1, 3)).repeat(nodes, axis=2)
-    rows = [EchoRows(out_m=p, back_m=p, amplitude=np.ones(ROWS, complex), is_mixed=np.zeros(ROWS, bool)) for p in place]
-    still = torch.zeros(NUM_FRAMES, 3, 4, AWR1843.num_samples, dtype=torch.complex64, device=synthesis.device)
-    receiver, frames = Receiver(AWR1843, replay.impairments, 0), np.arange(NUM_FRAMES)
+def synthesis_seconds(room: Resynthesis) -> float:
+    """Wall seconds of the device's share of 20 frames: synthesis, receiver, transforms."""
+    synthesis = room.synthesis
+    paths = synthetic_paths(np.random.default_rng(2), NUM_FRAMES).to(synthesis.device)
+    static = torch.zeros(NUM_FRAMES, 3, 4, AWR1843.num_samples, dtype=torch.complex64, device=synthesis.device)
+    receiver, frames = Receiver(AWR1843, room.impairments, 0), range(NUM_FRAMES)
     seconds = []
     for _ in range(8):
         began = time.perf_counter()
-        samples = synthesis.received(synthesis.moving(rows), still, still[0], receiver, frames, drawn_here=True)
-        torch_cube(samples, AWR1843).cpu()
+        samples = receiver.receive(synthesis.moving(paths), static, static[0], frames, on_device=True)
+        cube_values(samples, AWR1843).cpu()
         seconds.append(time.perf_counter() - began)
     return min(seconds)
 
@@ -166,7 +170,7 @@ def main() -> int:
     out = results_folder(__doc__)
     torch.set_num_threads(1)
     for device in ("cpu", "cuda") if torch.cuda.is_available() else ("cpu",):
-        dataset = {"name": f"made-up room of {ECHOES} echoes and {FACES} faces, {NUM_FRAMES} frames"}
+        dataset = {"name": f"synthetic room of {STATIC_PATHS} static paths and {FACES} faces, {NUM_FRAMES} frames"}
         name = torch.cuda.get_device_name() if device == "cuda" else "cpu, one thread"
         report(out, f"devices_{device}", dataset, measured(device), {"device": name, "threads": 1})
     if not torch.cuda.is_available():

@@ -37,8 +37,9 @@ def simulation_costs() -> dict[str, float]:
     from mmweaver.motion.compose import compose
     from mmweaver.motion.language.timing import plan_motion
     from mmweaver.paths.body_model import body_of
-    from mmweaver.paths.body_paths import BodyEchoes
+    from mmweaver.paths.body_paths import BodyPaths
     from mmweaver.paths.exact import exact_frame
+    from mmweaver.paths.paths import Interaction
     from mmweaver.paths.ray_traced import Simulator
 
     weaver = Weaver(method="physics", radar="awr1843")
@@ -51,21 +52,24 @@ def simulation_costs() -> dict[str, float]:
     run_s = cpu_seconds(lambda: simulator.run(pose, num_frames=20, seed=0, num_points=800))
     adc = simulator.run(pose, num_frames=20, seed=0).adc
     frame = np.arange(1)
-    rows = BodyEchoes(simulator.room, body_of(pose), simulator._joints_at_nodes(pose, frame)).rows(0)
-    direct = rows.out_m[~rows.is_mixed][:100]
+    body = BodyPaths(simulator.room, body_of(pose), simulator.clock, simulator._joints_at_nodes(pose, frame))
+    (paths,) = body.paths(0)
+    direct = paths.departure.position_m[paths.interaction == int(Interaction.BODY)][:100].numpy()
     one_frame_s = cpu_seconds(
-        lambda: exact_frame(lambda t: np.repeat(direct[:, :1], len(t), axis=1), np.ones(len(direct), complex), config),
+        lambda: exact_frame(
+            lambda t: np.repeat(direct[:, None], len(t), axis=1), np.ones(len(direct), complex), config
+        ),
         1,
     )
-    exact_s = one_frame_s / len(direct) * len(rows) * 20
-    a = np.ones((256, len(rows)), np.complex64)
-    b = np.ones((len(rows), 384), np.complex64)
+    exact_s = one_frame_s / len(direct) * len(paths) * 20
+    a = np.ones((256, len(paths)), np.complex64)
+    b = np.ones((len(paths), 384), np.complex64)
     gemm_s = cpu_seconds(lambda: [a @ b for _ in range(20)])
     return {
         "room_cpu_s": room_s,
         "sequence_cpu_s": run_s,
         "cube_cpu_s": cpu_seconds(lambda: radar_cube(adc)),
-        "echo_rows_in_frame_0": float(len(rows)),
+        "paths_in_frame_0": float(len(paths)),
         "exact_sum_cpu_s_extrapolated": exact_s,
         "times_cheaper_than_exact": exact_s / run_s,
         "times_its_matrix_product": run_s / gemm_s,

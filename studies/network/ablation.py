@@ -29,7 +29,7 @@ from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.training.expected_maps import ExpectedMaps, stacked
+from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples
 from mmweaver.training.network_loss import Targets
 from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, drawing
@@ -150,16 +150,18 @@ def mean_scores(learner: NetworkLearner, photo: StoredRoom, case: Case) -> dict[
     frames = np.unique(np.linspace(0, joints.shape[1] - 1, FRAMES).astype(int))
     whole, alone = one.maps(case.index, frames)
     assert alone is not None, "the room's geometry is stored"
-    targets = Targets(maps=stacked([whole]), empty=stacked([one.empty]), person=stacked([alone]))
+    targets = Targets(
+        maps=PowerMaps.stack([whole]), empty=PowerMaps.stack([one.empty]), person=PowerMaps.stack([alone])
+    )
     batch = NetworkBatch(
-        view=SceneTensors.stacked([RoomExamples(photo, "validation").view]), joints_m=joints, velocity_mps=velocity,
+        view=SceneTensors.stack([RoomExamples(photo, "validation").view]), joints_m=joints, velocity_mps=velocity,
         frames=torch.from_numpy(frames)[None], targets=targets,
     )  # fmt: skip
     with torch.inference_mode():
         both = differences_db(targets.maps, learner.predicted(batch))
         moving = learner.moving(learner.network.encode_room(batch.view), batch)
         own = learner.radar.maps(points_of(moving, learner.radar.response))
-        person = differences_db(_noisy(stacked([alone]), learner), _noisy(own, learner))
+        person = differences_db(_noisy(PowerMaps.stack([alone]), learner), _noisy(own, learner))
     return {
         "mean_ra_db": both["range_azimuth"], "mean_rd_db": both["range_doppler"],
         "person_ra_db": person["range_azimuth"], "person_rd_db": person["range_doppler"],

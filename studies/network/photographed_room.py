@@ -9,9 +9,11 @@ of the true room's echoes, those of mirrors with random phases. Intervals: boots
 """
 
 import argparse
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import torch
 
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.records import AdcCube, RgbdPhoto
@@ -20,7 +22,9 @@ from mmweaver.datasets.dataset_plan import HeldOut
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
-from mmweaver.paths.static_paths import RayTracedRoom, static_adc
+from mmweaver.paths.adc_synthesis import AdcSynthesis
+from mmweaver.paths.paths import Interaction
+from mmweaver.paths.static_paths import RayTracedRoom
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.reconstruction import reconstruct
@@ -48,15 +52,15 @@ def judged(kind: str, layout: int, seed: int = 0) -> Scores:
     photo = made.photo("day", noise=True)
     truth, twin = RayTracedRoom(made.scene("day"), config), RayTracedRoom(made.scene("day"), config, 1)
     own, true = _parts(RayTracedRoom(reconstruct(photo), config, 1)), _parts(twin)
-    mirrors = _parts(twin, turned=stream(layout, kind, "mirrors"))["specular"]
+    mirrors = _parts(twin, turned=stream(layout, kind, "mirrors"))[Interaction.SPECULAR]
     cubes = {
-        "zeros": 0 * truth.adc,
-        "photo without mask": RayTracedRoom(reconstruct(_without_mask(photo)), config, 1).adc,
+        "zeros": 0 * _adc(truth),
+        "photo without mask": _adc(RayTracedRoom(reconstruct(_without_mask(photo)), config, 1)),
         "photo": sum(own.values()),
-        "photo, true mirrors": sum((own | {"specular": mirrors}).values()),
-        "photo, true edges": sum((own | {"edges": true["edges"]}).values()),
-        "photo, true surfaces": sum((own | {"diffuse": true["diffuse"]}).values()),
-        REALIZATION: twin.adc,
+        "photo, true mirrors": sum((own | {Interaction.SPECULAR: mirrors}).values()),
+        "photo, true edges": sum((own | {Interaction.EDGE: true[Interaction.EDGE]}).values()),
+        "photo, true surfaces": sum((own | {Interaction.DIFFUSE: true[Interaction.DIFFUSE]}).values()),
+        REALIZATION: _adc(twin),
     }
     azimuth = azimuth_axis_rad()
 
@@ -64,7 +68,7 @@ def judged(kind: str, layout: int, seed: int = 0) -> Scores:
         samples = np.repeat(np.asarray(adc)[None, None], config.num_loops, axis=1).astype(np.complex64)
         return range_azimuth_power(radar_cube(AdcCube(samples=samples, config=config, scale=1.0)), azimuth)
 
-    shown = picture(truth.adc)
+    shown = picture(_adc(truth))
     return {
         name: {
             "ra_ssim": log_map_ssim(picture(adc), shown), "ra_difference_db": log_map_difference_db(picture(adc), shown)
@@ -77,16 +81,20 @@ def _without_mask(photo: RgbdPhoto) -> RgbdPhoto:
     return RgbdPhoto(rgb=photo.rgb, depth_m=photo.depth_m, intrinsics=photo.intrinsics)
 
 
-def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> dict[str, np.ndarray]:
-    """Samples of the room's echoes by kind, with other phases where `turned` draws them."""
-    ends = np.cumsum(list(room.counts.values()))
+def _adc(room: RayTracedRoom) -> np.ndarray:
+    """Samples (tx, rx, sample) of a room."""
+    return AdcSynthesis(room.config).static(room.paths).numpy()
+
+
+def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> dict[Interaction, np.ndarray]:
+    """Samples of the room's static paths by kind, with other phases where `turned` samples them."""
     found = {}
-    for name, end in zip(room.counts, ends, strict=True):
-        part = room.echoes.part(np.arange(end - room.counts[name], end))
-        weight = part.amplitude
+    for kind in room.counts:
+        part = room.paths.of_kind(kind)
         if turned is not None:
-            weight = np.abs(weight) * np.exp(2j * np.pi * turned.random(len(weight)))
-        found[name] = static_adc(part, room.config, weight)
+            cycles = turned.random(len(part))
+            part = replace(part, amplitude=part.amplitude.abs() * torch.from_numpy(np.exp(2j * np.pi * cycles)))
+        found[kind] = AdcSynthesis(room.config).static(part).numpy()
     return found
 
 

@@ -12,8 +12,8 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.models.activity_network import ActivityNetwork, load_activity
 from mmweaver.models.precision import exactly
+from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.training.device import ComputeDevice
-from mmweaver.training.expected_maps import stacked
 from mmweaver.training.network_examples import power_maps
 from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
 from mmweaver.training.validation_sheet import MOST_ROWS, draw_sheet
@@ -85,7 +85,7 @@ class PaperLearner(Learner):
             cube = field_of_image(self.network, one.image, self.config, joints, velocity).cube()
             true.append(power_maps(one.room.cube(index, middle).values, self.config))
             made.append(power_maps(cube.values[middle], self.config))
-        return draw_sheet(stacked(true), stacked(made), self.config, made="network")
+        return draw_sheet(PowerMaps.stack(true), PowerMaps.stack(made), self.config, made="network")
 
     def _cost(self, made: Tensor, batch: PaperBatch) -> dict[str, Tensor]:
         with exactly(made):

@@ -116,7 +116,7 @@ def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed
         variant.impairments,
     )
     if not variant.has_ghosts:
-        simulator.room.mirrors = []
+        simulator.room.reflectors = []
     gain, skin = 10 ** (variant.brighter_db / 10), variant.skin
     echo = replace(skin, reflectivity=skin.reflectivity * gain, albedo=skin.albedo * gain)
     adcs = []

@@ -77,7 +77,7 @@ def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> P
 
     def cube(*people: PoseSequence, noise: int = seed, mutual: bool = True) -> RadarCube:
         return radar_cube(
-            simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL, mutual_shadows=mutual).adc
+            simulator.run(people, num_frames=NUM_FRAMES, seed=noise, motions=STILL, mutual_occlusion=mutual).adc
         )
 
     skins = [replace(pose, subject=pose.subject + OTHER_SKIN) for pose in (one, two)]

@@ -17,7 +17,7 @@ from tests.rooms import standing_person
 
 @pytest.fixture(scope="module")
 def view() -> SceneTensors:
-    return SceneTensors.stacked([SceneTensors.of(make_room("office", 0, 0).scene(), AWR1843)])
+    return SceneTensors.stack([SceneTensors.of(make_room("office", 0, 0).scene(), AWR1843)])
 
 
 @pytest.fixture(scope="module")

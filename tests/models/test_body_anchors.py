@@ -19,7 +19,7 @@ STANDING = torch.tensor([STANDING_M[name] for name in JOINT_NAMES]) + torch.tens
 
 def _ghosts(*planes: Plane) -> Anchors:
     """Of one person who stands still, (face, joint)."""
-    view = SceneTensors.stacked([SceneTensors.of(scene_of((floor(), *planes)), PRESETS["awr1843"])])
+    view = SceneTensors.stack([SceneTensors.of(scene_of((floor(), *planes)), PRESETS["awr1843"])])
     joints = STANDING.float()[None, None]
     return ghost_anchors(joints, torch.zeros_like(joints), view)
 

@@ -8,7 +8,7 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import PoseSequence
 from mmweaver.paths.body_model import body_of
-from mmweaver.paths.multi_person_paths import PeopleEchoes
+from mmweaver.paths.multi_person_paths import PeoplePaths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL
 from tests.rooms import back_wall, floor, scene_of, side_wall, standing_person
@@ -32,7 +32,7 @@ def person(x_m: float, y_m: float, subject: int = 0) -> PoseSequence:
 
 def echo(simulator: Simulator, *people: PoseSequence, mutual: bool = True) -> np.ndarray:
     """What the people change in the samples of one frame, (loop, tx, rx, sample)."""
-    adc = simulator.run(people, num_frames=1, seed=0, mutual_shadows=mutual).adc.samples[0]
+    adc = simulator.run(people, num_frames=1, seed=0, mutual_occlusion=mutual).adc.samples[0]
     return adc - simulator.room_adc
 
 
@@ -59,7 +59,7 @@ def test_two_far_apart_are_the_sum_of_both(nowhere: Simulator, room: Simulator):
     assert 0 < energy(both - each) < 0.1 * energy(each)
 
 
-def test_without_mutual_shadows_it_is_the_plain_sum(room: Simulator):
+def test_without_mutual_occlusion_it_is_the_plain_sum(room: Simulator):
     front, behind = person(0.0, 1.4), person(0.0, 2.4, subject=1)
     total = echo(room, front, behind, mutual=False)
     each = echo(room, front) + echo(room, behind)
@@ -79,11 +79,12 @@ def test_ghosts_are_hidden_by_others_too(room: Simulator):
     """Somebody between a person and the metal wall beside takes that person's ghosts away."""
     seen, screen = person(0.0, 2.0), person(0.75, 1.5, subject=1)
     middle = room._joints_at_nodes(seen, np.arange(1)), room._joints_at_nodes(screen, np.arange(1))
-    alone = PeopleEchoes(room.room, [body_of(seen)], [middle[0]])
-    both = PeopleEchoes(room.room, [body_of(seen), body_of(screen)], list(middle))
+    alone = PeoplePaths(room.room, [body_of(seen)], room.clock, [middle[0]])
+    both = PeoplePaths(room.room, [body_of(seen), body_of(screen)], room.clock, list(middle))
 
-    def over_the_wall(echoes: PeopleEchoes) -> int:
-        wall = [part for part in echoes.each[0].parts if part.back and part.back.plane.material == "metal"]
+    def over_the_wall(people: PeoplePaths) -> int:
+        parts = people.each[0].parts
+        wall = [part for part in parts if part.arrival and part.arrival.plane.material == "metal"]
         return sum(int(part.present.sum()) for part in wall)
 
     assert over_the_wall(alone) > 20
@@ -94,12 +95,13 @@ def test_what_two_hide_of_the_room_is_hidden_once(room: Simulator):
     front, behind = person(0.0, 1.4), person(0.0, 2.4, subject=1)
     joints = [room._joints_at_nodes(pose, np.arange(1)) for pose in (front, behind)]
     bodies = [body_of(front), body_of(behind)]
-    together = PeopleEchoes(room.room, bodies, joints).shadowed(0)
-    apart = PeopleEchoes(room.room, bodies, joints, mutual=False).shadowed(0)
-    assert len(together) == 1
-    places = [{tuple(place) for place in np.round(shadow.first_m, 6)} for shadow in (*together, *apart)]
-    assert places[0] == places[1] | places[2]
-    assert places[1] & places[2]
+    together = PeoplePaths(room.room, bodies, room.clock, joints)
+    apart = PeoplePaths(room.room, bodies, room.clock, joints, mutual=False)
+    count, each = together.occlusions(0), [set(one.occluded(0)) for one in apart.each]
+    assert set(np.flatnonzero(count)) == each[0] | each[1]
+    assert count.max() == 1
+    assert set(np.flatnonzero(apart.occlusions(0) == 2)) == each[0] & each[1]
+    assert each[0] & each[1]
 
 
 def test_the_order_of_the_people_does_not_matter(room: Simulator):

@@ -11,8 +11,7 @@ import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube
-from mmweaver.dsp.cube import radar_cube
-from mmweaver.dsp.cube_torch import torch_cube
+from mmweaver.dsp.cube import cube_values, radar_cube
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
 from mmweaver.paths.resynthesis import Resynthesis, TracedMotion
@@ -31,13 +30,15 @@ def simulator() -> Simulator:
     return Simulator(make_room("office", 0, 0).scene(), AWR1843)
 
 
-def _replayed(simulator: Simulator, device: str, impairments: Impairments, twin: int = 0) -> np.ndarray:
+def _replayed(simulator: Simulator, device: str, impairments: Impairments, realization: int = 0) -> np.ndarray:
     room = room_of(room_arrays(simulator.room), json.loads(json.dumps(room_words(simulator.room))), AWR1843)
-    joints, seen = simulator.look(POSE, num_frames=FRAMES, seed=SEED)
+    joints, seen = simulator.trace(POSE, num_frames=FRAMES, seed=SEED)
     sizes = {"points": seen.skin.shape[1], "faces": seen.over_faces.shape[1], "ghosts": seen.over_faces.shape[2]}
-    seen = Visibility.unpacked(seen.packed(), **sizes, echoes=seen.hidden.shape[1])
+    seen = Visibility.unpacked(seen.packed(), **sizes, static_paths=seen.occluded.shape[1])
     look = TracedMotion(joints_m=joints, visibility=seen, subject=POSE.subject, height_m=POSE.height_m, seed=SEED)
-    return Resynthesis(room, device, impairments).samples(look, np.arange(FRAMES), twin=twin).cpu().numpy()
+    return (
+        Resynthesis(room, device, impairments).samples(look, np.arange(FRAMES), realization=realization).cpu().numpy()
+    )
 
 
 def error_db(got: np.ndarray, wanted: np.ndarray) -> float:
@@ -67,23 +68,23 @@ def test_noise_and_converter_too(simulator: Simulator, device: str):
 
 def test_other_phases_are_the_same_room(simulator: Simulator):
     """Nothing of the signal is as it was, and its power is."""
-    first, second = (_replayed(simulator, "cpu", Impairments(), twin=twin) for twin in (1, 2))
-    same = _replayed(simulator, "cpu", Impairments(), twin=1)
+    first, second = (_replayed(simulator, "cpu", Impairments(), realization=number) for number in (1, 2))
+    same = _replayed(simulator, "cpu", Impairments(), realization=1)
     assert np.array_equal(first, same)
-    cubes = [torch_cube(torch.from_numpy(samples), AWR1843).numpy() for samples in (first, second)]
+    cubes = [cube_values(torch.from_numpy(samples), AWR1843).numpy() for samples in (first, second)]
     assert error_db(*cubes) > -6
     power = [float((np.abs(cube) ** 2).sum()) for cube in cubes]
     assert 10 * np.log10(power[0] / power[1]) == pytest.approx(0, abs=2)
 
 
-def test_torch_cube_is_the_cube():
+def test_cubes_of_tensors_are_those_of_arrays():
     rng = np.random.default_rng(0)
     shape = (2, AWR1843.num_loops, AWR1843.num_tx, AWR1843.num_rx, AWR1843.num_samples, 2)
     for config in (AWR1843, replace(AWR1843, complex_samples=False)):
         samples = rng.standard_normal(shape, dtype=np.float32).view(np.complex64)[..., 0]
         samples = samples if config.complex_samples else np.real(samples).astype(np.complex64)
         wanted = radar_cube(AdcCube(samples=samples, config=config, scale=1.0)).values
-        assert error_db(torch_cube(torch.from_numpy(samples), config).numpy(), wanted) < -110
+        assert error_db(cube_values(torch.from_numpy(samples), config).numpy(), wanted) < -110
 
 
 def test_no_ray_caster_is_needed():
@@ -93,15 +94,15 @@ sys.modules["embreex"] = None
 import numpy as np
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.resynthesis import TracedMotion, Resynthesis
-from mmweaver.paths.static_paths import PreparedRoom, StaticEchoes
+from mmweaver.paths.paths import Interaction, StaticPaths
+from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.visibility import Visibility
 from tests.rooms import STANDING_M
 
-echoes = StaticEchoes(
-    way_m=np.full((1, 3, 4), 4.0), amplitude=np.ones(1, complex), first_m=np.ones((1, 3)), last_m=np.ones((1, 3))
-)
-room = PreparedRoom(AWR1843, [], echoes, {"diffuse": 1, "specular": 0, "edges": 0})
-seen = Visibility(skin=np.ones((2, 800), bool), over_faces=np.zeros((2, 0, 200), bool), hidden=np.zeros((2, 1), bool))
+vertex = np.ones((1, 3))
+paths = StaticPaths.of(np.ones(1, complex), np.full((1, 3, 4), 4.0), vertex, vertex, Interaction.DIFFUSE)
+room = PreparedRoom(AWR1843, [], paths)
+seen = Visibility(skin=np.ones((2, 800), bool), over_faces=np.zeros((2, 0, 200), bool), occluded=np.zeros((2, 1), bool))
 joints = np.array(list(STANDING_M.values()), float) + np.array([0.0, 2.0, -1.0])
 joints = np.broadcast_to(joints, (2, 3, 22, 3))
 look = TracedMotion(joints_m=joints, visibility=seen, subject=0, height_m=1.75, seed=0)

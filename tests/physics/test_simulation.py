@@ -4,27 +4,34 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import torch
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
-from mmweaver.paths.adc_synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.antenna import scatterer_gain, specular_gain
 from mmweaver.paths.image_method import specular_paths, specular_reflectors
 from mmweaver.paths.materials import MATERIALS, reflection
+from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
 from mmweaver.paths.skin_scattering import LAMBERT
 from tests.rooms import back_wall, floor, plane, scene_of, side_wall, standing_person
 
-CLOCK = FrameClock(AWR1843)
+SYNTHESIS = AdcSynthesis(AWR1843)
 
 
-def rows_at(*places: tuple[float, float, float], amplitude: float = 1.0) -> EchoRows:
-    nodes = np.repeat(np.array(places, float)[:, None], len(CLOCK.node_s), axis=1)
-    count = len(places)
-    return EchoRows(out_m=nodes, back_m=nodes, amplitude=np.full(count, amplitude + 0j), is_mixed=np.zeros(count, bool))
+def at_rest(*places: tuple[float, float, float]) -> ApparentPoint:
+    """Points that do not move, in the one segment of one frame."""
+    motion = np.zeros((1, len(places), 3, 3))
+    motion[:, :, 0] = places
+    return ApparentPoint.of(motion)
+
+
+def paths_to(*places: tuple[float, float, float], amplitude: float = 1.0) -> Paths:
+    return Paths.direct(torch.full((1, len(places)), amplitude), at_rest(*places))
 
 
 def loop_spectrum(adc: np.ndarray) -> np.ndarray:
@@ -35,9 +42,9 @@ def loop_spectrum(adc: np.ndarray) -> np.ndarray:
 
 
 def test_superposition():
-    one, two = rows_at((0.3, 2.0, 0.1)), rows_at((-0.5, 1.5, -0.4), amplitude=0.3)
-    both = synthesise(EchoRows.joined([one, two]), CLOCK)
-    assert np.allclose(both, synthesise(one, CLOCK) + synthesise(two, CLOCK), atol=1e-5)
+    one, two = paths_to((0.3, 2.0, 0.1)), paths_to((-0.5, 1.5, -0.4), amplitude=0.3)
+    both = SYNTHESIS.moving(Paths.cat([one, two], 1)).numpy()
+    assert np.allclose(both, (SYNTHESIS.moving(one) + SYNTHESIS.moving(two)).numpy(), atol=1e-5)
 
 
 def test_reciprocity_transmitters_and_receivers_may_change_places():
@@ -45,13 +52,10 @@ def test_reciprocity_transmitters_and_receivers_may_change_places():
     a, b = (0.01, 0.0, 0.004), (-0.02, 0.0, 0.0)
     there = replace(AWR1843, tx_position_m=(a,), rx_position_m=(b,), tx_order=(0,))
     back = replace(AWR1843, tx_position_m=(b,), rx_position_m=(a,), tx_order=(0,))
-    out, over = np.array([[[0.4, 1.8, -0.3]]] * 1), np.array([[[1.9, 2.4, -0.2]]])
-    signals = []
-    for config in (there, back):
-        clock = FrameClock(config)
-        nodes = [np.repeat(place, len(clock.node_s), axis=1) for place in (out, over)]
-        rows = EchoRows(out_m=nodes[0], back_m=nodes[1], amplitude=np.ones(1, complex), is_mixed=np.ones(1, bool))
-        signals.append(synthesise(rows, clock))
+    paths = replace(
+        paths_to((0.4, 1.8, -0.3)), arrival=at_rest((1.9, 2.4, -0.2)), is_reciprocal=torch.ones(1, 1, dtype=torch.bool)
+    )
+    signals = [AdcSynthesis(config).moving(paths)[0].numpy() for config in (there, back)]
     assert np.allclose(signals[0], signals[1], atol=2e-2)
     assert np.abs(signals[0]).max() > 1.0
 
@@ -140,11 +144,11 @@ def test_one_wall_is_the_closed_form_image():
     gamma = reflection(material, np.ones(1), AWR1843.centre_frequency_hz)[0] * np.sqrt(1 - material.scattering**2)
     assert path.coefficient == pytest.approx(gamma, rel=1e-3)
     room = Simulator(scene_of((wall,)), AWR1843, IDEAL).room
-    start = room.counts["diffuse"]
-    assert abs(room.echoes.amplitude[start]) == pytest.approx(specular_gain(AWR1843) * abs(gamma) / 5.0, rel=1e-3)
+    start = room.counts[Interaction.DIFFUSE]
+    assert abs(room.paths.amplitude[start]) == pytest.approx(specular_gain(AWR1843) * abs(gamma) / 5.0, rel=1e-3)
     tx, rx = np.asarray(AWR1843.tx_position_m), np.asarray(AWR1843.rx_position_m)
     image = tx * [1, -1, 1] + [0, 5.0, 0]
-    assert np.allclose(room.echoes.way_m[start], np.linalg.norm(image[:, None] - rx, axis=-1), atol=1e-9)
+    assert np.allclose(room.paths.length_m[start], np.linalg.norm(image[:, None] - rx, axis=-1), atol=1e-9)
 
 
 def test_a_corner_has_its_double_bounce_once():
@@ -189,13 +193,13 @@ def test_furniture_hides_the_person_and_the_person_hides_the_wall():
     assert np.abs(echo).max() == 0
     without_shadow = seen.run(person, num_frames=1, seed=0).adc.samples[0] - seen.room_adc
     from mmweaver.paths.body_model import body_of
-    from mmweaver.paths.body_paths import BodyEchoes
+    from mmweaver.paths.body_paths import BodyPaths
 
-    echoes = BodyEchoes(seen.room, body_of(person), seen._joints_at_nodes(person, np.arange(1)))
-    shadow = echoes.shadowed(0)
-    assert 50 < len(shadow) < len(seen.room.echoes) / 2
-    assert np.all(np.linalg.norm(shadow.first_m, axis=1) > 2.0)
-    person_only = synthesise(echoes.rows(0), seen.clock)
+    paths = BodyPaths(seen.room, body_of(person), seen.clock, seen._joints_at_nodes(person, np.arange(1)))
+    occluded = paths.occluded_paths(0)
+    assert 50 < len(occluded) < len(seen.room.paths) / 2
+    assert bool((occluded.departure_vertex_m.norm(dim=1) > 2.0).all())
+    person_only = seen.synthesis.moving(Paths.padded(paths.paths(0)))[0].numpy()
     assert np.abs(without_shadow - person_only).max() > 0
 
 

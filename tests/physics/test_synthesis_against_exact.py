@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.paths.adc_synthesis import EchoRows, FrameClock, synthesise
+from mmweaver.paths.adc_synthesis import AdcSynthesis
+from mmweaver.paths.body_paths import motion_through
 from mmweaver.paths.exact import exact_frame
+from mmweaver.paths.paths import ApparentPoint, Paths
 
 
 def moving_points(count: int, speed_mps: float, acceleration_mps2: float, seed: int = 0):
@@ -35,13 +38,19 @@ def range_doppler(adc: np.ndarray) -> np.ndarray:
     return np.fft.fft(spectrum * slow[:, None, None, None], axis=0)
 
 
+def direct_paths(position, amplitude: np.ndarray, synthesis: AdcSynthesis) -> Paths:
+    """Paths (segment, path) of points in one frame, by the radar's own clock."""
+    nodes_m = position(synthesis.clock.node_s).swapaxes(0, 1)[None]  # (1, node, point, 3)
+    points = ApparentPoint.of(motion_through(nodes_m, synthesis.clock)[0])
+    each = torch.from_numpy(np.tile(amplitude, (len(synthesis.clock.segments), 1)))
+    return Paths.direct(each, points)
+
+
 def error_db(speed_mps: float, acceleration_mps2: float) -> float:
     position, amplitude = moving_points(40, speed_mps, acceleration_mps2)
-    clock = FrameClock(AWR1843)
-    places = position(clock.node_s)
-    rows = EchoRows(out_m=places, back_m=places, amplitude=amplitude, is_mixed=np.zeros(len(amplitude), bool))
+    synthesis = AdcSynthesis(AWR1843)
     truth = range_doppler(exact_frame(position, amplitude, AWR1843))
-    ours = range_doppler(synthesise(rows, clock))
+    ours = range_doppler(synthesis.moving(direct_paths(position, amplitude, synthesis))[0].numpy())
     return 10 * np.log10((abs(ours - truth) ** 2).sum() / (abs(truth) ** 2).sum())
 
 

@@ -17,7 +17,7 @@ from mmweaver.training.reflection_augmentation import reflected_joints, reflecte
 
 
 def _view() -> SceneTensors:
-    return SceneTensors.stacked([SceneTensors.of(reconstruct(make_room("office").photo()), AWR1843)])
+    return SceneTensors.stack([SceneTensors.of(reconstruct(make_room("office").photo()), AWR1843)])
 
 
 def test_twice_is_as_before():

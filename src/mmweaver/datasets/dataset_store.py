@@ -224,21 +224,21 @@ class StoredRoom:
         """
         if self.geometry is not None:
             wanted = np.arange(len(self.joints_m[index])) if frames is None else frames
-            values = self.geometry.cube_values(self._traced_motion(index), wanted, twin=realization, device=self.device)
+            values = self.geometry.cube(self._traced_motion(index), wanted, realization=realization, device=self.device)
         else:
             values = self._stored(index)
             values = values if frames is None else values[frames]
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
-    def echoes(self, index: int, frames: np.ndarray) -> Any:
-        """The person's echoes (`paths.body_paths.BodyEchoes`) in frames of one sequence, of a set with geometry."""
+    def body_paths(self, index: int, frames: np.ndarray) -> Any:
+        """The person's paths (`paths.body_paths.BodyPaths`) in frames of one sequence, of a set with geometry."""
         assert self.geometry is not None, "signals are stored, not geometry"
-        return self.geometry.replay("cpu").person(self._traced_motion(index), frames)
+        return self.geometry.resynthesis("cpu").person(self._traced_motion(index), frames)
 
     def _traced_motion(self, index: int) -> Any:
         assert self.geometry is not None
         person = int(self.person[index])
-        return self.geometry.look(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
+        return self.geometry.motion(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
 
     def _stored(self, index: int) -> np.ndarray:
         zarr = _zarr()

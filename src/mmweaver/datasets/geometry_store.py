@@ -1,9 +1,9 @@
-"""The part of a data set that signals are drawn from on the fly: prepared rooms and looked-at motions.
+"""The part of a data set that signals are made from on the fly: prepared rooms and traced motions.
 
     OUT/office_003/geometry/       instead of iq and iq_scale
-        node_joints_m    (sequence, frame, node, joint, axis) float32, at the nodes of simulation.FrameClock
-        visibility       (sequence, frame, byte)  bits of simulation.Visibility
-        room/, photographed/   simulation.prepared: the room as it is, and as its photo shows it
+        node_joints_m    (sequence, frame, node, joint, axis) float32, at the nodes of paths.frame_clock
+        visibility       (sequence, frame, byte)  bits of paths.visibility
+        room/, photographed/   paths.static_paths_store: the room as it is, and as its photo shows it
 
 No ray caster is needed to read it. Reference: decision 93.
 """
@@ -75,7 +75,7 @@ class StoredGeometry:
 
     folder: Path  # the room's
     config: RadarConfig
-    _replays: dict[str, Any] = field(default_factory=dict)
+    _resyntheses: dict[str, Any] = field(default_factory=dict)
 
     @cached_property
     def node_joints_m(self) -> np.ndarray:
@@ -88,34 +88,35 @@ class StoredGeometry:
 
     @cached_property
     def room(self) -> PreparedRoom:
-        """As it is: what the signal is made in."""
+        """As it is: the signal is made in it."""
         return self._read("room")
 
     @cached_property
     def photographed(self) -> PreparedRoom:
-        """As its photo shows it: what the network is told."""
+        """As its photo shows it: what the network sees."""
         return self._read("photographed")
 
-    def cube_values(self, look: Any, frames: np.ndarray, *, twin: int, device: str) -> np.ndarray:
-        """Frames of a looked-at cube in sqrt(mW), complex64 (frame, range, doppler, antenna); see `Resynthesis`."""
-        from mmweaver.dsp.cube_torch import torch_cube
+    def cube(self, motion: Any, frames: np.ndarray, *, realization: int, device: str) -> np.ndarray:
+        """Frames of a traced motion's cube in sqrt(mW), complex64 (frame, range, doppler, antenna)."""
+        from mmweaver.dsp.cube import cube_values
 
-        return torch_cube(self.replay(device).samples(look, frames, twin=twin), self.config).cpu().numpy()
+        samples = self.resynthesis(device).samples(motion, frames, realization=realization)
+        return cube_values(samples, self.config).cpu().numpy()
 
-    def replay(self, device: str) -> Any:
+    def resynthesis(self, device: str) -> Any:
         """The room's `Resynthesis` on a device, made once."""
         from mmweaver.paths.resynthesis import Resynthesis
 
-        if device not in self._replays:
-            self._replays[device] = Resynthesis(self.room, device)
-        return self._replays[device]
+        if device not in self._resyntheses:
+            self._resyntheses[device] = Resynthesis(self.room, device)
+        return self._resyntheses[device]
 
-    def look(self, index: int, *, person: int, height_m: float, seed: int) -> Any:
+    def motion(self, index: int, *, person: int, height_m: float, seed: int) -> Any:
         """The `TracedMotion` of one sequence."""
         from mmweaver.paths.resynthesis import TracedMotion
 
-        sizes = {"points": DEFAULT_NUM_POINTS, "faces": len(self.room.mirrors), "ghosts": GHOST_POINTS}
-        seen = Visibility.unpacked(self._visibility[index], **sizes, echoes=len(self.room.echoes))
+        sizes = {"points": DEFAULT_NUM_POINTS, "faces": len(self.room.reflectors), "ghosts": GHOST_POINTS}
+        seen = Visibility.unpacked(self._visibility[index], **sizes, static_paths=len(self.room.paths))
         joints_m = self.node_joints_m[index]
         return TracedMotion(joints_m=joints_m, visibility=seen, subject=person, height_m=height_m, seed=seed)
 

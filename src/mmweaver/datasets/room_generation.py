@@ -97,7 +97,7 @@ def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
 def trace_sequence(spec: SequenceSpec, scene: Scene, simulator: Simulator, num_frames: int) -> TracedSequence:
     """Traces one sequence without its signal. Raises InputError where the motion does not fit the room."""
     pose = pose_of(spec, scene, simulator.config, num_frames)
-    nodes_m, visibility = simulator.look(pose, num_frames=num_frames, seed=spec.seed)
+    nodes_m, visibility = simulator.trace(pose, num_frames=num_frames, seed=spec.seed)
     joints, velocity = _at_frames(pose, CubeGrid.of(simulator.config, num_frames), simulator.config)
     return TracedSequence(
         spec=spec, joints_m=joints, joint_velocity_mps=velocity, node_joints_m=nodes_m, visibility=visibility

@@ -1,6 +1,7 @@
 """ADC samples <-> range-Doppler cube."""
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from jaxtyping import Complex
@@ -31,22 +32,27 @@ def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
     # in blocks, so that a long recording needs little more memory than its samples and its cube
     for start in range(0, len(values), FRAMES_A_BLOCK):
         block = slice(start, start + FRAMES_A_BLOCK)
-        values[block] = _spectra(adc.samples[block], config)
-    if compensate_tdm:
-        values *= tdm_compensation(config)
+        values[block] = cube_values(adc.samples[block], config, compensate_tdm=compensate_tdm)
     return RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=adc.scale)
 
 
-def _spectra(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Windowed FFTs over samples and loops, (frame, range, doppler, antenna)."""
+def cube_values(samples: Any, config: RadarConfig, *, compensate_tdm: bool = True) -> Any:
+    """The values of `radar_cube`, complex64 (frame, range, doppler, antenna), of samples (frame, loop, tx, rx, sample).
+
+    Takes and gives numpy arrays, or torch tensors on any device.
+    """
     window = hann(config.num_samples)
     weight = (window / window.sum()).astype(np.float32)
-    weighted = samples * weight if config.complex_samples else np.real(samples) * (2 * weight)
-    spectrum = _fft(weighted, -1)
+    if config.complex_samples:
+        spectrum = _fft(samples * _like(weight, samples), -1)
+    else:
+        spectrum = _fft(samples.real * _like(2 * weight, samples), -1)
     kept = spectrum[..., config.first_range_bin : config.first_range_bin + config.num_range_bins]
     frames, loops = kept.shape[:2]
-    slow = kept.reshape(frames, loops, config.num_antennas, config.num_range_bins).transpose(0, 3, 1, 2)
-    return _fft(slow * doppler_weight(loops)[:, None], 2)
+    antennas = kept.reshape(frames, loops, config.num_antennas, config.num_range_bins)
+    slow = antennas.swapaxes(1, 3).swapaxes(2, 3)  # (frame, range, loop, antenna)
+    values = _fft(slow * _like(doppler_weight(loops)[:, None], samples), 2)
+    return values * _like(tdm_compensation(config), samples) if compensate_tdm else values
 
 
 def adc_from_cube(cube: RadarCube) -> AdcCube:
@@ -115,13 +121,29 @@ def tdm_compensation(config: RadarConfig) -> Complex[np.ndarray, "doppler antenn
     return np.exp(-2j * np.pi * doppler_hz[:, None] * delay_s).astype(np.complex64)
 
 
-def _fft(values: np.ndarray, axis: int) -> np.ndarray:
-    """scipy's FFT, which keeps single precision and is several times faster than numpy's; `values` may be lost."""
-    from scipy import fft
+def _fft(values: Any, axis: int) -> Any:
+    """The transform of real or complex values, of which `values` may be lost.
 
-    if np.iscomplexobj(values):
-        return np.asarray(fft.fft(values, axis=axis, overwrite_x=True))
-    return np.asarray(fft.rfft(values, axis=axis))
+    scipy's keeps single precision and is several times faster than numpy's.
+    """
+    if isinstance(values, np.ndarray):
+        from scipy import fft
+
+        if np.iscomplexobj(values):
+            return np.asarray(fft.fft(values, axis=axis, overwrite_x=True))
+        return np.asarray(fft.rfft(values, axis=axis))
+    from torch import fft
+
+    return fft.fft(values, dim=axis) if values.is_complex() else fft.rfft(values, dim=axis)
+
+
+def _like(values: np.ndarray, samples: Any) -> Any:
+    """An array where the samples are one, else a tensor on their device."""
+    if isinstance(samples, np.ndarray):
+        return values
+    import torch
+
+    return torch.from_numpy(values).to(samples.device)
 
 
 def _inverse_fft(values: np.ndarray, axis: int) -> np.ndarray:

@@ -22,6 +22,7 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.dsp.window_kernels import WindowKernel
 from mmweaver.dsp.windows import hann
 
@@ -29,7 +30,7 @@ FLAT_WAVELENGTHS = 0.05  # an array lower than this cannot tell elevation
 
 
 @dataclass(frozen=True, kw_only=True)
-class Axes:
+class Axes(TensorRecord):
     """Cells to render, in units of the response."""
 
     range_bin: Tensor  # (range,) bins of the range transform, zero at the radar
@@ -40,7 +41,7 @@ class Axes:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Points:
+class Points(TensorRecord):
     """Parameters of scatterers, float tensors (..., point); units of the response they are used with."""
 
     range_bin: Tensor

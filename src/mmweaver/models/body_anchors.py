@@ -10,6 +10,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.skeleton import NUM_JOINTS, joint
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
 
@@ -37,7 +38,7 @@ _EDGE_M = 0.1  # about a Fresnel zone: how softly a face ends
 
 
 @dataclass(frozen=True, kw_only=True)
-class Anchors:
+class Anchors(TensorRecord):
     """Echoes to be (..., echo): their places as range, velocity and direction cosines, and what is known of them."""
 
     range_m: Tensor

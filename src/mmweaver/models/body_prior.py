@@ -10,12 +10,13 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_REFLECTORS, anchor_places
 from mmweaver.paths.body_model import average_body
 
 
 @dataclass(frozen=True, kw_only=True)
-class BodyPrior:
+class BodyPrior(TensorRecord):
     """Of each anchor (..., frame, anchor): cross section in square metres, and how far its skin lies behind it in m."""
 
     cross_section_m2: Tensor

@@ -2,8 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, fields, replace
-from typing import TypeVar
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -19,7 +18,6 @@ from mmweaver.models.body_anchors import facing
 from mmweaver.models.network import SceneEncoding, WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.motion.animation.resample import joints_and_velocities
-from mmweaver.paths.mean_paths import Echoes
 from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.occlusion import hidden
 from mmweaver.paths.radar_equation import points_of
@@ -62,10 +60,10 @@ class LearnedRoom:
     ):
         self.network, self.config, self.device = network.to(device), config, device
         self.radar = MeanPower(config)
-        view = SceneTensors.stacked([scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)])
+        view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)
         with torch.inference_mode(), one_thread():
-            self.code: SceneEncoding = network.encode_room(_on(view, device))
-            resting = _first(_on(self.code.resting, "cpu"))
+            self.code: SceneEncoding = network.encode_room(view[None].to(device))
+            resting = self.code.resting[0].to("cpu")
             self._drawn = sample_static(resting, self.radar.response, room_seed)
             self.empty: BackgroundRecording | None = None
             if empty is not None:
@@ -73,19 +71,14 @@ class LearnedRoom:
                 self.empty = BackgroundRecording.of(empty, expected, self.radar)
                 self._drawn = self.empty.conditioned(self._drawn)
                 self.radar.noise = self.empty.noise_power
-            self._strong = _chosen(resting, self._drawn.strong)
+            self._strong = resting[self._drawn.strong]
             self.static = self._drawn.layer()
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
         """The field of everybody's motion; people are superimposed and hide neither each other nor the room."""
         with torch.inference_mode(), one_thread():
             points = [self._points(motion) for motion in motions]
-        together = Points(
-            range_bin=torch.cat([one.range_bin for one in points], dim=1),
-            doppler_bin=torch.cat([one.doppler_bin for one in points], dim=1),
-            direction=torch.cat([one.direction for one in points], dim=1),
-            amplitude=torch.cat([one.amplitude for one in points], dim=1),
-        )
+        together = Points.cat(points, 1)
         return field_of(self.static, together, self.config, len(together.range_bin), self.radar.noise)
 
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
@@ -117,7 +110,7 @@ class LearnedRoom:
     def _points(self, motion: FrameMotion) -> Points:
         joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
         moving = self.network.moving(self.code, joints[None].to(self.device), velocity[None].to(self.device))
-        return sample_moving(_first(_on(moving, "cpu")), aspect(joints), self.radar.response, motion.subject)
+        return sample_moving(moving[0].to("cpu"), aspect(joints), self.radar.response, motion.subject)
 
 
 @contextmanager
@@ -138,19 +131,3 @@ def aspect(joints_m: Tensor) -> Tensor:
     side = torch.linalg.cross(up, front)
     sight = torch.nn.functional.normalize(joints_m[:, joint("pelvis")], dim=-1)
     return 2 * torch.stack([(sight * front).sum(-1), (sight * side).sum(-1), sight[:, 2]], dim=-1)
-
-
-TensorsT = TypeVar("TensorsT", SceneTensors, Echoes)
-
-
-def _on(tensors: TensorsT, device: str) -> TensorsT:
-    """A record of tensors on a device."""
-    return replace(tensors, **{field.name: getattr(tensors, field.name).to(device) for field in fields(tensors)})
-
-
-def _chosen(echoes: Echoes, which: Tensor) -> Echoes:
-    return Echoes(**{field.name: getattr(echoes, field.name)[which] for field in fields(Echoes)})
-
-
-def _first(echoes: Echoes) -> Echoes:
-    return Echoes(**{field.name: getattr(echoes, field.name)[0] for field in fields(Echoes)})

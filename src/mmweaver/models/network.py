@@ -17,6 +17,7 @@ import torch
 from torch import Tensor, nn
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.models.ablations import flat_body, joints_alone, level_alone, uniform_surfaces
 from mmweaver.models.body_anchors import (
     BODY_FEATURES,
@@ -47,7 +48,7 @@ LARGEST_CORRECTION = 2.0  # the same, for what physics says of the photographed 
 
 
 @dataclass(frozen=True, kw_only=True)
-class SceneEncoding:
+class SceneEncoding(TensorRecord):
     """What is known of a room once its photo has been encoded; kept and used for any number of motions."""
 
     view: SceneTensors
@@ -90,13 +91,7 @@ class WeaverNetwork(nn.Module):
         z_env, places = self.environment(self._shown(view.image))
         view = uniform_surfaces(view) if "room prior" in self.without else view
         parts = [self._points(view, places), self._faces(view)]
-        resting = Echoes(
-            range_m=torch.cat([part.range_m for part in parts], -1),
-            velocity_mps=torch.cat([part.velocity_mps for part in parts], -1),
-            direction=torch.cat([part.direction for part in parts], -2),
-            cross_section_m2=torch.cat([part.cross_section_m2 for part in parts], -1),
-        )
-        return SceneEncoding(view=view, z_env=z_env, resting=resting)
+        return SceneEncoding(view=view, z_env=z_env, resting=Echoes.cat(parts, 1))
 
     def moving(
         self, code: SceneEncoding, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None

@@ -1,7 +1,7 @@
 """What the networks see of a room: a small picture, the echoes of what it shows, and the flat faces."""
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -9,8 +9,9 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.paths.antenna import scatterer_gain
-from mmweaver.paths.apparent_paths import between
+from mmweaver.paths.apparent_paths import apparent_direction
 from mmweaver.paths.image_method import SpecularReflector
 from mmweaver.paths.radar_equation import pattern_db
 from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
@@ -27,7 +28,7 @@ PLANE_KINDS = ("floor", "ceiling", "wall", "top", "panel")
 
 
 @dataclass(frozen=True, kw_only=True)
-class SceneTensors:
+class SceneTensors(TensorRecord):
     """Tensors of one room, or of several with a leading axis; frame of reference is the radar's."""
 
     image: Tensor  # (channel, row, column), 0 where nothing is known
@@ -73,11 +74,6 @@ class SceneTensors:
             **planes,
         )  # fmt: skip
 
-    @classmethod
-    def stacked(cls, views: list["SceneTensors"]) -> "SceneTensors":
-        """Several rooms as one batch."""
-        return cls(**{f.name: torch.stack([getattr(view, f.name) for view in views]) for f in fields(cls)})
-
 
 def _nearest(wanted: int, given: int) -> np.ndarray:
     return np.minimum(((np.arange(wanted) + 0.5) * given / wanted).astype(int), given - 1)
@@ -100,17 +96,15 @@ def _mask(classes: ClassMask | None, view: tuple[np.ndarray, ...], grid: DepthGr
 
 
 def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
-    """The strongest resting echoes that physics finds in the photographed room, each where it seems to stand.
-
-    The network turns their strength; what the photo does not show it adds.
-    """
-    echoes, config = room.echoes, room.config
-    order = np.argsort(-np.abs(echoes.amplitude))[:NUM_POINTS]
-    distance = np.maximum(echoes.way_m[order].mean(axis=(1, 2)) / 2, 0.1)
-    towards = between(echoes.first_m[order], echoes.last_m[order])
+    """The strongest static paths of the photographed room, each as a scatterer where it appears."""
+    config, level = room.config, room.paths.amplitude.abs().numpy()
+    order = np.argsort(-level)[:NUM_POINTS]
+    paths = room.paths[torch.from_numpy(order)]
+    distance = np.maximum(paths.length_m.mean(dim=(1, 2)).numpy() / 2, 0.1)
+    towards = apparent_direction(paths.departure_vertex_m, paths.arrival_vertex_m).numpy()
     loss_db = pattern_db(_tensor(towards[:, [0, 2]]), config).numpy()
     gain = scatterer_gain(config) * 10 ** (-loss_db / 10)  # as `radar_view.points_of` will apply it
-    cross_section = (np.abs(echoes.amplitude[order]) * distance**2 / gain) ** 2
+    cross_section = (level[order] * distance**2 / gain) ** 2
     place = towards * distance[:, None]
     kind = np.searchsorted(np.cumsum(list(room.counts.values())), order, side="right")
     features = np.column_stack(

@@ -1,68 +1,62 @@
-"""The simulator's echoes as one radar sees them on average: where each appears, and how strong."""
-
-import math
+"""Paths as points in the cells of a radar: where each appears, and how strong it is."""
 
 import numpy as np
 import torch
+from torch import Tensor
 
-from mmweaver.core.radar_config import RadarConfig
 from mmweaver.dsp.point_response import PointResponse, Points
-from mmweaver.paths.adc_synthesis import EchoRows
-from mmweaver.paths.static_paths import StaticEchoes
+from mmweaver.paths.paths import Paths, StaticPaths
 
 
-def between(first_m: np.ndarray, last_m: np.ndarray) -> np.ndarray:
-    """Unit directions (row, 3) in which echoes appear whose waves leave towards one place and return from another.
+def apparent_direction(departure: Tensor, arrival: Tensor) -> Tensor:
+    """Unit directions (..., 3) in which paths appear, of vectors (..., 3) towards their departure and arrival.
 
-    An array of transmitter and receiver pairs hears such a wave between its two ends.
+    An array of transmitter and receiver pairs sees such a path between its two ends.
     """
-    towards = (_unit(first_m) + _unit(last_m)) / 2
-    towards[:, 1] = np.sqrt(np.clip(1 - towards[:, 0] ** 2 - towards[:, 2] ** 2, 0, 1))
-    return towards
+    towards = (_unit(departure) + _unit(arrival)) / 2
+    ahead = (1 - towards[..., 0].square() - towards[..., 2].square()).clamp(0, 1).sqrt()
+    return torch.stack([towards[..., 0], ahead, towards[..., 2]], dim=-1)
 
 
-def static_points(echoes: StaticEchoes, response: PointResponse) -> Points:
-    """Resting echoes as points; amplitudes are real, in sqrt(mW)."""
-    towards = between(echoes.first_m, echoes.last_m)
-    range_m = echoes.way_m.mean(axis=(1, 2)) / 2
-    return _points(range_m, np.zeros(len(range_m)), towards, np.abs(echoes.amplitude), response)
+def static_points(paths: StaticPaths, response: PointResponse) -> Points:
+    """Static paths (path,) as points of real amplitude, in sqrt(mW)."""
+    towards = apparent_direction(paths.departure_vertex_m, paths.arrival_vertex_m)
+    range_m = paths.length_m.mean(dim=(-2, -1)) / 2
+    return _points(range_m, torch.zeros_like(range_m), towards, paths.amplitude.abs(), response)
 
 
-def moving_points(rows: EchoRows, node_s: np.ndarray, response: PointResponse) -> Points:
-    """One frame's moving echoes as points at the frame's middle.
+def moving_points(paths: Paths, response: PointResponse) -> Points:
+    """Moving paths (..., path) as points of real amplitude at the middle of their segment, in sqrt(mW).
 
-    A mixed row stands for two orders of one way; they add up as far as the array cannot tell their ends apart.
+    Both orders of a reciprocal path add up as far as the array cannot tell its ends apart.
     """
-    middle = len(node_s) // 2
-    way_m = np.linalg.norm(rows.out_m, axis=-1) + np.linalg.norm(rows.back_m, axis=-1)
-    velocity = np.polyfit(node_s - node_s[middle], way_m.T / 2, 1)[0]
-    out, back = rows.out_m[:, middle], rows.back_m[:, middle]
-    power = np.abs(rows.amplitude) ** 2 * np.where(rows.is_mixed, 2 + 2 * _agreement(out, back, response.config), 1.0)
-    return _points(way_m[:, middle] / 2, velocity, between(out, back), np.sqrt(power), response)
+    towards = apparent_direction(paths.departure.position_m, paths.arrival.position_m)
+    both = 2 + 2 * _agreement(paths, response)
+    power = paths.amplitude.abs().square() * torch.where(paths.is_reciprocal, both, torch.ones_like(both))
+    return _points(paths.length_m / 2, paths.rate_mps / 2, towards, power.sqrt(), response)
 
 
-def _agreement(out_m: np.ndarray, back_m: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Mean cosine between both orders of a way over the array's pairs."""
-    apart = np.asarray(config.tx_position_m)[:, None] - np.asarray(config.rx_position_m)[None]
-    turn = (_unit(out_m) - _unit(back_m)) @ apart.reshape(-1, 3).T * (2 * math.pi / config.wavelength_m)
-    return np.cos(turn).mean(axis=1)
+def _agreement(paths: Paths, response: PointResponse) -> Tensor:
+    """Mean cosine (..., path) between both orders of a path over the array's pairs."""
+    tx_m, rx_m = (
+        torch.from_numpy(np.asarray(place)) for place in (response.config.tx_position_m, response.config.rx_position_m)
+    )
+    apart_m = (tx_m[:, None] - rx_m).reshape(-1, 3)
+    cycles = (paths.departure.direction - paths.arrival.direction) @ apart_m.T / response.config.wavelength_m
+    return torch.cos(2 * torch.pi * cycles).mean(dim=-1)
 
 
 def _points(
-    range_m: np.ndarray, velocity_mps: np.ndarray, towards: np.ndarray, amplitude: np.ndarray, response: PointResponse
+    range_m: Tensor, velocity_mps: Tensor, towards: Tensor, amplitude: Tensor, response: PointResponse
 ) -> Points:
-    doppler_bin = _tensor(velocity_mps / response.velocity_a_bin_mps)
+    doppler_bin = (velocity_mps / response.velocity_a_bin_mps).float()
     return Points(
-        range_bin=_tensor(range_m / response.range_a_bin_m) + response.coupling * doppler_bin,
+        range_bin=(range_m / response.range_a_bin_m).float() + response.coupling * doppler_bin,
         doppler_bin=doppler_bin,
-        direction=_tensor(towards[:, [0, 2]]),
-        amplitude=_tensor(amplitude),
+        direction=towards[..., [0, 2]].float(),
+        amplitude=amplitude.float(),
     )
 
 
-def _tensor(values: np.ndarray) -> torch.Tensor:
-    return torch.from_numpy(np.ascontiguousarray(values, dtype=np.float32))
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+def _unit(vectors: Tensor) -> Tensor:
+    return vectors / vectors.norm(dim=-1, keepdim=True).clamp(min=1e-9)

@@ -31,6 +31,12 @@ class SpecularReflector:
         """Mirrored points (..., 3)."""
         return points_m - 2 * np.asarray(self.side(points_m))[..., None] * self.plane.normal
 
+    def image_of_motion(self, motion: np.ndarray) -> np.ndarray:
+        """Mirrored position, velocity and acceleration (..., 3, 3), the last but one axis naming which."""
+        along = motion @ self.plane.normal
+        along[..., 0] -= self.offset_m
+        return motion - 2 * along[..., None] * self.plane.normal
+
     def crossing(self, start_m: np.ndarray, image_m: np.ndarray) -> np.ndarray:
         """Where the segments from `start_m` to `image_m`, one on each side, meet the face (..., 3)."""
         near, far = self.side(start_m), -self.side(image_m)

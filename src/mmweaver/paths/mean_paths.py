@@ -4,9 +4,11 @@ from dataclasses import dataclass
 
 from torch import Tensor
 
+from mmweaver.core.tensor_record import TensorRecord
+
 
 @dataclass(frozen=True, kw_only=True)
-class Echoes:
+class Echoes(TensorRecord):
     """Mean echoes (..., echo): cross sections in square metres, places in metres, m/s and direction cosines."""
 
     range_m: Tensor

@@ -4,12 +4,13 @@ Echoes whose phases are independent add in power. Reference: speckle statistics 
 """
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 from mmweaver.dsp.spectra import azimuth_axis_rad, elevation_axis_rad
@@ -17,7 +18,7 @@ from mmweaver.dsp.windows import hann
 
 
 @dataclass(frozen=True, kw_only=True)
-class PowerMaps:
+class PowerMaps(TensorRecord):
     """Power in mW, as `dsp.spectra` gives it: (frame, range, doppler), (frame, range, azimuth), ..."""
 
     range_doppler: Tensor
@@ -45,7 +46,7 @@ class MeanPower:
 
     def to(self, device: torch.device) -> "MeanPower":
         """Itself, on a device."""
-        self.axes = Axes(**{field.name: getattr(self.axes, field.name).to(device) for field in fields(Axes)})
+        self.axes = self.axes.to(device)
         for name in ("_row_x", "_sin_azimuth", "_sin_elevation"):
             setattr(self, name, getattr(self, name).to(device))
         return self

@@ -1,27 +1,30 @@
-"""Several people at once: each hides the others, their ghosts and the room as a body hides itself.
+"""Several people at once: each occludes the others, their ghosts and the room as a body occludes itself.
 
-What goes from one person to another and then to the radar is not modelled; see docs/several_people.md.
+Paths from one person over another to the radar are not modelled; see docs/several_people.md.
 """
 
 import numpy as np
+import torch
 
-from mmweaver.paths.adc_synthesis import EchoRows
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.body_paths import BodyEchoes, hulls_of, occluded_by
-from mmweaver.paths.static_paths import RayTracedRoom, StaticEchoes
+from mmweaver.paths.body_paths import BodyPaths, hulls_of, occluded_by
+from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.paths import Paths, ScenePaths
+from mmweaver.paths.static_paths import RayTracedRoom
 
 
-class PeopleEchoes:
-    """Echo rows of all people in one room, frame by frame; none is an empty room.
+class PeoplePaths:
+    """Paths of all people in one room, frame by frame; nobody is an empty room.
 
-    With `mutual` everybody stands in everybody's way, and what two of them hide of the room is hidden once. Without
-    it each is as if alone, so that the whole is the plain sum of the people.
+    With `mutual` occlusion everybody stands in everybody's way, and what two of them occlude of the room is taken away
+    once. Without it each is as if alone, so that the whole is the plain sum of the people.
     """
 
     def __init__(
         self,
         room: RayTracedRoom,
         bodies: list[ScatteringBody],
+        clock: FrameClock,
         joints_m: list[np.ndarray],
         chests_m: list[np.ndarray] | None = None,
         *,
@@ -29,26 +32,32 @@ class PeopleEchoes:
     ):
         """`joints_m`: (frame, node, 22, 3) for each body; `chests_m`: how far its chest is raised (frame, node)."""
         chests = chests_m or [None] * len(bodies)
-        self.room, self.mutual = room, mutual
+        self.room, self.mutual, self.num_segments = room, mutual, len(clock.segments)
         self.hulls = hulls_of(bodies, joints_m) if mutual and bodies else []
         self.each = [
-            BodyEchoes(room, body, own, chest, self.hulls or None)
+            BodyPaths(room, body, clock, own, chest, self.hulls or None)
             for body, own, chest in zip(bodies, joints_m, chests, strict=True)
         ]
 
-    def rows(self, frame: int) -> EchoRows:
-        """Everything of the people that arrives in one frame."""
-        if not self.each:
-            nothing = np.zeros((0, 1, 3))
-            return EchoRows(out_m=nothing, back_m=nothing, amplitude=np.zeros(0, complex), is_mixed=np.zeros(0, bool))
-        return EchoRows.joined([one.rows(frame) for one in self.each])
+    def scene(self, num_frames: int) -> ScenePaths:
+        """The paths of the room and of all people in so many frames."""
+        segments = [paths for frame in range(num_frames) for paths in self.paths(frame)]
+        occluded = np.stack([self.occlusions(frame) for frame in range(num_frames)])
+        moving = Paths.padded(segments)
+        return ScenePaths(static=self.room.paths, moving=moving, occluded=torch.from_numpy(occluded))
 
-    def shadowed(self, frame: int) -> list[StaticEchoes]:
-        """The room's echoes that the people hide in one frame: those hidden by any, or by each."""
-        if not self.mutual:
-            return [one.shadowed(frame) for one in self.each]
-        if not self.each:
-            return []
-        echoes = self.room.echoes
-        near = np.unique(np.concatenate([one.near_body(echoes, frame) for one in self.each]))
-        return [echoes.part(occluded_by(self.hulls[frame], echoes, near))]
+    def paths(self, frame: int) -> list[Paths]:
+        """All paths over people in one frame, a record (path,) for each time segment."""
+        each = [one.paths(frame) for one in self.each]
+        return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
+
+    def occlusions(self, frame: int) -> np.ndarray:
+        """How many people take each static path away in one frame, uint8 (path,): at most one with mutual occlusion."""
+        count = np.zeros(len(self.room.paths), np.uint8)
+        if self.mutual and self.each:
+            near = np.unique(np.concatenate([one.near_body(frame) for one in self.each]))
+            count[occluded_by(self.hulls[frame], self.room.paths, near)] = 1
+        elif not self.mutual:
+            for one in self.each:
+                count[one.occluded(frame)] += 1
+        return count

@@ -15,6 +15,7 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
+from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers
@@ -28,7 +29,7 @@ HEARD, MISSED = 1e-4, 4e-3  # of the strongest resting echo's amplitude: in the 
 
 
 @dataclass(frozen=True, kw_only=True)
-class SampledStaticClutter:
+class SampledStaticClutter(TensorRecord):
     """Resting echoes with their phases: what the room returns, and what of it somebody hides."""
 
     heard: Tensor  # (row,) which echoes have rows, the strongest first
@@ -61,10 +62,7 @@ def sample_static(resting: Echoes, response: PointResponse, room_seed: int) -> S
     points = replace(points, amplitude=torch.polar(points.amplitude, turns))
     size = points.amplitude.abs() / points.amplitude.abs().max()
     heard = size.argsort(descending=True)[: int((size > HEARD).sum())]
-    points = Points(
-        range_bin=points.range_bin[heard], doppler_bin=points.doppler_bin[heard],
-        direction=points.direction[heard], amplitude=points.amplitude[heard],
-    )  # fmt: skip
+    points = points[heard]
     at_range, _, _, _, steer = response.factors(points, response.axes())
     return SampledStaticClutter(
         heard=heard, num_strong=int((size > MISSED).sum()), at_range=at_range.to(steer.dtype),

@@ -1,9 +1,10 @@
-"""Scene + poses -> ADC samples. Three steps: the room once, the people's echoes, the receiver."""
+"""The ray tracer: scene + poses -> paths -> ADC samples. The room is traced once, people frame by frame."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import torch
 from scipy.interpolate import CubicSpline
 
 from mmweaver.core.assumptions import UsualAssumption
@@ -11,13 +12,15 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, Scene
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
-from mmweaver.paths.adc_synthesis import FrameClock, synthesise
+from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
-from mmweaver.paths.body_paths import BodyEchoes
-from mmweaver.paths.multi_person_paths import PeopleEchoes
+from mmweaver.paths.body_paths import BodyPaths
+from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.multi_person_paths import PeoplePaths
+from mmweaver.paths.paths import Interaction, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
 from mmweaver.paths.skin_scattering import SkinEcho
-from mmweaver.paths.static_paths import RayTracedRoom, StaticEchoes, static_adc
+from mmweaver.paths.static_paths import RayTracedRoom
 from mmweaver.paths.visibility import Visibility
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -45,9 +48,9 @@ class Simulation:
 
 
 class Simulator:
-    """One radar in one room. Making it loads the room; `run` may then be called for many motions.
+    """One radar in one room. Making it traces the room; `run` may then be called for many motions.
 
-    The room's and the body's micro-phases belong to the room and the person; the seed draws the receiver's noise.
+    The room's and the body's micro-phases belong to the room and the person; the seed samples the receiver's noise.
     """
 
     def __init__(
@@ -55,9 +58,18 @@ class Simulator:
     ):
         self.config = config
         self.impairments = impairments or Impairments()
-        self.clock = FrameClock(config)
+        self.synthesis = AdcSynthesis(config)
+        self.clock = self.synthesis.clock
         self.room = RayTracedRoom(scene, config, micro_seed)
-        self.room_adc = self.room.adc + leakage_adc(config, self.impairments)
+        with one_thread():
+            self._static = self.synthesis.static(self.room.paths)
+            self._static += self.synthesis.static(leakage_path(config, self.impairments))
+            self._static_rate = self.synthesis.static_rate(self.room.paths)
+
+    @property
+    def room_adc(self) -> np.ndarray:
+        """Samples of the room without people and of the leakage, complex64 (tx, rx, sample), in sqrt(mW)."""
+        return self._static.numpy()
 
     def run(
         self,
@@ -68,11 +80,11 @@ class Simulator:
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
         motions: MicroMotionSettings | None = None,
-        mutual_shadows: bool = True,
+        mutual_occlusion: bool = True,
     ) -> Simulation:
         """ADC samples of the posed people, all frames at once: mind the memory, or take `chunks`.
 
-        They sway, waver and breathe as `motions` says, by default as people do; STILL only holds the joints.
+        They sway, waver and breathe as `motions` says, by default as people do; STILL holds the joints alone.
         """
         chunks = self.chunks(
             pose,
@@ -81,7 +93,7 @@ class Simulator:
             num_points=num_points,
             echo=echo,
             motions=motions,
-            mutual_shadows=mutual_shadows,
+            mutual_occlusion=mutual_occlusion,
         )
         samples = np.concatenate([chunk.samples for chunk in chunks])
         return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
@@ -95,61 +107,60 @@ class Simulator:
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
         motions: MicroMotionSettings | None = None,
-        mutual_shadows: bool = True,
+        mutual_occlusion: bool = True,
     ) -> Iterator[AdcCube]:
         """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
 
-        `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_shadows` the signal is the
-        plain sum of people who do not hide each other. Raises InputError where a pose does not cover the frames or
-        holds numbers that are none.
+        `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_occlusion` the signal is
+        the plain sum of people who do not occlude each other. Raises InputError where a pose does not cover the frames
+        or holds values that are not finite.
         """
         poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
         for one in poses:
             self._check(one, num_frames)
         bodies = [body_of(one, num_points, echo) for one in poses]
         receiver = Receiver(self.config, self.impairments, seed)
-        restless = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
+        micro_motions = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
-            echoes = self._echoes(poses, bodies, restless, frames, mutual_shadows)
-            samples = np.stack([self._frame(echoes, index, int(f), receiver) for index, f in enumerate(frames)])
-            yield AdcCube(samples=samples, config=self.config, scale=1.0)
+            people = self._people(poses, bodies, micro_motions, frames, mutual_occlusion)
+            samples = self.samples(people.scene(len(frames)), frames, receiver)
+            yield AdcCube(samples=samples.numpy(), config=self.config, scale=1.0)
 
-    def _frame(self, echoes: PeopleEchoes, index: int, frame: int, receiver: Receiver) -> np.ndarray:
-        room = self.room_adc
-        for shadow in echoes.shadowed(index):
-            room = room - static_adc(shadow, self.config)
-        people = synthesise(echoes.rows(index), self.clock)
-        return receiver.receive(people, room, self.room.adc_rate, frame)
+    def samples(self, paths: ScenePaths, frames: np.ndarray, receiver: Receiver) -> torch.Tensor:
+        """What the receiver records of paths in frames of these numbers, complex64 (frame, loop, tx, rx, sample)."""
+        with one_thread():
+            static = self._static - self.synthesis.occluded(paths)
+            return receiver.receive(self.synthesis.moving(paths.moving), static, self._static_rate, frames.tolist())
 
-    def _echoes(
+    def _people(
         self,
         poses: tuple[PoseSequence, ...],
         bodies: list[ScatteringBody],
-        restless: list[MicroMotion],
+        micro_motions: list[MicroMotion],
         frames: np.ndarray,
         mutual: bool,
-    ) -> PeopleEchoes:
+    ) -> PeoplePaths:
         joints_m, chests_m = [], []
-        for pose, unrest in zip(poses, restless, strict=True):
+        for pose, own in zip(poses, micro_motions, strict=True):
             joints, chest = with_micro_motion(
-                unrest, self._joints_at_nodes(pose, frames), frames, self.clock, pose.height_m
+                own, self._joints_at_nodes(pose, frames), frames, self.clock, pose.height_m
             )
             joints_m.append(joints)
             chests_m.append(chest)
-        return PeopleEchoes(self.room, bodies, joints_m, chests_m, mutual=mutual)
+        return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m, mutual=mutual)
 
-    def look(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
-        """What `replay` needs of a motion: joints at the clock's nodes, float32 (frame, node, 22, 3), and visibility.
+    def trace(self, pose: PoseSequence, *, num_frames: int, seed: int) -> tuple[np.ndarray, Visibility]:
+        """What `Resynthesis` needs of a motion: joints at the clock's nodes (frame, node, 22, 3), and visibility.
 
         Raises InputError as `chunks` does.
         """
         self._check(pose, num_frames)
         frames = np.arange(num_frames)
         joints_m = self._joints_at_nodes(pose, frames).astype(np.float32)
-        unrest = MicroMotion(pose.subject, seed, MicroMotionSettings())
-        moved, chest = with_micro_motion(unrest, joints_m.astype(float), frames, self.clock, pose.height_m)
-        return joints_m, BodyEchoes(self.room, body_of(pose), moved, chest).visibility()
+        own = MicroMotion(pose.subject, seed, MicroMotionSettings())
+        moved, chest = with_micro_motion(own, joints_m.astype(float), frames, self.clock, pose.height_m)
+        return joints_m, BodyPaths(self.room, body_of(pose), self.clock, moved, chest).visibility()
 
     def _joints_at_nodes(self, pose: PoseSequence, frames: np.ndarray) -> np.ndarray:
         """(frame, node, 22, 3): slow time is interpolated, never held.
@@ -175,17 +186,16 @@ class Simulator:
 
 
 def with_micro_motion(
-    unrest: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
+    motion: MicroMotion, joints_m: np.ndarray, frames: np.ndarray, clock: FrameClock, height_m: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Joints at the nodes of frames (frame, node, 22, 3) with their small motions, and the chest (frame, node)."""
+    """Joints at the nodes of frames (frame, node, 22, 3) with micro-motion, and how far the chest is raised, in m."""
     time_s = (frames[:, None] * clock.config.frame_period_s + clock.node_s[None, :]).ravel()
-    moved = unrest.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
-    return moved.reshape(joints_m.shape), unrest.chest_m(time_s).reshape(joints_m.shape[:2])
+    moved = motion.moved(joints_m.reshape(-1, *joints_m.shape[2:]), time_s, height_m)
+    return moved.reshape(joints_m.shape), motion.chest_m(time_s).reshape(joints_m.shape[:2])
 
 
-def leakage_adc(config: RadarConfig, impairments: Impairments) -> np.ndarray:
-    """Samples (tx, rx, sample) of the transmitters' direct way into the receivers."""
-    way_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_PATH_LENGTH_M)
-    amplitude = np.array([leakage(config, impairments)])
-    nowhere = np.zeros((1, 3))
-    return static_adc(StaticEchoes(way_m=way_m, amplitude=amplitude, first_m=nowhere, last_m=nowhere), config)
+def leakage_path(config: RadarConfig, impairments: Impairments) -> StaticPaths:
+    """The transmitters' direct path into the receivers, (1,); nobody can stand before it."""
+    length_m = np.full((1, config.num_tx, config.num_rx), LEAKAGE_PATH_LENGTH_M)
+    amplitude, nowhere = np.array([leakage(config, impairments)]), np.zeros((1, 3))
+    return StaticPaths.of(amplitude, length_m, nowhere, nowhere, Interaction.SPECULAR)

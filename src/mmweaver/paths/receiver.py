@@ -1,11 +1,14 @@
-"""From the wave at the port to the numbers of the converter: noise, an uneasy clock, whole numbers.
+"""From the wave at the port to the converter's numbers: channel errors, thermal and phase noise, jitter, quantisation.
 
 Reference: docs/radar_primer.md, section 6.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import torch
+from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
@@ -37,7 +40,7 @@ LEAKAGE_PATH_LENGTH_M = 0.05
 
 
 class Receiver:
-    """Adds to the ADC samples of one frame what the receiver adds. Each frame draws from its own stream."""
+    """One receiver's noise and errors. Each frame has a random stream of its own, so frames may come in any order."""
 
     def __init__(self, config: RadarConfig, impairments: Impairments, seed: int):
         self.config, self.impairments, self.seed = config, impairments, seed
@@ -51,19 +54,66 @@ class Receiver:
             deviation_hz = np.sqrt(density * config.sample_rate_hz / 2)
             self.phase_noise_s = float(deviation_hz / config.chirp_slope_hz_per_s)
 
-    def receive(self, person: np.ndarray, room: np.ndarray, room_rate: np.ndarray, frame: int) -> np.ndarray:
-        """Person (loop, tx, rx, sample) + room (tx, rx, sample) and its time derivative -> samples, complex64."""
-        samples = person + room
-        samples += self.shift(frame)[:, :, None, :] * room_rate
+    def receive(
+        self, moving: Tensor, static: Tensor, static_rate: Tensor, frames: Sequence[int], *, on_device: bool = False
+    ) -> Tensor:
+        """Samples as recorded, complex64 (frame, loop, tx, rx, sample), in sqrt(mW), of frames of these numbers.
+
+        `moving` (frame, loop, tx, rx, sample) may be overwritten; `static` (frame, tx, rx, sample) is the same in every
+        loop, `static_rate` (tx, rx, sample) how fast it changes within a chirp. Noise comes from the seed's streams, or
+        with `on_device` from the tensors' device, which is quicker on a GPU and gives other noise of the same kind.
+        """
+        if not on_device and moving.device.type == "cpu":  # frame by frame: the caches hold it
+            for index, frame in enumerate(frames):
+                one = slice(index, index + 1)
+                moving[one] = self._received(moving[one], static[one], static_rate, *self._streamed([frame], moving))
+            return moving
+        impairments = self._sampled(frames, moving) if on_device else self._streamed(frames, moving)
+        return self._received(moving, static, static_rate, *impairments)
+
+    def _received(
+        self, moving: Tensor, static: Tensor, static_rate: Tensor, delay_s: Tensor, noise: Tensor | None
+    ) -> Tensor:
+        samples = moving + static[:, None]
+        if self._has_unstable_clock:
+            samples += delay_s[..., None, :] * static_rate
         if self.impairments.channel_gain_db or self.impairments.channel_phase_rad:
-            samples *= self.channels[:, :, None]
-        if self.impairments.thermal_noise:
-            samples += self.noise(samples.shape, frame)
+            samples *= torch.from_numpy(self.channels).to(samples.device)[:, :, None]
+        if noise is not None:
+            samples += noise
         if not self.config.complex_samples:
-            samples = np.real(samples).astype(np.complex64)
-        if self.impairments.quantise:
-            samples = quantised(samples, self.config.adc_count_sqrt_mw)
-        return samples
+            samples = torch.complex(samples.real, torch.zeros_like(samples.real))
+        return self.quantised(samples) if self.impairments.quantise else samples
+
+    def quantised(self, samples: Tensor) -> Tensor:
+        """Samples as a 16-bit converter gives them: whole counts in either part, clipped."""
+        count = self.config.adc_count_sqrt_mw
+        parts = torch.view_as_real(samples)
+        return torch.view_as_complex((parts / count).round_().clamp_(-32768, 32767) * count)
+
+    @property
+    def _has_unstable_clock(self) -> bool:
+        return bool(self.impairments.chirp_jitter_s or self.phase_noise_s)
+
+    def _streamed(self, frames: Sequence[int], samples: Tensor) -> tuple[Tensor, Tensor | None]:
+        """Clock errors (frame, loop, tx, sample), thermal noise (frame, loop, tx, rx, sample) of the seed's streams."""
+        delay_s = torch.from_numpy(np.stack([self.shift(int(frame)) for frame in frames])).to(samples.device)
+        if not self.impairments.thermal_noise:
+            return delay_s, None
+        noise = np.stack([self.noise(tuple(samples.shape[1:]), int(frame)) for frame in frames])
+        return delay_s, torch.from_numpy(noise).to(samples.device)
+
+    def _sampled(self, frames: Sequence[int], samples: Tensor) -> tuple[Tensor, Tensor]:
+        """The same from a generator of the samples' device."""
+        device = samples.device
+        generator = torch.Generator(device)
+        generator.manual_seed(int(stream(self.seed, "device noise", int(frames[0])).integers(2**62)))
+        size = samples.shape[:3]
+        late = torch.rand((*size, 1), generator=generator, device=device) < 0.5
+        white = torch.randn((*size, samples.shape[-1]), generator=generator, device=device)
+        delay_s = (late.to(white.dtype) - 0.5) * self.impairments.chirp_jitter_s + white * self.phase_noise_s
+        noise = torch.randn((*samples.shape, 2), generator=generator, device=device) * self.noise_sqrt_mw
+        return delay_s, torch.view_as_complex(noise)
 
     def noise(self, shape: tuple[int, ...], frame: int) -> np.ndarray:
         """Thermal noise of one frame's samples, complex64."""
@@ -73,7 +123,7 @@ class Receiver:
         return noise
 
     def shift(self, frame: int) -> np.ndarray:
-        """How late each sample of one frame is, delta (loop, tx, sample) in seconds."""
+        """Clock error delta (loop, tx, sample) of one frame in seconds: s(t + delta) is sampled."""
         config, jitter_s = self.config, self.impairments.chirp_jitter_s
         rng = stream(self.seed, "clock", frame)
         shift = np.zeros((config.num_loops, config.num_tx, config.num_samples), np.float32)
@@ -92,13 +142,6 @@ def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
     gain_db, phase_rad = impairments.channel_gain_db * drawn[0], impairments.channel_phase_rad * drawn[1]
     each = 10 ** (gain_db / 20) * np.exp(1j * phase_rad)
     return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
-
-
-def quantised(samples: np.ndarray, count: float) -> np.ndarray:
-    """Samples as a 16-bit converter gives them: whole multiples of `count` in either part, clipped."""
-    parts = np.ascontiguousarray(samples).view(np.float32)
-    parts = np.clip(np.rint(parts / np.float32(count)), -32768, 32767) * np.float32(count)
-    return parts.view(np.complex64)
 
 
 def leakage(config: RadarConfig, impairments: Impairments) -> complex:

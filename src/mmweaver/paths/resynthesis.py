@@ -1,9 +1,10 @@
-"""Prepared rooms and looked-at motions -> ADC samples, without a ray caster: `Simulator` again, on any device.
+"""Prepared rooms and traced motions -> ADC samples, without a ray caster: the `Simulator` again, on any device.
 
-Simulator.look(pose) -> joints, Visibility --.
-Room -> prepared.room_arrays ----------------+--> Resynthesis.samples
+Simulator.trace(pose) -> joints, Visibility -----.
+Room -> static_paths_store.room_arrays ----------+--> Resynthesis.samples
 """
 
+from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,81 +15,86 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
-from mmweaver.paths.adc_synthesis import FrameClock
-from mmweaver.paths.adc_synthesis_torch import TorchSynthesis
+from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.body_model import ScatteringBody
-from mmweaver.paths.body_paths import BodyEchoes
-from mmweaver.paths.ray_traced import leakage_adc, with_micro_motion
+from mmweaver.paths.body_paths import BodyPaths
+from mmweaver.paths.paths import Paths, ScenePaths
+from mmweaver.paths.ray_traced import leakage_path, with_micro_motion
 from mmweaver.paths.receiver import Impairments, Receiver
 from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.static_paths_store import with_new_phases
 from mmweaver.paths.visibility import Visibility
 
-ROOM_REALIZATIONS = 4  # sets of phases that a room draws from: each costs 30 ms and is kept
+ROOM_REALIZATIONS = 4  # sets of phases of a room: each costs 30 ms and is kept
 
 
 @dataclass(frozen=True, kw_only=True)
 class TracedMotion:
-    """A motion as it was looked at once: joints at the clock's nodes (frame, node, 22, 3), and what rays found out."""
+    """A motion whose rays were cast once: joints at the clock's nodes (frame, node, 22, 3), and their visibility."""
 
     joints_m: np.ndarray
     visibility: Visibility
     subject: int
     height_m: float
-    seed: int  # of the small motions and of the noise
+    seed: int  # of the micro-motion and of the noise
 
 
 class Resynthesis:
-    """One prepared room for one radar. `samples` may be asked for any of its looks, any frames, and other phases."""
+    """One prepared room for one radar: `samples` of any of its traced motions, any frames, and any realization."""
 
     def __init__(self, room: PreparedRoom, device: str | torch.device = "cpu", impairments: Impairments | None = None):
         self.room, self.config = room, room.config
         self.impairments = impairments or Impairments()
         self.synthesis = _synthesis(self.config, str(device))
-        self._twins: dict[int, tuple[PreparedRoom, Tensor, Tensor]] = {}
+        self._realizations: dict[int, tuple[PreparedRoom, Tensor, Tensor]] = {}
 
-    def samples(self, look: TracedMotion, frames: np.ndarray, *, twin: int = 0) -> Tensor:
+    def samples(self, motion: TracedMotion, frames: np.ndarray, *, realization: int = 0) -> Tensor:
         """ADC samples (frame, loop, tx, rx, sample) of frames of these numbers.
 
-        Twin 0 is what the simulator gave when it looked, to single precision. Any other has other micro-phases of room
-        and skin and other noise.
+        Realization 0 is what the simulator gave when it traced, to single precision. Any other has other
+        micro-phases of room and skin and other noise.
         """
-        room, resting, rate = self._room(twin)
-        body = _body(look.subject, look.height_m)
-        if twin:
-            body = _with_phases(body, stream(look.subject, "body", "other phases", twin))
-        person = self._person(room, body, look, frames)
-        still = resting - self.synthesis.resting([person.shadowed(index) for index in range(len(frames))])
-        moving = self.synthesis.moving([person.rows(index) for index in range(len(frames))])
-        seed = look.seed if twin == 0 else int(stream(look.seed, "twin", twin).integers(2**31))
-        on_device = bool(twin) and self.synthesis.device.type != "cpu"
+        room, static, rate = self._room(realization)
+        body = _body(motion.subject, motion.height_m)
+        if realization:
+            body = _with_phases(body, stream(motion.subject, "body", "other phases", realization))
+        person = self._person(room, body, motion, frames)
+        moving = Paths.padded([paths for index in range(len(frames)) for paths in person.paths(index)])
+        occluded = torch.from_numpy(motion.visibility.occluded[frames])
+        paths = ScenePaths(static=room.paths, moving=moving, occluded=occluded)
+        seed = motion.seed if realization == 0 else int(stream(motion.seed, "twin", realization).integers(2**31))
+        on_device = bool(realization) and self.synthesis.device.type != "cpu"
         receiver = Receiver(self.config, self.impairments, seed)
-        return self.synthesis.received(moving, still, rate, receiver, frames, drawn_here=on_device)
+        return receiver.receive(
+            self.synthesis.moving(paths.moving), static - self.synthesis.occluded(paths), rate, frames.tolist(),
+            on_device=on_device,
+        )  # fmt: skip
 
-    def person(self, look: TracedMotion, frames: np.ndarray) -> BodyEchoes:
-        """The person's echoes, and what the person hides, in frames of these numbers."""
-        return self._person(self.room, _body(look.subject, look.height_m), look, frames)
+    def person(self, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
+        """The person's paths, and which static ones the person occludes, in frames of these numbers."""
+        return self._person(self.room, _body(motion.subject, motion.height_m), motion, frames)
 
-    def _person(self, room: PreparedRoom, body: ScatteringBody, look: TracedMotion, frames: np.ndarray) -> BodyEchoes:
-        unrest = MicroMotion(look.subject, look.seed, MicroMotionSettings())
+    def _person(self, room: PreparedRoom, body: ScatteringBody, motion: TracedMotion, frames: np.ndarray) -> BodyPaths:
+        micro_motion = MicroMotion(motion.subject, motion.seed, MicroMotionSettings())
         joints_m, chest_m = with_micro_motion(
-            unrest, look.joints_m[frames].astype(float), frames, self.synthesis.clock, look.height_m
+            micro_motion, motion.joints_m[frames].astype(float), frames, self.synthesis.clock, motion.height_m
         )
-        return BodyEchoes(room, body, joints_m, chest_m, known=look.visibility.frames(frames))
+        known = motion.visibility.frames(frames)
+        return BodyPaths(room, body, self.synthesis.clock, joints_m, chest_m, known=known)
 
-    def _room(self, twin: int) -> tuple[PreparedRoom, Tensor, Tensor]:
-        key = 1 + twin % ROOM_REALIZATIONS if twin else 0
-        if key not in self._twins:
+    def _room(self, realization: int) -> tuple[PreparedRoom, Tensor, Tensor]:
+        key = 1 + realization % ROOM_REALIZATIONS if realization else 0
+        if key not in self._realizations:
             room = with_new_phases(self.room, key) if key else self.room
-            device = self.synthesis.device
-            resting = torch.from_numpy(room.adc + leakage_adc(self.config, self.impairments)).to(device)
-            self._twins[key] = room, resting, torch.from_numpy(room.adc_rate).to(device)
-        return self._twins[key]
+            static = self.synthesis.static(room.paths)
+            static += self.synthesis.static(leakage_path(self.config, self.impairments))
+            self._realizations[key] = room, static, self.synthesis.static_rate(room.paths)
+        return self._realizations[key]
 
 
 @lru_cache(maxsize=4)
-def _synthesis(config: RadarConfig, device: str) -> TorchSynthesis:
-    return TorchSynthesis(FrameClock(config), device)
+def _synthesis(config: RadarConfig, device: str) -> AdcSynthesis:
+    return AdcSynthesis(config, device)
 
 
 @lru_cache(maxsize=32)
@@ -97,8 +103,6 @@ def _body(subject: int, height_m: float) -> ScatteringBody:
 
 
 def _with_phases(body: ScatteringBody, rng: np.random.Generator) -> ScatteringBody:
-    from copy import copy
-
     other = copy(body)
     other.micro_phase = np.exp(2j * np.pi * rng.random(len(body.micro_phase)))
     return other

@@ -1,99 +1,70 @@
-"""The room without the person: diffuse surfaces, mirrors and edges, as echoes that stay."""
+"""The static paths of a room: diffuse surfaces, specular reflections and edges."""
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
 from mmweaver.geometry.ray_caster import RayCaster
-from mmweaver.paths.adc_synthesis import fast_time, phasor
 from mmweaver.paths.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.paths.edge_scattering import find_edges
 from mmweaver.paths.image_method import SpecularReflector, specular_paths, specular_reflectors
 from mmweaver.paths.materials import MATERIALS, reflection
+from mmweaver.paths.paths import STATIC_KINDS, Interaction, StaticPaths
 
 AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
 AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
 EDGE_RADIUS_M = 0.008  # of table rims and legs: how round an edge counts
-EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its glint is gone
+EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its specular lobe has ended
 NEAREST_M = 0.15
-KINDS = ("diffuse", "specular", "edges")
-
-
-@dataclass(frozen=True, kw_only=True)
-class StaticEchoes:
-    """Echoes of the room, one row each."""
-
-    way_m: np.ndarray  # (row, tx, rx) out and back
-    amplitude: np.ndarray  # (row,) complex, sqrt(mW)
-    first_m: np.ndarray  # (row, 3) where the wave first meets the room: a body before it casts a shadow
-    last_m: np.ndarray  # (row, 3) where it last leaves it
-
-    def __len__(self) -> int:
-        return len(self.amplitude)
-
-    def part(self, rows: np.ndarray) -> "StaticEchoes":
-        return StaticEchoes(
-            way_m=self.way_m[rows], amplitude=self.amplitude[rows], first_m=self.first_m[rows], last_m=self.last_m[rows]
-        )
 
 
 class PreparedRoom:
-    """What of a room needs no more rays: its mirrors and its static echoes, for one radar.
+    """What of a room needs no more rays: its specular reflectors and its static paths, for one radar.
 
-    `counts` says how many of the echoes, in this order, are of which of KINDS. `prepared` keeps such rooms as arrays.
+    The paths are in the order of STATIC_KINDS. `static_paths_store` keeps such rooms as arrays.
     """
 
-    def __init__(
-        self, config: RadarConfig, mirrors: list[SpecularReflector], echoes: StaticEchoes, counts: dict[str, int]
-    ):
-        self.config, self.mirrors, self.echoes, self.counts = config, mirrors, echoes, counts
+    def __init__(self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths):
+        self.config, self.reflectors, self.paths = config, reflectors, paths
 
     @cached_property
-    def adc(self) -> np.ndarray:
-        """Samples of all echoes, (tx, rx, sample)."""
-        return static_adc(self.echoes, self.config)
+    def counts(self) -> dict[Interaction, int]:
+        """How many static paths are of which kind."""
+        return {kind: int((self.paths.interaction == int(kind)).sum()) for kind in STATIC_KINDS}
 
     @cached_property
-    def adc_rate(self) -> np.ndarray:
-        """Their rate over time, for jitter, (tx, rx, sample)."""
-        delay_s = self.echoes.way_m.mean(axis=(1, 2)) / SPEED_OF_LIGHT_MPS
-        rate = 2j * np.pi * self.config.chirp_slope_hz_per_s * delay_s
-        return static_adc(self.echoes, self.config, self.echoes.amplitude * rate)
+    def vertex_directions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors (path, 3) from the radar to the first and the last vertex of each static path."""
+        ends = self.paths.departure_vertex_m.numpy(), self.paths.arrival_vertex_m.numpy()
+        first, last = (one / np.maximum(np.linalg.norm(one, axis=1, keepdims=True), 1e-9) for one in ends)
+        return first, last
 
 
 class RayTracedRoom(PreparedRoom):
-    """A scene made ready for one radar: its ray caster, its mirrors and its static echoes.
+    """A scene prepared for one radar: its ray caster, its specular reflectors and its static paths.
 
-    `micro_seed` draws the phases of its surfaces: another one is the same room seen with other micro-phases.
+    `micro_seed` samples the phases of its surfaces: another seed is another realization of the same room.
     """
 
     def __init__(self, scene: Scene, config: RadarConfig, micro_seed: int = 0):
-        self.config, self.micro_seed = config, micro_seed
+        self.micro_seed = micro_seed
         self.caster = RayCaster(scene.vertices_m, scene.faces)
-        self.mirrors = specular_reflectors(scene.planes)
-        parts = [self._diffuse(scene), self._specular(), self._edges(scene)]
-        echoes = StaticEchoes(
-            way_m=np.concatenate([part.way_m for part in parts]),
-            amplitude=np.concatenate([part.amplitude for part in parts]),
-            first_m=np.concatenate([part.first_m for part in parts]),
-            last_m=np.concatenate([part.last_m for part in parts]),
-        )
-        super().__init__(config, self.mirrors, echoes, dict(zip(KINDS, map(len, parts), strict=True)))
+        self.config, self.reflectors = config, specular_reflectors(scene.planes)
+        paths = StaticPaths.cat([self._diffuse(scene), self._specular(), self._edges(scene)])
+        super().__init__(config, self.reflectors, paths)
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
-        """True where nothing of the room lies between; shapes (..., 3)."""
+        """Bool (...): nothing of the room lies between start and end (..., 3), but for a margin at either end."""
         shape = np.broadcast_shapes(start_m.shape, end_m.shape)
         start = np.broadcast_to(start_m, shape).reshape(-1, 3).astype(float)
         end = np.broadcast_to(end_m, shape).reshape(-1, 3).astype(float)
         return self.caster.is_clear(start, end, margin_m).reshape(shape[:-1])
 
-    def _diffuse(self, scene: Scene) -> StaticEchoes:
-        """Every cell of a grid of rays is a patch that scatters as Lambert's law says."""
+    def _diffuse(self, scene: Scene) -> StaticPaths:
+        """One path for each cell of a grid of rays: a patch that scatters by Lambert's law."""
         rng = stream(self.micro_seed, "room", "diffuse")
         shape = (ELEVATION_CELLS, AZIMUTH_CELLS)
         step_az, step_el = 2 * AZIMUTH_LIMIT_RAD / AZIMUTH_CELLS, 2 * ELEVATION_LIMIT_RAD / ELEVATION_CELLS
@@ -113,7 +84,7 @@ class RayTracedRoom(PreparedRoom):
         cos = np.abs((normal * way).sum(axis=1))
         cross_section = 4 * cos * distance**2 * solid_angle[hit]
         cross_section *= self._diffuse_share(scene, scene.face_material[face], cos, np.abs(normal[:, 2]) > 0.7)
-        return self._at_points(way * distance[:, None], cross_section, turns[hit])
+        return self._scattered(way * distance[:, None], cross_section, turns[hit], Interaction.DIFFUSE)
 
     def _diffuse_share(self, scene: Scene, kind: np.ndarray, cos: np.ndarray, flat: np.ndarray) -> np.ndarray:
         """|S Gamma|^2 of each patch (effective roughness)."""
@@ -126,29 +97,28 @@ class RayTracedRoom(PreparedRoom):
                 share[of] = material.scattering**2 * np.abs(gamma) ** 2
         return share
 
-    def _specular(self) -> StaticEchoes:
+    def _specular(self) -> StaticPaths:
         tx, rx = np.asarray(self.config.tx_position_m), np.asarray(self.config.rx_position_m)
-        ways, amplitudes, first, last = [], [], [], []
-        for path in specular_paths(self.mirrors, self.config.wavelength_m, self.config.centre_frequency_hz):
+        """One path for each specular reflection that nothing blocks."""
+        lengths, amplitudes, first, last = [], [], [], []
+        for path in specular_paths(self.reflectors, self.config.wavelength_m, self.config.centre_frequency_hz):
             stops = np.concatenate([np.zeros((1, 3)), path.corners_m, np.zeros((1, 3))])
             if path.length_m / 2 > self.config.max_range_m or not self.is_clear(stops[:-1], stops[1:], 0.12).all():
                 continue
             image = tx @ path.turn.T + path.shift_m
-            ways.append(np.linalg.norm(image[:, None] - rx[None], axis=-1))
+            lengths.append(np.linalg.norm(image[:, None] - rx[None], axis=-1))
             ends = np.stack([stops[1], stops[-2]])
             gains = pattern(ends / np.linalg.norm(ends, axis=1, keepdims=True), self.config)
             amplitudes.append(specular_gain(self.config) * gains.prod() * path.coefficient / path.length_m)
             first.append(stops[1])
             last.append(stops[-2])
-        return StaticEchoes(
-            way_m=np.array(ways).reshape(-1, len(tx), len(rx)),
-            amplitude=np.array(amplitudes, complex),
-            first_m=np.array(first).reshape(-1, 3),
-            last_m=np.array(last).reshape(-1, 3),
-        )
+        return StaticPaths.of(
+            np.array(amplitudes, complex), np.array(lengths).reshape(-1, len(tx), len(rx)),
+            np.array(first).reshape(-1, 3), np.array(last).reshape(-1, 3), Interaction.SPECULAR,
+        )  # fmt: skip
 
-    def _edges(self, scene: Scene) -> StaticEchoes:
-        """Rims and legs that lie across the line of sight flash: sigma = k a L^2 |Gamma|^2."""
+    def _edges(self, scene: Scene) -> StaticPaths:
+        """One path for each piece of rim or leg; sigma = k a L^2 |Gamma|^2 where it lies across the line of sight."""
         edges = find_edges(scene, self.caster)
         rng = stream(self.micro_seed, "room", "edges")
         distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
@@ -164,36 +134,21 @@ class RayTracedRoom(PreparedRoom):
         cross_section *= np.exp(-2 * (cos / EDGE_LOBE) ** 2)
         turns = rng.random(len(cos))
         keep = (cross_section > 1e-7) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
-        return self._at_points(edges.place_m[keep], cross_section[keep], turns[keep])
+        return self._scattered(edges.place_m[keep], cross_section[keep], turns[keep], Interaction.EDGE)
 
-    def _at_points(self, place_m: np.ndarray, cross_section_m2: np.ndarray, turns: np.ndarray) -> StaticEchoes:
+    def _scattered(
+        self, place_m: np.ndarray, cross_section_m2: np.ndarray, cycles: np.ndarray, kind: Interaction
+    ) -> StaticPaths:
+        """Paths to scatterers (path, 3) and back, of cross section and phase (path,)."""
         distance = np.linalg.norm(place_m, axis=1)
         gain = pattern(place_m / np.maximum(distance, 1e-9)[:, None], self.config) ** 2
         amplitude = scatterer_gain(self.config) * gain * np.sqrt(cross_section_m2) / np.maximum(distance, 1e-3) ** 2
-        return StaticEchoes(
-            way_m=path_lengths_m(place_m, self.config),
-            amplitude=amplitude * np.exp(2j * np.pi * turns),
-            first_m=place_m,
-            last_m=place_m,
-        )
+        return scattered_paths(place_m, amplitude * np.exp(2j * np.pi * cycles), kind, self.config)
 
 
-def path_lengths_m(place_m: np.ndarray, config: RadarConfig) -> np.ndarray:
-    """Out from each transmitter to places (row, 3) and back to each receiver, (row, tx, rx)."""
+def scattered_paths(place_m: np.ndarray, amplitude: np.ndarray, kind: Interaction, config: RadarConfig) -> StaticPaths:
+    """Static paths to scatterers at places (path, 3) and straight back, of amplitude (path,) in sqrt(mW)."""
     tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
     out = np.linalg.norm(place_m[:, None] - tx, axis=-1)
     back = np.linalg.norm(place_m[:, None] - rx, axis=-1)
-    return out[:, :, None] + back[:, None, :]
-
-
-def static_adc(echoes: StaticEchoes, config: RadarConfig, amplitude: np.ndarray | None = None) -> np.ndarray:
-    """ADC samples of resting echoes, complex64 (tx, rx, sample); the same in every loop."""
-    adc = np.zeros((config.num_tx, config.num_rx, config.num_samples), np.complex64)
-    weight = (echoes.amplitude if amplitude is None else amplitude).astype(np.complex64)
-    for start in range(0, len(echoes), 2048):
-        chunk = slice(start, start + 2048)
-        slow = phasor(echoes.way_m[chunk] / config.wavelength_m) * weight[chunk, None, None]
-        for m in range(config.num_tx):
-            delay_s = echoes.way_m[chunk, m].mean(axis=1) / SPEED_OF_LIGHT_MPS
-            adc[m] += slow[:, m].T @ fast_time(delay_s, 0.0, config)
-    return adc
+    return StaticPaths.of(amplitude, out[:, :, None] + back[:, None, :], place_m, place_m, kind)

@@ -178,7 +178,7 @@ def gain_of(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
     for room in rooms:
         one = RoomExamples(room, SPLIT)
         with torch.inference_mode():
-            view = type(one.view).stacked([one.view])
+            view = one.view[None]
             resting = learner.network.encode_room(view).resting
             expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
         maps.append((expected, one.empty.range_azimuth))

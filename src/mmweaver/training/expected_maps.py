@@ -7,12 +7,10 @@ Reference: decision 98.
 from dataclasses import fields
 
 import numpy as np
-import torch
 
 from mmweaver.datasets.dataset_store import StoredRoom
-from mmweaver.paths.adc_synthesis import FrameClock
 from mmweaver.paths.apparent_paths import moving_points, static_points
-from mmweaver.paths.body_paths import BodyEchoes
+from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
 
 
@@ -22,33 +20,26 @@ class ExpectedMaps:
     def __init__(self, room: StoredRoom):
         assert room.geometry is not None, "signals are stored, not geometry"
         self.room, self.radar = room, _radar(room)
-        self.node_s = FrameClock(room.config).node_s
-        self.resting = room.geometry.room.echoes
-        self.empty = self.radar.maps(static_points(self.resting, self.radar.response))
+        self.empty = self.radar.maps(static_points(room.geometry.room.paths, self.radar.response))
 
     def frames(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps]:
         """Maps (frame, range, other) of frames of a sequence: of room, person and noise, and of the person alone."""
-        person = self.room.echoes(index, frames)
+        person = self.room.body_paths(index, frames)
         both = [self._frame(person, number) for number in range(len(frames))]
-        return stacked([whole for whole, _ in both]), stacked([alone for _, alone in both])
+        return PowerMaps.stack([whole for whole, _ in both]), PowerMaps.stack([alone for _, alone in both])
 
-    def _frame(self, person: BodyEchoes, number: int) -> tuple[PowerMaps, PowerMaps]:
+    def _frame(self, person: BodyPaths, number: int) -> tuple[PowerMaps, PowerMaps]:
         response = self.radar.response
-        moving = self.radar.maps(moving_points(person.rows(number), self.node_s, response))
-        hidden = self.radar.maps(static_points(person.shadowed(number), response))
+        segments = person.paths(number)
+        moving = self.radar.maps(moving_points(segments[len(segments) // 2], response))
+        occluded = self.radar.maps(static_points(person.occluded_paths(number), response))
         names = [field.name for field in fields(PowerMaps)]
         maps = {}
         for name, noise in zip(names, self.radar.noise_maps(), strict=True):
             empty = getattr(self.empty, name)
-            left = (empty - getattr(hidden, name)).clamp(min=0)
+            left = (empty - getattr(occluded, name)).clamp(min=0)
             maps[name] = left + getattr(moving, name) + noise
         return PowerMaps(**maps), moving
-
-
-def stacked(maps: list[PowerMaps]) -> PowerMaps:
-    """One leading axis more."""
-    names = [field.name for field in fields(PowerMaps)]
-    return PowerMaps(**{name: torch.stack([getattr(one, name) for one in maps]) for name in names})
 
 
 _RADARS: dict[str, MeanPower] = {}

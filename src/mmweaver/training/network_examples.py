@@ -26,7 +26,7 @@ from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.device import Share
-from mmweaver.training.expected_maps import ExpectedMaps, stacked
+from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_loss import Targets
 from mmweaver.training.reflection_augmentation import reflected_joints, reflected_scene, reflected_targets
 
@@ -71,7 +71,7 @@ class RoomExamples:
         """Maps (range, other) of the room without a person."""
         if self._expected is not None:
             return self._expected.empty
-        return _one(power_maps(static_cube(self.room.static, self.room.config).values, self.room.config))
+        return power_maps(static_cube(self.room.static, self.room.config).values, self.room.config)[0]
 
     @cached_property
     def _expected(self) -> ExpectedMaps | None:
@@ -122,18 +122,18 @@ def sample_batch(
         alone.append(person)
         empty.append(one.empty)
     batch = NetworkBatch(
-        view=SceneTensors.stacked(views),
+        view=SceneTensors.stack(views),
         joints_m=torch.stack(joints),
         velocity_mps=torch.stack(velocity),
         frames=torch.stack(picked),
-        targets=Targets(maps=stacked(maps), empty=stacked(empty), person=_all_or_none(alone)),
+        targets=Targets(maps=PowerMaps.stack(maps), empty=PowerMaps.stack(empty), person=_all_or_none(alone)),
     )
     return _mirrored(batch) if mirror and rng.random() < 0.5 else batch
 
 
 def _all_or_none(maps: list[PowerMaps | None]) -> PowerMaps | None:
     known = [one for one in maps if one is not None]
-    return stacked(known) if len(known) == len(maps) else None
+    return PowerMaps.stack(known) if len(known) == len(maps) else None
 
 
 def _mirrored(batch: NetworkBatch) -> NetworkBatch:
@@ -162,11 +162,3 @@ def power_maps(values: np.ndarray, config: RadarConfig) -> PowerMaps:
 
 def _tensor(values: np.ndarray) -> Tensor:
     return torch.from_numpy(values.astype(np.float32))
-
-
-def _one(maps: PowerMaps) -> PowerMaps:
-    return PowerMaps(
-        range_doppler=maps.range_doppler[0],
-        range_azimuth=maps.range_azimuth[0],
-        range_elevation=maps.range_elevation[0],
-    )

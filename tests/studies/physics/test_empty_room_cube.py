@@ -9,6 +9,6 @@ from studies.physics.empty_room_cube import empty_room
 def test_a_floor_and_perhaps_a_wall(has_floor: bool, wall_y_m: float | None, mirrors: int):
     scene = empty_room(floor_z_m=-0.8, has_floor=has_floor, wall_y_m=wall_y_m)
     room = Simulator(scene, IWR1443_MARS).room
-    assert len(room.mirrors) == mirrors
+    assert len(room.reflectors) == mirrors
     assert (room.counts["diffuse"] > 0) == has_floor
     assert scene.floor.centre_m[2] == scene.floor_z_m

@@ -1,0 +1,76 @@
+"""Frozen dataclasses of torch tensors that are moved, stacked, joined and indexed as one."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    import torch
+    from torch import Tensor
+
+RecordT = TypeVar("RecordT", bound="TensorRecord")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TensorRecord:
+    """Base of records whose fields are tensors that share their leading axes.
+
+    Operations apply to every tensor and to nested records; None and other values stay as they are, taken from the first
+    record where several are combined.
+
+    >>> import torch
+    >>> @dataclass(frozen=True, kw_only=True)
+    ... class Track(TensorRecord):
+    ...     range_m: torch.Tensor  # (frame,)
+    >>> both = Track.cat([Track(range_m=torch.ones(2)), Track(range_m=torch.zeros(3))])
+    >>> both.range_m.shape, both[1:].range_m.shape
+    (torch.Size([5]), torch.Size([4]))
+    """
+
+    def map(self: RecordT, function: Callable[["Tensor"], "Tensor"]) -> RecordT:
+        """The record with `function` applied to each tensor."""
+        return replace(self, **{field.name: _mapped(getattr(self, field.name), function) for field in fields(self)})
+
+    def to(self: RecordT, *target: Any, **options: Any) -> RecordT:
+        """The record on another device or of another type; arguments are those of `Tensor.to`."""
+        return self.map(lambda tensor: tensor.to(*target, **options))
+
+    def __getitem__(self: RecordT, index: Any) -> RecordT:
+        """Every tensor indexed along the axes the record's tensors share."""
+        return self.map(lambda tensor: tensor[index])
+
+    @classmethod
+    def stack(cls: type[RecordT], records: Sequence[RecordT]) -> RecordT:
+        """Records of equal shapes along a new leading axis."""
+        import torch
+
+        return _combined(records, torch.stack)
+
+    @classmethod
+    def cat(cls: type[RecordT], records: Sequence[RecordT], dim: int = 0) -> RecordT:
+        """Records joined along an axis they all have; `dim` counts from the front, for the axes are shared there."""
+        import torch
+
+        return _combined(records, lambda tensors: torch.cat(tensors, dim))
+
+
+def _mapped(value: Any, function: Callable[["Tensor"], "Tensor"]) -> Any:
+    import torch
+
+    if isinstance(value, TensorRecord):
+        return value.map(function)
+    return function(value) if isinstance(value, torch.Tensor) else value
+
+
+def _combined(records: Sequence[RecordT], join: Callable[[list["torch.Tensor"]], "torch.Tensor"]) -> RecordT:
+    import torch
+
+    first = records[0]
+    values = {}
+    for field in fields(first):
+        each = [getattr(record, field.name) for record in records]
+        if isinstance(each[0], TensorRecord):
+            values[field.name] = _combined(each, join)
+        else:
+            values[field.name] = join(each) if isinstance(each[0], torch.Tensor) else each[0]
+    return replace(first, **values)

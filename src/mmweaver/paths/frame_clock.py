@@ -1,0 +1,85 @@
+"""When chirps are sent within a frame, and the time segments within which motion is taken as quadratic."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+
+NUM_NODES = 3  # instants of a segment at which positions are asked for
+LONGEST_SEGMENT_S = 10e-3  # positions and path lengths are quadratic in time for so long
+BLOCK_S = 2.0e-3  # range and angle count as constant for so long
+
+
+@dataclass(frozen=True, kw_only=True)
+class Segment:
+    """A run of loops of a frame. Times are relative to its middle, which lies `middle_s` after the frame's start."""
+
+    first_loop: int
+    middle_s: float
+    chirp_s: np.ndarray  # (loop, tx) middle of each chirp's sampling
+    node_s: np.ndarray  # (node,) where positions are asked for: Chebyshev points, the second at 0
+    blocks: tuple[slice, ...]  # of loops, counted from the segment's first
+
+    @cached_property
+    def loops(self) -> slice:
+        """The segment's loops within the frame."""
+        return slice(self.first_loop, self.first_loop + len(self.chirp_s))
+
+    @cached_property
+    def block_s(self) -> np.ndarray:
+        """Middle of each block, (block,)."""
+        return np.array([self.chirp_s[block].mean() for block in self.blocks])
+
+    def weights(self, time_s: np.ndarray) -> np.ndarray:
+        """(node, time): values at the nodes times this are values at the times (Lagrange)."""
+        others = self.node_s[:, None] - self.node_s[None, :]
+        np.fill_diagonal(others, 1.0)
+        gaps = time_s[None, :] - self.node_s[:, None]
+        product = np.stack([np.delete(gaps, node, axis=0).prod(axis=0) for node in range(NUM_NODES)])
+        return product / others.prod(axis=1)[:, None]
+
+    def slopes(self, time_s: np.ndarray) -> np.ndarray:
+        """(node, time): values at the nodes times this are rates at the times, exact for quadratics."""
+        step_s = np.ptp(self.node_s) / 2
+        return (self.weights(time_s + step_s) - self.weights(time_s - step_s)) / (2 * step_s)
+
+
+class FrameClock:
+    """The chirps and segments of a radar's frame: one segment up to 10 ms of chirps, an odd number beyond.
+
+    The middle one of `node_s` is the frame's middle.
+    """
+
+    def __init__(self, config: RadarConfig):
+        self.config = config
+        # Fast time sees one delay for all receivers of a transmitter: taken at their middle it errs least.
+        tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
+        self.centre_m = (tx + rx.mean(axis=0)) / 2  # (tx, 3)
+        middle_s = config.idle_time_s + config.adc_start_time_s + config.num_samples / config.sample_rate_hz / 2
+        loop_s = np.arange(config.num_loops) * config.loop_period_s
+        self.chirp_s = loop_s[:, None] + config.tx_delay_s[None, :] + middle_s  # (loop, tx) since the frame's start
+        count = int(np.ceil(config.active_time_s / LONGEST_SEGMENT_S))
+        count = min(count + 1 - count % 2, config.num_loops)
+        loops = np.array_split(np.arange(config.num_loops), count)
+        self.segments = tuple(self._segment(part) for part in loops)
+        self.node_s = np.concatenate([one.middle_s + one.node_s for one in self.segments])  # (segment * node,)
+
+    def _segment(self, loops: np.ndarray) -> Segment:
+        chirp_s = self.chirp_s[loops]
+        middle_s = (chirp_s.min() + chirp_s.max()) / 2
+        unit = -np.cos(np.pi * (np.arange(NUM_NODES) + 0.5) / NUM_NODES)
+        unit[NUM_NODES // 2] = 0.0
+        reach_s = np.ptp(chirp_s) / 2 or self.config.chirp_period_s  # a single chirp has no extent
+        num_blocks = int(np.clip(np.ceil(len(loops) * self.config.loop_period_s / BLOCK_S), 1, len(loops)))
+        cuts = np.array_split(np.arange(len(loops)), num_blocks)
+        return Segment(
+            first_loop=int(loops[0]), middle_s=float(middle_s), chirp_s=chirp_s - middle_s, node_s=reach_s * unit,
+            blocks=tuple(slice(int(cut[0]), int(cut[-1]) + 1) for cut in cuts),
+        )  # fmt: skip
+
+    @property
+    def middle_s(self) -> np.ndarray:
+        """Middle of each segment since the frame's start, (segment,)."""
+        return np.array([one.middle_s for one in self.segments])

@@ -1,0 +1,169 @@
+"""Propagation paths between a radar and itself: what both methods solve for, and what is rendered as a signal.
+
+The frame of reference is the radar's (x right, y away, z up, origin at the array's centre), units are SI, amplitudes
+those at the receiver's port in sqrt(mW). The carrier's phase, exp(j 2 pi length / wavelength), is not in the amplitude.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.tensor_record import TensorRecord
+
+
+class Interaction(IntEnum):
+    """What a wave meets on its way."""
+
+    DIFFUSE = 0  # a rough surface of the room
+    SPECULAR = 1  # one or more flat faces of the room
+    EDGE = 2  # a rim or a leg of furniture
+    BODY = 3
+    BODY_WALL = 4  # the body, and a face before or after it
+    WALL_BODY_WALL = 5  # the body, and the same face before and after it
+
+
+STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # in the order of a room's paths
+
+
+@dataclass(frozen=True, kw_only=True)
+class ApparentPoint(TensorRecord):
+    """Where one end of a path seems to be, seen from the array: the scatterer, or its image in a face of the room.
+
+    Quadratic in time about the middle of a time segment. Float64: float32 knows 4 m to 0.2 um, 1e-3 rad of phase.
+    """
+
+    position_m: Tensor  # (..., path, 3)
+    velocity_mps: Tensor  # (..., path, 3)
+    acceleration_mps2: Tensor  # (..., path, 3)
+
+    @classmethod
+    def of(cls, motion: np.ndarray) -> "ApparentPoint":
+        """Position, velocity and acceleration (..., path, 3, 3), the last but one axis naming which."""
+        position, velocity, acceleration = (
+            torch.from_numpy(np.ascontiguousarray(motion[..., order, :], np.float64)) for order in range(3)
+        )
+        return cls(position_m=position, velocity_mps=velocity, acceleration_mps2=acceleration)
+
+    def at(self, time_s: Tensor) -> Tensor:
+        """Positions (..., path, time, 3) in metres, float64, at times (time,) since the segment's middle."""
+        time = time_s[:, None]
+        quadratic = self.acceleration_mps2[..., None, :] * (time**2 / 2)
+        return quadratic.addcmul_(self.velocity_mps[..., None, :], time).add_(self.position_m[..., None, :])
+
+    @property
+    def distance_m(self) -> Tensor:
+        """(..., path) from the array's centre, float64."""
+        return self.position_m.norm(dim=-1)
+
+    @property
+    def direction(self) -> Tensor:
+        """(..., path, 3) unit vectors from the array's centre, float64."""
+        return self.position_m / self.distance_m.clamp(min=1e-9)[..., None]
+
+    @property
+    def rate_mps(self) -> Tensor:
+        """(..., path) how fast the distance grows."""
+        return (self.direction * self.velocity_mps).sum(-1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Paths(TensorRecord):
+    """Moving paths, one row for each time segment: of every frame, and of every part of a frame with long chirps.
+
+    The wave seems to go to `departure` and to come from `arrival`: the same place for a direct echo. A transmitter at t
+    and a receiver at r have a path length of |departure - t| + |arrival - r|. A path that is reciprocal is travelled in
+    the other order too, and both add up. Padding has an amplitude of zero.
+    """
+
+    amplitude: Tensor  # (..., path) complex64
+    departure: ApparentPoint
+    arrival: ApparentPoint
+    is_reciprocal: Tensor  # (..., path) bool
+    interaction: Tensor  # (..., path) uint8, an `Interaction`
+
+    @classmethod
+    def direct(cls, amplitude: Tensor, scatterer: ApparentPoint) -> "Paths":
+        """Paths to moving scatterers and straight back."""
+        return cls(
+            amplitude=amplitude.to(torch.complex64), departure=scatterer, arrival=scatterer,
+            is_reciprocal=torch.zeros(amplitude.shape, dtype=torch.bool),
+            interaction=torch.full(amplitude.shape, int(Interaction.BODY), dtype=torch.uint8),
+        )  # fmt: skip
+
+    @classmethod
+    def padded(cls, segments: list["Paths"]) -> "Paths":
+        """Paths (path,) of each segment as one record (segment, path), padded at the end with amplitudes of zero."""
+        longest = max((len(one) for one in segments), default=0)
+
+        def filled(tensor: Tensor) -> Tensor:
+            out = tensor.new_zeros((longest, *tensor.shape[1:]))
+            out[: len(tensor)] = tensor
+            return out
+
+        return cls.stack([one.map(filled) for one in segments])
+
+    @classmethod
+    def none(cls) -> "Paths":
+        """No paths, (0,)."""
+        return cls.direct(torch.zeros(0, dtype=torch.complex64), ApparentPoint.of(np.zeros((0, 3, 3))))
+
+    def __len__(self) -> int:
+        return len(self.amplitude)
+
+    @property
+    def length_m(self) -> Tensor:
+        """(..., path) from the array's centre and back to it at the segment's middle, float64."""
+        return self.departure.distance_m + self.arrival.distance_m
+
+    @property
+    def rate_mps(self) -> Tensor:
+        """(..., path) how fast the length grows: twice the radial velocity of a direct echo."""
+        return self.departure.rate_mps + self.arrival.rate_mps
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticPaths(TensorRecord):
+    """Paths of a room without people, the same in all frames.
+
+    They are few and rendered once, so the length is kept for every pair of antennas: exact for specular paths too,
+    whose images turn the array. A body before either vertex occludes the path.
+    """
+
+    amplitude: Tensor  # (..., path) complex128
+    length_m: Tensor  # (..., path, tx, rx) float64
+    departure_vertex_m: Tensor  # (..., path, 3) where the wave first meets the room, float64
+    arrival_vertex_m: Tensor  # (..., path, 3) where it last leaves it, float64
+    interaction: Tensor  # (..., path) uint8
+
+    @classmethod
+    def of(
+        cls, amplitude: np.ndarray, length_m: np.ndarray, departure_m: np.ndarray, arrival_m: np.ndarray,
+        interaction: Interaction,
+    ) -> "StaticPaths":  # fmt: skip
+        """Paths of one kind from arrays: amplitude (path,), length (path, tx, rx), vertices (path, 3)."""
+        return cls(
+            amplitude=torch.from_numpy(np.asarray(amplitude, np.complex128)),
+            length_m=torch.from_numpy(np.asarray(length_m, np.float64)),
+            departure_vertex_m=torch.from_numpy(np.asarray(departure_m, np.float64)),
+            arrival_vertex_m=torch.from_numpy(np.asarray(arrival_m, np.float64)),
+            interaction=torch.full((len(amplitude),), int(interaction), dtype=torch.uint8),
+        )
+
+    def __len__(self) -> int:
+        return len(self.amplitude)
+
+    def of_kind(self, kind: Interaction) -> "StaticPaths":
+        """Those of one kind."""
+        return self[self.interaction == int(kind)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScenePaths:
+    """All paths of some frames: what a path solver gives."""
+
+    static: StaticPaths  # (path,)
+    moving: Paths  # (frame * segment, path)
+    occluded: Tensor  # (frame, static path) uint8: how many bodies take the path away, 1 at most unless they are apart
