@@ -50,10 +50,10 @@ def trainer(out: Path, recipe: LoopRecipe = RECIPE, **options) -> Trainer:
 
 if __name__ == "__main__":
     torch.set_num_threads(1)
-    made = trainer(Path(sys.argv[1]), workplace=ComputeDevice.chosen("cpu"), save_every_s=0.0)
+    made = trainer(Path(sys.argv[1]), compute=ComputeDevice.chosen("cpu"), save_every_s=0.0)
 
     def killing(progress: Progress) -> None:
-        if made.workplace.is_first and sys.argv[2:] == [str(progress.step)]:
+        if made.compute.is_first and sys.argv[2:] == [str(progress.step)]:
             os.kill(os.getpid(), signal.SIGKILL)
 
     made.run(killing)

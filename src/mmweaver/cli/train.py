@@ -131,7 +131,7 @@ def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bo
     start = None if arguments.start is None else _start(arguments.start)[0]
     with _bar(recipe.steps, is_quiet) as told:
         trainer = train(
-            arguments.data, arguments.out, recipe, start=start, listener=told, workplace=place, **_options(arguments)
+            arguments.data, arguments.out, recipe, start=start, listener=told, compute=place, **_options(arguments)
         )
     file = write_weights(arguments.out, arguments.data, trainer, start=start) if place.is_first else None
     return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
@@ -160,9 +160,7 @@ def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet
     captures = [read_capture(folder, **photo) for folder in arguments.captures]
     recipe = recipe_for(captures, **_given(arguments))
     with _bar(recipe.steps, is_quiet) as told:
-        tuned = tune(
-            captures, arguments.out, recipe, start=start, listener=told, workplace=place, **_options(arguments)
-        )
+        tuned = tune(captures, arguments.out, recipe, start=start, listener=told, compute=place, **_options(arguments))
     file = write_tuned(arguments.out, tuned, start=start, licence_of_start=licence) if place.is_first else None
     held_out = tuned.held_out
     return {
