@@ -86,7 +86,8 @@ def write_decision_index(folder: Path) -> str:
         number, _, words = title.removeprefix("# ").partition(". ")
         state = re.match(r"Status: (accepted|superseded by \d+)", status)
         lines.append(f"| {number} | [{words}]({path.name}) | {state[1] if state else ''} |")
-        entries.append(f'{{ "{number}. {re.sub('[`"]', "", words)}" = "decisions/{path.name}" }}')
+        plain = re.sub('[`"]', "", words)
+        entries.append(f'{{ "{number}. {plain}" = "decisions/{path.name}" }}')
     (folder / "index.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     return ", ".join(entries)
 
