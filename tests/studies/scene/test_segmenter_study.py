@@ -4,11 +4,12 @@ import json
 from pathlib import Path
 
 import numpy as np
+from studies.report.segmenter_table import segmenter_affordances_table, segmenter_table
 
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
-from studies.report.segmenter_table import segmenter_affordances_table, segmenter_table
-from studies.scene.segmenter_study import REAL_TRUTH, marked_right, run
+from studies.manifest import StudyRun
+from studies.scene.segmenter_study import REAL_TRUTH, marked_right, measure
 
 
 def test_marked_places_name_groups_and_lie_in_the_picture():
@@ -30,7 +31,7 @@ def test_places_are_right_where_the_guess_is():
 
 
 def test_a_run_gives_the_tables(tmp_path: Path):
-    run(tmp_path, [], 1, 1)
+    measure(StudyRun("segmenter_study", tmp_path), [], 1, 1)
     text = segmenter_table(tmp_path)
     assert "the built-in network" in text
     assert text.count("\n") == 3
