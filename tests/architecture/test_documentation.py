@@ -70,5 +70,11 @@ def test_contributing_has_the_packages_in_the_order_of_the_import_contract():
     assert [line.strip() for line in listed[1].splitlines()] == layers
 
 
+def test_every_page_is_in_the_navigation_of_the_site():
+    navigation = (ROOT / "zensical.toml").read_text(encoding="utf-8")
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        assert f'"{page.name}"' in navigation, f"add {page.name} to nav in zensical.toml"
+
+
 def test_the_readme_is_short():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 120
