@@ -40,5 +40,6 @@ def published_checkpoint(name: str) -> Path:
     except Exception as error:
         why = " ".join(str(error).split())[:80]
         raise InputError(
-            f"{CHECKPOINT} or {SMALL} of {name} cannot be fetched from the Hub ({why}); download it yourself and give its path"
+            f"{CHECKPOINT} or {SMALL} of {name} cannot be fetched from the Hub ({why}); download it yourself and give"
+            " its path"
         ) from None
