@@ -31,7 +31,7 @@ def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
     """Trained within a second, on a few of the windows."""
 
     def train(frozen: Frozen) -> ActivityClassifier:
-        few = replace(frozen.made, features=frozen.made.features[::23], labels=frozen.made.labels[::23])
+        few = replace(frozen.training, features=frozen.training.features[::23], labels=frozen.training.labels[::23])
         return few.train(replace(frozen.classifier, num_trees=5, boosting_rounds=2, repetitions=1))
 
     monkeypatch.setattr(Frozen, "train", train)
