@@ -119,7 +119,7 @@ def _from_folder(path: Path, radar: str | Path | RadarConfig | None, given: list
     if any(path.glob("*.npy")):
         return None
     raise InputError(
-        f"{path} is no capture folder ({PACKETS}) and holds neither {CUBE} nor frames of HuPR (.npy); give a folder"
+        f"{path} is not a capture folder ({PACKETS}) and holds neither {CUBE} nor frames of HuPR (.npy); give a folder"
         " that mmweaver process wrote"
     )
 
