@@ -16,7 +16,7 @@ class Variation:
     `tempo` scales the speed of a motion, times `way_tempo` for locomotion (slower in a small room); `vigour` scales the
     excursion of joints from their mean position. Of a path through the room: `near_m` and `far_m` bound its distances,
     `way_s` is its duration in the motion's own time (a window is any part of it), `hurry` the variation of tempo (rms
-    of its logarithm). `turn_deg`: standard deviation of the heading of stationary people relative to the radar. `tilt_deg`
+    of its logarithm). `turn_deg`: standard deviation of the heading of stationary people. `tilt_deg`
     rotates the reported points about the radar, up where positive. Values in `_db` change the noise figure, the CFAR
     threshold, the receiver gain, the albedo of skin, and the reflectivity of arms and legs relative to the trunk.
     """
