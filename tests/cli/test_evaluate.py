@@ -62,7 +62,7 @@ def test_the_whole_recogniser_knows_a_walk(frozen: str, recordings: Path, capsys
 
 
 def test_a_bad_folder_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    for folder, message in ((tmp_path, "holds no recordings"), (tmp_path / "none", "is no folder")):
+    for folder, message in ((tmp_path, "holds no recordings"), (tmp_path / "none", "is not a folder")):
         assert main(["evaluate", "zero-shot-activity", "--recordings", str(folder)]) == 2
         error = capsys.readouterr().err
         assert message in error

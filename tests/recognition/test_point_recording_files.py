@@ -61,9 +61,9 @@ def test_an_npz_file_holds_the_same(tmp_path):
         ("walk_1.txt", text((0, 1, 1, 1, 0)).encode()[:-60], "no RadHAR text file"),
         ("walk_1.txt", b"point_id: 0\nx: a\ny: 1\nz: 1\nvelocity: 1\n", "no RadHAR text file"),
         ("walk_1.npz", b"PK no archive", "no recording"),
-        ("swim_1.txt", text((0, 1, 1, 1, 0)).encode(), "does not say what is done"),
-        ("walk_boxing_1.txt", text((0, 1, 1, 1, 0)).encode(), "does not say what is done"),
-        ("walk_1.txt", text((0, "nan", 1, 1, 0)).encode(), "numbers that are none"),
+        ("swim_1.txt", text((0, 1, 1, 1, 0)).encode(), "does not name its activity"),
+        ("walk_boxing_1.txt", text((0, 1, 1, 1, 0)).encode(), "does not name its activity"),
+        ("walk_1.txt", text((0, "nan", 1, 1, 0)).encode(), "not finite"),
         ("walk_1.csv", b"1,2", "holds no recordings"),
     ],
 )
@@ -75,7 +75,7 @@ def test_bad_files_are_refused_in_one_line(tmp_path, name, content, message):
 
 
 def test_a_folder_that_is_none_is_refused(tmp_path):
-    with pytest.raises(InputError, match="is no folder"):
+    with pytest.raises(InputError, match="is not a folder"):
         read_point_recordings(tmp_path / "none", LABELS)
 
 

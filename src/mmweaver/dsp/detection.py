@@ -1,4 +1,4 @@
-"""Which point cloud: this project's own, or the one TI's firmware would report."""
+"""Point clouds of a cube: by this project's CFAR, or as TI's firmware would report them."""
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
@@ -11,7 +11,7 @@ POINTS = ("cfar", "firmware")
 
 
 def check_points(points: str, config: RadarConfig) -> None:
-    """Raises InputError for a point cloud that is not known, or that this radar cannot have."""
+    """Raises InputError for an unknown kind of point cloud, or one that this radar does not support."""
     if points not in POINTS:
         raise InputError(f"unknown point cloud {points!r}; known: {', '.join(POINTS)}")
     if points == "firmware":
@@ -19,9 +19,9 @@ def check_points(points: str, config: RadarConfig) -> None:
 
 
 def detect(cube: RadarCube, adc: AdcCube | None, points: str, firmware: FirmwareSettings | None = None) -> PointCloud:
-    """Points of a cube, "cfar" or "firmware"; the firmware starts at the ADC samples where there are some.
+    """Points of a cube, "cfar" or "firmware"; the firmware uses the ADC samples if given.
 
-    Raises InputError for a point cloud that is not known, or a radar that the firmware is not for.
+    Raises InputError for an unknown kind of point cloud, or a radar that the firmware does not support.
     """
     check_points(points, cube.config)
     if points == "cfar":
