@@ -2,10 +2,8 @@
 
 from dataclasses import dataclass
 
-from mmweaver.motion.language.activities import BODY, BY_KEY, HANDS
+from mmweaver.motion.language.activities import BY_KEY
 
-LOWER = tuple(activity.key for activity in BODY)
-UPPER = tuple(activity.key for activity in HANDS)
 ON_THE_SPOT = ("jog", "leap")  # moving, unless the direction is "spot"
 
 
@@ -13,8 +11,8 @@ ON_THE_SPOT = ("jog", "leap")  # moving, unless the direction is "spot"
 class Step:
     """One movement. Directions are the viewer's (left in the photo), hands and bends the person's own."""
 
-    lower: str = "stand"  # one of LOWER
-    upper: str = ""  # one of UPPER, laid over the lower one
+    lower: str = "stand"  # key of a body activity
+    upper: str = ""  # key of a hand activity, laid over the lower one
     hand: str = ""  # left | right | both | "" (as the seed has it)
     foot: str = ""  # left | right | "": the leg that acts
     direction: str = (
