@@ -1,7 +1,6 @@
 """mmweaver generate: the demo, a person's own pictures, and every bad input in one line that leaves nothing behind."""
 
 import json
-import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +14,7 @@ from mmweaver.cli.main import main
 from mmweaver.formats.npz_files import read_npz, read_radar_npz
 from mmweaver.scene.sample_photo import sample_photo
 from tests.captures import write_camera
+from tests.platforms import posix_only
 
 WALK = "a person walks towards the radar"
 
@@ -260,8 +260,11 @@ def test_what_stops_it_halfway_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
+@posix_only
 def test_a_disk_that_takes_no_more(tmp_path: Path):
     """A limit on the size of files makes a write fail for real, within the cube."""
+    import resource
+
     code = "import sys; from mmweaver.cli.main import main; sys.exit(main(sys.argv[1:]))"
     done = subprocess.run(
         [sys.executable, "-c", code, "generate", "--demo", "--frames", "3", "--text", WALK,

@@ -2,7 +2,6 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -57,6 +56,7 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert not (tmp_path / "g").exists()
 
 
+@pytest.mark.slow  # test_network_training.py stops it between two steps
 def test_killed_and_called_again_it_ends_with_the_same_bits(
     tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
@@ -74,10 +74,10 @@ def test_killed_and_called_again_it_ends_with_the_same_bits(
     deadline = time.monotonic() + 120
     while process.poll() is None and time.monotonic() < deadline:
         if (out / "checkpoint.pt").is_file():
-            process.send_signal(signal.SIGKILL)
+            process.kill()
             break
         time.sleep(0.01)
-    assert process.wait(timeout=60) == -signal.SIGKILL
+    assert process.wait(timeout=60) != 0
     assert not (out / "weights.safetensors").exists()
     done = torch.load(out / "checkpoint.pt", weights_only=True)["done"]
     assert 1 <= done < 6

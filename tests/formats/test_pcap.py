@@ -32,9 +32,9 @@ def test_a_cut_off_last_packet_is_left_out(tmp_path: Path):
     ("content", "says"),
     [
         (b"", "it is empty"),
-        (b"no packets", "no .pcap"),
+        (b"no packets", "not a .pcap"),
         (b"\x0a\x0d\x0d\x0a" + bytes(40), "editcap"),
-        (b"\xd4\xc3\xb2\xa1" + bytes(4), "cut off"),
+        (b"\xd4\xc3\xb2\xa1" + bytes(4), "truncated"),
         (pcap_of([], link=1)[:20] + bytes((105, 0, 0, 0)), "type 105"),
     ],
 )

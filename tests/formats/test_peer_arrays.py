@@ -8,7 +8,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import HUPR, MMMESH, RF_GENESIS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.formats.peer_arrays import read_hupr, read_mmmesh, read_rf_genesis, recognised
+from mmweaver.formats.peer_arrays import detect_layout, read_hupr, read_mmmesh, read_rf_genesis
 from mmweaver.paths.exact import exact_frame
 from mmweaver.recordings.read_recording import read_recording
 from tests.fields.echoes import direction_of, middle_s
@@ -125,9 +125,9 @@ def test_refusals_are_clear(tmp_path: Path, hupr_frame: Path):
         (lambda: read_hupr(hupr_frame, MMMESH), "cannot have made"),
         (lambda: read_hupr(tmp_path / "empty", HUPR), "no .npy files"),
         (lambda: read_hupr(tmp_path / "none.npy", HUPR), "cannot read"),
-        (lambda: recognised(saved("c.npy", np.zeros((5, 3, 4, 128, 256), np.complex64))), "--layout mmmesh"),
-        (lambda: recognised(saved("d.npy", np.zeros((40, 6)))), "points of a cloud"),
-        (lambda: recognised(saved("e.npy", np.zeros((4, 5)))), "--axes"),
+        (lambda: detect_layout(saved("c.npy", np.zeros((5, 3, 4, 128, 256), np.complex64))), "--layout mmmesh"),
+        (lambda: detect_layout(saved("d.npy", np.zeros((40, 6)))), "points of a cloud"),
+        (lambda: detect_layout(saved("e.npy", np.zeros((4, 5)))), "--axes"),
         (lambda: read_mmmesh(saved("f.npy", np.zeros((3, 4, 7, 256), complex)), MMMESH), "shape"),
         (lambda: read_recording(hupr_frame, layout="hupr", axes="loop,tx,rx,sample"), "not both"),
         (lambda: read_recording(hupr_frame, layout="nobody"), "not both"),

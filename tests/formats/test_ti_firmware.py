@@ -107,7 +107,7 @@ def test_a_cfg_without_cfar_is_a_radar_but_no_firmware(tmp_path: Path):
         ("0 1280", "0 1280.5", ["line 9", "whole"]),
         ("peakGrouping 1 1 1 1 229", "peakGrouping 1 1 1 30 20", ["30 to 20"]),
         ("multiObjBeamForming 1 0.5", "multiObjBeamForming 1 1.5", ["multiObjBeamForming", "1.5"]),
-        ("clutterRemoval 0", "clutterRemoval on", ["line 12", "no number"]),
+        ("clutterRemoval 0", "clutterRemoval on", ["line 12", "not a number"]),
     ],
 )
 def test_a_bad_line_is_refused_with_the_reason(tmp_path: Path, old: str, new: str, words: list[str]):

@@ -53,5 +53,5 @@ def test_it_goes_on_with_the_threads_it_began_with(tmp_path: Path, caplog: pytes
 
 def test_a_state_of_something_else_is_refused(tmp_path: Path):
     (tmp_path / "state.pt").write_text("weights")
-    with pytest.raises(InputError, match="delete it to begin anew"):
+    with pytest.raises(InputError, match="delete it to start over"):
         run(tmp_path / "state.pt", 3)

@@ -140,13 +140,7 @@ def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bo
     recipe = TrainingRecipe(**{**({} if card is None else _encoder_of(card)), **_given(arguments)})
     with _bar(recipe.steps, is_quiet) as listener:
         trainer = train(
-            arguments.data,
-            arguments.out,
-            recipe,
-            start=start,
-            listener=listener,
-            workplace=place,
-            **_options(arguments),
+            arguments.data, arguments.out, recipe, start=start, listener=listener, compute=place, **_options(arguments)
         )
     file = write_weights(arguments.out, arguments.data, trainer, start=start) if place.is_first else None
     return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
@@ -176,7 +170,7 @@ def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet
     recipe = recipe_for(captures, **{**_given(arguments), **_encoder_of(card)})
     with _bar(recipe.steps, is_quiet) as listener:
         tuned = tune(
-            captures, arguments.out, recipe, start=start, listener=listener, workplace=place, **_options(arguments)
+            captures, arguments.out, recipe, start=start, listener=listener, compute=place, **_options(arguments)
         )
     file = write_tuned(arguments.out, tuned, start=start, licence_of_start=card.licence) if place.is_first else None
     held_out = tuned.held_out

@@ -9,6 +9,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.scene.photo.avi_frames import avi_frame
 from tests.captures import avi_of
+from tests.platforms import posix_only
 
 PICTURES = [np.full((48, 65, 3), shade, np.uint8) + np.arange(65, dtype=np.uint8)[None, :, None] for shade in (10, 90)]
 
@@ -46,6 +47,7 @@ def test_what_is_no_avi(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         avi_frame(path, 0)
 
 
+@posix_only
 def test_anything_else_goes_through_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """A stand-in for ffmpeg that is asked for the right frame, and one that fails."""
     from PIL import Image

@@ -25,7 +25,7 @@ def error(source: str) -> str:
 
 
 def test_what_is_no_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("HF_HUB_OFFLINE", "1")
+    monkeypatch.setattr("huggingface_hub.constants.HF_HUB_OFFLINE", True)  # read when it was imported
     assert "without config.json" in error(str(tmp_path))
     assert "is not a folder" in error(str(tmp_path / "none"))
     assert "is not a folder" in error("./none")
