@@ -45,7 +45,7 @@ def main() -> int:
     for page in source.rglob("*.md"):
         page.write_text(rewritten(page.read_text(encoding="utf-8"), page, source), encoding="utf-8")
     settings = (ROOT / "zensical.toml").read_text(encoding="utf-8")
-    for place in ("src", "tools/doctest_blocks.py"):
+    for place in ("src", "tools/docstring_blocks.py"):
         settings = settings.replace(f'["{place}"]', f'["{(ROOT / place).as_posix()}"]')
     settings = settings.replace('"reference/api.md" }] }, # packages', f'"reference/api.md" }}, {packages}] }},')
     settings = settings.replace('["decisions/index.md"] }, # decisions', f'["decisions/index.md", {decisions}] }},')
