@@ -1,29 +1,39 @@
-# Two commands on a fresh machine: `make demo` and `make test`.
+# Two commands on a fresh machine: `make demo` and `make test`. The same without make: docs/platforms.md.
 PYTHON ?= python3
 VENV := .venv
+ifeq ($(OS),Windows_NT)
+BIN := $(VENV)/Scripts
+else
 BIN := $(VENV)/bin
+endif
 STAMP := $(VENV)/.installed
-# One thread of BLAS a process: on shared machines more is slower.
-export OMP_NUM_THREADS := 1
-export OPENBLAS_NUM_THREADS := 1
+# A file of tests stays with one process, which then makes its data once; long files are not kept for the end.
+PYTEST := $(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
+# Benchmarks measure one thread; the tests set their own.
+bench: export OMP_NUM_THREADS := 1
+bench: export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test check lint unit bench docs clean
+.PHONY: demo test test-slow check lint unit bench docs clean
 
-demo: $(STAMP)
+demo: $(STAMP)  ## the bundled sample, into demo/
 	$(BIN)/mmweaver generate --demo --out demo --overwrite
 
-test: check
+test: $(STAMP)  ## exactly what CI runs: linters and tests side by side
+	$(MAKE) --jobs=2 lint unit
 
-check: lint unit  ## exactly what CI runs
+check: test
+
+test-slow: $(STAMP)  ## every night: all tests, those marked slow too, with the shapes of every call checked
+	$(PYTEST) -m "slow or not slow" --check-every-call
 
 lint: $(STAMP)
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
-	$(BIN)/lint-imports
+	$(BIN)/ruff check --quiet .
+	$(BIN)/ruff format --quiet --check .
+	$(BIN)/lint-imports --no-logo
 	$(BIN)/pyright --pythonpath $(BIN)/python
 
 unit: $(STAMP)
-	$(BIN)/pytest -n auto -q
+	$(PYTEST)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py
@@ -39,7 +49,7 @@ docs: $(STAMP)  ## the site, into build/docs/site
 
 $(STAMP): pyproject.toml
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable ".[dev]"
 	touch $@
 
 clean:

@@ -76,10 +76,10 @@ def _complete_metric(
         kind: {other: by_method[other][name]["value"] for other in names if name in by_method.get(other, {})}
         for kind, names in (("baseline", baselines), ("oracle", oracles))
     }
-    record = {
-        "unit": unit, "definition": definition, "version": known.version if known else 1,
-        **{kind: values for kind, values in others.items() if values}, **metric,
-    }  # fmt: skip
+    record = {"unit": unit, "definition": definition, "version": known.version if known else 1, **metric}
+    for kind, values in others.items():
+        if values or metric.get(kind):
+            record[kind] = {**values, **(metric.get(kind) or {})}
     return {"value": record.pop("value"), "baseline": None, **record}
 
 

@@ -4,6 +4,7 @@ python tools/build_docs.py [--out build/docs]
 """
 
 import argparse
+import os
 import re
 import runpy
 import shutil
@@ -12,10 +13,15 @@ import sys
 from contextlib import chdir, redirect_stdout
 from io import StringIO
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mmweaver.cli.arguments import Parser
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "mmweaver"
 TOP = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
+FIRST = "first_signal"  # of the gallery
 WITHOUT_HEADING = "    options:\n      show_root_heading: false\n      show_root_toc_entry: false\n"
 # what a browser fetches by itself: of elements, and of style sheets
 REMOTE = re.compile(
@@ -24,7 +30,7 @@ REMOTE = re.compile(
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "docs")
     out = parser.parse_args().out.resolve()
     source = out / "source"
@@ -39,7 +45,7 @@ def main() -> int:
     for page in source.rglob("*.md"):
         page.write_text(rewritten(page.read_text(encoding="utf-8"), page, source), encoding="utf-8")
     settings = (ROOT / "zensical.toml").read_text(encoding="utf-8")
-    for place in ("src", "tools/doctest_blocks.py"):
+    for place in ("src", "tools/docstring_blocks.py"):
         settings = settings.replace(f'["{place}"]', f'["{(ROOT / place).as_posix()}"]')
     settings = settings.replace('"reference/api.md" }] }, # packages', f'"reference/api.md" }}, {packages}] }},')
     settings = settings.replace('["decisions/index.md"] }, # decisions', f'["decisions/index.md", {decisions}] }},')
@@ -80,7 +86,8 @@ def write_decision_index(folder: Path) -> str:
         number, _, words = title.removeprefix("# ").partition(". ")
         state = re.match(r"Status: (accepted|superseded by \d+)", status)
         lines.append(f"| {number} | [{words}]({path.name}) | {state[1] if state else ''} |")
-        entries.append(f'{{ "{number}. {words.replace(chr(34), chr(39))}" = "decisions/{path.name}" }}')
+        plain = re.sub('[`"]', "", words)
+        entries.append(f'{{ "{number}. {plain}" = "decisions/{path.name}" }}')
     (folder / "index.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
     return ", ".join(entries)
 
@@ -91,6 +98,7 @@ def write_references(folder: Path) -> str:
     from mmweaver import __all__ as public
     from mmweaver.cli.main import build_parser
 
+    os.environ["COLUMNS"] = "110"  # width of the help
     folder.mkdir()
     (folder / "cli.md").write_text(command_line(build_parser()), encoding="utf-8")
     names = [f"::: mmweaver.{_HOME[name]}.{name}" for name in public if name in _HOME]
@@ -108,14 +116,14 @@ def write_references(folder: Path) -> str:
     return ", ".join(entries)
 
 
-def command_line(parser: argparse.ArgumentParser) -> str:
-    """The help of every command."""
+def command_line(parser: "Parser") -> str:
+    """The help of every command, with all options."""
     parts = ["# Command line", "", "```text", parser.format_help().rstrip(), "```"]
     commands = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     pending = [(name, sub) for action in commands for name, sub in action.choices.items()]
     while pending:
         name, sub = pending.pop(0)
-        parts += ["", f"## {parser.prog} {name}", "", "```text", sub.format_help().rstrip(), "```"]
+        parts += ["", f"## {parser.prog} {name}", "", "```text", sub.format_help_all().rstrip(), "```"]
         nested = [action for action in sub._actions if isinstance(action, argparse._SubParsersAction)]
         pending = [(f"{name} {more}", deep) for action in nested for more, deep in action.choices.items()] + pending
     return "\n".join(parts) + "\n"
@@ -124,22 +132,27 @@ def command_line(parser: argparse.ArgumentParser) -> str:
 def write_gallery(folder: Path) -> None:
     """Runs every example and writes a page with its code, what it printed and its pictures, and a notebook of each."""
     import jupytext
+    from nbformat.v4 import new_markdown_cell
 
     folder.mkdir()
     page = ["# Gallery", "", "Each of these is a file of `examples/`, run as it is when this site is built.", ""]
-    for script in sorted((ROOT / "examples").glob("*.py")):
+    for script in sorted((ROOT / "examples").glob("*.py"), key=lambda path: (path.stem != FIRST, path.stem)):
         code = script.read_text(encoding="utf-8")
         work = folder / script.stem
         work.mkdir()
         printed = StringIO()
         with chdir(work), redirect_stdout(printed):
             runpy.run_path(str(script), run_name="__main__")
-        jupytext.write(jupytext.reads(code, fmt="py:percent"), folder / f"{script.stem}.ipynb")
-        title = code.splitlines()[0].strip('"').rstrip(".")
+        notebook = jupytext.reads(code, fmt="py:percent")
+        title = notebook.cells[0].source.strip().strip('"').rstrip(".")  # the docstring
+        notebook.cells[0] = new_markdown_cell(f"# {title}")
+        jupytext.write(notebook, folder / f"{script.stem}.ipynb")
         page += [f"## {title}", ""]
+        for cell in notebook.cells[1:]:
+            page += [cell.source if cell.cell_type == "markdown" else f"```python\n{cell.source}\n```", ""]
+        page += ["It prints", "", f"```text\n{printed.getvalue().rstrip()}\n```", ""]
         page += [f"![{title}]({script.stem}/{picture.name})\n" for picture in sorted(work.glob("*.png"))]
-        page += ["```python", "\n".join(code.splitlines()[1:]).strip(), "```", "", "It prints:", ""]
-        page += ["```text", printed.getvalue().rstrip(), "```", "", f"[As a notebook]({script.stem}.ipynb)", ""]
+        page += [f"[As a notebook]({script.stem}.ipynb)", ""]
         for other in [path for path in sorted(work.rglob("*"), reverse=True) if path.suffix != ".png"]:
             other.rmdir() if other.is_dir() and not any(other.iterdir()) else other.is_file() and other.unlink()
     (folder / "index.md").write_text("\n".join(page), encoding="utf-8")

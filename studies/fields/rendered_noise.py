@@ -25,7 +25,7 @@ EXPERIMENT = "rendered_noise"
 SEED = 0
 NEAR_M = 0.3  # a point so near to one of the capture's, in the same frame, is that one
 DEFINITIONS: dict[str, tuple[str, str]] = {
-    "floor_db": ("dB", "median power of the cells over that of the capture"),
+    "noise_floor_db": ("dB", "median power of the cells over that of the capture"),
     "distribution_distance": (
         "1",
         "Kolmogorov-Smirnov distance to the capture's distribution of power over its median, in the cells that are not"
@@ -45,7 +45,7 @@ def noise_scores(cube: RadarCube, capture: RadarCube) -> dict[str, float]:
     clouds = [point_cloud(one) for one in (cube, capture)]
     frames = len(cube.values)
     return {
-        "floor_db": float(10 * np.log10(max(floors[0], 1e-30) / floors[1])),
+        "noise_floor_db": float(10 * np.log10(max(floors[0], 1e-30) / floors[1])),
         "distribution_distance": _distribution_distance(cube.values[empty], capture.values[empty]),
         "neighbour_correlation": _neighbour_correlation(cube, empty),
         "points_a_frame": len(clouds[0].frame) / frames,
@@ -97,7 +97,7 @@ def noise_row(signal: ExperimentSignal) -> dict[str, Any]:
             "version": 1,
             "is_headline": False,
             "baseline": {"without_noise": scores["without_noise"][name]},
-            "capture": scores["capture"][name],
+            "oracle": {"capture": scores["capture"][name]},
         }
         for name, (unit, definition) in DEFINITIONS.items()
     }

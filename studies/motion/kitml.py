@@ -117,7 +117,7 @@ def result_row(
             "the same, of checking sentences whose words occur in no sentence of the other half",
         ),
         **{
-            f"wrong_{name}_draw": _share(
+            f"wrong_{name}_sample": _share(
                 sum(verdict["verdict"] == "wrong" for verdict in earlier.values()),
                 len(earlier),
                 "an earlier 200 of the checking half, judged before the faults found in them were mended",
@@ -131,8 +131,8 @@ def result_row(
         "dataset": {"name": "KIT-ML sentences", "sha256": digest, "split": "motions by hash, half for checking"},
         "n": len(sentences),
         "seeds": [SEED],
-        "judged": len(valid),
-        "judged_void": len(names) - len(valid),
+        "evaluated": len(valid),
+        "evaluated_void": len(names) - len(valid),
         "activities_named": dict(activities.most_common()),
         "metrics": metrics,
     }

@@ -1,6 +1,6 @@
 """Skeleton strips of what a MotionGPT makes of twelve sentences.
 
-python -m studies run motiongpt_pictures --model motiongpt_small.safetensors --out strips.png
+python -m studies run motiongpt_pictures --model weights/motiongpt_small.safetensors --out strips.png
 """
 
 import argparse

@@ -1,6 +1,6 @@
 """Does a MotionGPT do what the sentence says? Its motions judged by a classifier that saw the library's alone.
 
-python -m studies run motiongpt_scores --model motiongpt_small.safetensors --data shared/data
+python -m studies run motiongpt_scores --model weights/motiongpt_small.safetensors --data shared/data
 
 R-precision here: among the twelve activities, is the one that was asked for the classifier's first (or one of its first
 three)? Floor: chance, and random codes through the same decoder. Ceiling: motions of the library with seeds that

@@ -1,9 +1,9 @@
 """A small MotionGPT, trained from nothing on one CPU core: the same architecture with smaller numbers.
 
-python -m studies run motiongpt_training --data shared/data --weights motiongpt_small.safetensors
+python -m studies run motiongpt_training --data shared/data --weights weights/motiongpt_small.safetensors
 
-An interrupted training goes on where it stopped. Scores of the result: `python -m
-studies.motion.motiongpt_scores`.
+An interrupted training goes on where it stopped. Scores of the result: study
+`motiongpt_scores`.
 """
 
 import argparse
@@ -106,7 +106,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training goes on"
     )
-    parser.add_argument("--weights", type=Path, default=Path("motiongpt_small.safetensors"), help="file to write")
+    parser.add_argument(
+        "--weights", type=Path, default=Path("weights/motiongpt_small.safetensors"), help="file to write"
+    )
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:

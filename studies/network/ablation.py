@@ -32,7 +32,7 @@ from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import NetworkBatch, RoomExamples
 from mmweaver.training.network_loss import Targets
-from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, drawing
+from mmweaver.training.network_training import VALIDATION_SEED, NetworkLearner, TrainingRecipe, batch_sampler
 from mmweaver.training.trainer import Trainer
 from mmweaver.training.validation_sheet import differences_db
 from studies.manifest import StudyRun
@@ -117,8 +117,8 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
     learner = _PartOfLoss(network, rooms[0].room.config, left_out=variant.terms_without)
     if recipe.steps > 0:
         trainer = Trainer(
-            learner, recipe, out, train=drawing(rooms, recipe, recipe.seed, recipe.mirror),
-            validation=drawing(unseen, recipe, VALIDATION_SEED + recipe.seed),
+            learner, recipe, out, train=batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
+            validation=batch_sampler(unseen, recipe, VALIDATION_SEED + recipe.seed),
         )  # fmt: skip
         trainer.run()
     learner.eval()
@@ -151,15 +151,15 @@ def mean_scores(learner: NetworkLearner, photo: StoredRoom, case: Case) -> dict[
     whole, alone = one.maps(case.index, frames)
     assert alone is not None, "the room's geometry is stored"
     targets = Targets(
-        maps=PowerMaps.stack([whole]), empty=PowerMaps.stack([one.empty]), person=PowerMaps.stack([alone])
+        maps=PowerMaps.stack([whole]), static=PowerMaps.stack([one.static]), person=PowerMaps.stack([alone])
     )
     batch = NetworkBatch(
-        view=SceneTensors.stack([RoomExamples(photo, "validation").view]), joints_m=joints, velocity_mps=velocity,
+        scene=SceneTensors.stack([RoomExamples(photo, "validation").scene]), joints_m=joints, velocity_mps=velocity,
         frames=torch.from_numpy(frames)[None], targets=targets,
     )  # fmt: skip
     with torch.inference_mode():
-        both = differences_db(targets.maps, learner.predicted(batch))
-        moving = learner.moving(learner.network.encode_room(batch.view), batch)
+        both = differences_db(targets.maps, learner.predict(batch))
+        moving = learner.moving(learner.network.encode_room(batch.scene), batch)
         own = learner.radar.maps(points_of(moving, learner.radar.response))
         person = differences_db(_noisy(PowerMaps.stack([alone]), learner), _noisy(own, learner))
     return {

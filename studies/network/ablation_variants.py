@@ -37,7 +37,7 @@ VARIANTS = {
     # heads
     "no steps of echoes": AblationVariant(without=("steps", "correction")),
     "surfaces turned up and down": AblationVariant(without=()),
-    "no learned faces": AblationVariant(without=("faces", "correction")),
+    "no learned reflectors": AblationVariant(without=("faces", "correction")),
     # the encoder's picture; where surfaces stand is known in all
     "colour alone": AblationVariant(without=("depth", "mask", "correction")),
     "depth alone": AblationVariant(without=("colour", "mask", "correction")),
@@ -45,8 +45,8 @@ VARIANTS = {
     "no picture": AblationVariant(without=("colour", "depth", "mask", "correction")),
     # losses and targets
     "no target of the person alone": AblationVariant(terms_without=("_person",)),
-    "no target of the empty room": AblationVariant(terms_without=("_empty",)),
+    "no target of the background": AblationVariant(terms_without=("_empty",)),
     "no pooled maps": AblationVariant(terms_without=("_4x2", "_8x8")),
-    "single draws, no expected maps": AblationVariant(is_drawn=True),
-    "no mirrored rooms": AblationVariant(recipe=(("mirror", False),)),
+    "sampled signals, no expected maps": AblationVariant(is_drawn=True),
+    "no reflected rooms": AblationVariant(recipe=(("mirror", False),)),
 }

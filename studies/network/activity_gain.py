@@ -41,7 +41,7 @@ from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.training.activity_examples import activity_examples, maps_of
+from mmweaver.training.activity_examples import activity_examples, compute_log_maps
 from mmweaver.training.activity_training import TRAIN_MAPS, TRAIN_SPLITS
 from studies.manifest import StudyRun
 from studies.network.learned_scores import OTHER, empty_room, interval
@@ -174,7 +174,7 @@ def unseen_rooms(
 
 def labelled(network: ActivityNetwork, cubes: Iterable[RadarCube], names: list[str]) -> Labelled:
     """Cubes as the network's convolutions see them."""
-    doppler, angle = maps_of(cubes, network.config)
+    doppler, angle = compute_log_maps(cubes, network.config)
     return Labelled(frames=seen(network, doppler, angle), label=torch.tensor([ACTIVITY_NAMES.index(n) for n in names]))
 
 

@@ -19,7 +19,7 @@ from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights
 from mmweaver.training.network_examples import RoomExamples
-from mmweaver.training.network_training import NetworkLearner, TrainingRecipe, drawing
+from mmweaver.training.network_training import NetworkLearner, TrainingRecipe, batch_sampler
 from mmweaver.training.trainer import Trainer
 from studies.manifest import StudyRun
 from studies.network.ablation import COLUMNS
@@ -58,7 +58,7 @@ def tuned(weights: Path, rooms: list[StoredRoom], shots: int, out: Path, seed: i
         few.append(example)
     torch.manual_seed(seed)
     learner = NetworkLearner(network.train(), few[0].room.config)
-    draw = drawing(few, RECIPE, seed, True)
+    draw = batch_sampler(few, RECIPE, seed, True)
     Trainer(learner, RECIPE, out, train=draw, validation=draw).run()
     return network.eval()
 

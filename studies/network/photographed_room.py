@@ -57,7 +57,7 @@ def judged(kind: str, layout: int, seed: int = 0) -> Scores:
         "zeros": 0 * _adc(truth),
         "photo without mask": _adc(RayTracedRoom(reconstruct(_without_mask(photo)), config, 1)),
         "photo": sum(own.values()),
-        "photo, true mirrors": sum((own | {Interaction.SPECULAR: mirrors}).values()),
+        "photo, true specular reflectors": sum((own | {Interaction.SPECULAR: mirrors}).values()),
         "photo, true edges": sum((own | {Interaction.EDGE: true[Interaction.EDGE]}).values()),
         "photo, true surfaces": sum((own | {Interaction.DIFFUSE: true[Interaction.DIFFUSE]}).values()),
         REALIZATION: _adc(twin),

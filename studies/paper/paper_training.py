@@ -15,7 +15,7 @@ from mmweaver.models.precision import exactly
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.network_examples import power_maps
-from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
+from mmweaver.training.trainer import BatchSampler, Learner, Listener, LoopRecipe, Trainer
 from mmweaver.training.validation_sheet import MOST_ROWS, draw_sheet
 from studies.paper.paper_examples import PaperBatch, PaperRoom, paper_rooms, sample_paper_batch
 from studies.paper.paper_loss import paper_loss
@@ -100,7 +100,7 @@ def train_paper(
     features: Path,
     start: dict[str, Tensor] | None = None,
     listener: Listener | None = None,
-    workplace: ComputeDevice | None = None,
+    compute: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer:
     """Trains on split `train`, or goes on from `out`/checkpoint.pt; `features`: weights of recipe `activity`.
@@ -108,7 +108,7 @@ def train_paper(
     Keeps what is best on split `validation`. `start`: weights to fine-tune. `options` go to `Trainer`. Raises
     InputError for folders without data and foreign weights.
     """
-    device = str((workplace or ComputeDevice()).device)
+    device = str((compute or ComputeDevice()).device)
     rooms, unseen = paper_rooms(data, "train", device), paper_rooms(data, "validation", device)
     config = rooms[0].room.config
     perceiver = load_activity(features, config)
@@ -117,7 +117,7 @@ def train_paper(
     if start is not None:
         network.load_state_dict(start)
     trainer = Trainer(
-        PaperLearner(network, perceiver, config, shown=lambda: unseen[:MOST_ROWS]), recipe, out, workplace=workplace,
+        PaperLearner(network, perceiver, config, shown=lambda: unseen[:MOST_ROWS]), recipe, out, compute=compute,
         train=_drawing(rooms, recipe, recipe.seed), validation=_drawing(unseen, recipe, VALIDATION_SEED + recipe.seed),
         is_tuning=start is not None, **options,
     )  # fmt: skip
@@ -125,7 +125,7 @@ def train_paper(
     return trainer
 
 
-def _drawing(rooms: list[PaperRoom], recipe: PaperRecipe, seed: int) -> Draw:
+def _drawing(rooms: list[PaperRoom], recipe: PaperRecipe, seed: int) -> BatchSampler:
     """Batches of rooms, by step."""
     return lambda step, share: sample_paper_batch(rooms, seed, step, size=recipe.batch_size, share=share)
 

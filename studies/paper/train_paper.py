@@ -65,7 +65,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     with _progress_bar(options.steps, options.quiet or not place.is_first) as listener:
         trainer = train_paper(
             options.data, options.out, PaperRecipe(**settings), features=options.features, start=start,
-            listener=listener, workplace=place, tensorboard=options.tensorboard, save_every_s=options.save_every,
+            listener=listener, compute=place, tensorboard=options.tensorboard, save_every_s=options.save_every,
         )  # fmt: skip
     if place.is_first:
         file = write_paper_weights(options.out, options.data, trainer)

@@ -86,7 +86,7 @@ VARIANTS: dict[str, MarsVariant] = {
     "skin_slope_0_20": MarsVariant(skin=SkinEcho(slope=0.20)),
     "joints_not_smoothed": MarsVariant(smoothing_frames=0.0),
     "skin_without_diffuse_part": MarsVariant(skin=SkinEcho(albedo=0.0)),
-    "no_small_motions": MarsVariant(motions=STILL),
+    "no_micro_motion": MarsVariant(motions=STILL),
     "skin_of_200_points": MarsVariant(num_points=200),
     "skin_of_3200_points": MarsVariant(num_points=3200),
     "no_floor_bounce": MarsVariant(has_floor=False),
@@ -276,10 +276,10 @@ def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) 
     real: Clouds = [piece.clouds for piece in pieces]
     mean = round(np.mean([len(cloud.x_m) for stretch in validate for cloud in stretch.clouds]))
     ways: dict[str, Callable[[], Clouds]] = {
-        "floor_centroid": partial(centroid_floor, pieces, setup),
-        "floor_random_on_body": partial(surface_floor, pieces, setup, mean),
-        "floor_random_real_frame": partial(random_frame_floor, pieces, validate),
-        "ceiling_neighbouring_frame": partial(neighbour_ceiling, pieces),
+        "baseline_centroid": partial(centroid_floor, pieces, setup),
+        "baseline_random_on_body": partial(surface_floor, pieces, setup, mean),
+        "baseline_random_real_frame": partial(random_frame_floor, pieces, validate),
+        "oracle_neighbouring_frame": partial(neighbour_ceiling, pieces),
     }
     for name, variant in VARIANTS.items():
         ways[name] = partial(_simulated, pieces, setup, variant)
@@ -308,7 +308,7 @@ def _write(
         "n": scores[name].num_frames,
         "seeds": [0],
         "seconds": {"all": round(seconds, 1)},
-        "metrics": scores[name].metrics(floor=scores["floor_centroid"]),
+        "metrics": scores[name].metrics(floor=scores["baseline_centroid"]),
     }
     variant = asdict(VARIANTS[name]) if name in VARIANTS else None
     config = {"estimated_on_validate": asdict(setup), "variant": variant, "frames_a_piece": PIECE_FRAMES}

@@ -12,7 +12,9 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from studies.report.tables import TABLES
 
-MARKED = re.compile(r"<!-- table: (?P<name>[^>]*?) -->(?P<table>.*?)<!-- (?P<end>end|table: [^>]*?) -->", re.DOTALL)
+MARKED = re.compile(
+    r"(?<!`)<!-- table: (?P<name>[^>]*?) -->(?P<table>.*?)<!-- (?P<end>end|table: [^>]*?) -->", re.DOTALL
+)
 BEGIN, END = "<!-- table: {} -->", "<!-- end -->"
 PAGES = ("README.md", "docs/**/*.md", "model_cards/**/*.md")
 
@@ -20,7 +22,7 @@ PAGES = ("README.md", "docs/**/*.md", "model_cards/**/*.md")
 def pages_of(root: Path) -> list[Path]:
     """Every page of the documentation that has a table."""
     pages = sorted({path for pattern in PAGES for path in root.glob(pattern)})
-    return [page for page in pages if "<!-- table:" in page.read_text(encoding="utf-8")]
+    return [page for page in pages if MARKED.search(page.read_text(encoding="utf-8"))]
 
 
 def fill(page: Path, results: Path) -> bool:
@@ -46,7 +48,8 @@ def with_tables(text: str, results: Path, name: str = "the page") -> str:
         return f"{BEGIN.format(table)}\n{TABLES[table](results)}\n{END}"
 
     after = MARKED.sub(filled, text)
-    begun, ended = text.count("<!-- table: "), text.count(END)
+    begun = len(re.findall(r"(?<!`)<!-- table: ", text))
+    ended = len(re.findall(rf"(?<!`){END}", text))
     if begun > ended:
         raise InputError(f"{name}: {begun - ended} table(s) lack the mark {END}")
     return after

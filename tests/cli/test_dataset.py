@@ -12,6 +12,7 @@ import pytest
 
 from mmweaver.cli.main import main
 from tests.datasets.test_generate_rooms import contents
+from tests.platforms import posix_only
 
 pytest.importorskip("zarr")
 REFERENCE = "office,living_room,lab,kitchen,library,bedroom,dining_room,meeting_room,classroom,workshop"
@@ -61,6 +62,8 @@ def test_it_tells_beforehand_what_it_costs(tmp_path: Path, capsys: pytest.Captur
     assert not (tmp_path / "d").exists()
 
 
+@pytest.mark.slow  # test_generate_rooms.py goes on from what a kill leaves
+@posix_only
 def test_killed_with_two_workers_nothing_is_lost_or_doubled(tmp_path: Path):
     """A kill of all processes while two rooms are under way; then the same command again."""
     words = ["dataset", "--rooms", "office,gym", "--layouts", "2", "--sequences", "2", "--frames", "4", "--quiet"]

@@ -23,7 +23,7 @@ def test_a_folder_read_back_bit_by_bit(folder: Path, tmp_path: Path):
     assert read_radar_capture(folder / "iwr1843").folder == folder / "iwr1843"
 
 
-def test_what_is_a_capture(folder: Path, tmp_path: Path):
+def test_recognition_of_a_capture_folder(folder: Path, tmp_path: Path):
     assert is_capture(folder)
     assert is_capture(folder / "iwr1843")
     assert not is_capture(tmp_path / "made.cfg")
@@ -32,7 +32,7 @@ def test_what_is_a_capture(folder: Path, tmp_path: Path):
 
 def test_folders_that_cannot_be_read(folder: Path, tmp_path: Path):
     radar = folder / "iwr1843"
-    with pytest.raises(InputError, match="no capture folder"):
+    with pytest.raises(InputError, match="not a capture folder"):
         radar_folder(tmp_path / "none")
     (radar / "radar.cfg").write_text(CFG.replace("lvdsStreamCfg -1 0 1 0", "lvdsStreamCfg -1 1 1 0"))
     with pytest.raises(InputError, match="HSI headers"):

@@ -8,7 +8,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import HUPR, MMMESH, RF_GENESIS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.formats.peer_arrays import read_hupr, read_mmmesh, read_rf_genesis, recognised
+from mmweaver.formats.peer_arrays import detect_layout, read_hupr, read_mmmesh, read_rf_genesis
 from mmweaver.paths.exact import exact_frame
 from mmweaver.recordings.read_recording import read_recording
 from tests.fields.echoes import direction_of, middle_s
@@ -25,7 +25,7 @@ def simulated_frame(config: RadarConfig = HUPR, azimuth_rad: float = 0.3) -> np.
 
 
 def hupr_array(adc: np.ndarray) -> np.ndarray:
-    """What HuPR's own processing makes of a frame, step by step as its documentation says."""
+    """HuPR's own processing of a frame, step by step as documented."""
     loops, _, _, samples = adc.shape
     adc = adc - adc.mean(axis=0)
     spectrum = np.fft.fft(np.fft.fft(adc, axis=3), axis=0)
@@ -45,8 +45,8 @@ def hupr_frame(tmp_path: Path) -> Path:
     return tmp_path / "000000000.npy"
 
 
-def test_hupr_angle_spectra_are_undone(hupr_frame: Path):
-    """The antennas' range-Doppler spectra come back, in the middle 16 of 64 Doppler bins."""
+def test_hupr_angle_spectra_are_inverted(hupr_frame: Path):
+    """The antennas' range-Doppler spectra are restored in the middle 16 of 64 Doppler bins."""
     adc = simulated_frame()
     spectrum = np.fft.fftshift(np.fft.fft(np.fft.fft(adc - adc.mean(axis=0), axis=3), axis=0), axes=0)
     wanted = spectrum[..., 31:95].transpose(3, 0, 1, 2).reshape(64, 64, 12) / (64 * 256)
@@ -56,7 +56,7 @@ def test_hupr_angle_spectra_are_undone(hupr_frame: Path):
     assert not cube.values[0, :, :24].any()
 
 
-def test_a_hupr_frame_shows_the_point_where_it_is(hupr_frame: Path):
+def test_a_hupr_frame_shows_the_point_at_its_place(hupr_frame: Path):
     cube = read_recording(hupr_frame).cube
     assert cube.config == HUPR
     power = np.sum(np.abs(cube.values[0]) ** 2, axis=-1)
@@ -125,9 +125,9 @@ def test_refusals_are_clear(tmp_path: Path, hupr_frame: Path):
         (lambda: read_hupr(hupr_frame, MMMESH), "cannot have made"),
         (lambda: read_hupr(tmp_path / "empty", HUPR), "no .npy files"),
         (lambda: read_hupr(tmp_path / "none.npy", HUPR), "cannot read"),
-        (lambda: recognised(saved("c.npy", np.zeros((5, 3, 4, 128, 256), np.complex64))), "--layout mmmesh"),
-        (lambda: recognised(saved("d.npy", np.zeros((40, 6)))), "points of a cloud"),
-        (lambda: recognised(saved("e.npy", np.zeros((4, 5)))), "--axes"),
+        (lambda: detect_layout(saved("c.npy", np.zeros((5, 3, 4, 128, 256), np.complex64))), "--layout mmmesh"),
+        (lambda: detect_layout(saved("d.npy", np.zeros((40, 6)))), "points of a cloud"),
+        (lambda: detect_layout(saved("e.npy", np.zeros((4, 5)))), "--axes"),
         (lambda: read_mmmesh(saved("f.npy", np.zeros((3, 4, 7, 256), complex)), MMMESH), "shape"),
         (lambda: read_recording(hupr_frame, layout="hupr", axes="loop,tx,rx,sample"), "not both"),
         (lambda: read_recording(hupr_frame, layout="nobody"), "not both"),

@@ -65,7 +65,7 @@ def test_firmware_settings_are_checked_before_samples_are_read(adc: AdcCube, tmp
         ("adc.npy", {"radar": "awr1843"}, "--axes"),
         ("adc.npy", {"layout": "hupr", "axes": "frame,loop"}, "not both"),
         ("capture", {"iq_order": "iq"}, "leave out --iq-order"),
-        ("empty", {}, "no capture folder.*neither radar.npz"),
+        ("empty", {}, "not a capture folder.*neither radar.npz"),
     ],
 )
 def test_what_cannot_be_read_is_refused(adc: AdcCube, tmp_path: Path, name: str, options: dict[str, str], says: str):

@@ -48,7 +48,7 @@ def test_maps_are_made_once_for_a_data_set(
     def none_more(*words: object) -> None:
         raise AssertionError("made again")
 
-    monkeypatch.setattr("mmweaver.training.activity_examples.maps_of", none_more)
+    monkeypatch.setattr("mmweaver.training.activity_examples.compute_log_maps", none_more)
     again = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=1))
     assert again.step == 1
     (tmp_path / "checkpoint.pt").unlink()
@@ -77,7 +77,7 @@ def test_two_shares_have_the_gradient_of_the_whole(tiny_geometry: Path, tmp_path
 
 
 def test_bf16_and_another_device_take_part(tiny_geometry: Path, tmp_path: Path):
-    trainer = train_activity(tiny_geometry, tmp_path, RECIPE, workplace=ComputeDevice(precision="bf16"))
+    trainer = train_activity(tiny_geometry, tmp_path, RECIPE, compute=ComputeDevice(precision="bf16"))
     assert torch.isfinite(torch.tensor(trainer.best.value))
     learner = ActivityLearner(ActivityNetwork(AWR1843)).to("meta")
     terms = learner(moved(trainer._train(0, (0, 1)), torch.device("meta")))

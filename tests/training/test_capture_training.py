@@ -11,7 +11,7 @@ from mmweaver.generate import Weaver
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, sha256_of
 from mmweaver.recordings.captures import Capture, read_capture, rooms_of
-from mmweaver.training.capture_training import CaptureRecipe, gain_of, tune, write_tuned
+from mmweaver.training.capture_training import CaptureRecipe, estimate_gain, tune, write_tuned
 
 RECIPE = CaptureRecipe(steps=6, batch_size=1, frames=2, validate_every=3, validation_batches=1, warm_up_steps=1,
                        learning_rate=1e-3)  # fmt: skip
@@ -23,7 +23,7 @@ def captures(tmp_path_factory: pytest.TempPathFactory) -> list[Capture]:
     room = weaver.sample_room()
     for seed in (1, 2):
         out = tmp_path_factory.mktemp("captures") / f"take{seed}"
-        weaver.generate(room, "a person walks towards the radar", frames=6, seed=seed).save(out)
+        weaver.generate(room, "a person walks towards the radar", frames=6, seed=seed).save(out, pictures=False)
         found.append(read_capture(out))
     return found
 
@@ -75,9 +75,9 @@ def test_the_gain_of_counts_is_found(captures, start):
     network = WeaverNetwork()
     network.load_state_dict(start)
     (room,) = rooms_of(captures[:1])
-    own = gain_of(network, [room])
+    own = estimate_gain(network, [room])
     assert 0.05 < own < 20
-    assert gain_of(network, [room.times(1000.0)]) == pytest.approx(own / 1000, rel=1e-3)
+    assert estimate_gain(network, [room.calibrated(1000.0)]) == pytest.approx(own / 1000, rel=1e-3)
 
 
 def test_counts_are_tuned_on_as_milliwatts(captures, start, tmp_path: Path):

@@ -16,7 +16,7 @@ def test_it_says_what_one_must_know(tmp_path: Path):
     file.write_bytes(b"weights")
     figures = {"this network": {"range_doppler": 5.25, "range_azimuth": 6.0}, "empty maps": {"range_doppler": 20.0,
                "range_azimuth": 21.0}}  # fmt: skip
-    page = model_card(CARD, file, data="Made up.", judged_on="Other rooms.", figures=figures)
+    page = model_card(CARD, file, data="Made up.", evaluated_on="Other rooms.", figures=figures)
     assert page.startswith("---\nlicense: mit\nlibrary_name: mmweaver\n")
     for told in (
         "Made up.", "Other rooms.", "| this network | 5.25 | 6.00 |", "| empty maps | 20.00 | 21.00 |", "d" * 64,

@@ -38,7 +38,7 @@ def test_the_true_echoes_cost_less_than_others():
     names = ("range_doppler", "range_azimuth", "range_elevation")
     noise = dict(zip(names, radar.noise_maps(), strict=True))
     maps = type(still)(**{n: getattr(person, n) + getattr(still, n)[:, None] + noise[n] for n in names})
-    targets = Targets(maps=maps, empty=still)
+    targets = Targets(maps=maps, static=still)
     total = {
         name: float(sum(weaver_loss(radar, resting, one, targets).values()))
         for name, one in (("true", moving), ("fainter", echoes(0.01, 2.0, (1, 2))), ("off", echoes(0.1, 2.2, (1, 2))))

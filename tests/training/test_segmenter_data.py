@@ -6,7 +6,7 @@ import numpy as np
 
 from mmweaver.core.seeding import stream
 from mmweaver.scene.segmentation.segmenter_features import CHANNELS, COLOURS, HEIGHT, MEASURED
-from mmweaver.training.segmenter_data import make_example, make_examples, varied
+from mmweaver.training.segmenter_data import augmented, make_example, make_examples
 
 
 def test_kept_rooms_come_back(tmp_path: Path):
@@ -25,7 +25,7 @@ def test_variations_keep_the_shapes_and_change_the_colours():
     example = make_example("office", 1000)
     changed, holes = [], []
     for draw in range(12):
-        features, groups = varied(example, stream(draw, "test"))
+        features, groups = augmented(example, stream(draw, "test"))
         assert features.shape == (CHANNELS, *groups.shape)
         assert features.dtype == np.float32
         assert np.isfinite(features).all()

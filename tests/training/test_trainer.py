@@ -64,7 +64,7 @@ def test_two_processes_are_one_with_the_same_batch_even_after_a_kill(tmp_path: P
 
 def test_a_batch_that_cannot_be_shared_is_refused(tmp_path: Path):
     with pytest.raises(InputError, match="multiple"):
-        trainer(tmp_path, workplace=ComputeDevice(share=(0, 3)))
+        trainer(tmp_path, compute=ComputeDevice(share=(0, 3)))
 
 
 def test_steps_without_meaning_are_passed_over_and_many_end_it(tmp_path: Path):
@@ -78,7 +78,7 @@ def test_steps_without_meaning_are_passed_over_and_many_end_it(tmp_path: Path):
     made = trainer(tmp_path / "some", train=bad(2, 4))
     made.run()
     assert all(torch.isfinite(tensor).all() for tensor in made.learner.state_dict().values())
-    with pytest.raises(InputError, match="no numbers"):
+    with pytest.raises(InputError, match="not finite"):
         trainer(tmp_path / "all", replace(RECIPE, steps=100), train=bad(2, 100)).run()
 
 
@@ -108,7 +108,7 @@ def test_bf16_trains_as_well(tmp_path: Path):
     long = replace(RECIPE, steps=200)
     plain, mixed = (
         trainer(tmp_path / "a", long),
-        trainer(tmp_path / "b", long, workplace=ComputeDevice(precision="bf16")),
+        trainer(tmp_path / "b", long, compute=ComputeDevice(precision="bf16")),
     )
     plain.run()
     mixed.run()

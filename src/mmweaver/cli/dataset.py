@@ -60,6 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     from mmweaver.datasets.dataset_cost import check_for_space, estimate_cost
     from mmweaver.datasets.dataset_plan import DatasetPlan, check_for_leaks
+    from mmweaver.datasets.generate_rooms import generate_dataset
     from mmweaver.formats.radar_file import load_radar
 
     config = load_radar(arguments.radar)

@@ -31,5 +31,5 @@ def train_on_data(
         start = load_activity(find_weights(arguments.start), read_radar(arguments.data)).state_dict()
     recipe = ActivityRecipe(**given)
     return train_activity(
-        arguments.data, arguments.out, recipe, start=start, listener=listener, workplace=place, **options
+        arguments.data, arguments.out, recipe, start=start, listener=listener, compute=place, **options
     )

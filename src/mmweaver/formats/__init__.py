@@ -1,1 +1,1 @@
-"""Files other people use: recordings and radar set-ups."""
+"""Third-party file formats of recordings and radar configurations, and the project's own .npz files."""

@@ -1,4 +1,4 @@
-"""The radar part of a capture folder as mmwave-capture-std writes it: <capture>/<radar>/{radar.cfg, dca.pcap}.
+"""The radar data of a capture folder written by mmwave-capture-std: <capture>/<radar>/{radar.cfg, dca.pcap}.
 
 Reference: mmwave-capture-std, "Dataset Directories Structure".
 """
@@ -16,7 +16,7 @@ PACKETS, RADAR = "dca.pcap", "radar.cfg"
 
 @dataclass(frozen=True, kw_only=True)
 class RadarCapture:
-    """The radar of a capture folder: its packets put together, its settings and the order of I and Q."""
+    """The radar data of a capture folder: reassembled packets, radar configuration and I/Q order."""
 
     folder: Path
     config: RadarConfig
@@ -25,7 +25,7 @@ class RadarCapture:
 
 
 def is_capture(path: Path | str) -> bool:
-    """Whether a path is a capture folder or a radar's folder within one."""
+    """Whether a path is a capture folder or a radar's folder in one."""
     path = Path(path)
     return path.is_dir() and bool(_radar_folders(path))
 
@@ -36,7 +36,7 @@ def radar_folder(path: Path | str) -> Path:
     found = _radar_folders(path) if path.is_dir() else []
     if not found:
         raise InputError(
-            f"{path} is no capture folder: neither it nor a folder in it holds {PACKETS}; give capture_00000/"
+            f"{path} is not a capture folder: neither it nor a folder in it holds {PACKETS}; give capture_00000/"
         )
     if len(found) > 1:
         names = ", ".join(str(folder) for folder in found)
@@ -47,7 +47,7 @@ def radar_folder(path: Path | str) -> Path:
 def read_radar_capture(path: Path | str) -> RadarCapture:
     """Reads the radar of a capture folder (or the radar's own folder in it).
 
-    Raises InputError where a file is missing or damaged, or the samples come with headers (lvdsStreamCfg).
+    Raises InputError where a file is missing or damaged, or the samples have headers (lvdsStreamCfg).
     """
     folder = radar_folder(path)
     cfg = folder / RADAR
@@ -58,11 +58,11 @@ def read_radar_capture(path: Path | str) -> RadarCapture:
     for line in lines.get("lvdsStreamCfg", [])[-1:]:
         if line.values[1] != 0:
             raise InputError(
-                f"{cfg}, line {line.number}: the samples come with HSI headers (lvdsStreamCfg's second number);"
-                " record without"
+                f"{cfg}, line {line.number}: the samples have HSI headers (lvdsStreamCfg's second number);"
+                " record without them"
             )
-    asked = whole(lines["frameCfg"][-1], "frameCfg", 3)
-    packets = read_pcap(folder / PACKETS, config, iq_order=iq_order, num_frames=asked or None)
+    num_frames = whole(lines["frameCfg"][-1], "frameCfg", 3)
+    packets = read_pcap(folder / PACKETS, config, iq_order=iq_order, num_frames=num_frames or None)
     return RadarCapture(folder=folder, config=config, iq_order=iq_order, packets=packets)
 
 

@@ -2,7 +2,7 @@
 
 Order: frame, loop, transmitter (in firing order), receiver, sample. Each four words hold two consecutive samples of
 one receiver: I0 I1 Q0 Q1 ("iq", mmWave Studio's default) or Q0 Q1 I0 I1 ("qi", the SDK's demo, SampleSwap 1). The
-wrong choice mirrors the range axis.
+wrong order reverses the range axis.
 
 Reference: TI SWRA581B, mmWave Radar Device ADC Raw Data Capture.
 """
@@ -21,22 +21,22 @@ from mmweaver.core.records import AdcCube
 IQ_ORDERS = ("iq", "qi")
 INT16_MAX = 32767
 WORDS_PER_SAMPLE = 2
-HEADROOM = 0.5  # share of full scale that the largest word takes where the scale is left to `write_bin`
+HEADROOM = 0.5  # share of full scale of the largest word where `write_bin` chooses the scale
 
 
 def read_bin(
     path: Path | str, config: RadarConfig, *, iq_order: str = "iq", tx_order: tuple[int, ...] | None = None
 ) -> AdcCube:
-    """A whole recording; samples in counts of the converter, so their scale is unknown (nan).
+    """Reads a recording; samples are in counts of the converter, so their scale is unknown (nan).
 
-    `tx_order` is the firing order of the recording where it is not the configuration's; the record's configuration
-    then says so, for the TDM timing hangs on it. Raises InputError where the file cannot be read, is empty or ends
-    within a frame, or where the radar's samples are real or odd in number.
+    `tx_order` is the firing order of the recording where it differs from the configuration's; the returned
+    configuration then has it, because the TDM timing depends on it. Raises InputError where the file cannot be read,
+    is empty or ends within a frame, or where the radar's samples are real or odd in number.
     """
     config = _checked(config, iq_order, tx_order)
     path = Path(path)
     if path.is_dir():
-        raise InputError(f"cannot read {path}: it is a folder; name the adc_data.bin in it")
+        raise InputError(f"cannot read {path}: it is a folder; give the adc_data.bin in it")
     try:
         size = path.stat().st_size
         num_frames = _num_frames(path, size, config)
@@ -47,12 +47,12 @@ def read_bin(
 
 
 def bytes_of_frame(config: RadarConfig) -> int:
-    """How many bytes a DCA1000 sends of one radar frame."""
+    """The bytes that a DCA1000 sends per radar frame."""
     return config.num_loops * config.num_antennas * config.num_samples * WORDS_PER_SAMPLE * 2
 
 
 def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str = "iq") -> AdcCube:
-    """Whole frames of int16 words as a DCA1000 sends them -> samples in counts.
+    """Decodes int16 words, (word,), of whole frames as a DCA1000 sends them; samples in counts.
 
     Raises InputError where the radar's samples are real or odd in number.
     """
@@ -74,11 +74,12 @@ def write_bin(
     tx_order: tuple[int, ...] | None = None,
     counts_per_unit: float | None = None,
 ) -> float:
-    """Writes what `read_bin` and TI's own tools read; returns the counts that one unit of the samples became.
+    """Writes a file for `read_bin` and TI's own tools; returns the counts per unit of the samples.
 
-    Without `counts_per_unit` the largest component comes to half of full scale. `tx_order` changes only the order in
-    the file, for readers that fix it; the samples keep the timing of their own configuration. Raises InputError where
-    a sample is not finite or does not fit int16, where samples are real or odd in number, or nothing can be written.
+    Without `counts_per_unit` the largest component is scaled to half of full scale. `tx_order` changes only the order
+    in the file, for readers with a fixed order; the samples keep the timing of their own configuration. Raises
+    InputError where a sample is not finite or does not fit int16, where samples are real or odd in number, or where
+    the file cannot be written.
     """
     config = _checked(adc.config, iq_order, tx_order)
     samples = adc.samples[:, :, list(config.tx_order)]
@@ -92,24 +93,24 @@ def write_bin(
         counts_per_unit = HEADROOM * INT16_MAX / peak if peak > 0 else 1.0
     if not (np.isfinite(counts_per_unit) and counts_per_unit > 0):
         raise InputError(f"counts per unit must be above 0 and finite, not {counts_per_unit}")
-    # int16 reaches one count further down than up: a converter that clips leaves -32768
+    # int16 has one more negative count: a converter that clips writes -32768
     if round(high * counts_per_unit) > INT16_MAX or round(low * counts_per_unit) < -INT16_MAX - 1:
         raise InputError(
             f"a sample of {peak * counts_per_unit:.0f} counts does not fit int16;"
             f" take at most {INT16_MAX / peak:.6g} counts per unit"
         )
-    two = samples.reshape(-1, 2)
-    pairs = np.empty((len(two), 2, 2), "<i2")
+    grouped = samples.reshape(-1, 2)
+    pairs = np.empty((len(grouped), 2, 2), "<i2")
     real, imaginary = (0, 1) if iq_order == "iq" else (1, 0)
-    pairs[:, real] = np.rint(np.real(two) * np.float64(counts_per_unit))
-    pairs[:, imaginary] = np.rint(np.imag(two) * np.float64(counts_per_unit))
+    pairs[:, real] = np.rint(np.real(grouped) * np.float64(counts_per_unit))
+    pairs[:, imaginary] = np.rint(np.imag(grouped) * np.float64(counts_per_unit))
     with atomic_file(Path(path)) as temporary:
         pairs.tofile(temporary)
     return float(counts_per_unit)
 
 
 def by_transmitter(samples: np.ndarray, tx_order: Sequence[int]) -> np.ndarray:
-    """(frame, loop, turn, rx, sample) -> (frame, loop, tx, rx, sample), tx the physical transmitter."""
+    """Reorders (frame, loop, slot, rx, sample), transmitters in firing order, to (frame, loop, tx, rx, sample)."""
     return samples[:, :, np.argsort(tx_order)]
 
 

@@ -1,6 +1,6 @@
-"""The raw packets of a DCA1000 put together again: what was lost is zero and counted, what came late is put in place.
+"""Reassembles the raw packets of a DCA1000: lost ones are zero-filled and counted, late ones put in place.
 
-A packet holds a sequence number (4 bytes, from 1), how many bytes were sent before it (6 bytes) and up to 1456 bytes
+A packet holds a sequence number (4 bytes, from 1), the number of bytes sent before it (6 bytes) and up to 1456 bytes
 of samples, all little-endian, on UDP port 4098.
 
 Reference: TI SPRUIJ4, DCA1000EVM Data Capture Card User's Guide; mmwave-capture-std keeps the packets as dca.pcap.
@@ -21,24 +21,24 @@ from mmweaver.formats.pcap import UdpPacket, udp_packets
 
 DATA_PORT = 4098
 HEADER_BYTES = 10
-MOST_BYTES = 4_000_000_000
+MAX_BYTES = 4_000_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
 class PacketReport:
-    """What happened on the way from the board to the file."""
+    """Packet statistics of a recording."""
 
     packets: int
-    lost: int  # by their sequence numbers, before the last one that came
-    lost_bytes: int  # of the frames that are kept; they are zero
-    late: int  # came after a packet of a higher number
+    lost: int  # by sequence number, before the last received packet
+    lost_bytes: int  # in the frames that are kept; zero-filled
+    late: int  # received after a packet of a higher number
     repeated: int
-    bytes_after_last_frame: int  # of a frame that was not finished, left out
+    bytes_after_last_frame: int  # of an unfinished frame, omitted
 
 
 @dataclass(frozen=True, kw_only=True)
 class PacketCapture:
-    """The samples of all whole frames, when each began (seconds of the recorder's clock), and the packets' report."""
+    """The samples of all whole frames, their start times (seconds of the recorder's clock), and packet statistics."""
 
     adc: AdcCube
     frame_time_s: PerFrame
@@ -58,37 +58,39 @@ def read_pcap(
 ) -> PacketCapture:
     """Reads a dca.pcap; samples in counts of the converter.
 
-    `num_frames`: how many the radar was told to send; a last frame whose tail never came is then kept, the tail lost.
-    Raises InputError where there are no packets, not one frame, or more than one recording in the file.
+    `num_frames` is the number that the radar was configured to send: an incomplete last frame is then kept, with its
+    missing end zero-filled. Raises InputError where the file has no packets, less than one frame, or two recordings.
     """
     path = Path(path)
     pieces = [_piece(path, packet) for packet in udp_packets(path, DATA_PORT)]
     if not pieces:
         raise InputError(f"{path} holds no packets of a DCA1000 (UDP port {DATA_PORT}); was the radar started?")
     numbers = np.array([piece.number for piece in pieces])
-    reach = max(piece.first_byte + len(piece.payload) for piece in pieces)
-    if reach > MOST_BYTES:
-        raise InputError(f"{path} says that {reach / 1e9:.1f} GB were sent; at most {MOST_BYTES / 1e9:.0f} GB are read")
+    num_bytes = max(piece.first_byte + len(piece.payload) for piece in pieces)
+    if num_bytes > MAX_BYTES:
+        raise InputError(
+            f"{path} says that {num_bytes / 1e9:.1f} GB were sent; at most {MAX_BYTES / 1e9:.0f} GB are read"
+        )
     frame_bytes = bytes_of_frame(config)
-    frames = reach // frame_bytes
+    frames = num_bytes // frame_bytes
     if num_frames is not None:
-        frames = min(num_frames, -(-reach // frame_bytes))
+        frames = min(num_frames, -(-num_bytes // frame_bytes))
     if frames == 0:
         raise InputError(
-            f"{path} holds {reach} bytes, but one frame of this radar has {frame_bytes}; is radar.cfg the one it was"
-            " recorded with?"
+            f"{path} holds {num_bytes} bytes, but one frame of this radar has {frame_bytes}; was it"
+            " recorded with this radar.cfg?"
         )
-    size = max(frames * frame_bytes, reach)
-    data, there = _put_together(path, pieces, size)
+    size = max(frames * frame_bytes, num_bytes)
+    data, is_received = _reassembled(path, pieces, size)
     late, repeated = _late_and_repeated(numbers)
     kept = slice(0, frames * frame_bytes)
     report = PacketReport(
         packets=len(pieces),
         lost=int(numbers.max() - len(np.unique(numbers))),
-        lost_bytes=int(np.count_nonzero(~there[kept])),
+        lost_bytes=int(np.count_nonzero(~is_received[kept])),
         late=late,
         repeated=repeated,
-        bytes_after_last_frame=max(0, reach - frames * frame_bytes),
+        bytes_after_last_frame=max(0, num_bytes - frames * frame_bytes),
     )
     adc = adc_of_words(data[kept].view("<i2"), config, iq_order=iq_order)
     return PacketCapture(adc=adc, frame_time_s=_frame_times(pieces, frames, frame_bytes, config), report=report)
@@ -104,32 +106,32 @@ def _piece(path: Path, packet: UdpPacket) -> _Piece:
 
 
 def _late_and_repeated(numbers: np.ndarray) -> tuple[int, int]:
-    """How many packets came after one of a higher number, and how many came again."""
+    """The number of packets received after one of a higher number, and of duplicates."""
     _, first = np.unique(numbers, return_index=True)
     once = numbers[np.sort(first)]
     return int(np.count_nonzero(once < np.maximum.accumulate(once))), len(numbers) - len(once)
 
 
-def _put_together(path: Path, pieces: list[_Piece], size: int) -> tuple[np.ndarray, np.ndarray]:
-    """All bytes in their places, and which of them came."""
-    data, there = np.zeros(size, np.uint8), np.zeros(size, bool)
+def _reassembled(path: Path, pieces: list[_Piece], size: int) -> tuple[np.ndarray, np.ndarray]:
+    """All bytes in order, and which of them were received, (byte,) each."""
+    data, is_received = np.zeros(size, np.uint8), np.zeros(size, bool)
     for piece in pieces:
         place = slice(piece.first_byte, piece.first_byte + len(piece.payload))
         new = np.frombuffer(piece.payload, np.uint8)
-        if there[place].any() and not (there[place].all() and np.array_equal(data[place], new)):
+        if is_received[place].any() and not (is_received[place].all() and np.array_equal(data[place], new)):
             raise InputError(
                 f"{path} holds different data for byte {piece.first_byte}: more than one recording in a file;"
-                " record each into its own"
+                " record each to a file of its own"
             )
-        data[place], there[place] = new, True
-    return data, there
+        data[place], is_received[place] = new, True
+    return data, is_received
 
 
 def _frame_times(pieces: list[_Piece], frames: int, frame_bytes: int, config: RadarConfig) -> PerFrame:
-    """When the packet with each frame's first bytes came; from the frames around it where that one was lost."""
+    """Arrival time of the packet with each frame's first byte, s; interpolated where that packet was lost."""
     time_s = np.full(frames, np.nan)
     for piece in pieces:
-        frame = -(-piece.first_byte // frame_bytes)  # the first to begin at or after this packet's first byte
+        frame = -(-piece.first_byte // frame_bytes)  # the first frame that starts at or after this packet's first byte
         if frame < frames and frame * frame_bytes < piece.first_byte + len(piece.payload):
             time_s[frame] = np.fmin(time_s[frame], piece.time_s)
     index = np.arange(frames)

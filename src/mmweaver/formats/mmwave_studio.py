@@ -1,4 +1,4 @@
-"""The .mmwave.json in which mmWave Studio keeps a radar's set-up beside a DCA1000 recording."""
+"""mmWave Studio's .mmwave.json: the radar configuration of a DCA1000 recording."""
 
 import json
 from collections.abc import Callable
@@ -14,18 +14,18 @@ VARIATIONS = ("startFreqVar_MHz", "freqSlopeVar_KHz_usec", "idleTimeVar_usec", "
 
 
 def read_mmwave_studio(path: Path | str) -> RadarConfig:
-    """The radar of the file's first device; its name is the file's.
+    """The radar of the file's first device, named after the file.
 
-    Raises InputError where the file cannot be read, a key is missing or of the wrong kind, the frame is no legacy
-    frame of like TDM chirps, or the radar could not exist.
+    Raises InputError where the file cannot be read, a key is missing or of the wrong type, the frame is not a legacy
+    frame of identical TDM chirps, or the radar could not exist.
     """
     path = Path(path)
-    return _guarded(path, lambda device: radar_from_ti(_chirps(path.name.split(".")[0], device["rfConfig"])))
+    return _query(path, lambda device: radar_from_ti(_chirps(path.name.split(".")[0], device["rfConfig"])))
 
 
 def read_mmwave_studio_iq_order(path: Path | str) -> str:
-    """The I/Q order of a capture made with this set-up, "iq" or "qi", from iqSwapSel."""
-    swap = _guarded(Path(path), lambda device: _whole(device["rawDataCaptureConfig"]["rlDevDataFmtCfg_t"]["iqSwapSel"]))
+    """The I/Q order of a recording with this configuration, "iq" or "qi", from iqSwapSel."""
+    swap = _query(Path(path), lambda device: _whole(device["rawDataCaptureConfig"]["rlDevDataFmtCfg_t"]["iqSwapSel"]))
     return "qi" if swap == 1 else "iq"
 
 
@@ -34,20 +34,20 @@ def is_mmwave_studio(values: Any) -> bool:
     return isinstance(values, dict) and "mmWaveDevices" in values
 
 
-def _guarded(path: Path, ask: Callable[[Any], Answer]) -> Answer:
+def _query(path: Path, query: Callable[[Any], Answer]) -> Answer:
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
-        return ask(values["mmWaveDevices"][0])
+        return query(values["mmWaveDevices"][0])
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     except (UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise InputError(f"{path} is no JSON ({error})") from None
+        raise InputError(f"{path} is not JSON ({error})") from None
     except KeyError as error:
-        raise InputError(f"{path} lacks {error.args[0]}; is it a mmWave Studio .mmwave.json?") from None
+        raise InputError(f"{path} lacks {error.args[0]}; is it an mmWave Studio .mmwave.json?") from None
     except (TypeError, ValueError, IndexError, OverflowError) as error:
-        raise InputError(f"{path} is no mmWave Studio .mmwave.json ({error})") from None
+        raise InputError(f"{path} is not an mmWave Studio .mmwave.json ({error})") from None
 
 
 def _chirps(name: str, setup: Any) -> TiChirps:
@@ -88,7 +88,9 @@ def _fired(entries: Any, first: int, last: int) -> tuple[tuple[int, ...], set[in
     for entry in entries:
         chirp = entry["rlChirpCfg_t"]
         if varied := [key for key in VARIATIONS if float(chirp[key]) != 0]:
-            raise InputError(f"chirp {chirp['chirpStartIdx']} has {varied[0]} {chirp[varied[0]]}; all must be alike")
+            raise InputError(
+                f"chirp {chirp['chirpStartIdx']} has {varied[0]} {chirp[varied[0]]}; all must be identical"
+            )
         start, end = _whole(chirp["chirpStartIdx"]), _whole(chirp["chirpEndIdx"])
         if not 0 <= start <= end <= 511:
             raise InputError(f"chirps {start} to {end} must lie in 0 to 511")
@@ -103,7 +105,7 @@ def _fired(entries: Any, first: int, last: int) -> tuple[tuple[int, ...], set[in
 
 
 def _whole(value: Any) -> int:
-    """A whole number, or one in hexadecimal as mmWave Studio writes masks."""
+    """An integer, or a hexadecimal string as mmWave Studio writes masks."""
     if isinstance(value, str):
         return int(value, 0)
     if isinstance(value, bool) or value != int(value):

@@ -1,6 +1,6 @@
 """radar.npz, pose.npz and points.npz: the project's own files, plain numpy archives.
 
-Nothing is pickled, nothing is compressed, and the archive holds no date: the same arrays give the same bytes.
+They are not pickled, not compressed, and have no dates: the same arrays give the same bytes.
 
 Reference: docs/conventions.md, "Files".
 """
@@ -50,13 +50,13 @@ def write_radar_npz(path: Path, cube: RadarCube) -> None:
 
 
 def read_radar_npz(path: str | Path, config: RadarConfig | None = None) -> RadarCube:
-    """Reads what `write_radar_npz` wrote. `config` defaults to the radar.json beside the file.
+    """Reads a radar.npz. `config` defaults to the radar.json in the same folder.
 
-    Raises InputError where the file is no such archive, or its shape is not that of the radar.
+    Raises InputError where the file is not such an archive, or its shape does not match the radar.
     """
     path = Path(path)
     if config is None:
-        config = _radar_beside(path)
+        config = _radar_of(path)
     arrays = read_npz(path)
     names = ("cube", "frame_time_s", "range_m", "radial_velocity_mps", "antenna_position_m", "wavelength_m", "scale")
     cube, time_s, range_m, velocity_mps, antenna_m, wavelength_m, scale = (_take(path, arrays, name) for name in names)
@@ -75,35 +75,35 @@ def read_radar_npz(path: str | Path, config: RadarConfig | None = None) -> Radar
     return RadarCube(values=cube, grid=grid, config=config, scale=float(scale))
 
 
-def _radar_beside(path: Path) -> RadarConfig:
+def _radar_of(path: Path) -> RadarConfig:
     try:
         text = path.with_name("radar.json").read_text(encoding="utf-8")
     except OSError:
-        raise InputError(f"no radar.json beside {path}; give the radar that recorded it") from None
+        raise InputError(f"no radar.json next to {path}; give the radar that recorded it") from None
     return RadarConfig.from_json(text)
 
 
 # pose.npz -----------------------------------------------------------------------------------------------------------
 def write_pose_npz(path: Path, pose: PoseSequence, *others: PoseSequence) -> None:
-    """Writes joints in metres in the radar's frame, with names and times: float32 (frame, 22, 3) of one person.
+    """Writes joints in metres in the radar's frame, with names and times: float32 (frame, 22, 3) for one person.
 
-    Of several people, all at the same times: (person, frame, 22, 3), and `height_m` (person,).
+    For several people, all at the same times: (person, frame, 22, 3), and `height_m` (person,).
     """
     poses = (pose, *others)
     joints_m = np.stack([np.asarray(one.joints_m, np.float32) for one in poses])
     height_m = np.array([one.height_m for one in poses], np.float64)
-    alone = not others
+    is_single = not others
     write_npz(
         path,
-        joints_m=joints_m[0] if alone else joints_m,
+        joints_m=joints_m[0] if is_single else joints_m,
         joint_names=np.array(JOINT_NAMES),
         frame_time_s=np.asarray(pose.time_s, np.float64),
-        height_m=height_m[0] if alone else height_m,
+        height_m=height_m[0] if is_single else height_m,
     )
 
 
 def read_pose_npz(path: str | Path) -> PoseSequence:
-    """The one person that `write_pose_npz` wrote. Raises InputError for anything else, several people too."""
+    """Reads a pose.npz of one person. Raises InputError for anything else, several people included."""
     poses = read_poses_npz(path)
     if len(poses) != 1:
         raise InputError(f"{path} holds {len(poses)} people; read it with read_poses_npz")
@@ -111,7 +111,7 @@ def read_pose_npz(path: str | Path) -> PoseSequence:
 
 
 def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
-    """All people that `write_pose_npz` wrote; subjects 0, 1, 2 ... Raises InputError for anything else."""
+    """Reads all people of a pose.npz, as subjects 0, 1, 2 ... Raises InputError for anything else."""
     path = Path(path)
     arrays = read_npz(path)
     joints_m, names = _take(path, arrays, "joints_m"), _take(path, arrays, "joint_names")
@@ -126,8 +126,8 @@ def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
     if len(height_m) != len(people):
         raise InputError(f"{path}: {len(people)} people, but {len(height_m)} heights")
     return tuple(
-        PoseSequence(time_s=time_s, joints_m=own, height_m=float(tall), subject=index)
-        for index, (own, tall) in enumerate(zip(people, height_m, strict=True))
+        PoseSequence(time_s=time_s, joints_m=joints, height_m=float(height), subject=index)
+        for index, (joints, height) in enumerate(zip(people, height_m, strict=True))
     )
 
 
@@ -135,7 +135,7 @@ def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
 def write_points_npz(path: Path, points: PointCloud) -> None:
     """Writes detections, one row each: frame (int32) and five float32 columns, all of one length.
 
-    A firmware's points bring a sixth, `intensity`, in the device's counts.
+    Points of the firmware have a sixth, `intensity`, in the device's counts.
     """
     names = (*POINT_COLUMNS, *(name for name in FIRMWARE_COLUMNS if hasattr(points, name)))
     columns = {name: np.asarray(getattr(points, name), np.float32) for name in names}
@@ -143,7 +143,7 @@ def write_points_npz(path: Path, points: PointCloud) -> None:
 
 
 def read_points_npz(path: str | Path) -> PointCloud:
-    """Reads what `write_points_npz` wrote. Raises InputError for anything else."""
+    """Reads a points.npz. Raises InputError for anything else."""
     path = Path(path)
     arrays = read_npz(path)
     columns = {name: _take(path, arrays, name) for name in POINT_COLUMNS}
@@ -152,7 +152,7 @@ def read_points_npz(path: str | Path) -> PointCloud:
 
 # archives -----------------------------------------------------------------------------------------------------------
 def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
-    """A numpy archive, uncompressed and without dates; refuses arrays of Python objects."""
+    """Writes a numpy archive, uncompressed and without dates; arrays of Python objects are refused."""
     with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
         for name, array in arrays.items():
             entry = zipfile.ZipInfo(f"{name}.npy", date_time=NO_DATE)
@@ -161,19 +161,19 @@ def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
 
 
 def read_npz(path: str | Path) -> dict[str, Any]:
-    """All arrays of a numpy archive, by name. Raises InputError where it is missing, damaged or holds objects."""
+    """Reads all arrays of a numpy archive. Raises InputError where it is missing, damaged or holds objects."""
     path = Path(path)
     try:
         with np.load(path, allow_pickle=False) as archive:
             if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise InputError(f"{path} is no .npz archive")
+                raise InputError(f"{path} is not an .npz archive")
             return {name: archive[name] for name in archive.files}
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, EOFError, zipfile.BadZipFile, KeyError, TypeError, AttributeError) as error:
         if isinstance(error, InputError):
             raise
-        raise InputError(f"{path} is no plain .npz archive, or it is damaged ({error})") from None
+        raise InputError(f"{path} is not a plain .npz archive, or it is damaged ({error})") from None
 
 
 def _take(path: Path, arrays: dict[str, Any], name: str) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""UDP packets of a .pcap file, as tcpdump writes them; nothing but struct is needed.
+"""UDP packets of a .pcap file as tcpdump writes it, with the standard library only.
 
 Reference: libpcap file format (IETF draft-ietf-opsawg-pcap); RFC 791, RFC 768.
 """
@@ -10,30 +10,30 @@ from pathlib import Path
 
 from mmweaver.core.errors import InputError
 
-# magic as it lies in the file: (byte order, ticks a second)
+# magic number in the file: (byte order, ticks per second)
 MAGIC = {
     b"\xd4\xc3\xb2\xa1": ("<", 1e6), b"\xa1\xb2\xc3\xd4": (">", 1e6),
     b"\x4d\x3c\xb2\xa1": ("<", 1e9), b"\xa1\xb2\x3c\x4d": (">", 1e9),
 }  # fmt: skip
 PCAPNG = b"\x0a\x0d\x0d\x0a"
-# link type: bytes before the network layer, and where in them the protocol's number stands (None: always IP)
+# link type: bytes before the network layer, and the offset of the protocol number in them (None: always IP)
 LINK_TYPES: dict[int, tuple[int, int | None]] = {1: (14, 12), 101: (0, None), 113: (16, 14), 276: (20, 0)}
 IPV4, VLAN, UDP = 0x0800, 0x8100, 17
 
 
 @dataclass(frozen=True)
 class UdpPacket:
-    """What one packet carried, and when it was caught (seconds of the recorder's clock)."""
+    """The payload of a packet and its capture time (seconds of the recorder's clock)."""
 
     time_s: float
     payload: bytes
 
 
 def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
-    """Packets of a .pcap sent to a UDP port, in the order of the file.
+    """Yields the packets of a .pcap that were sent to a UDP port, in the order of the file.
 
-    Raises InputError where the file cannot be read, is no .pcap, or is cut off before its first packet; a last packet
-    that is cut off (the recorder was stopped) is left out.
+    A truncated last packet (the recorder was stopped) is omitted. Raises InputError where the file cannot be read, is
+    not a .pcap, or is truncated before its first packet.
     """
     path = Path(path)
     try:
@@ -55,20 +55,22 @@ def udp_packets(path: Path | str, port: int) -> Iterator[UdpPacket]:
 
 def _header(path: Path, data: bytes) -> tuple[str, float, int]:
     if data[:4] == PCAPNG:
-        raise InputError(f"{path} is a pcapng file; turn it into a .pcap with: editcap -F pcap in.pcapng out.pcap")
+        raise InputError(f"{path} is a pcapng file; convert it with: editcap -F pcap in.pcapng out.pcap")
     if data[:4] not in MAGIC:
-        raise InputError(f"{path} is no .pcap file{' (it is empty)' if not data else ''}; record it with tcpdump -w")
+        raise InputError(f"{path} is not a .pcap file{' (it is empty)' if not data else ''}; record it with tcpdump -w")
     if len(data) < 24:
-        raise InputError(f"{path} is cut off within its header; it holds no packets")
+        raise InputError(f"{path} is truncated within its header; it holds no packets")
     order, ticks = MAGIC[data[:4]]
     link = struct.unpack_from(f"{order}I", data, 20)[0] & 0xFFFF
     if link not in LINK_TYPES:
-        raise InputError(f"{path} was caught on a link of type {link}; known: Ethernet (1), raw IP (101), Linux (113)")
+        raise InputError(
+            f"{path} was captured on a link of type {link}; known: Ethernet (1), raw IP (101), Linux (113)"
+        )
     return order, ticks, link
 
 
 def _udp_payload(data: bytes, at: int, end: int, link: int, port: int) -> bytes | None:
-    """The payload if this is IPv4, UDP and for this port."""
+    """The payload if the packet is IPv4, UDP and for this port, else None."""
     length, kind_at = LINK_TYPES[link]
     if kind_at is not None:
         if at + length > end:

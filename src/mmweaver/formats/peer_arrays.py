@@ -1,9 +1,9 @@
-"""Arrays that other projects keep radar recordings in: HuPR's frames, and the ADC samples of mmMesh and RF-Genesis.
+"""Arrays in which other projects store radar recordings: HuPR's frames, the ADC samples of mmMesh and RF-Genesis.
 
-HuPR: one .npy a frame, complex (doppler 16, range 64, azimuth 64, elevation 8): the middle 16 of 64 Doppler bins, range
-from far to near, no windows, the mean over loops taken away, zero-padded angle FFTs, both angles mirrored. The
-elevation FFT was taken at azimuth channels 2 to 5 alone, where the array has two rows; all of it can be undone.
-mmMesh: complex (tx, rx, loop, sample) of a frame, or a stack of them. RF-Genesis: radar_frames.npy, complex
+HuPR: one .npy per frame, complex (doppler 16, range 64, azimuth 64, elevation 8): the middle 16 of 64 Doppler bins,
+range from far to near, no windows, the mean over loops removed, zero-padded angle FFTs, both angles reversed. The
+elevation FFT was computed at azimuth channels 2 to 5 only, where the array has two rows. All of it is invertible.
+mmMesh: complex (tx, rx, loop, sample) of a frame, or a stack of frames. RF-Genesis: radar_frames.npy, complex
 (frame, tx, rx, loop, sample).
 """
 
@@ -26,39 +26,39 @@ POINT_COLUMNS = 6
 # azimuth channel of receiver 0 of each transmitter; the second has the upper row
 HUPR_FIRST_CHANNEL = (0, 2, 4)
 UPPER_TX, BOTH_ROWS = 1, slice(2, 6)
-LEAST_FITTING = 1e-3  # share of the energy that may lie where the array has no antenna
+MAX_RESIDUAL = 1e-3  # share of the energy that may lie where the array has no antenna
 
 
-def recognised(path: Path) -> str:
-    """The layout that an array's shape gives away. Raises InputError where none or more than one does."""
+def detect_layout(path: Path) -> str:
+    """The layout that an array's shape implies. Raises InputError where it implies none, or several."""
     if path.is_dir():
         return "hupr"
-    shape = _opened(path).shape
+    shape = _memory_mapped(path).shape
     if shape == HUPR_SHAPE:
         return "hupr"
     if shape[-4:] == ADC_SHAPE:
         raise InputError(
-            f"{path} has shape {shape}, as mmMesh and RF-Genesis have it; say which with --layout mmmesh or rf_genesis"
+            f"{path} has shape {shape}, as mmMesh and RF-Genesis have it; give --layout mmmesh or rf_genesis"
         )
     if len(shape) == 2 and shape[1] == POINT_COLUMNS:
-        raise InputError(f"{path} has shape {shape}: points of a cloud, no samples; give the recording they came from")
+        raise InputError(f"{path} has shape {shape}: points of a cloud, not samples; give the recording they came from")
     raise InputError(
-        f"{path} has shape {shape}: say which axis is which, for example --axes frame,loop,tx,rx,sample, or whose"
+        f"{path} has shape {shape}: name its axes, for example --axes frame,loop,tx,rx,sample, or whose"
         f" array it is with --layout {', '.join(LAYOUTS)}"
     )
 
 
 def read_mmmesh(path: Path, config: RadarConfig) -> AdcCube:
-    """Samples of one frame or more; transmitters in firing order. Raises InputError where the array is no such."""
-    frames = "frame," if _opened(path).ndim == len(ADC_SHAPE) + 1 else ""
+    """Reads one frame or more; transmitters in firing order. Raises InputError where the array is not mmMesh's."""
+    frames = "frame," if _memory_mapped(path).ndim == len(ADC_SHAPE) + 1 else ""
     return read_adc_npy(path, config, f"{frames}tx,rx,loop,sample")
 
 
 def read_rf_genesis(path: Path, config: RadarConfig) -> AdcCube:
-    """Samples of RF-Genesis, with the timing it has: chirps spread over the whole frame, transmitters all at once.
+    """Reads samples of RF-Genesis with their timing: chirps spread over the whole frame, transmitters simultaneous.
 
-    The record's configuration has so much more idle time; its cube needs no TDM compensation. Raises InputError where
-    the array is no such.
+    The returned configuration has the idle time that this implies; its cube needs no TDM compensation. Raises
+    InputError where the array is not RF-Genesis's.
     """
     adc = read_adc_npy(path, config, "frame,tx,rx,loop,sample")
     chirp_s = config.frame_period_s / (config.num_loops * config.num_tx)
@@ -66,23 +66,23 @@ def read_rf_genesis(path: Path, config: RadarConfig) -> AdcCube:
 
 
 def read_hupr(path: Path, config: RadarConfig) -> RadarCube:
-    """One frame, or a folder of frames in the order of their names; Doppler bins that HuPR left out are zero.
+    """Reads one frame, or a folder of frames in the order of their names; Doppler bins omitted by HuPR are zero.
 
-    The antennas' phases are those of the recording, without TDM compensation; values are counts of the converter (or
-    what HuPR had). Raises InputError where an array is not HuPR's or the radar cannot have made it.
+    The antennas' phases are those of the recording, without TDM compensation; values are in counts of the converter
+    (or HuPR's unit). Raises InputError where an array is not HuPR's or the radar cannot have made it.
     """
     paths = sorted(path.glob("*.npy")) if path.is_dir() else [path]
     if not paths:
-        raise InputError(f"{path} holds no .npy files; name HuPR's folder hori or vert, or one frame of it")
+        raise InputError(f"{path} holds no .npy files; give HuPR's folder hori or vert, or one frame of it")
     kept, num_range = HUPR_SHAPE[:2]
     if (config.num_range_bins, config.num_tx, config.num_rx) != (num_range, *HUPR_ANTENNAS) or config.num_loops < kept:
         raise InputError(
             f"radar {config.name!r} cannot have made HuPR's arrays, which have {num_range} range bins, 3 TX and 4 RX;"
-            " leave --radar away, or give one that has"
+            " omit --radar, or give one that has them"
         )
     values = np.zeros((len(paths), num_range, config.num_loops, config.num_antennas), np.complex64)
     first = config.num_loops // 2 - kept // 2
-    # a tone of amplitude a has the peak a, as in cubes of our own
+    # a tone of amplitude a has the peak a, as in our own cubes
     weight = 1 / (config.num_samples * config.num_loops)
     for frame, name in enumerate(paths):
         values[frame, :, first : first + kept] = weight * _hupr_antennas(name)
@@ -90,8 +90,8 @@ def read_hupr(path: Path, config: RadarConfig) -> RadarCube:
 
 
 def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
-    """A frame's angle FFTs undone."""
-    array = _opened(path)
+    """Inverts a frame's angle FFTs."""
+    array = _memory_mapped(path)
     if array.shape != HUPR_SHAPE or array.dtype.kind != "c":
         raise InputError(f"{path} holds {array.dtype} of shape {array.shape}; HuPR's are complex {HUPR_SHAPE}")
     values = np.asarray(array, np.complex128)[:, ::-1, ::-1, ::-1]
@@ -105,19 +105,19 @@ def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
         own = slice(channel, channel + HUPR_ANTENNAS[1])
         out[:, :, tx] = channels[:, :, own, int(tx == UPPER_TX)]
     energy = np.sum(np.abs(channels) ** 2)
-    if energy - np.sum(np.abs(out) ** 2) > LEAST_FITTING * energy:
+    if energy - np.sum(np.abs(out) ** 2) > MAX_RESIDUAL * energy:
         raise InputError(f"{path} has HuPR's shape, but its angle spectra are not those of HuPR's array")
     return out.reshape(*channels.shape[:2], -1).transpose(1, 0, 2)
 
 
-def _opened(path: Path) -> np.ndarray:
-    """An array that is read when it is used."""
+def _memory_mapped(path: Path) -> np.ndarray:
+    """An array whose values are read on access."""
     try:
         array = np.load(path, mmap_mode="r", allow_pickle=False)
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, EOFError, SyntaxError) as error:
-        raise InputError(f"{path} is no .npy array of numbers ({str(error).splitlines()[0]})") from None
+        raise InputError(f"{path} is not a .npy array of numbers ({str(error).splitlines()[0]})") from None
     if not isinstance(array, np.ndarray):
         raise InputError(f"{path} holds several arrays; give one .npy")
     return array

@@ -1,4 +1,4 @@
-"""Radars by name or from any file that describes one, and a description for people."""
+"""Loads a radar by name or from any supported file, and describes it in a table."""
 
 import json
 import math
@@ -15,7 +15,7 @@ from mmweaver.formats.ti_firmware import read_ti_firmware
 
 
 def load_radar(name_or_path: str) -> RadarConfig:
-    """A preset's name, a TI .cfg, a mmWave Studio .json, or the .json of a RadarConfig.
+    """Loads a preset, a TI .cfg, an mmWave Studio .json, or the .json of a RadarConfig.
 
     Raises InputError where it is none of them, or the file describes no possible radar.
     """
@@ -26,17 +26,17 @@ def load_radar(name_or_path: str) -> RadarConfig:
         return read_ti_cfg(path)
     if path.suffix.lower() == ".json" and path.is_file():
         return _from_json(path)
-    what = "is neither .cfg nor .json" if path.is_file() else "is no radar preset and no file"
+    what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
-        f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, a mmWave Studio .json, or a .json"
+        f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json, or a .json"
         " from: mmweaver radar awr1843 --json"
     )
 
 
 def load_firmware(name_or_path: str) -> FirmwareSettings:
-    """The settings of the point cloud of a TI .cfg, of a preset that has its own, or else the IWR1443 demo's defaults.
+    """The point-cloud settings of a TI .cfg or of a preset that has its own, else the IWR1443 demo's defaults.
 
-    Raises InputError where the .cfg does not say them.
+    Raises InputError where the .cfg does not hold them.
     """
     path = Path(name_or_path)
     if name_or_path not in PRESETS and path.suffix.lower() == ".cfg" and path.is_file():
@@ -52,7 +52,7 @@ def _from_json(path: Path) -> RadarConfig:
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise InputError(f"{path} is no JSON ({error}); make one with: mmweaver radar awr1843 --json") from None
+        raise InputError(f"{path} is not JSON ({error}); make one with: mmweaver radar awr1843 --json") from None
     try:
         return RadarConfig.from_json(text)
     except InputError as error:
@@ -60,7 +60,7 @@ def _from_json(path: Path) -> RadarConfig:
 
 
 def describe_radar(config: RadarConfig) -> str:
-    """A table of chirp, array, resolutions and limits, in the units people use."""
+    """A table of chirp, array, resolutions and limits, in customary units."""
     rows = [*_chirp_rows(config), *_array_rows(config), *_limit_rows(config), *_data_rows(config)]
     width = max(len(name) for name, _ in rows)
     return "\n".join([f"radar {config.name}", *(f"  {name:<{width}}  {value}" for name, value in rows)])
@@ -74,10 +74,10 @@ def _chirp_rows(config: RadarConfig) -> list[tuple[str, str]]:
         ("slope", f"{config.chirp_slope_hz_per_s / 1e12:.3f} MHz/us"),
         ("idle, ADC start, ramp end",
          f"{config.idle_time_s * 1e6:.2f}, {config.adc_start_time_s * 1e6:.2f}, {config.ramp_end_time_s * 1e6:.2f} us"),
-        ("samples a chirp", f"{config.num_samples} {kind} at {config.sample_rate_hz / 1e6:.3f} Msps"),
+        ("samples per chirp", f"{config.num_samples} {kind} at {config.sample_rate_hz / 1e6:.3f} Msps"),
         ("sampled bandwidth", f"{config.bandwidth_hz / 1e9:.3f} GHz around {config.centre_frequency_hz / 1e9:.3f} GHz"),
-        ("loops a frame", f"{config.num_loops}, each {config.loop_period_s * 1e6:.1f} us"),
-        ("frames", f"every {config.frame_period_s * 1e3:.1f} ms, {1 / config.frame_period_s:.2f} a second,"
+        ("loops per frame", f"{config.num_loops}, each {config.loop_period_s * 1e6:.1f} us"),
+        ("frames", f"every {config.frame_period_s * 1e3:.1f} ms, {1 / config.frame_period_s:.2f} per second,"
          f" {100 * config.active_time_s / config.frame_period_s:.1f} % of the time chirping"),
     ]  # fmt: skip
 
@@ -110,6 +110,6 @@ def _data_rows(config: RadarConfig) -> list[tuple[str, str]]:
     adc_kb = 2 * words * config.num_loops * config.num_antennas * config.num_samples / 1e3
     shape = f"{cube[0]} range x {cube[1]} Doppler x {cube[2]} antennas"
     return [
-        ("cube a frame", f"{shape}, {8 * math.prod(cube) / 1e3:.1f} kB"),
-        ("ADC data a frame", f"{adc_kb:.1f} kB ({adc_kb / config.frame_period_s / 1e3:.2f} MB a second)"),
+        ("cube per frame", f"{shape}, {8 * math.prod(cube) / 1e3:.1f} kB"),
+        ("ADC data per frame", f"{adc_kb:.1f} kB ({adc_kb / config.frame_period_s / 1e3:.2f} MB per second)"),
     ]

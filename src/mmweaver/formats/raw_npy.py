@@ -1,4 +1,4 @@
-"""Raw ADC samples in a .npy file, with the order of its axes given."""
+"""Raw ADC samples in a .npy file whose axes are named."""
 
 from pathlib import Path
 
@@ -9,8 +9,8 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.formats.dca1000 import by_transmitter
 
-# An axis that counts several things: the one that turns slowest first. Transmitters in firing order.
-PARTS = {
+# The dimensions that an axis combines, the slowest first; transmitters in firing order.
+DIMENSIONS = {
     "frame": ("frame",),
     "loop": ("loop",),
     "tx": ("tx",),
@@ -24,12 +24,12 @@ ORDER = ("frame", "loop", "tx", "rx", "sample")
 
 
 def read_adc_npy(path: Path | str, config: RadarConfig, axes: str) -> AdcCube:
-    """Reads an array whose axes are named in order, as "frame,loop,tx,rx,sample" or "loop,antenna,sample".
+    """Reads an array whose axes are named in order, such as "frame,loop,tx,rx,sample" or "loop,antenna,sample".
 
     `tx` is in firing order (`config.tx_order`); `antenna` (or `vrx`) = tx * num_rx + rx and `chirp` = loop * num_tx
-    + tx, with that same tx. An axis that is not named has size 1. For a radar with real samples: real numbers, whose
-    mean over each chirp is taken away; int16 that was stored as uint16 (values above 32767) is turned back. Samples
-    stay in the file's unit, so their scale is unknown (nan). Raises InputError where the file is no such array.
+    + tx, with that same tx. An axis that is not named has size 1. Real samples must be real numbers; their mean over
+    each chirp is removed, and int16 stored as uint16 (values above 32767) is converted back. Samples stay in the
+    file's unit, so their scale is unknown (nan). Raises InputError where the file is not such an array.
     """
     names = [name.strip() for name in axes.split(",")]
     values = _loaded(Path(path))
@@ -55,20 +55,20 @@ def _loaded(path: Path) -> np.ndarray:
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, EOFError, SyntaxError) as error:
-        raise InputError(f"{path} is no .npy array of numbers ({str(error).splitlines()[0]})") from None
+        raise InputError(f"{path} is not a .npy array of numbers ({str(error).splitlines()[0]})") from None
     if not isinstance(values, np.ndarray):
         raise InputError(f"{path} holds several arrays; save the ADC samples alone as .npy")
     return values
 
 
 def _checked_axes(path: Path, names: list[str], shape: tuple[int, ...], sizes: dict[str, int]) -> list[str]:
-    if unknown := [name for name in names if name not in PARTS]:
-        raise InputError(f"unknown axis {unknown[0]!r}; known: {', '.join(PARTS)}")
-    parts = [part for name in names for part in PARTS[name]]
+    if unknown := [name for name in names if name not in DIMENSIONS]:
+        raise InputError(f"unknown axis {unknown[0]!r}; known: {', '.join(DIMENSIONS)}")
+    parts = [part for name in names for part in DIMENSIONS[name]]
     if len(set(parts)) < len(parts):
-        raise InputError(f"the axes {','.join(names)} name the same thing twice")
+        raise InputError(f"the axes {','.join(names)} name the same dimension twice")
     expected = [
-        str(int(np.prod([sizes[part] for part in PARTS[name]]))) if name != "frame" else "any" for name in names
+        str(int(np.prod([sizes[part] for part in DIMENSIONS[name]]))) if name != "frame" else "any" for name in names
     ]
     wanted = ", ".join(f"{name} {size}" for name, size in zip(names, expected, strict=True))
     if missing := [name for name in ORDER if name not in parts and sizes.get(name, 1) != 1]:
@@ -77,7 +77,7 @@ def _checked_axes(path: Path, names: list[str], shape: tuple[int, ...], sizes: d
         size in ("any", str(length)) for size, length in zip(expected, shape, strict=True)
     )
     if not fits:
-        raise InputError(f"{path} has shape {shape}; the radar and the axes named want ({wanted})")
+        raise InputError(f"{path} has shape {shape}; the radar and the named axes need ({wanted})")
     return parts
 
 

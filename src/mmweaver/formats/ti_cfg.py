@@ -1,4 +1,4 @@
-"""The .cfg of TI's mmWave SDK: one command a line, % for comments.
+"""The .cfg of TI's mmWave SDK: one command per line, % for comments.
 
 Reference: mmWave SDK User Guide, "Configuration (.cfg) File Format".
 """
@@ -11,7 +11,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.formats.ti_chirps import TiChirps, radar_from_ti
 
-# command: how many numbers follow it at least (later SDKs append)
+# command: minimum count of numbers that follow it (later SDKs append more)
 NEEDED = {"channelCfg": 2, "adcCfg": 2, "profileCfg": 14, "chirpCfg": 8, "frameCfg": 6}
 OPTIONAL = {"adcbufCfg": 4}
 REFUSED = {
@@ -25,16 +25,16 @@ CHIRP_VARIATIONS = ("start frequency", "slope", "idle time", "ADC start time")
 
 @dataclass(frozen=True)
 class Line:
-    """A command's numbers, and which line of the file they are from."""
+    """The numbers of a command, and its line number in the file."""
 
     number: int
     values: tuple[float, ...]
 
 
 def read_ti_cfg(path: Path | str) -> RadarConfig:
-    """The radar that this .cfg sets up; its name is the file's.
+    """The radar that a .cfg configures, named after the file.
 
-    Raises InputError where the file cannot be read, lines are missing or have too few numbers, chirps vary or do not
+    Raises InputError where the file cannot be read, lines are missing or have too few numbers, chirps differ or do not
     fire one transmitter after the other, or the radar could not exist.
     """
     path = Path(path)
@@ -47,18 +47,18 @@ def read_ti_cfg(path: Path | str) -> RadarConfig:
 
 
 def read_ti_cfg_iq_order(path: Path | str) -> str:
-    """The I/Q order of a capture made with this .cfg, "iq" or "qi", from adcbufCfg's SampleSwap ("iq" without one)."""
+    """The I/Q order of a recording with this .cfg, "iq" or "qi", from adcbufCfg's SampleSwap ("iq" without it)."""
     lines = ti_cfg_lines(Path(path)).get("adcbufCfg")
     if not lines:
         return "iq"
     values = lines[-1].values
-    # SDK 1 has four numbers (format, swap, interleave, threshold), later ones the subframe before them
+    # SDK 1 has four numbers (format, swap, interleave, threshold); later versions put the subframe before them
     swap = values[1] if len(values) == 4 else values[2]
     return "qi" if swap == 1 else "iq"
 
 
 def ti_cfg_lines(path: Path, more: dict[str, int] | None = None) -> dict[str, list[Line]]:
-    """The lines of the radar and those of `more` commands (how many numbers follow each at least), by command.
+    """The lines of the radar's commands and of those in `more` (with their minimum count of numbers), by command.
 
     Raises InputError as `read_ti_cfg` does.
     """
@@ -85,7 +85,7 @@ def ti_cfg_lines(path: Path, more: dict[str, int] | None = None) -> dict[str, li
 
 
 def _is_off(command: str, words: list[str]) -> bool:
-    """bpmCfg <subframe> <enabled> ...: demos carry it switched off."""
+    """bpmCfg <subframe> <enabled> ...: the demos' files have it disabled."""
     return command == "bpmCfg" and len(words) > 1 and words[1] == "0"
 
 
@@ -94,7 +94,7 @@ def _numbers(path: Path, number: int, command: str, words: list[str], needed: in
         values = tuple(float(word) for word in words)
     except ValueError:
         raise InputError(
-            f"{path}, line {number}: {command} holds something that is no number: {' '.join(words)}"
+            f"{path}, line {number}: {command} holds something that is not a number: {' '.join(words)}"
         ) from None
     if len(values) < needed:
         raise InputError(f"{path}, line {number}: {command} has {len(values)} numbers, it needs {needed}")
@@ -148,7 +148,7 @@ def _fired(lines: list[Line], first: int, last: int) -> tuple[tuple[int, ...], s
         for what, value in zip(CHIRP_VARIATIONS, line.values[3:7], strict=True):
             if value != 0:
                 raise InputError(
-                    f"line {line.number}: chirpCfg varies the {what} ({value:g}); all chirps must be alike"
+                    f"line {line.number}: chirpCfg varies the {what} ({value:g}); all chirps must be identical"
                 )
         for chirp in range(start, end + 1):
             masks[chirp], profiles[chirp] = mask, profile
@@ -161,7 +161,7 @@ def _fired(lines: list[Line], first: int, last: int) -> tuple[tuple[int, ...], s
 
 
 def whole(line: Line, command: str, at: int) -> int:
-    """A number of a line that must be whole. Raises InputError where it is not."""
+    """Number `at` of a line as an integer. Raises InputError where it is not one."""
     value = line.values[at]
     if value != int(value):
         raise InputError(f"line {line.number}: number {at + 1} of {command} must be whole, not {value:g}")

@@ -1,4 +1,4 @@
-"""From the numbers of a TI radar's set-up, in TI's units, to a RadarConfig."""
+"""Converts the chirp configuration of a TI radar, in TI's units, to a RadarConfig."""
 
 from dataclasses import dataclass
 
@@ -13,13 +13,13 @@ from mmweaver.core.presets import (
 )
 from mmweaver.core.radar_config import RadarConfig
 
-NEAREST_RANGE_M = 0.7  # where the kept range bins start, as the awr1843 preset's
-MOST_RANGE_BINS = 64
+MIN_RANGE_M = 0.7  # where the kept range bins start, as in the awr1843 preset
+MAX_RANGE_BINS = 64
 
 
 @dataclass(frozen=True, kw_only=True)
 class TiChirps:
-    """What a TI set-up says about its one profile, its chirps and its frame. Units in the names."""
+    """The profile, chirps and frame of a TI configuration. Units are in the names."""
 
     name: str
     start_frequency_ghz: float
@@ -39,12 +39,12 @@ class TiChirps:
 
 
 def radar_from_ti(chirps: TiChirps) -> RadarConfig:
-    """The radar, with the xWR1443/1843/6843's array and only the transmitters that fire.
+    """The radar with the array of the xWR1443/1843/6843, restricted to the transmitters that fire.
 
-    Transmitters are renumbered in the board's order. Keeps up to 64 range bins from about 0.7 m. Raises InputError
-    where the chirps are not one transmitter after the other, or where the radar could not exist.
+    Transmitters are renumbered in the board's order. Up to 64 range bins from about 0.7 m are kept. Raises InputError
+    where the chirps do not fire one transmitter after the other, or where the radar could not exist.
     """
-    masks, repeats = _one_turn(chirps.chirp_tx_masks)
+    masks, repeats = _repeated_sequence(chirps.chirp_tx_masks)
     boards = _transmitters(masks, chirps.tx_mask)
     enabled = sorted(boards)
     receivers = [bit for bit in range(len(XWR_RX_HALFWAVES)) if chirps.rx_mask >> bit & 1]
@@ -58,7 +58,7 @@ def radar_from_ti(chirps: TiChirps) -> RadarConfig:
     middle_hz = start_hz + slope * (chirps.adc_start_time_us * 1e-6 + sampled_s / 2)
     bins = chirps.num_samples if chirps.complex_samples else chirps.num_samples // 2
     resolution_m = SPEED_OF_LIGHT_MPS / (2 * slope * sampled_s)
-    kept = min(MOST_RANGE_BINS, bins)
+    kept = min(MAX_RANGE_BINS, bins)
     return RadarConfig(
         name=chirps.name,
         start_frequency_hz=start_hz,
@@ -74,7 +74,7 @@ def radar_from_ti(chirps: TiChirps) -> RadarConfig:
         rx_position_m=halfwave_positions(tuple(XWR_RX_HALFWAVES[bit] for bit in receivers), middle_hz),
         tx_order=tuple(enabled.index(bit) for bit in boards),
         complex_samples=chirps.complex_samples,
-        first_range_bin=min(round(NEAREST_RANGE_M / resolution_m), bins - kept),
+        first_range_bin=min(round(MIN_RANGE_M / resolution_m), bins - kept),
         num_range_bins=kept,
         rx_gain_db=chirps.rx_gain_db,
         frequency_limits_hz=_band_hz(start_hz),
@@ -91,8 +91,8 @@ def _band_hz(start_hz: float) -> tuple[float, float]:
     )
 
 
-def _one_turn(masks: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
-    """The shortest sequence that the chirps repeat, and how often."""
+def _repeated_sequence(masks: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
+    """The shortest sequence that the chirps repeat, and its number of repetitions."""
     if not masks:
         raise InputError("the frame names no chirps")
     for length in range(1, len(masks) + 1):
@@ -102,7 +102,7 @@ def _one_turn(masks: tuple[int, ...]) -> tuple[tuple[int, ...], int]:
 
 
 def _transmitters(masks: tuple[int, ...], tx_mask: int) -> list[int]:
-    """Which transmitter each chirp of a turn fires."""
+    """The transmitter that each chirp of a sequence fires."""
     fired = []
     for mask in masks:
         bits = [bit for bit in range(len(XWR1843_TX_HALFWAVES)) if mask >> bit & 1]

@@ -1,4 +1,4 @@
-"""The lines of a mmWave SDK .cfg that set up the demo's point cloud.
+"""The lines of an mmWave SDK .cfg that configure the demo's point cloud.
 
 Reference: mmWave SDK User Guide, "Configuration (.cfg) File Format": cfarCfg, peakGrouping, clutterRemoval,
 multiObjBeamForming.
@@ -13,24 +13,24 @@ from mmweaver.core.firmware_settings import AVERAGE_MODES, FirmwareCfar, Firmwar
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.formats.ti_cfg import Line, read_ti_cfg, ti_cfg_lines, whole
 
-# With the subframe before them (SDK 2 and later) lines have one number more than in SDK 1.
+# SDK 2 and later put the subframe before these numbers, so lines have one more than in SDK 1.
 PLAIN_LENGTH = {"cfarCfg": 7, "peakGrouping": 5, "clutterRemoval": 1, "multiObjBeamForming": 2}
 SDK3_CFAR_LENGTH = 9
 DB_PER_OCTAVE = 20 * math.log10(2)
 
 
 def read_ti_firmware(path: Path | str) -> FirmwareSettings:
-    """The settings of the point cloud; what the file does not say is the demo's default.
+    """The settings of the point cloud; those that the file does not hold are the demo's defaults.
 
-    The device follows from adcbufCfg: the IWR1443's demo takes interleaved channels (0), those of other devices do
-    not (1); without the line it is the IWR1443. SDK 3 gives thresholds in dB and grouping with each cfarCfg. Raises
-    InputError where the file cannot be read, has no cfarCfg, or a number cannot be.
+    The device follows from adcbufCfg: the IWR1443's demo uses interleaved channels (0), those of other devices do
+    not (1); without the line it is the IWR1443. SDK 3 has thresholds in dB and grouping in each cfarCfg. Raises
+    InputError where the file cannot be read, has no cfarCfg, or a number is out of range.
     """
     path = Path(path)
     lines = ti_cfg_lines(path, PLAIN_LENGTH)
     if "cfarCfg" not in lines:
         raise InputError(
-            f"{path} has no cfarCfg, so its firmware's point cloud is not known; add the line or take --points cfar"
+            f"{path} has no cfarCfg, so its firmware's point cloud is unknown; add the line or use --points cfar"
         )
     config = read_ti_cfg(path)
     device = _device(lines)
@@ -65,7 +65,7 @@ def _device(lines: dict[str, list[Line]]) -> str:
 
 
 def _start(line: Line, command: str) -> int:
-    """Where a line's own numbers begin: after the subframe, if it has one."""
+    """Index of a line's own first number: after the subframe, if it has one."""
     return 1 if len(line.values) > PLAIN_LENGTH[command] else 0
 
 
@@ -95,7 +95,7 @@ def _own_grouping(line: Line | None) -> bool | None:
 
 
 def _counts(threshold_db: float, device: str, config: RadarConfig) -> int:
-    """A threshold in dB in the units of the detection matrix."""
+    """Converts a threshold in dB to the units of the detection matrix."""
     num = config.num_antennas
     per_octave = 256 * num if device == "xwr16xx" else 512 * num / 2 ** (num - 1).bit_length()
     return round(threshold_db / DB_PER_OCTAVE * per_octave)

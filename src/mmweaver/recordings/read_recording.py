@@ -21,7 +21,7 @@ from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_
 from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.dca_packets import PacketCapture
 from mmweaver.formats.npz_files import read_radar_npz
-from mmweaver.formats.peer_arrays import LAYOUTS, read_hupr, read_mmmesh, read_rf_genesis, recognised
+from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout, read_hupr, read_mmmesh, read_rf_genesis
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.raw_npy import read_adc_npy
 
@@ -83,7 +83,7 @@ def read_recording(
     if path.suffix == ".npz":
         return _from_cube(path, radar)
     if (path.suffix == ".npy" or path.is_dir()) and axes is None:
-        layout = layout or recognised(path)
+        layout = layout or detect_layout(path)
     source = radar if radar is not None else layout
     if source is None:
         raise InputError(
@@ -119,7 +119,7 @@ def _from_folder(path: Path, radar: str | Path | RadarConfig | None, given: list
     if any(path.glob("*.npy")):
         return None
     raise InputError(
-        f"{path} is no capture folder ({PACKETS}) and holds neither {CUBE} nor frames of HuPR (.npy); give a folder"
+        f"{path} is not a capture folder ({PACKETS}) and holds neither {CUBE} nor frames of HuPR (.npy); give a folder"
         " that mmweaver process wrote"
     )
 

@@ -35,7 +35,7 @@ class ActivityExamples:
         return len(self.label)
 
 
-def maps_of(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[Tensor, Tensor]:
+def compute_log_maps(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[Tensor, Tensor]:
     """Log maps of cubes in sqrt(mW), in half precision."""
     maps, doppler, angle = LogMaps(config), [], []
     with torch.no_grad():
@@ -74,7 +74,7 @@ def activity_examples(
     mark = _mark(folder, chosen)
     maps = None if kept is None else _read(kept, mark)
     if maps is None:
-        maps = maps_of((room.cube(index) for room, index in chosen), config)
+        maps = compute_log_maps((room.cube(index) for room, index in chosen), config)
         if kept is not None and keep:
             _write(kept, maps, mark)
     doppler, angle = maps
@@ -115,7 +115,7 @@ def _write(file: Path, maps: tuple[Tensor, Tensor], mark: str) -> None:
         save_file({"doppler": maps[0], "angle": maps[1]}, temporary, metadata={"mark": mark})
 
 
-def varied(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
+def augmented(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
     """The same scenes a little louder or fainter, nearer or farther, earlier or later; what leaves comes in again."""
     from mmweaver.models.log_maps import SPREAD_DB
 

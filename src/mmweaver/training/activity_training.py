@@ -11,14 +11,14 @@ from torch import Tensor
 
 from mmweaver.core.seeding import stream
 from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
-from mmweaver.training.activity_examples import ActivityExamples, activity_examples, varied
+from mmweaver.training.activity_examples import ActivityExamples, activity_examples, augmented
 from mmweaver.training.confusion_sheet import draw_confusion
 from mmweaver.training.device import ComputeDevice, Share
-from mmweaver.training.trainer import Draw, Learner, Listener, LoopRecipe, Trainer
+from mmweaver.training.trainer import BatchSampler, Learner, Listener, LoopRecipe, Trainer
 
 # The two activities that are withheld from the weaver are no test here, and the network shall know all twelve.
 TRAIN_SPLITS = ("train", "test_activity")
-TRAIN_MAPS, UNSEEN_MAPS = "train_maps.safetensors", "validation_maps.safetensors"
+TRAIN_MAPS, VALIDATION_MAPS = "train_maps.safetensors", "validation_maps.safetensors"
 SMOOTHING = 0.1
 AT_ONCE = 32
 
@@ -76,7 +76,7 @@ def train_activity(
     *,
     start: dict[str, Tensor] | None = None,
     listener: Listener | None = None,
-    workplace: ComputeDevice | None = None,
+    compute: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer:
     """Trains on a data set, or goes on from `out`/checkpoint.pt; what comes back holds the best network.
@@ -84,37 +84,37 @@ def train_activity(
     `start`: weights to fine-tune. `options` go to `Trainer`. The log maps of all sequences are kept in `out`, for
     where signals are not stored they cost more than the training. Raises InputError for a folder without data.
     """
-    place = workplace or ComputeDevice()
+    place = compute or ComputeDevice()
     kept = {"keep": place.is_first, "device": str(place.device)}
-    unseen = activity_examples(data, ("validation",), out / UNSEEN_MAPS, **kept)
+    unseen = activity_examples(data, ("validation",), out / VALIDATION_MAPS, **kept)
     examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **kept)
     torch.manual_seed(recipe.seed)
     network = ActivityNetwork(examples.config)
     if start is not None:
         network.load_state_dict(start)
     trainer = Trainer(
-        ActivityLearner(network, unseen), recipe, out, workplace=workplace, is_tuning=start is not None,
-        train=_drawing(examples, recipe), validation=_dealt(unseen, recipe.validation_batches), **options,
+        ActivityLearner(network, unseen), recipe, out, compute=compute, is_tuning=start is not None,
+        train=_batch_sampler(examples, recipe), validation=_fixed_batches(unseen, recipe.validation_batches), **options,
     )  # fmt: skip
     trainer.run(listener)
     return trainer
 
 
-def _drawing(examples: ActivityExamples, recipe: ActivityRecipe) -> Draw:
+def _batch_sampler(examples: ActivityExamples, recipe: ActivityRecipe) -> BatchSampler:
     """Varied sequences, by step."""
 
     def draw(step: int, share: Share) -> ActivityBatch:
         rng = stream(recipe.seed, "activity batch", step)
         chosen = rng.choice(len(examples), size=recipe.batch_size, replace=len(examples) < recipe.batch_size)
         which = torch.from_numpy(chosen)
-        doppler, angle = varied(examples.doppler[which], examples.angle[which], rng)
+        doppler, angle = augmented(examples.doppler[which], examples.angle[which], rng)
         own = slice(share[0], None, share[1])
         return ActivityBatch(doppler=doppler[own], angle=angle[own], label=examples.label[which][own])
 
     return draw
 
 
-def _dealt(examples: ActivityExamples, count: int) -> Callable[[int, Share], ActivityBatch]:
+def _fixed_batches(examples: ActivityExamples, count: int) -> Callable[[int, Share], ActivityBatch]:
     """All sequences dealt out to so many batches, as they are."""
 
     def draw(index: int, share: Share) -> ActivityBatch:

@@ -1,7 +1,7 @@
 """Fine-tuning on a user's own few captures.
 
-With joints the whole network is tuned. Without, only what it says of things that rest: the heads that correct the
-strength of each surface; echoes of people stay as they were, to the bit.
+With joints the whole network is tuned. Without, only the heads that correct the cross section of static surfaces;
+echoes of people stay bit-identical.
 """
 
 import hashlib
@@ -33,20 +33,20 @@ from mmweaver.training.network_training import (
     VALIDATION_SEED,
     NetworkLearner,
     TrainingRecipe,
-    begun,
     card_of,
-    compared,
+    compare_with_start,
+    initial_network,
     save_trained,
 )
-from mmweaver.training.trainer import Draw, Listener, Trainer
+from mmweaver.training.trainer import BatchSampler, Listener, Trainer
 
-RESTING_HEADS = ("point", "face")
-NOBODY_M = (0.0, 2.5, -0.5)  # where the joints are said to be of people whose echoes then count for nothing
+STATIC_HEADS = ("point", "face")
+PLACEHOLDER_M = (0.0, 2.5, -0.5)  # placeholder joints of unknown people, whose echoes are multiplied by zero
 
 
 @dataclass(frozen=True, kw_only=True)
 class CaptureRecipe(TrainingRecipe):
-    """How the weaver is tuned: little and carefully, for there is little to learn from."""
+    """Hyperparameters of fine-tuning: few, small steps, for there is little data."""
 
     name: str = "weaver, tuned"
     steps: int = 300
@@ -56,36 +56,36 @@ class CaptureRecipe(TrainingRecipe):
     validate_every: int = 25
     validation_batches: int = 4
     patience: int = 6
-    without: tuple[str, ...] = ()  # in its own room what rests may be learned
+    without: tuple[str, ...] = ()  # static surfaces of the captured room may be learned
 
 
 @dataclass(frozen=True, kw_only=True)
 class StaticClutterRecipe(CaptureRecipe):
-    """The same for two small heads, which bear larger steps."""
+    """As CaptureRecipe, with a larger rate for the two small heads of static surfaces."""
 
     learning_rate: float = 5e-3
 
 
 def recipe_for(captures: Sequence[Capture], **given: Any) -> CaptureRecipe:
-    """The recipe for captures with joints, or for none; `given` replaces its values."""
+    """The recipe for captures with or without joints; `given` overrides its values."""
     return CaptureRecipe(**given) if any(one.pose is not None for one in captures) else StaticClutterRecipe(**given)
 
 
 @dataclass(frozen=True, kw_only=True)
 class CaptureBatch(NetworkBatch):
-    """A batch of captures; where a person is not `known` the maps are those of the room at rest."""
+    """A batch of captures; where the person is not `known`, the maps are those of the static room."""
 
     known: Tensor  # (sequence,) 0 or 1
 
 
 class CaptureLearner(NetworkLearner):
-    """Learns from captures; who is not known has no echo. The receiver's noise is the recording's."""
+    """Learns from captures; unknown people have no echo. The noise power (mW per cell) is that of the recordings."""
 
     def __init__(self, network: WeaverNetwork, config: RadarConfig, noise_power: float, *, everything: bool):
         super().__init__(network, config)
         self.radar.noise = noise_power
         for name, parameter in network.named_parameters():
-            parameter.requires_grad_(everything or name.split(".")[0] in RESTING_HEADS)
+            parameter.requires_grad_(everything or name.split(".")[0] in STATIC_HEADS)
 
     def moving(self, code: Any, batch: NetworkBatch) -> Echoes:
         echoes = super().moving(code, batch)
@@ -96,13 +96,13 @@ class CaptureLearner(NetworkLearner):
 
 @dataclass(frozen=True, kw_only=True)
 class TuningResult:
-    """A run on captures, and how the recordings were taken."""
+    """Result of fine-tuning, with the calibration of the recordings."""
 
     trainer: Trainer
     rooms: list[RecordedRoom]
-    held_out: RecordedRoom | None  # None: too few captures to keep one aside
-    loss_before: float  # of the weights it began with, on the same validation
-    gain: float  # sqrt(mW) of one count, where the recordings were not calibrated
+    held_out: RecordedRoom | None  # None with a single capture
+    loss_before: float  # validation loss of the initial weights
+    gain: float  # sqrt(mW) per count, where the recordings were not calibrated
 
 
 def tune(
@@ -112,19 +112,19 @@ def tune(
     *,
     start: dict[str, Tensor],
     listener: Listener | None = None,
-    workplace: ComputeDevice | None = None,
+    compute: ComputeDevice | None = None,
     **options: Any,
 ) -> TuningResult:
-    """Fine-tunes weights on captures; the last capture is kept aside for validation, unless it is the only one.
+    """Fine-tunes weights on captures; the last capture is held out for validation, unless it is the only one.
 
-    Recordings whose scale is not known get the one gain at which the weights they begin with agree with them most.
-    Goes on from `out`/checkpoint.pt where there is one. Raises InputError for captures of different radars.
+    Uncalibrated recordings share one gain, at which the initial weights agree with them best. Resumes from
+    `out`/checkpoint.pt if present. Raises InputError for captures of different radars.
     """
-    network = begun(recipe, start)
+    network = initial_network(recipe, start)
     rooms = rooms_of(captures)
     gain = 1.0
     if not all(room.is_calibrated for room in rooms):
-        gain = gain_of(network, [room for room in rooms if not room.is_calibrated])
+        gain = estimate_gain(network, [room for room in rooms if not room.is_calibrated])
         rooms = [room if room.is_calibrated else room.calibrated(gain) for room in rooms]
     noise = float(np.median([room.noise_power for room in rooms]))
     held_out = rooms[-1] if len(rooms) > 1 else None
@@ -132,37 +132,40 @@ def tune(
     everything = any(room.has_joints for room in used)
     learner = CaptureLearner(network, rooms[0].config, noise, everything=everything)
     maps = learner.radar.noise_maps()
-    validation = _drawing([held_out or rooms[0]], recipe, VALIDATION_SEED + recipe.seed, maps)
+    validation = _batch_sampler([held_out or rooms[0]], recipe, VALIDATION_SEED + recipe.seed, maps)
     learner.shown = lambda: validation(0, (0, 1))
     trainer = Trainer(
-        learner, recipe, out, train=_drawing(used, recipe, recipe.seed, maps), validation=validation,
-        workplace=workplace, is_tuning=True, **options,
+        learner, recipe, out, train=_batch_sampler(used, recipe, recipe.seed, maps), validation=validation,
+        compute=compute, is_tuning=True, **options,
     )  # fmt: skip
-    before = _loss_of(trainer, begun(recipe, start))
+    before = _loss_of(trainer, initial_network(recipe, start))
     trainer.run(listener)
     return TuningResult(trainer=trainer, rooms=rooms, held_out=held_out, loss_before=before, gain=gain)
 
 
 def write_tuned(out: Path, tuned: TuningResult, *, start: dict[str, Tensor], licence_of_start: str = "MIT") -> Path:
-    """Writes `out`/weights.safetensors and its README.md; gives the weights' path."""
+    """Writes `out`/weights.safetensors and its README.md; returns the path of the weights."""
     digest = hashlib.sha256("".join(room.sha256 for room in tuned.rooms).encode()).hexdigest()
     more = {"tuned_from": sha256_of(start), "licence": licence_of_start}
     file = save_trained(out, tuned.trainer, digest, **more)
     used = len(tuned.rooms) - (tuned.held_out is not None)
     known = sum(room.has_joints for room in tuned.rooms[:used])
-    told = f"{used} captures of the user's own, {known} of them with joints; on top of what the weights came from."
-    judged = "One capture that was kept aside" if tuned.held_out is not None else "The captures themselves (one only)"
-    figures = compared(tuned.trainer, begun(tuned.trainer.recipe, start))
+    about = (
+        f"{used} captures of the user's own, {known} of them with joints, on top of the data of the initial weights."
+    )
+    held_out = "One held-out capture" if tuned.held_out is not None else "The captures themselves (one only)"
+    figures = compare_with_start(tuned.trainer, initial_network(tuned.trainer.recipe, start))
     card = card_of(tuned.trainer, digest, **more)
     with atomic_file(out / CARD_FILE) as partial:
         partial.write_text(
-            model_card(card, file, data=told, judged_on=f"{judged}; {EXPLAINED}", figures=figures), encoding="utf-8"
+            model_card(card, file, data=about, evaluated_on=f"{held_out}; {EXPLAINED}", figures=figures),
+            encoding="utf-8",
         )
     return file
 
 
 def _loss_of(trainer: Trainer, network: WeaverNetwork) -> float:
-    """The validation loss that other weights have."""
+    """The validation loss of another network."""
     learner = trainer.learner
     assert isinstance(learner, NetworkLearner)
     own, learner.network = learner.network, network.to(learner.device)
@@ -171,41 +174,43 @@ def _loss_of(trainer: Trainer, network: WeaverNetwork) -> float:
     return loss
 
 
-def gain_of(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
-    """The factor of amplitude at which recordings and network agree on the resting room, by the median."""
+def estimate_gain(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> float:
+    """Amplitude gain (sqrt(mW) per count) at which recordings and network agree on static clutter, by the median."""
     learner = NetworkLearner(network, rooms[0].config).eval()
     maps = []
     for room in rooms:
         one = RoomExamples(room, SPLIT)
         with torch.inference_mode():
-            view = one.view[None]
-            resting = learner.network.encode_room(view).resting
+            scene = one.scene[None]
+            resting = learner.network.encode_room(scene).resting
             expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
-        maps.append((expected, one.empty.range_azimuth))
+        maps.append((expected, one.static.range_azimuth))
     return agreeing_gain(maps)
 
 
-def _drawing(rooms: list[RecordedRoom], recipe: CaptureRecipe, seed: int, noise: tuple[float, float, float]) -> Draw:
+def _batch_sampler(
+    rooms: list[RecordedRoom], recipe: CaptureRecipe, seed: int, noise: tuple[float, float, float]
+) -> BatchSampler:
     pool = [RoomExamples(room, SPLIT) for room in rooms]
 
     def draw(step: int, share: tuple[int, int]) -> CaptureBatch:
         batch = sample_batch(pool, seed, step, size=recipe.batch_size, frames=recipe.frames, share=share)
-        return _with_nobody(batch, noise)
+        return _mask_unknown_people(batch, noise)
 
     return draw
 
 
-def _with_nobody(batch: NetworkBatch, noise: tuple[float, float, float]) -> CaptureBatch:
-    """Sequences without joints show the room at rest."""
+def _mask_unknown_people(batch: NetworkBatch, noise: tuple[float, float, float]) -> CaptureBatch:
+    """Replaces sequences without joints by the static room plus noise."""
     known = torch.isfinite(batch.joints_m).flatten(1).all(dim=1)
-    place = torch.tensor(NOBODY_M).expand(NUM_JOINTS, 3) + 0.1 * torch.eye(NUM_JOINTS, 3)
+    place = torch.tensor(PLACEHOLDER_M).expand(NUM_JOINTS, 3) + 0.1 * torch.eye(NUM_JOINTS, 3)
     each = known[:, None, None, None]
     maps: dict[str, Tensor] = {}
     for own, level in zip(fields(PowerMaps), noise, strict=True):
-        shown, empty = getattr(batch.targets.maps, own.name), getattr(batch.targets.empty, own.name)
-        maps[own.name] = torch.where(each, shown, (empty + level)[:, None].expand_as(shown))
+        measured, static = getattr(batch.targets.maps, own.name), getattr(batch.targets.static, own.name)
+        maps[own.name] = torch.where(each, measured, (static + level)[:, None].expand_as(measured))
     return CaptureBatch(
-        view=batch.view,
+        scene=batch.scene,
         joints_m=torch.where(each, batch.joints_m, place),
         velocity_mps=torch.where(each, batch.velocity_mps, torch.zeros(())),
         frames=batch.frames,

@@ -1,12 +1,12 @@
-"""What a recogniser takes for what, as a picture."""
+"""Confusion matrix of a classifier as a picture."""
 
 import numpy as np
 
-from mmweaver.training.validation_sheet import drawn
+from mmweaver.training.validation_sheet import canvas_image
 
 
 def draw_confusion(true: np.ndarray, answers: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
-    """(row, column, 3) uint8: a row for each of `names` that is shown, in shares of it; both are indices."""
+    """Image (row, column, 3) uint8 of the row-normalised confusion matrix; `true` and `answers` (n,) are indices."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -20,15 +20,15 @@ def draw_confusion(true: np.ndarray, answers: np.ndarray, names: tuple[str, ...]
         axes.text(column, row, f"{100 * share[row, column]:.0f}", ha="center", va="center", color=ink, fontsize=8)
     axes.set_xticks(range(len(names)), names, rotation=60, ha="right", fontsize=8)
     axes.set_yticks(range(len(names)), names, fontsize=8)
-    axes.set_xlabel("answer")
-    axes.set_ylabel("shown")
-    axes.set_title(f"{100 * float((true == answers).mean()):.1f} % of {len(true)} right", fontsize=10)
-    figure.colorbar(image, ax=axes, shrink=0.8).set_label("share of what was shown", fontsize=8)
-    return drawn(canvas)
+    axes.set_xlabel("predicted")
+    axes.set_ylabel("true")
+    axes.set_title(f"{100 * float((true == answers).mean()):.1f} % of {len(true)} correct", fontsize=10)
+    figure.colorbar(image, ax=axes, shrink=0.8).set_label("share of the true class", fontsize=8)
+    return canvas_image(canvas)
 
 
 def confusion(true: np.ndarray, answers: np.ndarray, count: int) -> np.ndarray:
-    """(shown, answer) in shares of what was shown; rows of zeros for what was not."""
+    """Row-normalised confusion matrix (true, predicted); rows of absent classes are zero."""
     counts = np.zeros((count, count))
     np.add.at(counts, (true, answers), 1)
     return counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)

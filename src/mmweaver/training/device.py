@@ -1,4 +1,4 @@
-"""Where training runs: which device, which precision, and which of how many processes this is."""
+"""Where training runs: device, precision, and rank among the processes."""
 
 import os
 from contextlib import AbstractContextManager
@@ -12,24 +12,24 @@ from mmweaver.core.errors import InputError
 
 PRECISIONS = ("auto", "float32", "bf16")
 CPU = torch.device("cpu")
-Share = tuple[int, int]  # (this process, all processes)
+Share = tuple[int, int]  # (rank, number of processes)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ComputeDevice:
-    """One process of a training. Alone by default; `ComputeDevice.chosen` joins the processes that torchrun started."""
+    """One process of a training: single by default; `ComputeDevice.chosen` joins the processes of torchrun."""
 
     device: torch.device = CPU
     precision: str = "float32"
     share: Share = (0, 1)
-    accelerator: Any = None  # of accelerate, where there are several processes
+    accelerator: Any = None  # accelerate's Accelerator, with several processes
 
     @classmethod
     def chosen(cls, device: str = "auto", precision: str = "auto") -> "ComputeDevice":
-        """The workplace asked for.
+        """The requested device and precision.
 
-        "auto" takes a GPU where there is one, and bf16 there; a CPU computes in float32. Under `torchrun` the
-        processes find each other, each on its own GPU or all on CPUs. Raises InputError for a device that is not there.
+        "auto" selects a GPU with bf16 if available, else the CPU with float32. Under `torchrun` the processes join,
+        each on its own GPU or all on CPUs. Raises InputError for an unavailable device.
         """
         if precision not in PRECISIONS:
             raise InputError(f"precision must be one of {', '.join(PRECISIONS)}, not {precision!r}")
@@ -44,33 +44,33 @@ class ComputeDevice:
 
     @property
     def is_first(self) -> bool:
-        """Whether this process writes files and speaks."""
+        """Whether this process writes files and reports progress."""
         return self.share[0] == 0
 
     def joined(self, module: nn.Module) -> nn.Module:
-        """The module with gradients that are averaged over all processes."""
+        """The module wrapped so that gradients are averaged over all processes."""
         return module if self.accelerator is None else self.accelerator.prepare_model(module)
 
     def mean(self, values: Tensor) -> Tensor:
-        """The mean over all processes, the same in each."""
+        """Mean over all processes, identical in each."""
         return values if self.accelerator is None else self.accelerator.reduce(values, reduction="mean")
 
     def wait(self) -> None:
-        """Until all processes are here."""
+        """Blocks until all processes have arrived."""
         if self.accelerator is not None:
             self.accelerator.wait_for_everyone()
 
     def arithmetic(self) -> AbstractContextManager[Any]:
-        """Products of matrices in the precision that was chosen; all else stays in float32."""
+        """Autocast context: matrix products in the chosen precision, everything else in float32."""
         return torch.autocast(self.device.type, torch.bfloat16, enabled=self.precision == "bf16")
 
     def moved(self, batch: Any) -> Any:
-        """Tensors, and dataclasses, lists, tuples and dicts of them, on this process's device."""
+        """A batch (tensors in dataclasses, lists, tuples and dicts) on this process's device."""
         return moved(batch, self.device)
 
 
 def moved(batch: Any, device: torch.device) -> Any:
-    """The same batch on a device.
+    """The batch with all its tensors on a device.
 
     >>> moved({"a": [torch.zeros(2)], "b": "name"}, torch.device("meta"))["a"][0].device.type
     'meta'

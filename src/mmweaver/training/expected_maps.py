@@ -1,6 +1,6 @@
-"""What a radar would see on average of a stored geometry: targets without speckle and noise's scatter.
+"""Expected power maps of stored geometry: training targets without speckle and without fluctuation of the noise.
 
-A drawn signal tells a network one throw of the dice in every cell; the simulator's own echoes tell the mean at once.
+A simulated signal is one random realization in every cell; the simulator's echoes give its mean directly.
 Reference: decision 98.
 """
 
@@ -20,10 +20,10 @@ class ExpectedMaps:
     def __init__(self, room: StoredRoom):
         assert room.geometry is not None, "signals are stored, not geometry"
         self.room, self.radar = room, _radar(room)
-        self.empty = self.radar.maps(static_points(room.geometry.room.paths, self.radar.response))
+        self.static = self.radar.maps(static_points(room.geometry.room.paths, self.radar.response))
 
     def frames(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps]:
-        """Maps (frame, range, other) of frames of a sequence: of room, person and noise, and of the person alone."""
+        """Maps (frame, range, other) of frames of a sequence: room, person and noise together, and the person alone."""
         person = self.room.body_paths(index, frames)
         both = [self._frame(person, number) for number in range(len(frames))]
         return PowerMaps.stack([whole for whole, _ in both]), PowerMaps.stack([alone for _, alone in both])
@@ -36,9 +36,9 @@ class ExpectedMaps:
         names = [field.name for field in fields(PowerMaps)]
         maps = {}
         for name, noise in zip(names, self.radar.noise_maps(), strict=True):
-            empty = getattr(self.empty, name)
-            left = (empty - getattr(occluded, name)).clamp(min=0)
-            maps[name] = left + getattr(moving, name) + noise
+            static = getattr(self.static, name)
+            visible = (static - getattr(occluded, name)).clamp(min=0)
+            maps[name] = visible + getattr(moving, name) + noise
         return PowerMaps(**maps), moving
 
 
@@ -46,7 +46,7 @@ _RADARS: dict[str, MeanPower] = {}
 
 
 def _radar(room: StoredRoom) -> MeanPower:
-    """One for all rooms of the same radar."""
+    """The radar, shared by all rooms of the same configuration."""
     key = room.config.to_json()
     if key not in _RADARS:
         _RADARS[key] = MeanPower(room.config)

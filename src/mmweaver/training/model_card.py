@@ -1,4 +1,4 @@
-"""The page that goes with a weight file: what it is, from which data, how good, what it is not for."""
+"""Model cards: what a weights file is, its data, its scores, and its limits."""
 
 import hashlib
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mmweaver.models.weights import WeightsCard
 
-Figures = Mapping[str, Mapping[str, float]]  # {whose: {column: value}}
+Figures = Mapping[str, Mapping[str, float]]  # {method: {column: value}}
 
 FRONT = """---
 license: {licence}
@@ -27,8 +27,8 @@ tags:
 LIMITS = """
 ## What it is not for
 
-- It has seen rooms, people and radar signals made up by mmWeaver's simulator{and_captures}; nothing here says how near
-  it comes to a recording of another room. Amplitudes are uncalibrated.
+- It has seen rooms, people and radar signals of mmWeaver's simulator{and_captures}; nothing here shows how close it
+  comes to a recording of another room. Amplitudes are uncalibrated.
 {limits}
 - Not for decisions about people's safety or health.
 """
@@ -36,7 +36,7 @@ LIMITS = """
 
 @dataclass(frozen=True, kw_only=True)
 class Page:
-    """What the pages of one recipe have in common."""
+    """Text common to the model cards of one recipe."""
 
     about: str
     limits: str
@@ -46,7 +46,7 @@ class Page:
 WEAVER = Page(
     unit="dB",
     about="""A network of mmWeaver: a photo of a room with depth and a person's joints in, the echoes that an FMCW MIMO
-radar at the camera would see out. Phases are drawn, the signal follows from the radar's own response.
+radar at the camera would receive out. Phases are sampled; the signal follows from the radar's point response.
 
     mmweaver generate --rgb rgb.png --depth depth.png --text "a person walks" --weights . --out walk/
 
@@ -55,28 +55,28 @@ from mmweaver import Weaver
 
 weaver = Weaver.from_pretrained(".")  # this folder, its weights.safetensors, or its name on the Hub
 ```""",
-    limits="""- What the photo does not show is not there. Phases of surfaces and skin are drawn, not known.
-- One radar ({radar}); others are rendered from the same echoes and have not been judged.""",
+    limits="""- What the photo does not show is missing. Phases of surfaces and skin are sampled, not known.
+- One radar ({radar}); others are rendered from the same echoes and have not been evaluated.""",
 )
 ACTIVITY = Page(
     unit="",
     about="""A recogniser of mmWeaver: which of twelve activities 20 frames of a radar show, from range-Doppler and
-range-azimuth pictures in decibels above the receiver's noise. It evaluates generated data, and its features are those
+range-azimuth maps in decibels above the receiver's noise. It evaluates generated data, and its features are those
 of the paper's perceptual loss.""",
-    limits="- One radar ({radar}); its pictures are scaled by that radar's constants, and no other's weights fit.",
+    limits="- One radar ({radar}); its maps are scaled by that radar's constants; other radars need other weights.",
 )
 
 
 def model_card(
-    card: WeightsCard, file: Path, *, data: str, judged_on: str, figures: Figures, page: Page = WEAVER
+    card: WeightsCard, file: Path, *, data: str, evaluated_on: str, figures: Figures, page: Page = WEAVER
 ) -> str:
-    """The page as Markdown with a front matter. `data`, `judged_on`: sentences; `figures`: rows of scores, in
+    """The model card as Markdown with front matter. `data`, `evaluated_on`: sentences; `figures`: rows of scores, in
     `page.unit`."""
     lines = [
         FRONT.format(
             licence=card.licence.lower(), title=f"mmweaver {card.recipe}", about=page.about
         ),
-        "## Data", "", data, "", "## How good", "", judged_on, "",
+        "## Data", "", data, "", "## Scores", "", evaluated_on, "",
         *_table(figures, page.unit), "",
         f"The loss there is {card.validation_loss:.3f}, the least of the run.", "", "## Facts", "",
         "| | |", "| --- | --- |",
@@ -90,9 +90,9 @@ def model_card(
         *([f"| fine-tuned from | tensors of sha256 `{card.tuned_from}` |"] if card.tuned_from else []),
         *(f"| {name} | {value} |" for name, value in card.settings.items() if name not in ("name", "steps", "seed")),
     ]  # fmt: skip
-    told = " and the captures it was tuned on" if card.tuned_from else ""
+    captures = " and the captures it was tuned on" if card.tuned_from else ""
     limits = page.limits.format(radar=card.radar)
-    return "\n".join(lines) + "\n" + LIMITS.format(and_captures=told, limits=limits)
+    return "\n".join(lines) + "\n" + LIMITS.format(and_captures=captures, limits=limits)
 
 
 def _table(figures: Figures, unit: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""Batches for training the weaver, drawn from a data set; the same step always gives the same batch."""
+"""Training batches of the learned method, sampled from a data set; a step always gives the same batch."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -33,33 +33,33 @@ from mmweaver.training.reflection_augmentation import reflected_joints, reflecte
 
 @dataclass(frozen=True, kw_only=True)
 class NetworkBatch:
-    """Rooms, whole motions, and the power maps of some of their frames."""
+    """Rooms, whole motions, and power maps of some of their frames."""
 
-    view: SceneTensors
+    scene: SceneTensors
     joints_m: Tensor  # (sequence, frame, 22, 3), all frames
-    velocity_mps: Tensor
-    frames: Tensor  # (sequence, chosen) indices
+    velocity_mps: Tensor  # (sequence, frame, 22, 3)
+    frames: Tensor  # (sequence, sampled) indices of frames
     targets: Targets
 
 
 class RoomExamples:
-    """One stored room: its view, and the sequences of one split."""
+    """One stored room: its scene tensors, and the sequences of one split."""
 
     def __init__(self, room: StoredRoom, split: str):
         self.room = room
         self.indices = [index for index, name in enumerate(room.split) if name == split]
 
     @cached_property
-    def view(self) -> SceneTensors:
-        """What the product would see of the room: its photo, reconstructed."""
+    def scene(self) -> SceneTensors:
+        """The room as at inference: reconstructed from its photo."""
         geometry = self.room.geometry
-        scene = reconstruct(self.room.photo)
-        return SceneTensors.of(scene, self.room.config, None if geometry is None else geometry.photographed)
+        reconstructed = reconstruct(self.room.photo)
+        return SceneTensors.of(reconstructed, self.room.config, None if geometry is None else geometry.photographed)
 
     def maps(self, index: int, frames: np.ndarray) -> tuple[PowerMaps, PowerMaps | None]:
         """Maps (frame, range, other) of frames of a sequence, and of the person alone where geometry is stored.
 
-        Stored signals give those of their one draw, stored geometry the mean of all draws.
+        Stored signals give the maps of one realization, stored geometry the mean over realizations.
         """
         if self._expected is not None:
             return self._expected.frames(index, frames)
@@ -67,10 +67,10 @@ class RoomExamples:
         return power_maps(cube.values, cube.config), None
 
     @cached_property
-    def empty(self) -> PowerMaps:
+    def static(self) -> PowerMaps:
         """Maps (range, other) of the room without a person."""
         if self._expected is not None:
-            return self._expected.empty
+            return self._expected.static
         return power_maps(static_cube(self.room.static, self.room.config).values, self.room.config)[0]
 
     @cached_property
@@ -98,13 +98,13 @@ def sample_batch(
     share: Share = (0, 1),
     mirror: bool = False,
 ) -> NetworkBatch:
-    """`size` sequences of as many rooms, and `frames` frames of each to look at; of them the share of one process.
+    """Samples `size` sequences of different rooms and `frames` frames of each; returns the share of one process.
 
-    With `mirror`, every second batch shows its rooms and people with left and right exchanged.
+    With `mirror`, every second batch is reflected left-right.
     """
     rng = stream(seed, "batch", step)
     chosen = rng.choice(len(rooms), size=size, replace=len(rooms) < size)
-    views, joints, velocity, picked, maps, empty = [], [], [], [], [], []
+    scenes, joints, velocity, sampled, maps, static = [], [], [], [], [], []
     alone: list[PowerMaps | None] = []
     for number, which in enumerate(chosen):
         one = rooms[int(which)]
@@ -113,22 +113,22 @@ def sample_batch(
         some = np.sort(rng.choice(length, size=min(frames, length), replace=False))
         if number % share[1] != share[0]:
             continue
-        views.append(one.view)
+        scenes.append(one.scene)
         joints.append(torch.from_numpy(one.room.joints_m[index]))
         velocity.append(torch.from_numpy(one.room.joint_velocity_mps[index]))
-        picked.append(torch.from_numpy(some))
+        sampled.append(torch.from_numpy(some))
         whole, person = one.maps(index, some)
         maps.append(whole)
         alone.append(person)
-        empty.append(one.empty)
+        static.append(one.static)
     batch = NetworkBatch(
-        view=SceneTensors.stack(views),
+        scene=SceneTensors.stack(scenes),
         joints_m=torch.stack(joints),
         velocity_mps=torch.stack(velocity),
-        frames=torch.stack(picked),
-        targets=Targets(maps=PowerMaps.stack(maps), empty=PowerMaps.stack(empty), person=_all_or_none(alone)),
+        frames=torch.stack(sampled),
+        targets=Targets(maps=PowerMaps.stack(maps), static=PowerMaps.stack(static), person=_all_or_none(alone)),
     )
-    return _mirrored(batch) if mirror and rng.random() < 0.5 else batch
+    return _reflected(batch) if mirror and rng.random() < 0.5 else batch
 
 
 def _all_or_none(maps: list[PowerMaps | None]) -> PowerMaps | None:
@@ -136,10 +136,10 @@ def _all_or_none(maps: list[PowerMaps | None]) -> PowerMaps | None:
     return PowerMaps.stack(known) if len(known) == len(maps) else None
 
 
-def _mirrored(batch: NetworkBatch) -> NetworkBatch:
+def _reflected(batch: NetworkBatch) -> NetworkBatch:
     return replace(
         batch,
-        view=reflected_scene(batch.view),
+        scene=reflected_scene(batch.scene),
         joints_m=reflected_joints(batch.joints_m),
         velocity_mps=reflected_joints(batch.velocity_mps),
         targets=reflected_targets(batch.targets),
@@ -147,7 +147,7 @@ def _mirrored(batch: NetworkBatch) -> NetworkBatch:
 
 
 def power_maps(values: np.ndarray, config: RadarConfig) -> PowerMaps:
-    """The maps of a cube's values (frame, range, doppler, antenna)."""
+    """Power maps (frame, range, other) of the values of a cube (frame, range, doppler, antenna)."""
     cube = RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=1.0)
     if has_elevation(config):
         elevation = range_elevation_power(cube, elevation_axis_rad())

@@ -1,4 +1,4 @@
-"""Left and right exchanged: every room and motion twice. A radar's mean power maps have no handedness."""
+"""Left-right reflection as augmentation; mean power maps of a radar are symmetric under it."""
 
 from dataclasses import replace
 
@@ -11,39 +11,39 @@ from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.training.network_loss import Targets
 
 _OTHER_SIDE = {"left": "right", "right": "left"}
-_POINT_X = (1, 5)  # of a point's features: its place and its direction
-_PLANE_X = (6,)  # of a plane's: its normal
+_POINT_X = (1, 5)  # columns of a point's features: position and direction
+_PLANE_X = (6,)  # columns of a plane's features: normal
 
 
-def reflected_scene(view: SceneTensors) -> SceneTensors:
-    """The room as in a mirror that stands along the radar's axis."""
-    flip = view.point_m.new_tensor([-1.0, 1.0, 1.0])
-    camera = view.camera.clone()
-    camera[..., 2] = view.image.shape[-1] - 1 - camera[..., 2]
+def reflected_scene(scene: SceneTensors) -> SceneTensors:
+    """The scene reflected at the plane x = 0."""
+    flip = scene.point_m.new_tensor([-1.0, 1.0, 1.0])
+    camera = scene.camera.clone()
+    camera[..., 2] = scene.image.shape[-1] - 1 - camera[..., 2]
     return replace(
-        view,
-        image=view.image.flip(-1),
-        depth_m=view.depth_m.flip(-1),
-        point_m=view.point_m * flip,
-        point_features=_negated(view.point_features, _POINT_X),
-        camera_from_radar=view.camera_from_radar * flip * flip[:, None],
+        scene,
+        image=scene.image.flip(-1),
+        depth_m=scene.depth_m.flip(-1),
+        point_m=scene.point_m * flip,
+        point_features=_negated(scene.point_features, _POINT_X),
+        camera_from_radar=scene.camera_from_radar * flip * flip[:, None],
         camera=camera,
-        plane_centre_m=view.plane_centre_m * flip,
-        plane_axes=view.plane_axes * flip,
-        plane_features=_negated(view.plane_features, _PLANE_X),
+        plane_centre_m=scene.plane_centre_m * flip,
+        plane_axes=scene.plane_axes * flip,
+        plane_features=_negated(scene.plane_features, _PLANE_X),
     )
 
 
 def reflected_joints(joints: Tensor) -> Tensor:
-    """Places or velocities (..., 22, 3) of the mirrored person: what was left is right."""
+    """Positions or velocities (..., 22, 3) of the reflected person, with left and right joints exchanged."""
     order = [JOINT_NAMES.index(_other(name)) for name in JOINT_NAMES]
     return joints[..., order, :] * joints.new_tensor([-1.0, 1.0, 1.0])
 
 
 def reflected_targets(targets: Targets) -> Targets:
-    """Azimuth runs the other way; range, Doppler and elevation stay."""
+    """Targets with azimuth reversed; range, Doppler and elevation are unchanged."""
     person = None if targets.person is None else _azimuth_flipped(targets.person)
-    return Targets(maps=_azimuth_flipped(targets.maps), empty=_azimuth_flipped(targets.empty), person=person)
+    return Targets(maps=_azimuth_flipped(targets.maps), static=_azimuth_flipped(targets.static), person=person)
 
 
 def _azimuth_flipped(maps: PowerMaps) -> PowerMaps:

@@ -1,4 +1,4 @@
-"""Long trainings that may be interrupted: saved now and then, and gone on with from there."""
+"""Trainings that may be interrupted: state is saved regularly and resumed from there."""
 
 import logging
 import time
@@ -16,23 +16,23 @@ log = logging.getLogger(__name__)
 
 
 class Stateful(Protocol):
-    """Anything with a state that can be kept."""
+    """Anything with a state to save."""
 
     def state_dict(self) -> Any:
-        """All that is needed to go on."""
+        """Everything needed to resume."""
         ...
 
     def load_state_dict(self, state: Any, /) -> Any:
-        """Goes on from there."""
+        """Resumes from a state."""
         ...
 
 
 class Resumable:
-    """Counts steps, saves what is named in `parts` every minute, and starts where a saved run stopped.
+    """Counts steps, saves the state of `parts` every minute, and resumes a saved run.
 
-    Without a file nothing is kept. `history` holds a row of figures every 50 steps. `every_s` is another time between
-    saves. Of several processes all read, and only the one that `writes` saves. A run goes on with as many threads as it
-    began with, for sums of other threads differ in their last bits (decision 140).
+    Without a file nothing is saved. `history` has a row of figures every 50 steps. `every_s` overrides the interval.
+    Of several processes all load, and only the one that `writes` saves. A run resumes with its original number of
+    threads, for sums over other numbers of threads differ in their last bits (decision 140).
     """
 
     def __init__(self, file: Path | None, parts: dict[str, Any], *, every_s: float | None = None, writes: bool = True):
@@ -44,7 +44,7 @@ class Resumable:
             self._load(file)
 
     def steps(self, most: int) -> Iterator[int]:
-        """The steps that are left."""
+        """Iterates over the remaining steps."""
         every_s = SAVE_EVERY_S if self.every_s is None else self.every_s
         saved, cpu = time.monotonic(), time.process_time()
         while self.done < most and not self._is_last:
@@ -56,11 +56,11 @@ class Resumable:
                 saved, cpu = time.monotonic(), time.process_time()
 
     def stop(self) -> None:
-        """The step under way is the last one."""
+        """Makes the current step the last one."""
         self._is_last = True
 
     def report(self, **figures: float | int) -> None:
-        """Keeps figures of a step now and then."""
+        """Adds figures to the history every 50 steps."""
         if self.done % REPORT_EVERY == 0:
             self.history.append({"step": self.done, **figures})
 
@@ -74,18 +74,18 @@ class Resumable:
 
     def _load(self, file: Path) -> None:
         try:
-            kept = torch.load(file, weights_only=True, map_location="cpu")
+            saved = torch.load(file, weights_only=True, map_location="cpu")
             for name, part in self.parts.items():
-                part.load_state_dict(kept["parts"][name])
+                part.load_state_dict(saved["parts"][name])
         except Exception as error:
             raise InputError(
-                f"{file} cannot be gone on with ({str(error).splitlines()[0][:80]}); delete it to begin anew"
+                f"{file} cannot be resumed ({str(error).splitlines()[0][:80]}); delete it to start over"
             ) from None
-        self.done, self.cpu_s, self.history = kept["done"], kept["cpu_s"], kept["history"]
-        _go_on_with(int(kept.get("threads", torch.get_num_threads())), file)  # older files do not name it
+        self.done, self.cpu_s, self.history = saved["done"], saved["cpu_s"], saved["history"]
+        _use_threads(int(saved.get("threads", torch.get_num_threads())), file)  # older files do not have it
 
 
-def _go_on_with(threads: int, file: Path) -> None:
+def _use_threads(threads: int, file: Path) -> None:
     if threads != torch.get_num_threads():
-        log.warning("%s was written with %d threads; training goes on with %d", file, threads, threads)
+        log.warning("%s was written with %d threads; training resumes with %d", file, threads, threads)
         torch.set_num_threads(threads)

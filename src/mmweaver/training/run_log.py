@@ -1,4 +1,4 @@
-"""What a training leaves to look at: a line of figures now and then, pictures, and TensorBoard's files."""
+"""Log of a training run: lines of figures, pictures, and TensorBoard files."""
 
 import json
 from pathlib import Path
@@ -16,8 +16,8 @@ LOG, PICTURES, BOARD = "log.jsonl", "pictures", "tensorboard"
 class RunLog:
     """log.jsonl, pictures/ and, where asked for, tensorboard/ in the folder of a run.
 
-    `done` steps were made before; what an interrupted run wrote of later ones goes. Raises InputError where TensorBoard
-    is asked for and not installed.
+    `done` steps were completed before; entries of an interrupted run after those are dropped. Raises InputError where
+    TensorBoard is requested but not installed.
     """
 
     def __init__(self, out: Path, done: int, *, tensorboard: bool = False):
@@ -29,7 +29,7 @@ class RunLog:
                 temporary.write_text("".join(f"{line}\n" for line in kept), encoding="utf-8")
 
     def row(self, figures: dict[str, Any]) -> None:
-        """One step's figures; most are passed over."""
+        """Logs the figures of a step, if it is one of every 50 or a validation."""
         step = figures["step"]
         if step % ROW_EVERY and figures["validation"] is None:
             return
@@ -41,7 +41,7 @@ class RunLog:
             self.board.flush()
 
     def picture(self, step: int, image: np.ndarray) -> None:
-        """A picture (row, column, 3) uint8 of that step."""
+        """Saves a picture (row, column, 3) uint8 of a step."""
         from PIL import Image
 
         with atomic_file(self.out / PICTURES / f"step_{step:06d}.png") as temporary:
@@ -50,13 +50,13 @@ class RunLog:
             self.board.add_image("validation", image, step, dataformats="HWC")
 
     def close(self) -> None:
-        """Nothing more is written."""
+        """Closes the files."""
         if self.board is not None:
             self.board.close()
 
 
 def _scalars(figures: dict[str, Any]) -> dict[str, float]:
-    """{"loss": 1, "terms": {"a": 1}} -> {"loss": 1, "terms/a": 1}; what is None is left out."""
+    """{"loss": 1, "terms": {"a": 1}} -> {"loss": 1, "terms/a": 1}; None is dropped."""
     flat: dict[str, float] = {}
     for name, value in figures.items():
         if isinstance(value, dict):
@@ -70,7 +70,7 @@ def _step_of(line: str) -> float:
     try:
         return float(json.loads(line)["step"])
     except (ValueError, KeyError, TypeError):
-        return float("inf")  # half a line, from a process that was killed
+        return float("inf")  # an incomplete line of a killed process
 
 
 def _writer(folder: Path, done: int) -> Any:

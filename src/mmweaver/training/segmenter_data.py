@@ -58,7 +58,7 @@ def make_examples(
         seed, own = first_seed, 0
         while own < per_kind and seed < first_seed + 3 * per_kind:
             try:
-                found.append(_kept(kind, seed, folder))
+                found.append(_cached_example(kind, seed, folder))
                 own += 1
             except InputError:
                 pass
@@ -66,7 +66,7 @@ def make_examples(
     return found
 
 
-def _kept(kind: str, seed: int, folder: Path | None) -> SegmenterExample:
+def _cached_example(kind: str, seed: int, folder: Path | None) -> SegmenterExample:
     if folder is None:
         return make_example(kind, seed)
     path = folder / f"{kind}-{seed}.npz"
@@ -81,7 +81,7 @@ def _kept(kind: str, seed: int, folder: Path | None) -> SegmenterExample:
         )
 
 
-def varied(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def augmented(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """A mirrored piece of a room in other colours and light, with holes and errors in its depth."""
     features, groups = _piece(example, rng)
     measured = features[MEASURED] > 0

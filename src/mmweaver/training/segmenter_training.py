@@ -21,7 +21,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.seeding import stream
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES, groups_of_cells, make_network
 from mmweaver.training.resuming import Resumable
-from mmweaver.training.segmenter_data import SegmenterExample, make_examples, varied
+from mmweaver.training.segmenter_data import SegmenterExample, augmented, make_examples
 from mmweaver.training.segmenter_scores import by_geometry, confusion, scores
 
 TRAIN_KINDS = ("office", "living_room", "lab", "kitchen", "library", "bedroom", "meeting_room", "corridor")
@@ -65,7 +65,7 @@ def train(
         rng, total = stream(recipe.seed, "segmenter", f"epoch {epoch}"), 0.0
         order = rng.permutation(len(examples))
         for first in range(0, len(order), recipe.batch):
-            chosen = [varied(examples[index], rng) for index in order[first : first + recipe.batch]]
+            chosen = [augmented(examples[index], rng) for index in order[first : first + recipe.batch]]
             cells = torch.from_numpy(np.stack([features for features, _ in chosen]))
             loss = loss_of(network(cells), torch.from_numpy(np.stack([groups for _, groups in chosen])))
             optimiser.zero_grad()

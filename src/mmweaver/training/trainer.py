@@ -1,10 +1,10 @@
-"""The loop that trains every network of the project; what is trained, and on what, comes from outside.
+"""The training loop of every network; learner and data are passed in.
 
-    draw(step, share) -> batch -> learner.terms(batch) -> {name: term of the loss} -> step -> files in `out`
+    sample(step, share) -> batch -> learner.terms(batch) -> {name: term of the loss} -> step -> files in `out`
 
-    checkpoint.pt        all that is needed to go on exactly, every minute
-    best.safetensors     the weights that were best on validation
-    log.jsonl, tensorboard/, pictures/     what to look at
+    checkpoint.pt        everything needed to resume exactly, every minute
+    best.safetensors     the weights with the lowest validation loss
+    log.jsonl, tensorboard/, pictures/     logs
 
 A recipe is a dataclass that derives from `LoopRecipe`, a network a `Learner`. Reference: decision 94.
 """
@@ -29,25 +29,25 @@ from mmweaver.training.resuming import Resumable
 from mmweaver.training.run_log import RunLog
 
 BEST_FILE = "best.safetensors"
-WORST_SKIPS = 20  # steps in a row whose gradients are no numbers before training gives up
+WORST_SKIPS = 20  # consecutive steps with gradients that are not finite before training stops
 
 
 @dataclass(frozen=True, kw_only=True)
 class LoopRecipe:
-    """How long and how fast anything is trained. Batches follow from seed and step: it may stop and go on anywhere."""
+    """Hyperparameters of a training. Batches follow from seed and step, so a run may be interrupted anywhere."""
 
     name: str
     steps: int = 6000
     batch_size: int = 3  # of all processes together
     learning_rate: float = 1e-3
     warm_up_steps: int = 200
-    is_cosine: bool = True  # else the rate stays, and a run may go on for more steps than were first asked for
+    is_cosine: bool = True  # else the rate is constant, and a run may be extended by more steps
     weight_decay: float = 1e-4
-    largest_gradient: float | None = 5.0  # None: gradients are not bounded
+    largest_gradient: float | None = 5.0  # norm to clip to; None: no clipping
     seed: int = 0
     validate_every: int = 250
     validation_batches: int = 8
-    patience: int = 12  # validations without a better one before training stops early
+    patience: int = 12  # validations without improvement before training stops early
 
     def rate(self, step: int) -> float:
         """Learning rate of a step."""
@@ -56,21 +56,21 @@ class LoopRecipe:
 
 
 class Learner(nn.Module):
-    """What a `Trainer` trains: any module that says what its loss consists of.
+    """A module that a `Trainer` trains, with the terms of its loss.
 
-    Every parameter that can be trained must take part in every batch, or several processes wait for each other.
+    Every trainable parameter must take part in every batch, or several processes deadlock.
     """
 
     def terms(self, batch: Any) -> dict[str, Tensor]:
-        """Terms of the loss by name, means over the batch; their sum is what is minimised."""
+        """Terms of the loss by name, averaged over the batch; their sum is minimised."""
         raise NotImplementedError
 
     def figures(self, batch: Any) -> dict[str, Tensor]:
-        """What else is told of a validation batch; means over it."""
+        """Further figures of a validation batch, averaged over it."""
         return {}
 
     def picture(self) -> np.ndarray | None:
-        """What it has learned of fixed validation examples, (row, column, 3) uint8; None for nothing to look at."""
+        """Predictions on fixed validation examples as an image (row, column, 3) uint8, or None."""
         return None
 
     def forward(self, batch: Any) -> dict[str, Tensor]:
@@ -79,29 +79,29 @@ class Learner(nn.Module):
 
 @dataclass(frozen=True, kw_only=True)
 class Progress:
-    """What is told while training goes on."""
+    """State of a running training, reported at every step."""
 
     step: int
     steps: int
     loss: float
     terms: dict[str, float]
     validation: float | None
-    figures: dict[str, float]  # what else the learner tells of the validation batches
+    figures: dict[str, float]  # further figures of the validation batches
     seconds: float
     learning_rate: float
     gradient_norm: float
 
 
-Draw = Callable[[int, Share], Any]
+BatchSampler = Callable[[int, Share], Any]
 Listener = Callable[[Progress], object]
 
 
 class Trainer:
-    """One run: its learner, its recipe, how far it is.
+    """One training run.
 
-    `train(step, share)` draws the part of a step's batch that belongs to one of several processes, `validation(index,
-    share)` one of a few fixed batches. With `is_tuning` the weights it begins with are the ones to beat. Raises
-    InputError for a checkpoint of other settings.
+    `train(step, share)` samples the part of a step's batch that belongs to one of several processes, `validation(index,
+    share)` one of a few fixed batches. With `is_tuning` the initial weights are validated first, as the ones to beat.
+    Raises InputError for a checkpoint with other settings.
     """
 
     def __init__(
@@ -110,48 +110,48 @@ class Trainer:
         recipe: LoopRecipe,
         out: Path,
         *,
-        train: Draw,
-        validation: Draw,
-        workplace: ComputeDevice | None = None,
+        train: BatchSampler,
+        validation: BatchSampler,
+        compute: ComputeDevice | None = None,
         is_tuning: bool = False,
         tensorboard: bool = False,
         save_every_s: float | None = None,
     ):
-        self.workplace = workplace or ComputeDevice()
-        self.learner = learner.to(self.workplace.device)
+        self.compute = compute or ComputeDevice()
+        self.learner = learner.to(self.compute.device)
         self.recipe, self.out, self._train, self._validation = recipe, out, train, validation
-        if recipe.batch_size % self.workplace.share[1]:
+        if recipe.batch_size % self.compute.share[1]:
             raise InputError(
-                f"a batch of {recipe.batch_size} cannot be shared by {self.workplace.share[1]} processes evenly;"
-                " give --batch a multiple of them"
+                f"a batch of {recipe.batch_size} cannot be shared by {self.compute.share[1]} processes evenly;"
+                " choose --batch as a multiple"
             )
         chosen = [parameter for parameter in learner.parameters() if parameter.requires_grad]
         self.optimiser = torch.optim.AdamW(chosen, lr=recipe.learning_rate, weight_decay=recipe.weight_decay)
-        self.best = Best({**asdict(recipe), "precision": self.workplace.precision})
+        self.best = BestValidation({**asdict(recipe), "precision": self.compute.precision})
         self.skips, self.is_tuning = 0, is_tuning
         out.mkdir(parents=True, exist_ok=True)
         parts = {"network": learner, "optimiser": self.optimiser, "best": self.best}
-        first = self.workplace.is_first
+        first = self.compute.is_first
         self.resumable = Resumable(out / "checkpoint.pt", parts, every_s=save_every_s, writes=first)
         self.log = RunLog(out, self.step, tensorboard=tensorboard) if first else None
-        self._joined = self.workplace.joined(self.learner)
+        self._joined = self.compute.joined(self.learner)
 
     @property
     def step(self) -> int:
-        """Steps that are done."""
+        """Number of completed steps."""
         return self.resumable.done
 
     def run(self, listener: Listener | None = None) -> None:
-        """Goes on from the last checkpoint to the end, and leaves the best weights in `learner`."""
+        """Resumes from the last checkpoint, trains to the end, and loads the best weights into `learner`."""
         began, recipe = time.monotonic(), self.recipe
         if self.is_tuning and self.step == 0:
-            self._validated(0)
+            self._validate(0)
         if self.best.since >= recipe.patience:
             self.resumable.stop()
         for step in self.resumable.steps(recipe.steps):
             rate, loss, terms, norm = self._one_step(step)
             is_due = (step + 1) % recipe.validate_every == 0 or step + 1 == recipe.steps
-            validation, figures = self._validated(step + 1) if is_due else (None, {})
+            validation, figures = self._validate(step + 1) if is_due else (None, {})
             progress = Progress(
                 step=step + 1, steps=recipe.steps, loss=loss, terms=terms, validation=validation, figures=figures,
                 seconds=time.monotonic() - began, learning_rate=rate, gradient_norm=norm,
@@ -164,16 +164,16 @@ class Trainer:
                 listener(progress)
         if self.log is not None:
             self.log.close()
-        self.workplace.wait()
-        self._take_best()
+        self.compute.wait()
+        self._load_best()
 
     def _one_step(self, step: int) -> tuple[float, float, dict[str, float], float]:
-        recipe, place = self.recipe, self.workplace
+        recipe, place = self.recipe, self.compute
         rate = recipe.rate(step)
         for group in self.optimiser.param_groups:
             group["lr"] = rate
         batch = place.moved(self._train(step, place.share))
-        # whole blocks are dropped by chance; a step's chance follows from its number, wherever training began
+        # dropout follows from the step's number, so that a resumed run equals an uninterrupted one
         own = () if place.is_first else (place.share[0],)
         torch.manual_seed(int(stream(recipe.seed, "dropout", step, *own).integers(2**31)))
         self.learner.train()
@@ -196,13 +196,12 @@ class Trainer:
         self.skips += 1
         if self.skips > WORST_SKIPS:
             raise InputError(
-                f"training broke at step {step}: gradients are no numbers; start anew with a lower learning rate"
+                f"training diverged at step {step}: gradients are not finite; start over with a lower learning rate"
             )
 
-    def _validated(self, step: int) -> tuple[float, dict[str, float]]:
-        """Mean loss over the fixed batches, and what else is told of them; keeps the weights where it is the best so
-        far, and draws the picture."""
-        value, figures = self._judged()
+    def _validate(self, step: int) -> tuple[float, dict[str, float]]:
+        """Validates; saves the weights if they are the best so far, and the picture. Returns loss and figures."""
+        value, figures = self._evaluate()
         is_better = self.best.improved_by(value, figures)
         if self.log is not None:
             if is_better:
@@ -216,15 +215,15 @@ class Trainer:
     def validation_batches(self) -> Iterator[Any]:
         """The fixed batches, one after the other, on this process's device."""
         for index in range(self.recipe.validation_batches):
-            yield self.workplace.moved(self._validation(index, (0, 1)))
+            yield self.compute.moved(self._validation(index, (0, 1)))
 
     def validation_loss(self) -> float:
         """Mean loss over the fixed batches, shared among the processes."""
-        return self._judged()[0]
+        return self._evaluate()[0]
 
-    def _judged(self) -> tuple[float, dict[str, float]]:
+    def _evaluate(self) -> tuple[float, dict[str, float]]:
         """Means over the fixed batches, each judged by one of the processes."""
-        place, count = self.workplace, self.recipe.validation_batches
+        place, count = self.compute, self.recipe.validation_batches
         self.learner.eval()
         rows: list[dict[str, float]] = []
         with torch.inference_mode(), place.arithmetic():
@@ -241,7 +240,7 @@ class Trainer:
         loss, *others = means.tolist()
         return loss, dict(zip(list(rows[0])[1:], others, strict=True))
 
-    def _take_best(self) -> None:
+    def _load_best(self) -> None:
         from safetensors.torch import load_file
 
         if (self.out / BEST_FILE).is_file():
@@ -249,16 +248,16 @@ class Trainer:
         self.learner.eval()
 
 
-class Best:
-    """The best validation so far, and the recipe it belongs to; kept in the checkpoint."""
+class BestValidation:
+    """The best validation so far, and its recipe; part of the checkpoint."""
 
     def __init__(self, recipe: dict[str, Any]):
-        # as a checkpoint gives it back
+        # as restored from a checkpoint
         self.recipe, self.value, self.since = json.loads(json.dumps(recipe)), math.inf, 0
         self.figures: dict[str, float] = {}
 
     def improved_by(self, value: float, figures: dict[str, float] | None = None) -> bool:
-        """Takes note of a new validation; True where it is the best."""
+        """Records a validation; returns whether it is the best so far."""
         is_better = value < self.value
         self.since = 0 if is_better else self.since + 1
         if is_better:
@@ -269,17 +268,17 @@ class Best:
         return {"recipe": self.recipe, "value": self.value, "since": self.since, "figures": self.figures}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        # what an earlier version did not name was as it is here; a constant rate may go on for longer
+        # settings unknown to an earlier version had today's defaults; a constant rate may be extended
         before = {**self.recipe, **state["recipe"]}
         if not self.recipe.get("is_cosine", True):
             before["steps"] = self.recipe["steps"]
         if before != self.recipe:
-            raise InputError("it was made with other settings")
+            raise InputError("it has other settings")
         self.value, self.since, self.figures = state["value"], state["since"], state.get("figures", {})
 
 
 def save_tensors(tensors: dict[str, Tensor], file: Path) -> None:
-    """Writes tensors as safetensors, whole or not at all."""
+    """Writes tensors as safetensors, atomically."""
     from safetensors.torch import save_file
 
     with atomic_file(file) as temporary:

@@ -1,4 +1,4 @@
-"""What a training looks like: truth beside network, range-Doppler and range-azimuth, and how far they are apart."""
+"""Pictures of a training: range-Doppler and range-azimuth maps of ground truth and network, and their difference."""
 
 import io
 from typing import Any
@@ -13,11 +13,11 @@ from mmweaver.paths.mean_power import PowerMaps
 
 SPAN_DB = 50.0
 MOST_ROWS = 3
-MAPS = ("range_doppler", "range_doppler", "range_azimuth", "range_azimuth")  # each beside the truth's
+MAPS = ("range_doppler", "range_doppler", "range_azimuth", "range_azimuth")  # alternately ground truth and network
 
 
 def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: str = "network, mean") -> np.ndarray:
-    """A row for each sequence, its middle frame; (row, column, 3) uint8. Both maps of a pair have the truth's peak."""
+    """A row per sequence, its middle frame; image (row, column, 3) uint8. Pairs share the peak of the ground truth."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -32,7 +32,7 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: 
     for row in range(count):
         for column, name in enumerate(MAPS):
             axes, own = grid[row][column], _middle(getattr(truth, name)[row])
-            title, shown = ("truth", own) if column % 2 == 0 else (made, _middle(getattr(network, name)[row]))
+            title, shown = ("ground truth", own) if column % 2 == 0 else (made, _middle(getattr(network, name)[row]))
             image = axes.imshow(
                 10 * np.log10(np.maximum(shown / own.max(), 1e-12)), origin="lower", aspect="auto", cmap="inferno",
                 vmin=-SPAN_DB, vmax=0, extent=(*extents[name], near, far), interpolation="nearest",
@@ -45,12 +45,12 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: 
                 axes.set_ylabel("range, m", fontsize=8)
             axes.tick_params(labelsize=7)
     assert image is not None
-    figure.colorbar(image, ax=grid, shrink=0.8).set_label("dB below the truth's peak", fontsize=8)
-    return drawn(canvas)
+    figure.colorbar(image, ax=grid, shrink=0.8).set_label("dB relative to the peak of the ground truth", fontsize=8)
+    return canvas_image(canvas)
 
 
-def drawn(canvas: Any) -> np.ndarray:
-    """A canvas of matplotlib as (row, column, 3) uint8."""
+def canvas_image(canvas: Any) -> np.ndarray:
+    """A canvas of matplotlib as an image (row, column, 3) uint8."""
     from PIL import Image
 
     buffer = io.BytesIO()
@@ -59,7 +59,7 @@ def drawn(canvas: Any) -> np.ndarray:
 
 
 def differences_db(truth: PowerMaps, network: PowerMaps) -> dict[str, float]:
-    """Mean difference in dB over the cells that the truth shows and over the sequences, by map."""
+    """Mean difference in dB over the non-zero cells of the ground truth and over the sequences, by map."""
     found = {}
     for name in ("range_doppler", "range_azimuth"):
         pairs = zip(getattr(network, name), getattr(truth, name), strict=True)

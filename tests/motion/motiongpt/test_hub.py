@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.motiongpt.hub import PUBLISHED, looks_like_hub, published_checkpoint
+from mmweaver.motion.motiongpt.hub import PUBLISHED, SMALL, looks_like_hub, published_checkpoint
 
 
 def test_names_and_paths_are_told_apart(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
@@ -24,6 +24,25 @@ def test_without_a_connection_one_line_says_what_to_do(monkeypatch: pytest.Monke
         raise OSError("no route\nto host")
 
     monkeypatch.setattr(huggingface_hub, "hf_hub_download", offline)
-    with pytest.raises(InputError, match=r"motiongpt_s3_h3d\.tar of .* download it yourself") as caught:
+    with pytest.raises(InputError, match=r"motiongpt_s3_h3d\.tar or .* download it yourself") as caught:
         published_checkpoint(PUBLISHED)
     assert "\n" not in str(caught.value)
+
+
+def test_a_repository_of_the_small_model_is_found_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    import httpx
+    import huggingface_hub
+    from huggingface_hub.errors import EntryNotFoundError
+
+    asked = []
+
+    def download(*, repo_id: str, filename: str) -> str:
+        asked.append(filename)
+        if filename != SMALL:
+            response = httpx.Response(404, request=httpx.Request("GET", "https://example.org"))
+            raise EntryNotFoundError("no such file", response=response)
+        return str(tmp_path / filename)
+
+    monkeypatch.setattr(huggingface_hub, "hf_hub_download", download)
+    assert published_checkpoint("owner/small-motiongpt") == tmp_path / SMALL
+    assert len(asked) == 2

@@ -57,5 +57,6 @@ def test_what_the_room_lacks_is_refused_with_what_it_has():
 def test_without_a_photo_the_way_leads_anywhere_and_says_so():
     plan = without_targets(_plan("door"))
     assert [step.target for step in plan.steps] == ["", ""]
-    assert plan.notes == ("for 'walks to the door': without a photo there is no door; the way leads where room is",)
+    note = "for 'walks to the door': without a photo there is no door; the walk leads where there is room"
+    assert plan.notes == (note,)
     assert without_targets(plan) == plan

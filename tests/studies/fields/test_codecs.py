@@ -16,7 +16,7 @@ def test_a_row_has_its_bytes_scores_and_floors():
     assert row["seconds"]["decode"] is not None
     for name in SCORES:
         metric = row["metrics"][name]
-        assert metric["value"] < metric["floor"]["zeros"] == 0.0
+        assert metric["value"] < metric["baseline"]["zeros"] == 0.0
         assert metric["unit"] == "dB"
 
 

@@ -9,6 +9,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.metrics.scorecard import METRICS
 from studies.fields import field_fidelity
 from studies.fields.field_signals import simulated
+from studies.manifest import StudyRun
 from studies.paper.paper_inr import InrField, InrShape, fresh_modulation
 from studies.paper.single_signal import PAPER
 
@@ -17,7 +18,7 @@ def test_every_row_has_its_floors_its_size_and_its_seconds(tmp_path, monkeypatch
     signal = simulated("walking", is_alone=True, num_frames=2)
     monkeypatch.setattr(field_fidelity, "SIGNALS", {"walking_alone": lambda data: signal})
     monkeypatch.setattr(field_fidelity, "RECIPES", {"quick": replace(PAPER, name="quick", steps=2, points=256)})
-    (path,) = field_fidelity.run(tmp_path, ("quick",), ("walking_alone",), None)
+    (path,) = field_fidelity.measure_inr(StudyRun("field_fidelity", tmp_path), ("quick",), ("walking_alone",), None)
     record = json.loads(path.read_text())
     assert record["config"]["steps"] == 2
     (row,) = record["rows"]

@@ -17,14 +17,14 @@ def test_rendered_noise_is_nearer_to_the_capture_than_none():
     signal = ExperimentSignal(name="crowd", origin="simulated", cube=crowd(noise=2e-3), twin=None)
     metrics = noise_row(signal)["metrics"]
     assert set(metrics) == set(DEFINITIONS)
-    assert abs(metrics["floor_db"]["value"]) < 1.0
-    assert metrics["floor_db"]["floor"]["without_noise"] < -3
+    assert abs(metrics["noise_floor_db"]["value"]) < 1.0
+    assert metrics["noise_floor_db"]["baseline"]["without_noise"] < -3
     assert metrics["distribution_distance"]["value"] < 0.05
 
 
 def test_a_cube_is_itself():
     scores = noise_scores(crowd(), crowd())
-    assert scores["floor_db"] == scores["distribution_distance"] == scores["false_points_a_frame"] == 0.0
+    assert scores["noise_floor_db"] == scores["distribution_distance"] == scores["false_points_a_frame"] == 0.0
 
 
 def test_points_of_another_frame_are_far():

@@ -5,13 +5,14 @@ import json
 import pytest
 
 from studies.fields import super_resolution
+from studies.manifest import StudyRun
 
 
 @pytest.fixture(scope="module")
 def rivals(tmp_path_factory) -> dict[str, dict[tuple[str, float], float]]:
     folder = tmp_path_factory.mktemp("results")
     scores = {}
-    for path in super_resolution.run(folder, (), factors=(2.0, 4.0)):
+    for path in super_resolution.measure(StudyRun("super_resolution", folder), (), factors=(2.0, 4.0)):
         rows = json.loads(path.read_text())["rows"]
         scores[path.stem] = {
             (row["dataset"]["truth"], row["dataset"]["factor"]): row["metrics"]["nmse_db"]["value"] for row in rows

@@ -29,7 +29,7 @@ def test_shares_and_judgements(tmp_path: Path):
     verdicts[names[-1]]["reading"] = "another"
     row = result_row(some, verdicts, {"first": {}}, "digest")
     assert row["metrics"]["understood"]["value"] == 0.5
-    assert row["judged_void"] == 1
+    assert row["evaluated_void"] == 1
     assert row["metrics"]["wrong"]["value"] == round(3 / (len(names) - 1), 4)
 
 

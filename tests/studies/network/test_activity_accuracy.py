@@ -1,4 +1,4 @@
-"""Accuracy beside its floors."""
+"""Accuracy and its baselines."""
 
 import torch
 
@@ -23,6 +23,6 @@ def test_a_network_that_says_one_thing_scores_that_things_share():
     )  # fmt: skip
     row = row_of(network, examples, "test_room")
     metric = row["metrics"]["accuracy"]
-    assert metric["value"] == metric["floor"]["commonest"] == 0.75
+    assert metric["value"] == metric["baseline"]["commonest"] == 0.75
     assert row["confusion"][5][3] == 1
     assert row["num_activities"] == 2

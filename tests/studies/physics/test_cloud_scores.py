@@ -64,8 +64,8 @@ def test_what_does_not_apply_is_missing_and_empty_frames_count():
     assert nothing.value("empty") == 1
     assert set(nothing.values) == {"empty", "points", "points_error"}
     held = scores.metrics(floor=nothing)
-    assert held["chamfer_m"]["floor"] is None
-    assert held["empty"]["floor"] == {"floor_centroid": 1}
+    assert held["chamfer_m"]["baseline"] is None
+    assert held["empty"]["baseline"] == {"centroid": 1}
 
 
 def test_parts_keep_their_kind():

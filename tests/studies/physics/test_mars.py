@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from studies.manifest import StudyRun
 from studies.physics import mars
 from studies.physics.cloud_scores import score
 from studies.physics.mars import MarsVariant, Setup, centroid_floor, detect, neighbour_ceiling, simulate, surface_floor
@@ -77,7 +78,7 @@ def test_the_whole_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(mars, "HEIGHTS_M", (0.2, 0.3))
     monkeypatch.setattr(mars, "VARIANTS", {"simulator": MarsVariant(), "grouped": MarsVariant(grouped=True)})
     lines: list[str] = []
-    scores = mars.run(folder, tmp_path, lines.append)
+    scores = mars.measure(folder, StudyRun("mars", tmp_path), lines.append)
     written = {path.stem for path in (tmp_path / "mars").iterdir()}
     assert written == set(scores) == {
         "floor_centroid", "floor_random_on_body", "floor_random_real_frame", "ceiling_neighbouring_frame", "simulator",

@@ -76,7 +76,7 @@ def test_summary_tells_inside_from_outside():
         row = summary([{"limb_share": value}] * 3, [{"limb_share": 0.0}], theirs)["limb_share"]
         assert row["inside"] is inside
         assert row["share_inside"] == float(inside)
-        assert row["floor"] == {"frozen": 0.0}
+        assert row["baseline"] == {"frozen": 0.0}
 
 
 def test_recorded_clips_are_steady_walks_and_windows_about_a_jump(real_data: Path):

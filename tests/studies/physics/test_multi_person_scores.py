@@ -20,4 +20,5 @@ def test_who_stands_behind_is_dimmed_and_the_plain_sum_does_not_know_it(behind: 
     assert scores["ra_ssim"]["other_noise"] > 0.95 > scores["ra_ssim"]["superposition"]
     row = row_of("behind", ARRANGEMENTS["one behind the other"], {0: scores}, refused=0)
     assert row["n"] == 1
-    assert row["metrics"]["rd_ssim"]["beside"].keys() == {"without_second", "other_noise", "twin"}
+    assert row["metrics"]["rd_ssim"]["baseline"].keys() == {"without_second"}
+    assert row["metrics"]["rd_ssim"]["oracle"].keys() == {"other_noise", "realization"}

@@ -117,7 +117,7 @@ def test_rows_hold_the_spread_of_both():
     real, made = rows("a walker", recording, walker, (0, 1))
     assert real["metrics"].keys() == made["metrics"].keys() == DEFINITIONS.keys()
     one = made["metrics"]["peak_over_median_db"]
-    assert one["interval"][0] <= one["value"] <= one["interval"][1]
+    assert one["lowest_highest"][0] <= one["value"] <= one["lowest_highest"][1]
     assert real["metrics"]["static_share"]["quarters"][0] < real["metrics"]["static_share"]["quarters"][1]
 
 

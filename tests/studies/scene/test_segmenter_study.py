@@ -1,4 +1,4 @@
-"""The experiment on the built-in segmenter."""
+"""The study of the built-in segmenter."""
 
 import json
 from pathlib import Path
@@ -7,8 +7,8 @@ import numpy as np
 
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
-from studies.report.segmenter_table import segmenter_affordances_table, segmenter_table
-from studies.scene.segmenter_study import REAL_TRUTH, marked_right, run
+from studies.manifest import StudyRun
+from studies.scene.segmenter_study import REAL_TRUTH, marked_right, measure
 
 
 def test_marked_places_name_groups_and_lie_in_the_picture():
@@ -29,9 +29,9 @@ def test_places_are_right_where_the_guess_is():
     assert marked_right(photo, guess, marked) == [True, False]
 
 
-def test_a_run_gives_the_tables(tmp_path: Path):
-    run(tmp_path, [], 1, 1)
-    text = segmenter_table(tmp_path)
-    assert "the built-in network" in text
-    assert text.count("\n") == 3
-    assert "mask by the network" in segmenter_affordances_table(tmp_path)
+def test_a_run_has_rows_of_cells_and_of_affordances(tmp_path: Path):
+    path = measure(StudyRun("segmenter_study", tmp_path), [], 1, 1)
+    rows = json.loads(path.read_text())["rows"]
+    assert [row["dataset"]["split"] for row in rows] == ["network", "geometry", "none", "network", "true"]
+    assert 0 < rows[0]["metrics"]["miou"]["value"] <= 1
+    assert "table_found" in rows[2]["metrics"]

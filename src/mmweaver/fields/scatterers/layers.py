@@ -82,24 +82,12 @@ def no_points(num_frames: int) -> Points:
 
 def select_points(points: Points, order: Tensor) -> Points:
     """Points of each frame selected by `order` (frame, selected)."""
-    return Points(
-        range_bin=points.range_bin.gather(1, order),
-        doppler_bin=points.doppler_bin.gather(1, order),
-        direction=points.direction.gather(1, order[..., None].expand(-1, -1, 2)),
-        amplitude=points.amplitude.gather(1, order),
-    )
+    return points[torch.arange(len(order))[:, None], order]
 
 
 def join_points(first: Points, second: Points) -> Points:
     """Concatenates the points of each frame and removes the padding in between."""
-    return compact(
-        Points(
-            range_bin=torch.cat([first.range_bin, second.range_bin], 1),
-            doppler_bin=torch.cat([first.doppler_bin, second.doppler_bin], 1),
-            direction=torch.cat([first.direction, second.direction], 1),
-            amplitude=torch.cat([first.amplitude, second.amplitude], 1),
-        )
-    )
+    return compact(Points.cat([first, second], dim=1))
 
 
 def compact(points: Points) -> Points:

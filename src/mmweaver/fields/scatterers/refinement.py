@@ -74,7 +74,7 @@ def refined(
             trial_cost = _energy(remainder)
             is_better = trial_cost < cost
             damping.learn(is_better)
-            points = _chosen(is_better, trial, points)
+            points = _where(is_better, trial, points)
             residual = torch.where(is_better[:, None, None, None], remainder, residual)
             cost = torch.where(is_better, trial_cost, cost)
     return points, residual
@@ -93,20 +93,12 @@ def _grouped(points: Points, num_groups: int, axes: Axes) -> Groups:
     frames, count = points.range_bin.shape
     each = math.ceil(count / num_groups)
     pad = each * num_groups - count
-    padded = replace(points)
-    if pad:
-        padded = Points(
-            range_bin=torch.cat([points.range_bin, points.range_bin[:, -1:].expand(-1, pad)], 1),
-            doppler_bin=torch.cat([points.doppler_bin, points.doppler_bin.new_zeros(frames, pad)], 1),
-            direction=torch.cat([points.direction, points.direction.new_zeros(frames, pad, 2)], 1),
-            amplitude=torch.cat([points.amplitude, points.amplitude.new_zeros(frames, pad)], 1),
-        )
-    shaped = Points(
-        range_bin=padded.range_bin.reshape(frames, num_groups, each),
-        doppler_bin=padded.doppler_bin.reshape(frames, num_groups, each),
-        direction=padded.direction.reshape(frames, num_groups, each, 2),
-        amplitude=padded.amplitude.reshape(frames, num_groups, each),
-    )
+    padded = points
+    if pad:  # silent points at the range of the last one
+        last = points[:, -1:].map(lambda tensor: torch.zeros_like(tensor))
+        last = replace(last, range_bin=points.range_bin[:, -1:])
+        padded = Points.cat([points, *[last] * pad], dim=1)
+    shaped = padded.map(lambda tensor: tensor.unflatten(1, (num_groups, each)))
     total = len(axes.range_bin)
     if num_groups == 1:
         return Groups(points=shaped, first=torch.zeros(frames, 1, dtype=torch.long), num_cells=total)
@@ -117,40 +109,23 @@ def _grouped(points: Points, num_groups: int, axes: Axes) -> Groups:
 
 
 def _some(groups: Groups, which: slice) -> Groups:
-    points = groups.points
-    chosen = Points(
-        range_bin=points.range_bin[:, which],
-        doppler_bin=points.doppler_bin[:, which],
-        direction=points.direction[:, which],
-        amplitude=points.amplitude[:, which],
-    )
-    return Groups(points=chosen, first=groups.first[:, which], num_cells=groups.num_cells)
+    return replace(groups, points=groups.points[:, which], first=groups.first[:, which])
 
 
 def _put_back(points: Points, moved: Points, which: slice) -> Points:
-    def whole(old: Tensor, new: Tensor) -> Tensor:
-        out = old.clone()
-        out[:, which] = new
-        return out
-
-    return Points(
-        range_bin=whole(points.range_bin, moved.range_bin),
-        doppler_bin=whole(points.doppler_bin, moved.doppler_bin),
-        direction=whole(points.direction, moved.direction),
-        amplitude=whole(points.amplitude, moved.amplitude),
-    )
+    """The points with the groups `which` replaced by `moved`."""
+    out = points.map(lambda tensor: tensor.clone())
+    for name in vars(out):
+        getattr(out, name)[:, which] = getattr(moved, name)
+    return out
 
 
 def _ungrouped(points: Points, count: int) -> Points:
-    return Points(
-        range_bin=points.range_bin.flatten(1, 2)[:, :count],
-        doppler_bin=points.doppler_bin.flatten(1, 2)[:, :count],
-        direction=points.direction.flatten(1, 2)[:, :count],
-        amplitude=points.amplitude.flatten(1, 2)[:, :count],
-    )
+    return points.map(lambda tensor: tensor.flatten(1, 2)[:, :count])
 
 
-def _chosen(mask: Tensor, yes: Points, no: Points) -> Points:
+def _where(mask: Tensor, yes: Points, no: Points) -> Points:
+    """The points of each frame from `yes` or `no` by a mask (frame,)."""
     return Points(
         range_bin=torch.where(mask[:, None], yes.range_bin, no.range_bin),
         doppler_bin=torch.where(mask[:, None], yes.doppler_bin, no.doppler_bin),

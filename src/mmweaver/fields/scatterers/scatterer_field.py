@@ -27,7 +27,7 @@ from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.fields.scatterers.fit_window import FitWindow, overlap_hop
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.interpolation import interpolate, interpolate_rows
-from mmweaver.fields.scatterers.layers import Layers, rendered
+from mmweaver.fields.scatterers.layers import Layers, no_points, rendered
 
 POINTS_A_FRAME = 83  # of six values: about the 10,018 values of the paper's INR in 20 frames
 STATIC_POINTS = 200  # scatterers that replace the static layer for another radar
@@ -75,7 +75,7 @@ class ScattererField(SignalField):
 
         def fill(part: np.ndarray) -> None:
             with torch.inference_mode():
-                some = replace(self.layers, points=_frames(self.layers.points, int(part[0]), int(part[-1]) + 1))
+                some = replace(self.layers, points=self.layers.points[int(part[0]) : int(part[-1]) + 1])
                 cells = rendered(some, fit_window.response, fit_window.axes)
                 torch.mul(cells, phasor, out=torch.from_numpy(out[part[0] : part[-1] + 1]))
 
@@ -165,14 +165,9 @@ class ScattererField(SignalField):
             step_s = time_s[1] - time_s[0] if len(time_s) > 1 else 0.0
             middle_s = self.config.active_time_s / 2
         late_s = (frame - index) * step_s + response.config.active_time_s / 2 - middle_s
-        points = self.layers.points
-        chosen = Points(
-            range_bin=points.range_bin[index],
-            doppler_bin=points.doppler_bin[index],
-            direction=points.direction[index],
-            amplitude=points.amplitude[index],
+        return _propagated(
+            self.layers.points[torch.from_numpy(index)], self.fit_window.response, response, torch.from_numpy(late_s)
         )
-        return _propagated(chosen, self.fit_window.response, response, torch.from_numpy(late_s))
 
     def _scattered(self, coordinates: np.ndarray, frame: float) -> np.ndarray:
         """Values (point,) of one frame, cell by cell."""
@@ -200,10 +195,7 @@ class ScattererField(SignalField):
         response, axes = self.fit_window.response, self.fit_window.axes
         static = self.layers.static[None, :, None, :] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
         if not bool((static != 0).any()):
-            return Points(
-                range_bin=torch.zeros(1, 0), doppler_bin=torch.zeros(1, 0), direction=torch.zeros(1, 0, 2),
-                amplitude=torch.zeros(1, 0, dtype=torch.complex64),
-            )  # fmt: skip
+            return no_points(1)
         one = replace(self.fit_window, num_frames=1)
         recipe = FitRecipe(num_points=STATIC_POINTS, with_static=False, least_gain=0.0)
         points = fitted(static, one, recipe).points
@@ -252,17 +244,7 @@ def _propagated(points: Points, own: PointResponse, other: PointResponse, late_s
 
 def _each(points: Points) -> list[Points]:
     """Points frame by frame, which limits memory for many frames."""
-    return [_frames(points, at, at + 1) for at in range(len(points.range_bin))]
-
-
-def _frames(points: Points, first: int, last: int) -> Points:
-    some = slice(first, last)
-    return Points(
-        range_bin=points.range_bin[some],
-        doppler_bin=points.doppler_bin[some],
-        direction=points.direction[some],
-        amplitude=points.amplitude[some],
-    )
+    return [points[at : at + 1] for at in range(len(points.range_bin))]
 
 
 def _frames_of(grid: CubeGrid, frame: np.ndarray) -> np.ndarray:

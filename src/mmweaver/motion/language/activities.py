@@ -1,23 +1,23 @@
-"""The one table of what a body can do: its name, an example, how long it takes, how much room it wants."""
+"""The one table of activities: name, example sentence, duration, free floor needed. Add an activity here first."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
 class Activity:
-    """One movement. A body activity moves legs and trunk, a hand activity is laid over one."""
+    """One activity. A body activity moves legs and trunk, a hand activity is overlaid on one."""
 
     key: str
     name: str  # as in "walking and waving"
     example: str
     least_s: float  # shortest time in which it can be shown
     natural_s: float
-    once: bool = False  # done in its natural time; what time is left goes to others
-    counted_s: tuple[float, float, float] | None = None  # of one: least, natural; what the first and last need besides
-    clearance_m: float = 0.5  # free floor it wants around it
-    moves: bool = False  # goes from one place to another
+    once: bool = False  # takes its natural time; time that is left goes to other steps
+    counted_s: tuple[float, float, float] | None = None  # of one repetition: least, natural; extra at start and end
+    clearance_m: float = 0.5  # free floor around the body
+    moves: bool = False  # changes the position on the floor
     hands: bool = False
-    posture: str = "feet"  # how it leaves the body: feet | seat | knees | floor
+    posture: str = "feet"  # what the body rests on at its end: feet | seat | knees | floor
 
 
 def _body(key: str, name: str, example: str, least_s: float, natural_s: float, **more) -> Activity:
@@ -129,9 +129,9 @@ CLEARANCE_M: dict[str, float] = {key: activity.clearance_m for key, activity in 
 
 
 def known() -> str:
-    """All names in a row, for messages.
+    """All names, separated by commas, for messages.
 
     >>> known().count(", ") > 50
     True
     """
-    return ", ".join(activity.name if activity.key != "raise" else "raising a hand" for activity in (*BODY, *HANDS))
+    return ", ".join(activity.name if activity.key != "raise" else "raising a hand" for activity in BY_KEY.values())

@@ -1,4 +1,4 @@
-"""One clause -> the steps it names: its verbs, and around them direction, hand, speed, count and seat."""
+"""From a clause to its steps: its verbs, and their direction, hand, speed, count and seat."""
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -97,7 +97,7 @@ FLOOR_VERBS = {
 
 @dataclass
 class ParsedClause:
-    """What one clause says."""
+    """Steps and modifiers of one clause."""
 
     link: str
     text: str
@@ -110,7 +110,7 @@ class ParsedClause:
 
     @property
     def adds_nothing(self) -> bool:
-        """It names no activity, only how: "and slowly", "and arm"."""
+        """Whether it names no activity, only modifiers: "and slowly", "and arm"."""
         return not self.steps and not self.unknown
 
     @property
@@ -118,7 +118,7 @@ class ParsedClause:
         return self.adds_nothing and replace(self.about, clause="") == Step()
 
     def absorb(self, more: "ParsedClause") -> None:
-        """Takes over what a clause without an activity says about the last step."""
+        """Applies the modifiers of a clause without an activity to the last step."""
         last, about = self.steps[-1], more.about
         if last.direction and about.direction and last.direction != about.direction:
             if last.moves and self._leads_back(last, about):
@@ -137,7 +137,7 @@ class ParsedClause:
         )
 
     def _leads_back(self, last: Step, about: Step) -> bool:
-        """'Walks forwards and backwards', 'steps aside and then back': the other direction is a way of its own."""
+        """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
         if last.lower == "sidestep":
             other = {"left": "right", "right": "left"}.get(last.direction, "")
             if about.direction not in ("back", "backwards", other) or not other:
@@ -154,7 +154,7 @@ class ParsedClause:
 
 
 def parse_clause(clause: Clause) -> ParsedClause:
-    """Reads verbs and modifiers; raises InputError for what must not be acted out as if it were something known."""
+    """Parses verbs and modifiers; raises InputError for what would be acted out as something else."""
     words = clause.words
     parsed = ParsedClause(clause.link, clause.text)
     _refuse(clause)
@@ -174,7 +174,7 @@ def parse_clause(clause: Clause) -> ParsedClause:
                 raise InputError(not_known(clause.text, words[at - 1].text))
     _note_unknown(words, clause, parsed, has_verb=True)
     parsed.form = _form(words, verbs[0])
-    # what stands before the first verb belongs to it
+    # Words before the first verb belong to it.
     starts = [0, *(_start_of(words, before, at) for before, at in pairwise(verbs))]
     ends = [*starts[1:], len(words)]
     for k, (at, end) in enumerate(zip(verbs, ends, strict=True)):
@@ -187,7 +187,7 @@ def parse_clause(clause: Clause) -> ParsedClause:
 
 
 def _start_of(words: list[Word], before: int, at: int) -> int:
-    """Where a later verb's own words begin: at its light verb ("takes a turn"), else at its adjectives."""
+    """Index where a later verb's own words begin: at its light verb ("takes a turn"), else at its adjectives."""
     if words[at].form == "past":  # "walks with the left hand raised"
         noun = [i for i in range(before + 1, at) if words[i].text == "with"]
         if noun:
@@ -223,6 +223,7 @@ _BEFORE_NOUNS = {
 
 
 def _refuse(clause: Clause) -> None:
+    """Raises InputError for negations, several people, animals, and movements that are not known."""
     texts = {word.text for word in clause.words}
     still = texts & {"moving", "movement", "motion"} and texts & {"without", "not", "no"}
     if texts & NEGATIONS and not still:
@@ -238,7 +239,7 @@ def _refuse(clause: Clause) -> None:
 
 
 def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
-    """Words that mean another movement only beside some verbs."""
+    """Whether a word that may mean an unknown movement means none next to the clause's verbs."""
     if word.text in LEGS and lemmas & LEG_VERBS:
         return True
     if word.text in ("over", "legs", "leg", "foot", "knees", "knee", "head", "shoulder", "shoulders"):
@@ -313,7 +314,7 @@ def _form(words: list[Word], at: int) -> str:
 
 
 def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, has_verb: bool) -> None:
-    """Unknown words after a verb are told of, unless they look like another activity, which is an error."""
+    """Reports unknown words of a clause with a verb; one that looks like another activity is an error."""
     unknown = [word.text for word in words if not _is_known(word)]
     if not has_verb:
         parsed.unknown = unknown + [word.text for word in words if word.is_verb]
@@ -321,7 +322,7 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
     if moved is not None and any(not _is_known(word) or word.text in _THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
-    odd = _odd_way(words)
+    odd = _unknown_manner(words)
     if odd:
         raise InputError(not_known(clause.text, odd))
     for text in unknown:
@@ -343,14 +344,14 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
         ):
             raise InputError(not_known(clause.text, text))
     if {word.text for word in words} & DISTANCES:
-        parsed.notes.append(f"the distance in {clause.text!r} is not kept: time and speed give it")
+        parsed.notes.append(f"the distance in {clause.text!r} is not kept: it follows from time and speed")
     if unknown:
         listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
-        parsed.notes.append(f"of the text, {listed} says nothing that can be acted out and was left aside")
+        parsed.notes.append(f"of the text, {listed} says nothing that can be acted out and was ignored")
 
 
-def _odd_way(words: list[Word]) -> str:
-    """An unknown word that says which way or what is done: 'in a pentagon', 'performs capoeira'."""
+def _unknown_manner(words: list[Word]) -> str:
+    """An unknown word for how or what is done: 'in a pentagon', 'performs capoeira'; "" if there is none."""
     for i, word in enumerate(words):
         if _is_known(word) or not word.text[:1].isalpha():
             continue

@@ -1,4 +1,4 @@
-"""A sentence as clauses, each with how it follows the one before."""
+"""Splits a sentence into clauses, each with its temporal relation to the one before."""
 
 import re
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ SUBJECTS = PRONOUNS | MANY | {"the", "a", "person", "man", "woman", "user", "his
 
 @dataclass
 class Clause:
-    """Words between two connectives; `link` says how it follows: first, then, and, comma, before, after, while."""
+    """Words between two connectives; `link` is the relation: first, then, and, comma, before, after, while."""
 
     link: str
     words: list[Word] = field(default_factory=list)
@@ -26,7 +26,7 @@ class Clause:
 
 
 def split_clauses(words: list[Word]) -> list[Clause]:
-    """Splits at connectives and puts clauses into the order of time ("Before B, A" and "B after A" turned round)."""
+    """Splits at connectives and puts clauses into temporal order ("Before B, A" and "B after A" are reordered)."""
     return _in_order(_split(words))
 
 
@@ -48,7 +48,7 @@ def _split(words: list[Word]) -> list[Clause]:
 
 
 def _link(words: list[Word], i: int) -> str:
-    """The connective that a word is in this place, or ""."""
+    """The connective that word `i` is in its context, or ""."""
     text = words[i].text
     following = words[i + 1].text if i + 1 < len(words) else ""
     if text in STOPS or text in THEN:
@@ -92,7 +92,7 @@ def _stronger(one: str, other: str) -> str:
 
 
 def _in_order(clauses: list[Clause]) -> list[Clause]:
-    """Time order: leading "after A, B" is A, B; leading "before B, A" is A, B; "B after A" is A, B."""
+    """Temporal order: leading "after A, B" is A, B; leading "before B, A" is A, B; "B after A" is A, B."""
     if len(clauses) > 1 and clauses[0].link.startswith("lead-"):
         kind = clauses[0].link.removeprefix("lead-")
         first, second, rest = clauses[0], clauses[1], clauses[2:]

@@ -1,11 +1,11 @@
-"""The words that a sentence may be made of, and what each says."""
+"""The lexicon: words that a sentence may contain, by their function."""
 
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.verbs import words_in
 
-# Moving somewhere: walking, if the clause says where to (or that it is for a walk).
+# These mean walking if the clause gives a destination.
 GOING = frozenset({"go", "move", "head", "come", "return"})
-# A word for a place to go to -> the kind of landmark that a scene may have.
+# A word for a place to go to -> Landmark.kind.
 TARGETS = {
     **{kind: kind for kind in ("door", "table", "window", "couch", "chair", "bed", "desk", "shelf", "counter", "wall",
                                "fridge", "tv", "wardrobe", "sink", "plant", "lamp", "stove", "cabinet")},
@@ -15,7 +15,7 @@ TARGETS = {
     "countertop": "counter", "television": "tv", "refrigerator": "fridge", "closet": "wardrobe", "oven": "stove",
     "cupboard": "cabinet", "windows": "window",
 }  # fmt: skip
-# Verbs that say nothing by themselves: "does squats", "starts walking", "keeps waving".
+# Light verbs: "does squats", "starts walking", "keeps waving".
 LIGHT = words_in(
     """
     do perform make take give start begin continue keep proceed execute practice practise have throw land decide
@@ -165,7 +165,7 @@ NOT_HUMAN = words_in(
     dog cat robot horse bird car animal monkey drone cow elephant fish pet puppy
     """
 )
-# Words that make it another movement than the one known, so that leaving them out would be wrong.
+# Words that make the movement another one, so that ignoring them would be wrong.
 OTHER_MOVEMENT = words_in(
     """
     rolling-over figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
@@ -184,7 +184,7 @@ OTHER_MOVEMENT = words_in(
     scared
     """
 )
-# Words that may stand anywhere and change nothing that can be acted out.
+# Words that may be ignored: they change nothing that can be acted out.
 FILLERS = words_in(
     """
     a an the this that these there his her their its my your own one's is are was were be been being am has have

@@ -1,4 +1,4 @@
-"""How something is done: the words of a clause beside its verbs, as fields of a Step."""
+"""Modifiers: the words of a clause other than its verbs, as fields of a Step."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ MOST_TIMES = 60
 
 
 def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
-    """Everything of a clause that says how, as a Step without a verb; assumptions go to `notes`."""
+    """The modifiers of a clause as a Step without a verb; assumptions are appended to `notes`."""
     about = Step(clause=clause_text)
     texts = {word.text for word in words}
     for i, word in enumerate(words):
@@ -40,7 +40,7 @@ def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
 def _left_or_right(
     about: Step, text: str, before: str, after: str, words: list[Word], i: int, notes: list[str]
 ) -> Step:
-    """Before an arm it names the arm; else it is a direction, the viewer's unless said to be the person's own."""
+    """Before an arm it names the arm; else it is a direction, the viewer's unless "his left" makes it the person's."""
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
     if about.direction == "circle":
@@ -57,7 +57,7 @@ def _left_or_right(
 
 
 def _arm_soon(words: list[Word], i: int) -> bool:
-    """'his left hand', 'the left or ... arm', 'arm on the left': an arm within two words after."""
+    """Whether an arm follows within two words: 'his left hand', 'the left or right arm'."""
     return any(word.text in ARMS for word in words[i + 1 : i + 3]) and not any(
         word.text in ("with", "and", "using") for word in words[i + 1 : i + 2]
     )
@@ -111,7 +111,7 @@ def _number(about: Step, text: str, words: list[Word], i: int) -> Step:
 
 
 def _token(about: Step, text: str, texts: set[str]) -> Step:
-    """What phrases.ACTIVITY_PHRASES folded into one word: angles, legs, where a push comes from, lying on what."""
+    """Tokens of phrases.ACTIVITY_PHRASES: angles, legs, the side a push comes from, back or belly."""
     if text in ("left_leg", "right_leg"):
         return replace(about, foot=text.removesuffix("_leg"))
     if text.startswith("arc") and text[3:].isdigit():
@@ -133,7 +133,7 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
 
 
 _PUSHED_FROM = {
-    "own_left": "left", "own_right": "right",  # of somebody who faces the viewer
+    "own_left": "left", "own_right": "right",  # of a person who faces the viewer
     "behind": "forwards", "back": "forwards", "rear": "forwards", "front": "backwards", "left": "right",
     "right": "left", "on_left_side": "right", "on_right_side": "left",
 }  # fmt: skip

@@ -1,4 +1,4 @@
-"""Other ways to say each activity, ours: what unknown clauses are compared with."""
+"""Paraphrases of each activity, with which unknown clauses are compared to make a suggestion."""
 
 PARAPHRASES: dict[str, tuple[str, ...]] = {
     "walk": ("goes for a walk", "strolls along", "wanders about", "moves across the room on foot"),

@@ -1,4 +1,4 @@
-"""Several words that mean one activity, angle or direction, folded into one token before words are looked up."""
+"""Phrases that mean one activity, angle or direction, replaced by one token before words are looked up."""
 
 _OWN = r"(?:his |her |its |their |the |both |own )*"
 _BE = r"(?:is|are|was|were|be|been|being|beeing|gets?|got|getting|has been|having been)"

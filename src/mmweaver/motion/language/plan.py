@@ -1,44 +1,40 @@
-"""What a sentence asks for: steps one after the other, each a movement of the whole body and perhaps of the arms."""
+"""The parsed sentence: steps one after the other, each a body activity and possibly a hand activity over it."""
 
 from dataclasses import dataclass
 
-from mmweaver.motion.language.activities import BODY, BY_KEY, HANDS
+from mmweaver.motion.language.activities import BY_KEY
 
-LOWER = tuple(activity.key for activity in BODY)
-UPPER = tuple(activity.key for activity in HANDS)
 ON_THE_SPOT = ("jog", "leap")  # moving, unless the direction is "spot"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Step:
-    """One movement. Directions are the viewer's (left in the photo), hands and bends the person's own."""
+    """One step. Directions are the viewer's (left in the photo), hands, feet and bends the person's own."""
 
-    lower: str = "stand"  # one of LOWER
-    upper: str = ""  # one of UPPER, laid over the lower one
-    hand: str = ""  # left | right | both | "" (as the seed has it)
-    foot: str = ""  # left | right | "": the leg that acts
+    lower: str = "stand"  # key of a body activity
+    upper: str = ""  # key of a hand activity, overlaid
+    hand: str = ""  # left | right | both | "" (chosen by the seed)
+    foot: str = ""  # left | right | "": the leg that moves
     direction: str = (
         ""  # left | right | towards | away | forwards | backwards | back | pacing | circle | seat | spot | around
     )
-    arc_deg: float = 0.0  # how far the way bends, to the person's left where positive
-    turn_deg: float = (
-        0.0  # of a turn or a turning jump, to the person's left where positive; 0: as the direction has it
-    )
+    arc_deg: float = 0.0  # bend of the path, to the person's left where positive
+    turn_deg: float = 0.0  # of a turn, to the person's left where positive; 0: by the direction
     style: str = ""  # back | front (lying and falling) | bent (walking) | knee (of one knee)
     speed: int = 0  # -1 slowly, 0, 1 quickly
-    count: int = 0  # how often; 0: as time allows
-    seat: str = ""  # the word used for it: sofa, chair, ...
+    count: int = 0  # repetitions; 0: as many as the time allows
+    seat: str = ""  # the word of the sentence: sofa, chair, ...
     target: str = ""  # the Landmark.kind to go to: door, table, ...
     facing: str = ""  # left | right | towards | away | ""
-    seconds: float = 0.0  # how long, where the sentence says so
-    on_feet: bool = False  # the sentence says that the person stands
-    clause: str = ""  # the words that said so
+    seconds: float = 0.0  # the duration that the sentence gives
+    on_feet: bool = False  # the sentence says "stands"
+    clause: str = ""  # the words of the sentence
     start_s: float = 0.0
     end_s: float = 0.0
 
     @property
     def name(self) -> str:
-        """What a person would call it.
+        """What is shown to the user.
 
         >>> Step(lower="sit", upper="drink").name
         'sitting and drinking'
@@ -53,18 +49,18 @@ class Step:
 
     @property
     def moves(self) -> bool:
-        """Whether it goes from one place to another."""
+        """Whether the position on the floor changes."""
         return BY_KEY[self.lower].moves and self.direction != "spot"
 
     @property
     def posture(self) -> str:
-        """How it leaves the body: feet, seat, knees or floor."""
+        """What the body rests on at the end: feet, seat, knees or floor."""
         return BY_KEY[self.lower].posture
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionPlan:
-    """The steps of a sentence in the order of time; `notes` are sentences about what was assumed in reading it."""
+    """The steps of a sentence in temporal order; `notes` are sentences on what the parser assumed."""
 
     text: str
     steps: tuple[Step, ...]

@@ -1,4 +1,4 @@
-"""Postures last: who sat down, knelt or lies stays so until a step gets them up; what is needed for it is put in."""
+"""Keeps postures: sitting, kneeling and lying last until the person gets up; missing transitions are inserted."""
 
 from dataclasses import replace
 
@@ -10,18 +10,18 @@ ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down"}
 
 
 def with_postures(steps: list[Step]) -> list[Step]:
-    """The steps with sitting down, kneeling, lying down and getting up put in where the next step needs them."""
+    """The steps with transitions (sitting down, kneeling, lying down, getting up) inserted where they are needed."""
     result: list[Step] = []
     posture = ""  # not known yet
     for step in steps:
-        for one in _led_up_to(step, posture, result):
+        for one in _with_transitions(step, posture, result):
             result.append(one)
             posture = one.posture
     return merged(_styled(result))
 
 
-def _led_up_to(step: Step, posture: str, before: list[Step]) -> list[Step]:
-    """The step as it is from this posture, after what must come first."""
+def _with_transitions(step: Step, posture: str, before: list[Step]) -> list[Step]:
+    """The step as it is carried out from this posture, after the transitions that it needs."""
     if step.lower in ("stand_up", "kneel_up", "get_up"):
         return _rising(step, posture, before)
     if posture in STILL and step.lower == "stand" and step.upper and not step.on_feet:
@@ -37,12 +37,12 @@ def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
     if not before:
         return [step]
     if before[-1].lower in ("squat", "pick_up", "put_down", "bow", "bend", "lunge"):
-        return []  # they end upright
+        return []  # these end upright
     return [replace(step, lower="stand")]
 
 
 def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
-    """Sitting, kneeling, lying: stays, or goes down first, from the feet."""
+    """Sitting, kneeling, lying: stays so, or goes down first."""
     if posture == step.posture:
         if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
             step = replace(step, lower=STILL[posture])
@@ -67,7 +67,7 @@ def _up_from(posture: str, step: Step) -> list[Step]:
 
 
 def _styled(steps: list[Step]) -> list[Step]:
-    """On the back or on the belly: as whoever went down there; on the one knee or foot that was said."""
+    """Lying on back or belly as the person went down; kneeling on the knee that was named."""
     style, foot = "", ""
     for k, step in enumerate(steps):
         if step.lower in ("lie_down", "fall") or (step.lower in ("lie", "get_up") and not style):
@@ -84,7 +84,7 @@ def _styled(steps: list[Step]) -> list[Step]:
 
 
 def carried_over(steps: list[Step]) -> list[Step]:
-    """'Walks back' is the way back where there was a way, else backwards; who raised a hand waves with that one."""
+    """'Walks back' returns if the person has walked before, else goes backwards; a raised hand is the one to wave."""
     gone = False
     for k, step in enumerate(steps):
         if step.direction == "back" and not gone:
@@ -97,7 +97,7 @@ def carried_over(steps: list[Step]) -> list[Step]:
 
 
 def merged(steps: list[Step]) -> list[Step]:
-    """Two equal still postures in a row are one."""
+    """Merges two equal static postures in a row."""
     result: list[Step] = []
     for step in steps:
         plain = (

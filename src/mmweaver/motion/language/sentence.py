@@ -1,4 +1,4 @@
-"""A sentence -> MotionPlan: every clause becomes a step or an overlay, or the error says which clause could not."""
+"""From a sentence to a MotionPlan: every clause becomes a step or an overlay, or an error names the clause."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -21,13 +21,13 @@ LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "
 
 
 def parse(text: str) -> MotionPlan:
-    """Reads what a person does, in the order of time, without times yet.
+    """Parses what a person does into steps in temporal order, not scheduled yet.
 
-    Left and right of a direction are the viewer's (as in the photo), of a hand the person's own, of a turn the
-    person's own. Raises InputError for an empty or overlong text, a negation, several people, or a clause that names
-    no activity that is known: nothing is left out silently. See docs/decisions on language.
+    Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
+    InputError for an empty or overlong text, a negation, several people, or a clause that names no known activity:
+    nothing is left out silently. See docs/decisions/0010.
     """
-    asked = text
+    given_text = text
     if not text.strip():
         raise InputError(f"the text is empty; say what the person does, for example {EXAMPLE!r}")
     if len(text) > LONGEST_TEXT:
@@ -56,11 +56,11 @@ def parse(text: str) -> MotionPlan:
     steps = carried_over(with_postures(sequence))
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
-    return MotionPlan(text=asked, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
+    return MotionPlan(text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
 
 
 def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> bool:
-    """'Lifts a foot and puts it down again', 'is pushed and stumbles': one movement."""
+    """Whether a clause only ends the movement before it: 'lifts a foot and puts it down', 'is pushed and stumbles'."""
     if not parsed_clauses:
         return False
     before, now = parsed_clauses[-1].steps[-1], parsed.steps[0]
@@ -76,7 +76,7 @@ def _check_turning_jumps(text: str, words: list[Word]) -> None:
 
 
 def _needs_no_step(before: Step, parsed: ParsedClause) -> bool:
-    """A raised hand comes down by itself; who was pushed catches the fall; a lowered leg is part of raising it."""
+    """Whether the step before implies a clause: lowering a raised hand or leg, recovering from a push."""
     words = set(parsed.unknown) | set(parsed.text.split())
     if before.upper in ("raise", "arms_out") or before.lower == "raise_leg":
         return bool(LOWERING & words)
@@ -87,7 +87,7 @@ EXAMPLE = "a person walks towards the radar, then waves"
 
 
 def _in_sequence(parsed_clauses: list[ParsedClause]) -> list[Step]:
-    """Overlays joined, everything else one after the other."""
+    """Joins clauses that happen at the same time, and puts all others one after the other."""
     steps: list[Step] = []
     for i, parsed in enumerate(parsed_clauses):
         first, rest = parsed.steps[0], parsed.steps[1:]
@@ -103,8 +103,8 @@ def _in_sequence(parsed_clauses: list[ParsedClause]) -> list[Step]:
     return steps
 
 
-def _same_way(one: Step, other: Step) -> list[Step]:
-    """'Walks to the left, taking five steps' is one walk."""
+def _merged_walk(one: Step, other: Step) -> list[Step]:
+    """One walk of two descriptions: 'walks to the left, taking five steps'."""
     if one.direction and other.direction and one.direction != other.direction:
         raise InputError(
             f"{one.clause!r} and {other.clause!r} name two directions; say which movement goes where, with 'then'"
@@ -119,9 +119,9 @@ def _same_way(one: Step, other: Step) -> list[Step]:
 
 
 def _joined(one: Step, other: Step) -> list[Step]:
-    """Two at once as one step; where a push or a turn meets a walk, as what that looks like."""
+    """Two simultaneous steps as one; a push or a turn during a walk as what that looks like."""
     if one.lower == other.lower and one.moves and not (one.upper and other.upper):
-        return _same_way(one, other)
+        return _merged_walk(one, other)
     pair = {one.lower, other.lower}
     walk, more = (one, other) if one.moves and one.lower != "stumble" else (other, one)
     if "stumble" in pair and walk.moves and walk.lower != "stumble" and not (one.upper or other.upper):
@@ -147,7 +147,7 @@ def _goes_together(before: ParsedClause, parsed: ParsedClause) -> bool:
     compatible = _can_overlay(one, other)
     if parsed.link == "and":
         if one.upper == "raise" and other.upper and {one.hand, other.hand} == {"left", "right"}:
-            return True  # one hand stays up: overlay says that it cannot
+            return True  # one hand stays up; `overlay` refuses it
         if one.lower in ("sit", "stand") and not one.upper and other.upper and other.lower == "stand":
             return one.lower == "sit" or before.form == parsed.form
         return compatible and before.form == parsed.form == "ing"
@@ -161,7 +161,7 @@ def _can_overlay(one: Step, other: Step) -> bool:
 
 
 def overlay(one: Step, other: Step) -> Step:
-    """Both at once: the legs of one, the arms of the other. Raises InputError where both need the same limbs."""
+    """Both steps at once: legs of one, arms of the other. Raises InputError where both need the same limbs."""
     if {one.lower, other.lower} <= {"stand"} and not (one.upper and other.upper):
         pass
     elif not _can_overlay(one, other):

@@ -1,4 +1,4 @@
-"""Slips of the keyboard: a long unknown word that is one letter away from a single known one is read as that."""
+"""Spelling correction: a long unknown word one edit away from exactly one known word is read as that word."""
 
 import re
 from collections.abc import Iterable
@@ -26,7 +26,7 @@ from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
 
 SHORTEST = 6  # letters; shorter words have too many neighbours
-# Words of the language that are one letter away from ours and mean something else.
+# Correct English words one edit away from words of the lexicon.
 OTHER_WORDS = words_in(
     """
     singing clasps shaved showing shows showed shaving passes passed bowls shakes wakes slides rides stars starts stands
@@ -36,7 +36,7 @@ OTHER_WORDS = words_in(
     painting printing bending sending lending mending
     """
 )
-# Other verbs of the language: their forms are not slips of ours.
+# Other verbs: their inflected forms are no misspellings of words of the lexicon.
 OTHER_VERBS = words_in(
     """
     talk cook wash watch wish work warn warm weep whip shout shine shave shoot shop show sing sink slip slap sleep
@@ -57,7 +57,7 @@ _WORD = re.compile(r"[a-z]+")
 
 
 def correct_spelling(text: str) -> tuple[str, list[str]]:
-    """The text with slips mended, and a note for each."""
+    """The text with misspellings corrected, and a note for each."""
     notes: list[str] = []
 
     def replace_word(match: re.Match[str]) -> str:
@@ -73,7 +73,7 @@ def correct_spelling(text: str) -> tuple[str, list[str]]:
 
 @lru_cache(maxsize=4096)
 def corrected_word(word: str) -> str:
-    """The known word that an unknown one is a slip of, or "".
+    """The known word that an unknown one is a misspelling of, or "".
 
     >>> mended("forwads"), mended("walks"), mended("sings")
     ('forwards', '', '')
@@ -81,12 +81,12 @@ def corrected_word(word: str) -> str:
     known = _known()
     if len(word) < SHORTEST or word in known or word in OTHER_WORDS or word in _other_forms():
         return ""
-    near = [other for other in known if other[0] == word[0] and len(other) >= 5 and _one_slip(word, other)]
+    near = [other for other in known if other[0] == word[0] and len(other) >= 5 and _one_edit_apart(word, other)]
     return near[0] if len(near) == 1 else ""
 
 
-def _one_slip(one: str, other: str) -> bool:
-    """One letter more, less, other, or two neighbours swapped."""
+def _one_edit_apart(one: str, other: str) -> bool:
+    """Whether one letter is inserted, deleted or replaced, or two neighbours are swapped."""
     if abs(len(one) - len(other)) > 1 or one == other:
         return False
     start = 0
@@ -98,7 +98,7 @@ def _one_slip(one: str, other: str) -> bool:
 
 @lru_cache(maxsize=1)
 def _known() -> frozenset[str]:
-    """Every word that the reading knows in some form."""
+    """Every word that the parser knows in some form."""
     verbs = set(ACTIVITY_OF_LEMMA) | set(GOING) | set(LIGHT)
     known = set(IRREGULAR) | set(RECOVERING)
     known |= _forms(verbs)
@@ -125,7 +125,7 @@ def _known() -> frozenset[str]:
 
 
 def _forms(verbs: Iterable[str]) -> frozenset[str]:
-    """Verbs with their usual endings."""
+    """Verbs with their regular inflections."""
     forms: set[str] = set()
     for verb in verbs:
         if verb.isalpha():
@@ -139,3 +139,9 @@ def _forms(verbs: Iterable[str]) -> frozenset[str]:
 @lru_cache(maxsize=1)
 def _other_forms() -> frozenset[str]:
     return _forms(OTHER_VERBS)
+
+
+def forget_known_words() -> None:
+    """For when a verb was added."""
+    _known.cache_clear()
+    corrected_word.cache_clear()

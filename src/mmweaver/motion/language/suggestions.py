@@ -1,14 +1,14 @@
-"""What to say about a clause that is not understood: the nearest thing that is, and where to see them all."""
+"""Error message for a clause that is not understood: the most similar known activity, and where all are listed."""
 
 from functools import lru_cache
 
 import numpy as np
 
-from mmweaver.motion.language.activities import BODY, HANDS
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.lexicon import FILLERS
 from mmweaver.motion.language.paraphrases import PARAPHRASES
 
-NEAR = 0.3  # cosine of character n-grams from which on a guess is worth a person's time
+NEAR = 0.3  # least cosine similarity of character n-grams for a suggestion
 
 
 def not_known(clause_text: str, word: str = "") -> str:
@@ -16,7 +16,8 @@ def not_known(clause_text: str, word: str = "") -> str:
     which = f" ({word.replace('_', ' ')!r})" if word else ""
     found = nearest(clause_text)
     guess = f"did you mean {found[0][1]!r}? " if found and found[0][0] > NEAR else ""
-    names = ", ".join(activity.name for activity in BODY[:2]) + f" and {len(BODY) + len(HANDS) - 2} more"
+    first = [activity.name for activity in list(BY_KEY.values())[:2]]
+    names = ", ".join(first) + f" and {len(BY_KEY) - 2} more"
     return (
         f"the clause {clause_text!r} names no activity that is known{which}; {guess}known are {names}, listed by"
         " 'mmweaver motions'"
@@ -24,7 +25,7 @@ def not_known(clause_text: str, word: str = "") -> str:
 
 
 def nearest(clause_text: str) -> list[tuple[float, str, str]]:
-    """(similarity, example sentence, activity) of known activities, nearest first, by their words' pieces."""
+    """(similarity, example sentence, activity) of the five most similar activities, best first."""
     keys, names, matrix, weight = _table()
     vector = _vector(clause_text, weight)
     if not vector.any():
@@ -35,7 +36,7 @@ def nearest(clause_text: str) -> list[tuple[float, str, str]]:
 
 
 def _grams(text: str) -> list[str]:
-    """Pieces of 3 to 5 letters of every word, its ends marked."""
+    """Character n-grams (3 to 5) of every word, its ends marked."""
     found = []
     for word in text.lower().replace("_", " ").split():
         if word in FILLERS:
@@ -47,8 +48,8 @@ def _grams(text: str) -> list[str]:
 
 @lru_cache(maxsize=1)
 def _table() -> tuple[list[str], list[str], np.ndarray, dict[str, tuple[int, float]]]:
-    """Activities' keys, examples, TF-IDF rows of their paraphrases, and column and weight of each piece."""
-    examples = {activity.key: activity.example for activity in (*BODY, *HANDS)}
+    """Keys, examples, TF-IDF matrix (paraphrase, n-gram), and (column, weight) of each n-gram."""
+    examples = {activity.key: activity.example for activity in BY_KEY.values()}
     texts, keys = [], []
     for key, example in examples.items():
         for text in (example, *PARAPHRASES.get(key, ())):
@@ -65,9 +66,15 @@ def _table() -> tuple[list[str], list[str], np.ndarray, dict[str, tuple[int, flo
 
 
 def _vector(text: str, weight: dict[str, tuple[int, float]]) -> np.ndarray:
+    """TF-IDF vector of a text, (n-gram,)."""
     vector = np.zeros(len(weight))
     for gram in _grams(text):
         if gram in weight:
             column, value = weight[gram]
             vector[column] += value
     return vector
+
+
+def forget_suggestions() -> None:
+    """For when an activity was added."""
+    _table.cache_clear()

@@ -1,4 +1,4 @@
-"""How long each step of a plan lasts: natural durations, stretched or squeezed into the time there is."""
+"""Scheduling of a plan: natural durations, stretched or compressed into the given time."""
 
 import math
 from dataclasses import replace
@@ -55,7 +55,7 @@ def natural_s(plan: MotionPlan) -> float:
 
 
 def _limits(step: Step) -> tuple[float, float]:
-    """Least and natural seconds of a step."""
+    """Least and natural duration of a step, in seconds."""
     if step.seconds:
         return step.seconds, step.seconds
     if step.lower == "turn" and step.turn_deg:
@@ -63,18 +63,20 @@ def _limits(step: Step) -> tuple[float, float]:
         return lasts, lasts + 0.2
     doing = BY_KEY[step.upper or step.lower]
     if step.count and doing.counted_s:
-        least, natural, besides = doing.counted_s
+        least, natural, edges = doing.counted_s
         slower = 1.25 if step.speed < 0 else 1.0
-        return step.count * least + besides, (step.count * natural + besides) * slower
+        return step.count * least + edges, (step.count * natural + edges) * slower
     under = BY_KEY[step.lower]
     return max(doing.least_s, under.least_s * under.once), max(doing.natural_s, under.natural_s * under.once)
 
 
 def _is_done_once(step: Step) -> bool:
+    """Whether a step takes its natural time only."""
     return BY_KEY[step.lower].once or (step.lower == "stand" and bool(step.upper) and BY_KEY[step.upper].once)
 
 
 def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:
+    """Seconds of each step: between least and natural if time is short, else spare time goes to elastic steps."""
     limits: list[tuple[float, float]] = [_limits(step) for step in steps]
     least, natural = sum(limit[0] for limit in limits), sum(limit[1] for limit in limits)
     if duration_s <= natural:
@@ -82,7 +84,7 @@ def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:
         return [low + share * (high - low) for low, high in limits]
     elastic = [not (_is_done_once(step) or step.count or step.seconds) for step in steps]
     if not any(elastic):
-        elastic = [k == len(steps) - 1 for k in range(len(steps))]  # done, then stays as it is
+        elastic = [k == len(steps) - 1 for k in range(len(steps))]  # the last pose is held
     weight = sum(limit[1] for limit, free in zip(limits, elastic, strict=True) if free)
     extra = duration_s - natural
     return [high + (extra * high / weight if free else 0.0) for (_, high), free in zip(limits, elastic, strict=True)]

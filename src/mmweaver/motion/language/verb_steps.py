@@ -1,4 +1,4 @@
-"""One verb with the modifiers of its clause -> a Step, or the reason why it cannot be shown."""
+"""From a verb and the modifiers of its clause to a Step, or an error that says why it cannot be shown."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ AIMED = ("point", "look_around")
 
 
 def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
-    """The step of the verb at `at`. Raises InputError for what would be acted out as something else."""
+    """The step of the verb at index `at`. Raises InputError for what would be acted out as something else."""
     word = words[at]
     lower, upper = ("walk", "") if word.is_going else ACTIVITY_OF_LEMMA[word.lemma]
     texts = {other.text for other in words}
@@ -37,7 +37,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
 
 
 def _arms_step(step: Step, texts: set[str]) -> Step:
-    """Which hand acts; a leg that is raised is another movement."""
+    """Which hand moves; raising a leg is another activity."""
     if step.upper == "raise" and not texts & ARMS:
         if texts & LEGS:
             return replace(step, lower="raise_leg", upper="", hand="")
@@ -87,7 +87,7 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _bent(step: Step) -> Step:
-    """Angles of a walk are angles of its way; left and right are then the person's own, as of a turn."""
+    """Angles of a walk are bends of its path; left and right are then the person's own, as of a turn."""
     angle = step.arc_deg or step.turn_deg
     if not angle or step.direction == "circle":
         return replace(step, turn_deg=0.0)
@@ -98,14 +98,14 @@ def _bent(step: Step) -> Step:
 
 
 def _is_step_aside(step: Step, words: list[Word], at: int) -> bool:
-    """'Takes one step to the left' is done sideways; 'walks to the left' is not."""
+    """Whether it is done sideways: 'takes one step to the left', but not 'walks to the left'."""
     noun = words[at].lemma == "step"
     few = step.count in (0, 1, 2) if words[at].text in ("step", "steps") else step.count in (1, 2)
     return noun and few and step.direction in SIDES and step.lower == "walk" and not step.arc_deg
 
 
 def _target(words: list[Word]) -> str:
-    """The thing that the way leads to: 'to the door', 'towards the open window', 'reaches the table'."""
+    """The landmark that a walk leads to: 'to the door', 'towards the open window', 'reaches the table'."""
     for i, word in enumerate(words):
         if word.text in ("to", "towards", "toward", "reaches", "reach", "at", "for", "approaches", "approaching"):
             for after in words[i + 1 : i + 5]:
@@ -161,7 +161,7 @@ def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _floor_step(step: Step, words: list[Word], at: int) -> Step:
-    """Lying and falling: on the back unless forwards or the belly is said; on the floor, not on furniture."""
+    """Lying and falling: on the back unless the clause says forwards or belly; on the floor, not on furniture."""
     if step.seat:
         raise InputError(f"{step.clause!r}: lying and falling are known on the floor only; leave out the {step.seat}")
     if step.lower == "fall" and step.direction in SIDES:
@@ -187,12 +187,12 @@ def _leg_step(step: Step, words: list[Word], at: int) -> Step:
 
 def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
     if step.direction == "back":
-        raise InputError(f"{step.clause!r}: say to which side, left or right, the way back goes")
+        raise InputError(f"{step.clause!r}: say to which side, left or right, the person steps back")
     return replace(step, hand="", arc_deg=0.0, turn_deg=0.0)
 
 
 def _facing(words: list[Word]) -> str:
-    """'facing the radar', 'facing left' beside another verb."""
+    """What the person faces during another activity: 'waves facing the radar', 'facing left'."""
     for i, word in enumerate(words):
         if word.text in ("facing", "faces"):
             texts = {other.text for other in words[i + 1 : i + 4]}

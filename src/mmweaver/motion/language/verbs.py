@@ -1,4 +1,4 @@
-"""Verbs (and nouns made of them) and the activity that each names; data, read by lexicon and words."""
+"""Verbs (and nouns derived from them) and the activity that each names."""
 
 
 def words_in(text: str) -> frozenset[str]:
@@ -10,7 +10,7 @@ def _all(words: str, lower: str, upper: str = "") -> dict[str, tuple[str, str]]:
     return dict.fromkeys(words.split(), (lower, upper))
 
 
-# lemma -> (lower, upper) of a Step. Empty lower: arms or head only, over whatever the body does.
+# lemma -> (lower, upper) of a Step. Empty lower: arms or head only, overlaid on any body activity.
 ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     **_all("walk stroll pace stride amble wander saunter step trudge tread strut", "walk"),
     **_all("advance approach retreat", "walk"),
@@ -81,7 +81,7 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     **_all("play_golf", "", "golf"),
 }  # fmt: skip
 
-# What follows a push and only says that it was caught.
+# Words that follow a push and only say that the person recovers.
 RECOVERING = words_in(
     """
     recover recovers recovering compensate compensates compensating counterbalance counterbalances regain regains

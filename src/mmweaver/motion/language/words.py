@@ -1,4 +1,4 @@
-"""A sentence as words: phrases folded into one word, inflections taken back to the lemma."""
+"""Tokenization: phrases become one token, inflected verbs get their lemma."""
 
 import re
 from dataclasses import dataclass
@@ -7,13 +7,12 @@ from functools import lru_cache
 from mmweaver.motion.language.lexicon import GOING, IRREGULAR, LIGHT, PHRASES
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 
-_LEMMAS = frozenset(ACTIVITY_OF_LEMMA) | GOING | LIGHT
 _TOKEN = re.compile(r"[a-z_']+[0-9_]*(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
 
 
 @dataclass(frozen=True)
 class Word:
-    """One word: as written, its lemma where it is a verb that is known, else itself."""
+    """One token: the text, the lemma of a known verb (else the text again), and the verb form."""
 
     text: str
     lemma: str
@@ -33,7 +32,7 @@ class Word:
 
 
 def words_of(text: str) -> list[Word]:
-    """The words and punctuation marks of a sentence in lower case, known phrases folded."""
+    """Words and punctuation marks of a sentence in lower case, known phrases as one token."""
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
     for pattern, replacement in PHRASES:
         folded = " ".join(re.sub(pattern, replacement, folded).split())
@@ -42,7 +41,7 @@ def words_of(text: str) -> list[Word]:
 
 @lru_cache(maxsize=4096)
 def word_of(token: str) -> Word:
-    """Looks a token up.
+    """Lemma and form of a token.
 
     >>> word_of("clapped")
     Word(text='clapped', lemma='clap', form='past')
@@ -51,7 +50,7 @@ def word_of(token: str) -> Word:
         lemma = IRREGULAR[token]
         return Word(token, lemma, "s" if token in ("does", "has", "goes") else "past")
     for lemma, form in _candidates(token):
-        if lemma in _LEMMAS:
+        if lemma in ACTIVITY_OF_LEMMA or lemma in GOING or lemma in LIGHT:
             return Word(token, lemma, form)
     return Word(token, token, "")
 

@@ -1,4 +1,4 @@
-"""The published checkpoint by its name on the Hugging Face Hub."""
+"""A checkpoint by the name of its repository on the Hugging Face Hub."""
 
 import re
 from pathlib import Path
@@ -8,7 +8,7 @@ from mmweaver.core.hub_log import hub_log_off
 from mmweaver.motion.motiongpt.language_model import EXTRA
 
 PUBLISHED = "OpenMotionLab/MotionGPT-base"
-CHECKPOINT = "motiongpt_s3_h3d.tar"
+CHECKPOINT, SMALL = "motiongpt_s3_h3d.tar", "motiongpt_small.safetensors"
 
 
 def looks_like_hub(name: str) -> bool:
@@ -22,16 +22,24 @@ def looks_like_hub(name: str) -> bool:
 
 
 def published_checkpoint(name: str) -> Path:
-    """The checkpoint of a repository on the Hub, downloaded once and kept. Raises InputError where it cannot be had."""
+    """The published or the small checkpoint of a repository on the Hub, downloaded once and kept in its cache.
+
+    Raises InputError where it cannot be had.
+    """
     try:
         from huggingface_hub import hf_hub_download
+        from huggingface_hub.errors import EntryNotFoundError
     except ImportError:
         raise InputError(EXTRA) from None
     try:
         with hub_log_off():
-            return Path(hf_hub_download(repo_id=name, filename=CHECKPOINT))
+            try:
+                return Path(hf_hub_download(repo_id=name, filename=CHECKPOINT))
+            except EntryNotFoundError:
+                return Path(hf_hub_download(repo_id=name, filename=SMALL))
     except Exception as error:
         why = " ".join(str(error).split())[:80]
         raise InputError(
-            f"{CHECKPOINT} of {name} cannot be fetched from the Hub ({why}); download it yourself and give its path"
+            f"{CHECKPOINT} or {SMALL} of {name} cannot be fetched from the Hub ({why}); download it yourself and give"
+            " its path"
         ) from None

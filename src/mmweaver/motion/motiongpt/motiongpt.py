@@ -27,7 +27,7 @@ from mmweaver.motion.motiongpt.checkpoint import (
     t5_sizes,
     tokenizer_config,
 )
-from mmweaver.motion.motiongpt.hub import looks_like_hub, published_checkpoint
+from mmweaver.motion.motiongpt.hub import SMALL, looks_like_hub, published_checkpoint
 from mmweaver.motion.motiongpt.language_model import LONGEST_TEXT_TOKENS, add_motion_tokens, build_t5, sample_codes
 from mmweaver.motion.motiongpt.text_tokenizer import WORD_FILES, load_words, unknown_words, wrapped
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
@@ -36,7 +36,8 @@ if TYPE_CHECKING:
     from transformers import PreTrainedTokenizerBase, T5ForConditionalGeneration
 
 Array = np.ndarray
-SMALL_NAME, SMALL_FILE = "small", Path(__file__).with_name("motiongpt_small.safetensors")
+SMALL_NAME = "small"
+SMALL_FILE = Path(__file__).resolve().parents[4] / "weights" / SMALL  # of a clone; the wheel does not hold it
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
 FEWEST_FRAMES, MOST_FRAMES = 40, 196  # what MotionGPT was trained on
 RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's is some 25 times off
@@ -63,7 +64,7 @@ class MotionGPT:
         std: str | Path | None = None,
         words: str | Path | None = None,
     ) -> "MotionGPT":
-        """From a checkpoint file, a folder that holds one, a name on the Hub (owner/name), or "small", our own.
+        """From a checkpoint file, a folder that holds one, a name on the Hub (owner/name), or "small", that of a clone.
 
         The published checkpoint needs MotionGPT's own `mean.npy` and `std.npy` (its assets/meta), not HumanML3D's, and
         the words of flan-t5-base; all are looked for beside it. A file of this project (.safetensors) holds everything.
@@ -163,9 +164,19 @@ def check_std(std: Float[Array, " feature"], place: Path) -> None:
         )
 
 
+def small_file() -> Path:
+    """The small model of a clone of the repository. Raises InputError where mmweaver was installed without one."""
+    if not SMALL_FILE.is_file():
+        raise InputError(
+            f"the small motion model is in the repository, not in the installed package; give the path of {SMALL} from"
+            " the folder weights/ of a clone, or a name on the Hub (owner/name) that holds it"
+        )
+    return SMALL_FILE
+
+
 def _place_of(path: str | Path) -> Path:
     if str(path) == SMALL_NAME:
-        return SMALL_FILE
+        return small_file()
     return published_checkpoint(str(path)) if looks_like_hub(str(path)) else _checkpoint_in(Path(path))
 
 

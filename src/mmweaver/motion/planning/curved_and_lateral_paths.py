@@ -1,4 +1,4 @@
-"""Ways that are no straight walk ahead: bends, sidesteps, stumbles, leaps, turns by an angle, lying on the floor."""
+"""Paths other than walking straight ahead: bends, sidesteps, stumbles, leaps, turns by an angle; room to lie down."""
 
 import numpy as np
 from jaxtyping import Float
@@ -19,8 +19,9 @@ from mmweaver.motion.planning.trajectory import (
 
 Array = np.ndarray
 SPECIAL = ("sidestep", "stumble", "leap")
-LYING_ROOM_M = 0.22  # free on either side of who lies
-STEP_ASIDE_M = 0.3
+LYING_ROOM_M = 0.22  # clearance on either side of a lying body
+SIDESTEP_M = 0.3  # length of one sidestep
+_BEND_RADII_M = (1.3, 1.0, 0.8, 0.65, 0.5, 0.4)
 
 
 def is_curved_or_lateral(step: Step) -> bool:
@@ -41,7 +42,7 @@ def lay_curved_or_lateral(
 
 
 def _relative(trajectory: Trajectory, step: Step, direction_rad: float | None) -> float | None:
-    """Forwards and backwards are seen from where the person faces, also at the very start."""
+    """The direction, where forwards and backwards are relative to the person's heading even at the very start."""
     if step.direction == "forwards":
         return trajectory.heading_rad
     if step.direction in ("backwards", "back"):
@@ -50,7 +51,7 @@ def _relative(trajectory: Trajectory, step: Step, direction_rad: float | None) -
 
 
 def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
-    """A bend of the angle asked for, as wide as time and room allow."""
+    """A bend through the requested angle, as wide as time and room allow."""
     direction = direction_rad
     if direction is None or step.direction in ("left", "right"):
         direction = float(trajectory.rng.uniform(0, 2 * np.pi)) if first else trajectory.heading_rad
@@ -61,11 +62,11 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
     either = float(trajectory.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
     bend = either * np.radians(step.arc_deg) * (-1.0 if backwards else 1.0)
     speed, slowest = preferred_speed_mps(step, trajectory.rng), SLOWEST_MPS.get(step.lower, 0.5)
-    for radius in (speed * lasts / abs(bend), 1.3, 1.0, 0.8, 0.65, 0.5, 0.4):
+    for radius in (speed * lasts / abs(bend), *_BEND_RADII_M):
         length = min(radius * abs(bend), speed * lasts)
         if length < slowest * min(lasts, 1.0):
             continue
-        stops = length < slowest * lasts  # a small bend is done before its time is over
+        stops = length < slowest * lasts  # a short bend ends before its time is over
         span = length / (0.85 * speed) + 0.5 * (ramps[0] + RAMP_S) if stops else step.end_s - begin
         span = min(span, step.end_s - begin)
         move = Move(
@@ -82,11 +83,11 @@ def _walk_bend(trajectory: Trajectory, step: Step, direction_rad: float | None, 
 
 
 def _walk_sideways(trajectory: Trajectory, step: Step, direction_rad: float | None, *, first: bool, last: bool) -> None:
-    """Facing as before, to the side that is said or any."""
+    """Sideways with the heading unchanged, to the given side or either."""
     direction = direction_rad
     if direction is None or step.direction in ("forwards", "backwards", "back", "towards", "away"):
         direction = trajectory.heading_rad + float(trajectory.rng.choice([-0.5, 0.5])) * np.pi
-    else:  # square to where the person faces, on the side that is said
+    else:  # perpendicular to the heading, on the given side
         left = trajectory.heading_rad + 0.5 * np.pi
         direction = left if np.cos(direction - left) > 0 else left - np.pi
     begin, span = step.start_s, step.end_s - step.start_s
@@ -95,7 +96,7 @@ def _walk_sideways(trajectory: Trajectory, step: Step, direction_rad: float | No
     if steps:
         span = min(span, 0.75 * steps + 0.3)
     ramps = ramps_of(span, first=first and not steps, last=last and not steps)
-    wanted = steps * STEP_ASIDE_M if steps else speed * (span - sum(ramps) / 2)
+    wanted = steps * SIDESTEP_M if steps else speed * (span - sum(ramps) / 2)
     length = trajectory.free_length_m(direction, wanted)
     if length < min(0.25, 0.6 * wanted):
         raise NoTrajectory(f"only {length:.1f} m")
@@ -104,7 +105,7 @@ def _walk_sideways(trajectory: Trajectory, step: Step, direction_rad: float | No
 
 
 def _short_move(trajectory: Trajectory, step: Step, direction_rad: float | None) -> None:
-    """A short way in a short time: caught after a push, or jumped."""
+    """A short move: caught after a push, or leapt."""
     direction = _relative(trajectory, step, direction_rad)
     if direction is None:
         directions_rad = (0.5 * np.pi, -0.5 * np.pi) if step.style == "side" else (0.0, np.pi, np.pi)
@@ -131,7 +132,7 @@ def _append_move(trajectory: Trajectory, move: Move, places: Float[Array, "n 2"]
 
 
 def turn_by(trajectory: Trajectory, step: Step) -> None:
-    """Turns by an angle that may be more than half a turn, to the left where positive, within the step."""
+    """Turns by `step.turn_deg`, to the left where positive; more than half a turn is possible."""
     either = float(trajectory.rng.choice([-1.0, 1.0])) if step.style == "either" else 1.0
     angle_rad, start_s, span_s = either * np.radians(step.turn_deg), step.start_s, step.end_s - step.start_s
     lasts = min(0.25 + abs(angle_rad) / 3.2, max(span_s, 0.6))
@@ -140,14 +141,14 @@ def turn_by(trajectory: Trajectory, step: Step) -> None:
 
 
 def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProportions) -> None:
-    """Raises NoTrajectory where somebody who kneels, falls or lies would be in furniture or out of view."""
+    """Raises NoTrajectory where a kneeling, falling or lying body would be in furniture or out of view."""
     if step.posture not in ("floor", "knees") and step.lower not in ("kneel_up", "get_up"):
         return
     h = body.height_m
     if step.posture == "knees" or step.lower == "kneel_up":
         low, high = -0.4 * h, 0.15 * h
     elif step.style == "front":
-        low, high = 0.0, (BELLY_AHEAD_M + 0.8) * h  # the arms lie ahead
+        low, high = 0.0, (BELLY_AHEAD_M + 0.8) * h  # the arms are stretched out ahead
     else:
         low, high = -(BACK_BEHIND_M + 0.5) * h, 0.15 * h
     along = np.linspace(low, high, 24)[:, None] * np.array(

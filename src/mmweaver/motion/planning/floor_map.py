@@ -1,4 +1,4 @@
-"""The floor of a scene as a person can use it: where there is room, inside the radar's window and the picture."""
+"""The floor of a scene as a person can use it: free cells within the radar's range window and the camera's view."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,14 +14,16 @@ Positions = Float[Array, "*shape 2"]
 
 BODY_RADIUS_M = 0.25  # half the width of the shoulders
 AZIMUTH_LIMIT_RAD = np.radians(40.0)
-_UNSEEN = 1.5  # what a place costs whose floor is not seen
 TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
+_UNSEEN_COST = 1.5  # of a position whose floor is assumed, not seen
+_OFF_GRID_COST = 3.0
+_AHEAD_DEG = 12.0  # azimuths up to this cost nothing: the antennas' beam is strongest straight ahead
 
 
 @dataclass(frozen=True)
 class FloorMap:
-    """Answers for places (x, y) in the radar's frame, from the cells of the scene's free space."""
+    """Clearance, visibility and cost of positions (x, y) in metres in the radar's frame, from the free-space grid."""
 
     scene: Scene
     range_window_m: tuple[float, float]
@@ -34,13 +36,13 @@ class FloorMap:
 
     @cached_property
     def cell_centres_m(self) -> Float[Array, "y x 2"]:
-        """Centres of the cells."""
+        """Centres (x, y) of the cells in metres."""
         free = self.scene.free_space
         return np.stack(np.meshgrid(free.x_m, free.y_m), axis=-1).astype(float)
 
     @cached_property
     def clearance_m(self) -> Float[Array, "y x"]:
-        """Distance to the nearest cell where nobody can stand; the rim of the grid counts as such."""
+        """Distance in metres to the nearest cell that is not free; outside the grid nothing is free."""
         from scipy.ndimage import distance_transform_edt
 
         padded = np.pad(self.scene.free_space.is_free, 1)
@@ -49,26 +51,27 @@ class FloorMap:
 
     @cached_property
     def in_view(self) -> Bool[Array, "y x"]:
-        """Cells where a standing body is seen by the radar and the camera."""
+        """Whether radar and camera see a body that stands in a cell."""
         return self.sees(self.cell_centres_m)
 
     @cached_property
     def walkable(self) -> Bool[Array, "y x"]:
+        """Whether a body can stand in a cell: enough clearance, and in view."""
         return (self.clearance_m >= BODY_RADIUS_M) & self.in_view
 
     @cached_property
     def cell_cost(self) -> Float[Array, "y x"]:
-        """Soft reasons against a cell: assumed not seen, aside, feet or head out of the window or the picture."""
+        """Soft cost of a cell: floor not seen, off the radar's axis, feet or head outside range window or picture."""
         ground = np.hypot(self.cell_centres_m[..., 0], self.cell_centres_m[..., 1])
         floor = self.scene.floor_z_m
         farthest = np.hypot(ground, max(-floor, floor + self.height_m, 0.0))
         low, high = self.range_window_m
-        cell_cost = _UNSEEN * self._unseen_share
+        cell_cost = _UNSEEN_COST * self._unseen_share
         cell_cost = (
             cell_cost + 1.5 * np.clip((farthest - high) / 0.3, 0, 1) + 1.5 * np.clip((low + 0.4 - ground) / 0.3, 0, 1)
         )
         azimuth = np.degrees(np.abs(np.arctan2(self.cell_centres_m[..., 0], self.cell_centres_m[..., 1])))
-        cell_cost = cell_cost + np.clip((azimuth - 12) / 20, 0, 1.4)  # the antennas look straight ahead
+        cell_cost = cell_cost + np.clip((azimuth - _AHEAD_DEG) / 20, 0, 1.4)
         for height in (0.03, self.height_m):
             cell_cost = cell_cost + 0.8 * ~self._in_picture(
                 self.cell_centres_m, floor + height, margin=0.01, vertical=True
@@ -77,14 +80,14 @@ class FloorMap:
 
     @cached_property
     def _unseen_share(self) -> Float[Array, "y x"]:
-        """How much of the floor under a body was only assumed."""
+        """Share of the floor under a body that was assumed, not seen."""
         from scipy.ndimage import uniform_filter
 
         across = 2 * round(BODY_RADIUS_M / self.cell_m) + 1
         return np.asarray(uniform_filter((~self.scene.free_space.is_seen).astype(float), across, mode="nearest"))
 
     def sees(self, positions_m: Positions) -> Bool[Array, "*shape"]:
-        """The torso is inside the range window, within 40 degrees of the axis and the picture's width."""
+        """Whether the torso is in the range window, within 40 degrees of the radar's axis and the picture's width."""
         z = self.scene.floor_z_m + TORSO_HEIGHT * self.height_m
         distance = np.sqrt(positions_m[..., 0] ** 2 + positions_m[..., 1] ** 2 + z**2)
         low, high = self.range_window_m
@@ -103,7 +106,7 @@ class FloorMap:
         return np.asarray(inside)
 
     def _cells(self, positions_m: Positions) -> tuple[Array, Array, Array]:
-        """Row and column of each place, and whether it is on the grid."""
+        """Row and column of each position, (0, 0) off the grid, and whether it is on the grid."""
         free = self.scene.free_space
         column = np.rint((positions_m[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
         row = np.rint((positions_m[..., 1] - free.y_m[0]) / self.cell_m).astype(int)
@@ -111,23 +114,26 @@ class FloorMap:
         return np.where(inside, row, 0), np.where(inside, column, 0), np.asarray(inside)
 
     def can_stand(self, positions_m: Positions) -> Bool[Array, "*shape"]:
+        """Whether each position is walkable."""
         row, column, inside = self._cells(positions_m)
         return np.asarray(inside & self.walkable[row, column])
 
     def clearance_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
+        """Distance in metres to the nearest cell that is not free, 0 off the grid."""
         row, column, inside = self._cells(positions_m)
         return np.where(inside, self.clearance_m[row, column], 0.0)
 
     def cost_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
+        """`cell_cost` at each position."""
         row, column, inside = self._cells(positions_m)
-        return np.where(inside, self.cell_cost[row, column], 3.0)
+        return np.where(inside, self.cell_cost[row, column], _OFF_GRID_COST)
 
     def free_length_m(
         self, position_m: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
     ) -> float:
-        """How far a body can go straight from a place, at most `wanted_m`.
+        """How far in metres a body can go straight from a position, at most `wanted_m`.
 
-        Within `excused_m` of the place it may be closer to things than a body's radius (a seat just left).
+        Within `excused_m` of the position it may be closer to furniture than a body's radius (the seat just left).
         """
         steps = np.append(np.arange(0.0, wanted_m, 0.04), wanted_m)
         line_m = position_m + steps[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
@@ -138,7 +144,7 @@ class FloorMap:
         return float(steps[blocked[0] - 1]) if blocked[0] else 0.0
 
     def nearest_walkable_m(self, position_m: Float[Array, "2"]) -> Float[Array, "2"] | None:
-        """The walkable cell nearest to a place."""
+        """Centre (x, y) of the walkable cell nearest to a position, in metres; None where none is walkable."""
         if not self.walkable.any():
             return None
         positions_m = self.cell_centres_m[self.walkable]

@@ -1,4 +1,4 @@
-"""Where in the room a plan is acted out: many starts are tried, the best way is taken."""
+"""Placement of a plan in the room: many start positions are tried, and their trajectories sorted by cost."""
 
 from dataclasses import dataclass
 
@@ -48,14 +48,20 @@ from mmweaver.motion.planning.trajectory import (
 )
 
 Array = np.ndarray
-TRIES, ENOUGH = 500, 60
-CLOSEST_FEET_M = 0.05
-_OCCLUDED_COST, _OCCLUDED_SITTING_COST, _LOOKS, _SEAT_M = 4.0, 1.5, 12, 0.65
+TRIES, ENOUGH = 500, 60  # candidates tried, and found, at most
+CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who gets up
+_OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
+_NUM_OCCLUSION_TESTS = 12  # along a trajectory
+_SEAT_RADIUS_M = 0.65  # within it a position counts as sitting
+_NEAR_START_M = 1.0  # a seat so near to the requested start is the one meant
+_SEAT_DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
+_SEAT_SPEED_MPS = {"jog": (0.45, 2.6)}  # natural speeds of a walk that ends at a seat
+_WALK_TO_SEAT_MPS = (0.45, 1.6)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Placement:
-    """The way of the root, the moves and the seat's height of each step, and what was assumed."""
+    """The path of the root, the moves and the seat height of each step, and what was assumed."""
 
     path: RootPath
     moves: tuple[tuple[Move, ...], ...]
@@ -68,11 +74,11 @@ def place(
     plan: MotionPlan, floor: FloorMap, body: SkeletonProportions, *, seed: int, start_m: tuple[float, float] | None,
     others: tuple[PoseSequence, ...] = (), attempt: int = 0,
 ) -> list[Placement]:  # fmt: skip
-    """Finds ways for the whole plan that are free and in view all along, and clear of `others`; the best first.
+    """Placements of the whole plan that are free and in view all along, and clear of `others`; the best first.
 
-    `start_m` fixes where the person starts. `attempt` draws others, with more ways to sit: 1 leaves out some seats, 2
-    all where the room has none that the sentence names. Raises InputError where the start is not free or out
-    of view, where there is no room, or where the room lacks what a step goes to, saying what there is.
+    `start_m` fixes where the person starts, (x, y). Attempts 1 and 2 sample other placements, with more ways to sit: 1
+    leaves out some of the seats, 2 all of them unless the sentence names one that the room has. Raises InputError where
+    the start is not free or out of view, where there is no room, or where the room lacks what a step goes to.
     """
     check_targets(plan, floor.scene)
     if not floor.walkable.any() and not (usable_seats(floor, body) and _starts_seated(plan)):
@@ -99,15 +105,14 @@ def place(
     return [_placement(trajectories[k]) for k in order]
 
 
-def _occlusion_costs(trajectories: list[Trajectory], plan: MotionPlan, floor: FloorMap) -> Float[Array, " way"]:
-    """Against ways, and feet before seats, behind things: the camera does not see what stands there."""
-    tracks_m = np.array(
-        [trajectory.path().position_m(np.linspace(0.0, plan.steps[-1].end_s, _LOOKS)) for trajectory in trajectories]
-    )
+def _occlusion_costs(trajectories: list[Trajectory], plan: MotionPlan, floor: FloorMap) -> Float[Array, " trajectory"]:
+    """Cost of trajectories, and of seats, that the camera does not see: what stands there is not known."""
+    time_s = np.linspace(0.0, plan.steps[-1].end_s, _NUM_OCCLUSION_TESTS)
+    tracks_m = np.array([trajectory.path().position_m(time_s) for trajectory in trajectories])
     cost = np.full(tracks_m.shape[:2], _OCCLUDED_COST)
     for trajectory, costs, track_m in zip(trajectories, cost, tracks_m, strict=True):
         for seat in trajectory.seats_m:
-            costs[np.hypot(*(track_m - np.array(seat)).T) < _SEAT_M] = _OCCLUDED_SITTING_COST
+            costs[np.hypot(*(track_m - np.array(seat)).T) < _SEAT_RADIUS_M] = _OCCLUDED_SITTING_COST
     return (cost * occluded_along(floor.scene, tracks_m)).max(axis=1)
 
 
@@ -140,7 +145,7 @@ def _candidate(
     *,
     attempt: int,
 ) -> Trajectory:
-    """One candidate: a start, and every step laid out from there."""
+    """One candidate: a start, and every step laid out from there. Raises NoTrajectory."""
     seats = usable_seats(floor, body)
     if attempt:
         named = next((step.seat for step in plan.steps if step.seat), "")
@@ -193,13 +198,13 @@ def _start(
     if _starts_seated(plan):
         usable = preferred(seats, first.seat, floor.scene)
         if any(step.lower not in ("sit", "sit_down") for step in plan.steps):
-            # Who gets up needs room before the seat: not where a table is.
+            # Getting up needs room in front of the seat, where a table may stand.
             usable = [seat for seat in usable if floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
         return _start_seated(floor, body, rng, start_m, usable)
     spot = np.array(start_m, dtype=float) if start_m is not None else _random_start(plan, floor, rng, seats)
     facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(rng.normal(0, 0.2), -0.4, 0.4))
     if any(step.posture in ("floor", "knees") for step in plan.steps):
-        facing = float(rng.uniform(-np.pi, np.pi))  # whichever way the floor is free
+        facing = float(rng.uniform(-np.pi, np.pi))  # wherever the floor is free
     if first.facing and first.upper not in ("point", "look_around"):
         facing = _facing_rad(first.facing, spot) + float(rng.normal(0, 0.05))
     return Trajectory(floor=floor, rng=rng, position_m=spot, heading_rad=facing), None
@@ -208,7 +213,7 @@ def _start(
 def _random_start(
     plan: MotionPlan, floor: FloorMap, rng: np.random.Generator, seats: list[Sitting]
 ) -> Float[Array, "2"]:
-    """A cell at random; where a walk shall end at a seat, often one from which it would."""
+    """A random position (x, y) in metres; for a walk to a seat often one from which it ends there."""
     first = plan.steps[0]
     if first.moves and goes_to_target(first) and rng.random() < 0.8:
         spot = start_for_target(first, floor, rng)
@@ -232,9 +237,9 @@ def _start_seated(
     start_m: tuple[float, float] | None,
     seats: list[Sitting],
 ) -> tuple[Trajectory, Sitting]:
-    """On a seat of the scene, near the start asked for; else on a stool, looking about at the radar."""
+    """Starts on a seat of the scene, near the requested start; else on a stool, roughly facing the radar."""
     cost, notes = 0.0, []
-    near = [s for s in seats if start_m is None or np.hypot(*(s.seat_m - start_m)) < 1.0]
+    near = [s for s in seats if start_m is None or np.hypot(*(s.seat_m - start_m)) < _NEAR_START_M]
     if near:
         sitting = near[int(rng.integers(len(near)))]
         cost += float(floor.cost_at(sitting.seat_m)) + (0.0 if floor.clearance_at(sitting.feet_m) > 0 else 2.0)
@@ -256,19 +261,20 @@ def _start_seated(
 
 
 def _seat_ahead(trajectory: Trajectory, step: Step, following: Step | None, seats: list[Sitting]) -> Sitting | None:
-    """The seat that a walk shall end at: reachable, in the direction said, at a speed that is natural."""
+    """The seat that a walk ends at: reachable, in the given direction, at a natural speed."""
     if not (following is not None and following.lower == "sit_down") and step.direction != "seat":
         return None
     for sitting in seats:
         gap = sitting.feet_m - trajectory.position_m
         towards = float(np.arctan2(gap[1], gap[0]))
-        said = _direction_rad(trajectory, step)
+        given_rad = _direction_rad(trajectory, step)
         lasts = max(step.end_s - step.start_s - 0.35, 0.1)
         speed = float(np.hypot(*gap)) / lasts
-        fits = 0.45 <= speed <= (2.6 if step.lower == "jog" else 1.6)
+        slowest, fastest = _SEAT_SPEED_MPS.get(step.lower, _WALK_TO_SEAT_MPS)
+        fits = slowest <= speed <= fastest
         if (
             fits
-            and (said is None or abs(signed_angle_rad(said, towards)) < 0.9)
+            and (given_rad is None or abs(signed_angle_rad(given_rad, towards)) < _SEAT_DIRECTION_RAD)
             and reachable(trajectory.floor, trajectory.position_m, sitting)
         ):
             return sitting
@@ -304,7 +310,7 @@ def _lay_move(trajectory: Trajectory, step: Step, target: Sitting | None, *, fir
 
 
 def _direction_rad(trajectory: Trajectory, step: Step) -> float | None:
-    """The direction said, with a few degrees of variation; None where any will do."""
+    """The direction that the sentence gives, with a few degrees of variation; None where it gives none."""
     x, y = trajectory.position_m
     jitter = float(np.clip(trajectory.rng.normal(0, 0.06), -0.15, 0.15))
     if step.direction in ("left", "right"):
@@ -331,10 +337,10 @@ def _facing_rad(facing: str, spot: Float[Array, "2"]) -> float:
 
 
 def _lay_turn(trajectory: Trajectory, step: Step, rng: np.random.Generator, *, first: bool) -> None:
-    """A turn to where is said: left and right are the person's own, 'to the radar' is the radar's place."""
+    """Turns to the left or right of the person, around, or to face something (`step.facing`)."""
     if step.facing:
         if first and step.lower != "turn":
-            return  # the start faces there already
+            return  # the start faces that direction already
         if first:
             trajectory.start_heading_rad = trajectory.heading_rad = trajectory.heading_rad + float(
                 rng.choice([-1.0, 1.0]) * rng.uniform(1.2, 2.2)
@@ -350,7 +356,7 @@ def _lay_turn(trajectory: Trajectory, step: Step, rng: np.random.Generator, *, f
 def _stool_at_end(
     trajectory: Trajectory, body: SkeletonProportions, rng: np.random.Generator, *, previous: Step, none_at_all: bool
 ) -> Sitting:
-    """A stool beside the end of a walk, so that the person turns at most a quarter, or behind who stands."""
+    """A stool at the end of a walk, a quarter turn away at most, or behind somebody who stands."""
     to_radar = float(np.arctan2(-trajectory.position_m[1], -trajectory.position_m[0]))
     options = (
         [trajectory.heading_rad]
@@ -401,6 +407,6 @@ def _no_room(plan: MotionPlan, floor: FloorMap, start_m: tuple[float, float] | N
     )
     return (
         f"there is no room{what}{from_there}: in the picture and the radar's window {len(cells) * floor.cell_m**2:.1f}"
-        f" m2 of floor are free, the longest straight way is about {longest:.1f} m; try fewer frames, 'slowly', another"
-        " direction or another start (--at)"
+        f" m2 of floor are free, the longest straight path is about {longest:.1f} m; try fewer frames, 'slowly',"
+        " another direction or another start (--at)"
     )

@@ -1,4 +1,4 @@
-"""Where a person sits: a seat of the scene, or a stool that is assumed and said so."""
+"""Where a person sits: on a seat of the scene, or on an assumed stool, which a note reports."""
 
 from dataclasses import dataclass, replace
 
@@ -12,17 +12,21 @@ from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
 STOOL_HEIGHT_M = 0.45
-LOWEST_M, HIGHEST_M = 0.3, 0.65
+LOWEST_M, HIGHEST_M = 0.3, 0.65  # seats that a person can use
 _COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
-_COUCH_M, _BED_REACH_M = 0.8, 1.2
-_TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter at a table may look past it
-_WIDEST_TURN_RAD, _BODY_ON_SEAT_M, _LEFT_OUT = 1.4, 0.4, 0.4
-_BACK_M, _ROOM_BEHIND_M = 0.05, 0.4  # and sit back, where the seat is deep enough
+_COUCH_M = 0.8  # a seat so wide is a couch, a narrower one a chair
+_BED_RADIUS_M = 1.2  # a seat so near to a bed's centre is on it
+_TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter may face past the table
+_WIDEST_TURN_RAD = 1.4
+_BODY_WIDTH_M = 0.4  # what of a seat's width and depth the body itself takes
+_LEFT_OUT = 0.4  # share of the seats that `random_subset` leaves out
+_BACK_M, _DEEP_SEAT_M = 0.05, 0.4  # how far back one can sit, and on which depth of a seat
+_STRAIGHT_TO_SEAT_M = 0.6  # the last part of the walk to a seat, where the seat's own edge is near
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sitting:
-    """A place to sit: where the feet stand before it, the way the sitter looks, the height of the surface."""
+    """A way to sit on a seat: (x, y) of the feet and of the seat, the sitter's heading, the surface's height."""
 
     feet_m: Float[Array, "2"]
     facing_rad: float
@@ -30,16 +34,16 @@ class Sitting:
     seat_m: Float[Array, "2"]
     width_m: float = 0.4
     depth_m: float = 0.4
-    cost: float = 0.0  # against sitting like that
+    cost: float = 0.0  # of unusual ways to sit
 
 
 def preferred(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
-    """Those that fit the word for them, all where none does."""
+    """The seats that the word stands for; all of them where it fits none."""
     return fitting(seats, word, scene) or seats
 
 
 def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
-    """Those that fit the word for them: couches are wide, chairs are not, beds are beds."""
+    """The seats that the word stands for: couches are wide, chairs are not; edges of beds are beds only."""
     if word in _COUCHES:
         return [seat for seat in seats if seat.width_m >= _COUCH_M and not _on_bed(seat, scene)]
     if word == "bed":
@@ -51,11 +55,11 @@ def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
 
 def _on_bed(seat: Sitting, scene: Scene) -> bool:
     beds = [mark for mark in scene.landmarks if mark.kind == "bed"]
-    return any(float(np.hypot(*(seat.seat_m - mark.position_m[:2]))) < _BED_REACH_M for mark in beds)
+    return any(float(np.hypot(*(seat.seat_m - mark.position_m[:2]))) < _BED_RADIUS_M for mark in beds)
 
 
 def usable_seats(floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
-    """The scene's seats that a person can use inside the radar's window."""
+    """The scene's seats of a usable height inside the radar's range window."""
     found = []
     for seat in floor.scene.seats:
         sitting = _sitting(seat, floor, body)
@@ -80,9 +84,9 @@ def _sitting(seat: Seat, floor: FloorMap, body: SkeletonProportions) -> Sitting:
 
 
 def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
-    """The same seat sat on as it is made for, as often as not; else turned aside or sat on further back."""
+    """The same seat: half of the time facing ahead, else turned to a side or sitting farther back."""
     kind = int(rng.integers(4))
-    if kind < 2 or (kind == 3 and sitting.depth_m < _ROOM_BEHIND_M):
+    if kind < 2 or (kind == 3 and sitting.depth_m < _DEEP_SEAT_M):
         return sitting
     reach = sitting.feet_m - sitting.seat_m
     if kind == 3:
@@ -92,10 +96,10 @@ def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
 
 
 def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
-    """The same seat sat on in any way that one can: turned, and forward or back, left or right of its middle."""
+    """The same seat in any possible way: turned, and ahead, behind, left or right of its centre."""
     ahead = np.array([np.cos(sitting.facing_rad), np.sin(sitting.facing_rad)])
     aside = np.array([-ahead[1], ahead[0]])
-    spare = np.clip((np.array([sitting.depth_m, sitting.width_m]) - _BODY_ON_SEAT_M) / 2, 0.03, 0.3)
+    spare = np.clip((np.array([sitting.depth_m, sitting.width_m]) - _BODY_WIDTH_M) / 2, 0.03, 0.3)
     shift = rng.uniform(-1, 1, 2) * spare
     moved = shift[0] * ahead + shift[1] * aside
     sitting = replace(sitting, feet_m=sitting.feet_m + moved, seat_m=sitting.seat_m + moved)
@@ -103,13 +107,13 @@ def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
 
 
 def random_subset(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
-    """The seats without some, at random; at least one stays."""
+    """A random subset of the seats, never empty unless there are none."""
     kept = [seat for seat in seats if rng.random() > _LEFT_OUT]
     return kept or seats
 
 
 def _turned(sitting: Sitting, turn: float) -> Sitting:
-    """Turned about the seat; the feet go with it."""
+    """Rotated about the seat by an angle in radians, the feet with it."""
     reach = sitting.feet_m - sitting.seat_m
     across = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     return replace(
@@ -121,23 +125,25 @@ def _turned(sitting: Sitting, turn: float) -> Sitting:
 
 
 def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProportions) -> Sitting:
-    """A stool behind somebody who stands at a place."""
+    """A stool behind somebody who stands at `feet_m` (x, y)."""
     behind = pelvis_behind_feet_m(body, STOOL_HEIGHT_M) * np.array([np.cos(facing_rad), np.sin(facing_rad)])
     return Sitting(feet_m=feet_m, facing_rad=facing_rad, height_m=STOOL_HEIGHT_M, seat_m=feet_m - behind)
 
 
 def stool_fits(stool: Sitting, floor: FloorMap) -> bool:
+    """Whether there is free floor in view for a stool."""
     return bool(floor.clearance_at(stool.seat_m) >= 0.2) and bool(floor.sees(stool.seat_m))
 
 
 def stool_note(stool: Sitting, *, none_at_all: bool) -> str:
+    """What is reported about an assumed stool."""
     why = "no seat was found in the photo" if none_at_all else "no seat of the photo can be reached"
     x, y = stool.seat_m
     return f"{why}, a stool {stool.height_m:.2f} m high is assumed at x {x:.2f} m, y {y:.2f} m"
 
 
 def reachable(floor: FloorMap, place: Float[Array, "2"], sitting: Sitting) -> bool:
-    """Whether one can go straight to a seat; close to it, being free is enough: its own edge is near."""
+    """Whether the straight path to a seat is free; near the seat, where its own edge is, with less clearance."""
     line_m = place + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - place)
-    near = np.hypot(*(line_m - sitting.feet_m).T) < 0.6
+    near = np.hypot(*(line_m - sitting.feet_m).T) < _STRAIGHT_TO_SEAT_M
     return bool((floor.can_stand(line_m) | (near & (floor.clearance_at(line_m) > 0.0))).all())

@@ -1,4 +1,4 @@
-"""How near two people come to each other: pelvis from pelvis, and skin from skin."""
+"""Separation of two people: the distance of their pelvises, and that of their body surfaces."""
 
 import numpy as np
 from jaxtyping import Float
@@ -11,6 +11,8 @@ Array = np.ndarray
 LEAST_PELVIS_DISTANCE_M, LEAST_SURFACE_DISTANCE_M = 0.5, 0.02
 CHECK_RATE_HZ = 20.0  # how often the bodies are compared: a limb at 3 m/s moves 15 cm in between
 SPHERES_PER_BONE = 4
+TRACK_MARGIN_M, HALF_BODY_WIDTH_M = 0.15, 0.4  # of somebody whose body is not posed yet, only the pelvis's track
+_FARTHEST_REACH_M = 2.2  # bodies whose pelvises are farther apart cannot touch
 
 # Bones inside the trunk that no capsule follows: radius at the near and the far joint.
 _TRUNK_BONES_M = {"hip": (0.13, capsule_between("left_hip", "left_hip").start_radius_m), "collar": (0.12, 0.08)}
@@ -21,30 +23,31 @@ _HAND_LONGER_M, _HAND_THINNER_M = 0.01, 0.01  # than its capsule: an outstretche
 
 
 def are_separate(one: PoseSequence, other: PoseSequence) -> bool:
-    """Whether two people never come too near to each other."""
+    """Whether two people keep their least distances at all times."""
     pelvis_m, body_m = separations_m(one, other)
     return pelvis_m >= LEAST_PELVIS_DISTANCE_M and body_m >= LEAST_SURFACE_DISTANCE_M
 
 
 def separations_m(one: PoseSequence, other: PoseSequence) -> tuple[float, float]:
-    """The least distance over time of the pelvises (on the floor), and of the bodies' surfaces (negative: inside)."""
+    """Least distances over time in metres: of the pelvises on the floor, of the body surfaces (negative: overlap)."""
     time_s = _common_times(one, other)
     first, second = (_at(pose, time_s) for pose in (one, other))
     pelvis = joint("pelvis")
     pelvises = np.linalg.norm(first[:, pelvis, :2] - second[:, pelvis, :2], axis=1)
     (centre_a, radius_a), (centre_b, radius_b) = _spheres(first, one.height_m), _spheres(second, other.height_m)
     least = np.inf
-    for near in np.flatnonzero(pelvises < 2.2):
-        apart = np.linalg.norm(centre_a[near][:, None] - centre_b[near][None], axis=-1)
-        least = min(least, float((apart - radius_a[:, None] - radius_b[None, :]).min()))
+    for near in np.flatnonzero(pelvises < _FARTHEST_REACH_M):
+        distance = np.linalg.norm(centre_a[near][:, None] - centre_b[near][None], axis=-1)
+        least = min(least, float((distance - radius_a[:, None] - radius_b[None, :]).min()))
     return float(pelvises.min()), least
 
 
 def is_clear_of(track_m: Float[Array, "time 2"], time_s: Float[Array, " time"], other: PoseSequence) -> bool:
-    """Whether a way over the floor stays clear of somebody's pelvis and, by half a body's width, of every joint."""
+    """Whether a trajectory on the floor stays clear of a person's pelvis and, by half a body's width, of all joints."""
     joints_m = _at(other, time_s)[:, :, :2]
-    apart = np.linalg.norm(joints_m - track_m[:, None], axis=-1)
-    return bool(apart[:, joint("pelvis")].min() >= LEAST_PELVIS_DISTANCE_M + 0.15 and apart.min() >= 0.4)
+    distance_m = np.linalg.norm(joints_m - track_m[:, None], axis=-1)
+    pelvis_m = distance_m[:, joint("pelvis")].min()
+    return bool(pelvis_m >= LEAST_PELVIS_DISTANCE_M + TRACK_MARGIN_M and distance_m.min() >= HALF_BODY_WIDTH_M)
 
 
 def _common_times(one: PoseSequence, other: PoseSequence) -> Float[Array, " time"]:

@@ -1,4 +1,4 @@
-"""Going to a thing of the room: the way to a landmark, straight or round one corner, and what to say without it."""
+"""Walking to a landmark of the room, straight or around one corner, and what is reported where there is none."""
 
 from collections import Counter
 from dataclasses import replace
@@ -12,7 +12,8 @@ from mmweaver.motion.language.plan import MotionPlan, Step
 from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.trajectory import (
     RAMP_S,
-    TURN_RATE,
+    TURN_OVERHEAD_S,
+    TURN_RATE_RADPS,
     NoTrajectory,
     Trajectory,
     face_along,
@@ -21,12 +22,13 @@ from mmweaver.motion.planning.trajectory import (
 )
 
 Array = np.ndarray
-# A person says table to all of them.
-SEATS = ("couch", "chair", "bench", "stool", "seat")  # these are seats, and seating knows the way to them
+SEATS = ("couch", "chair", "bench", "stool", "seat")  # handled by `seating`
+# In a sentence, one of these words stands for several kinds of landmarks.
 ALIKE = {"table": ("table", "counter"), "desk": ("table",), "counter": ("counter", "table")}
-_SLOWEST_MPS, _FASTEST_MPS = 0.35, {"jog": 2.4}
-_SHORTEST_M, _NEAR_M = 0.35, 0.45
-_CORNERS = 24
+_FASTEST_MPS = {"jog": 2.4}  # walking: 1.6
+_SHORTEST_M = 0.35  # a shorter path is no walk
+_NEAR_M = 0.45  # a walkable position so near to the approach still is at the landmark
+_NUM_CORNERS = 24  # corners tried
 
 
 def kinds_of(target: str) -> tuple[str, ...]:
@@ -35,12 +37,12 @@ def kinds_of(target: str) -> tuple[str, ...]:
 
 
 def goes_to_target(step: Step) -> bool:
-    """Whether a step names a thing that is no seat."""
+    """Whether a step goes to a landmark other than a seat."""
     return bool(step.target) and step.target not in SEATS
 
 
 def check_targets(plan: MotionPlan, scene: Scene) -> None:
-    """Raises InputError where a step goes to something that the room does not show, naming what it has."""
+    """Raises InputError, naming what the room has, where a step goes to something that was not found in it."""
     for step in plan.steps:
         if step.moves and goes_to_target(step) and not _landmarks(scene, step):
             raise InputError(
@@ -51,10 +53,11 @@ def check_targets(plan: MotionPlan, scene: Scene) -> None:
 
 
 def without_targets(plan: MotionPlan) -> MotionPlan:
-    """For where no photo is: each way to a thing leads anywhere instead, and a note says so."""
+    """The plan for a scene without a photo: walks to landmarks lead anywhere instead, and notes say so."""
     lost = [step for step in plan.steps if step.moves and goes_to_target(step)]
     notes = tuple(
-        f"for {step.clause or step.target!r}: without a photo there is no {step.target}; the way leads where room is"
+        f"for {step.clause or step.target!r}: without a photo there is no {step.target};"
+        " the walk leads where there is room"
         for step in lost
     )
     steps = tuple(replace(step, target="") if step in lost else step for step in plan.steps)
@@ -62,7 +65,7 @@ def without_targets(plan: MotionPlan) -> MotionPlan:
 
 
 def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:
-    """A place from which a walk of the step's time ends at its target; None where it has none."""
+    """A position (x, y) in metres from which a walk of the step's time ends at its target; None without a target."""
     marks = _landmarks(floor.scene, step)
     if not marks:
         return None
@@ -72,7 +75,7 @@ def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> F
 
 
 def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
-    """Lays the way to the nearest landmark that can be reached in time, and turns to face it.
+    """Walks to the nearest landmark that can be reached in time, and turns to face it.
 
     Raises NoTrajectory where there is none from here.
     """
@@ -81,11 +84,11 @@ def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
         key=lambda mark: float(np.hypot(*(mark.approach_m - trajectory.position_m))),
     )
     for mark in marks:
-        goal = _standing_place(trajectory.floor, mark)
+        goal = _standing_position_m(trajectory.floor, mark)
         corners = None if goal is None else _corners(trajectory, goal)
         if corners is not None and _lay_legs(trajectory, step, corners, mark, first=first):
             return
-    raise NoTrajectory(f"no way to the {step.target}")
+    raise NoTrajectory(f"no path to the {step.target}")
 
 
 def _landmarks(scene: Scene, step: Step) -> list[Landmark]:
@@ -93,8 +96,8 @@ def _landmarks(scene: Scene, step: Step) -> list[Landmark]:
     return [mark for mark in scene.landmarks if mark.kind in kinds] if step.target else []
 
 
-def _standing_place(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] | None:
-    """The approach, or the walkable place nearest to it that is still at the thing."""
+def _standing_position_m(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] | None:
+    """The landmark's approach, or the nearest walkable position (x, y) that still is at the landmark."""
     approach = np.array(mark.approach_m, dtype=float)
     if bool(floor.can_stand(approach)):
         return approach
@@ -103,13 +106,13 @@ def _standing_place(floor: FloorMap, mark: Landmark) -> Float[Array, "2"] | None
 
 
 def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Array, "2"]] | None:
-    """The goal, with one corner before it where things stand between; None where that is not enough."""
+    """The goal, with one corner before it where the straight path is blocked; None where that is not enough."""
     if _is_free(trajectory.floor, trajectory.position_m, goal):
         return [goal]
     places = trajectory.floor.cell_centres_m[trajectory.floor.walkable]
     if not len(places):
         return None
-    some = places[trajectory.rng.integers(len(places), size=_CORNERS)]
+    some = places[trajectory.rng.integers(len(places), size=_NUM_CORNERS)]
     order = np.argsort(np.hypot(*(some - trajectory.position_m).T) + np.hypot(*(some - goal).T))
     for corner in some[order]:
         if _is_free(trajectory.floor, trajectory.position_m, corner) and _is_free(trajectory.floor, corner, goal):
@@ -126,12 +129,12 @@ def _is_free(floor: FloorMap, start: Float[Array, "2"], end: Float[Array, "2"]) 
 def _lay_legs(
     trajectory: Trajectory, step: Step, corners: list[Float[Array, "2"]], mark: Landmark, *, first: bool
 ) -> bool:
-    """The legs one after the other, shared out by length; False where the time does not fit."""
+    """Lays out the legs, their times shared out by length; False where they do not fit into the step."""
     gaps = np.diff(np.stack([trajectory.position_m, *corners]), axis=0)
     lengths = np.hypot(*gaps.T)
     directions = np.arctan2(gaps[:, 1], gaps[:, 0])
     turned = abs(signed_angle_rad(float(directions[-1]), mark.facing_rad))
-    at_end = 0.25 + turned / TURN_RATE if turned > 0.15 else 0.1
+    at_end = TURN_OVERHEAD_S + turned / TURN_RATE_RADPS if turned > 0.15 else 0.1
     spare = step.end_s - step.start_s - at_end - 0.5 * (len(corners) - 1) - (0.0 if first else 0.3)
     total = float(lengths.sum())
     if spare < 0.6 or total < _SHORTEST_M:

@@ -1,4 +1,4 @@
-"""One candidate way through a room: moves and turns laid out step by step, as far as the floor allows."""
+"""A candidate trajectory through a room: moves and turns laid out step by step, as far as the floor allows."""
 
 from dataclasses import dataclass, field
 
@@ -11,23 +11,26 @@ from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
 SLOWEST_MPS = {"walk": 0.5, "jog": 1.2, "limp": 0.4, "stagger": 0.4}
-RAMP_S = 0.45
-TURN_RATE = 3.6  # rad/s
+RAMP_S = 0.45  # acceleration from standing to walking, and back
+TURN_RATE_RADPS = 3.6
+TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
 SHORTEST_LEG_M = 0.5
-SHORTEST_WALK_M = 0.6  # a step
-PACING_LEG_M = 0.8
+SHORTEST_WALK_M = 0.6  # one step
+PACING_LEG_M = 0.8  # shortest leg of walking to and fro
+CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
 
 
-class NoTrajectory(Exception):  # noqa: N818 - a candidate that does not work out, not an error
-    """This candidate leads nowhere; the message says why."""
+class NoTrajectory(Exception):  # noqa: N818 - control flow, not an error
+    """A candidate that does not work out; the message says why."""
 
 
 def signed_angle_rad(one: float, other: float) -> float:
-    """The turn from one direction to another, in (-pi, pi]."""
+    """The angle in radians from one direction to another, in [-pi, pi)."""
     return float((other - one + np.pi) % (2 * np.pi) - np.pi)
 
 
 def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
+    """A sampled walking speed in m/s for a step's gait and for 'slowly' or 'quickly'."""
     if step.lower == "jog":
         low, high = ((1.3, 1.5), (1.5, 1.9), (1.9, 2.2))[step.speed + 1]
     elif step.lower in ("limp", "stagger"):
@@ -39,7 +42,7 @@ def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
 
 @dataclass
 class Trajectory:
-    """Grows as steps are laid out; `cost` gathers reasons against it."""
+    """Grows as steps are laid out; `cost` adds up the reasons against it. Positions are (x, y) in the radar's frame."""
 
     floor: FloorMap
     rng: np.random.Generator
@@ -61,6 +64,7 @@ class Trajectory:
         self.start_heading_rad = self.heading_rad
 
     def path(self) -> RootPath:
+        """The path of the body's root as laid out so far."""
         return RootPath(
             start_m=self.start_m,
             heading_rad=self.start_heading_rad,
@@ -69,19 +73,20 @@ class Trajectory:
         )
 
     def free_length_m(self, direction_rad: float, wanted_m: float) -> float:
+        """How far the body can go straight from here, at most `wanted_m`."""
         return self.floor.free_length_m(
             self.position_m, direction_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0
         )
 
     def turn_to(self, heading_rad: float, start_s: float) -> float:
-        """Turns on the spot the shorter way, returns how long it takes."""
+        """Turns on the spot through the smaller angle; returns how long that takes, in seconds."""
         angle = signed_angle_rad(self.heading_rad, heading_rad)
         if abs(angle) < 0.02:
             self.heading_rad = self.heading_rad + angle
             if angle:
                 self.turns.append(Turn(start_s=start_s, end_s=start_s + 0.3, angle_rad=angle))
             return 0.0
-        lasts = 0.25 + abs(angle) / TURN_RATE
+        lasts = TURN_OVERHEAD_S + abs(angle) / TURN_RATE_RADPS
         self.turns.append(Turn(start_s=start_s, end_s=start_s + lasts, angle_rad=angle))
         self.heading_rad += angle
         self.cost += 0.25 * abs(angle)
@@ -90,7 +95,7 @@ class Trajectory:
     def go(
         self, step: Step, direction_rad: float, length_m: float, span: tuple[float, float], ramps: tuple[float, float]
     ):
-        """A straight move over a time span; the caller has made sure that it is free."""
+        """Appends a straight move over a time span; the caller has made sure that it is free."""
         move = Move(
             start_s=span[0], end_s=span[1], length_m=length_m, direction_rad=direction_rad,
             ramp_in_s=ramps[0], ramp_out_s=ramps[1],
@@ -106,7 +111,7 @@ class Trajectory:
 
 
 def face_along(trajectory: Trajectory, step: Step, direction_rad: float, start_s: float, *, first: bool) -> float:
-    """Turns into (or, going backwards, against) the direction; returns when the first stride can begin."""
+    """Turns the body along the direction (against it when going backwards); returns when the first stride can begin."""
     heading = direction_rad + np.pi if step.direction == "backwards" else direction_rad
     if first:
         trajectory.start_heading_rad = trajectory.heading_rad = heading
@@ -115,7 +120,7 @@ def face_along(trajectory: Trajectory, step: Step, direction_rad: float, start_s
 
 
 def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, first: bool, last: bool) -> None:
-    """Goes in a given direction for the step's time, slower where the room is short; then stands still.
+    """Goes in a given direction for the step's time; where the room is too short, slower or not as far.
 
     Raises NoTrajectory where even half a metre per second is too fast and there is hardly a step to go.
     """
@@ -144,7 +149,7 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
 
 
 def _stop_s(step: Step, begin: float) -> float:
-    """When the last of a counted number of steps is done, else the end of the step."""
+    """When the last of a counted number of paces is done, else the end of the step, in seconds."""
     if not step.count or step.upper:
         return step.end_s
     each = 0.4 if step.lower == "jog" else (0.72, 0.58, 0.5)[step.speed + 1]
@@ -152,6 +157,7 @@ def _stop_s(step: Step, begin: float) -> float:
 
 
 def ramps_of(span_s: float, *, first: bool, last: bool) -> tuple[float, float]:
+    """Seconds of acceleration and deceleration; none where the motion is under way already, or goes on."""
     if span_s < 0.45:
         raise NoTrajectory("no time left to walk after turning")
     ramp = min(RAMP_S, 0.42 * span_s)
@@ -159,7 +165,7 @@ def ramps_of(span_s: float, *, first: bool, last: bool) -> tuple[float, float]:
 
 
 def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
-    """No direction was said: goes straight as long as there is room, then turns and goes on, to and fro."""
+    """Without a given direction: goes straight as long as there is room, then turns and goes on, to and fro."""
     speed = preferred_speed_mps(step, trajectory.rng)
     time, begun = step.start_s, first
     for _ in range(40):
@@ -193,7 +199,7 @@ def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool
 
 
 def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bool) -> tuple[float, float]:
-    """A direction with room, at random among the better ones; after another step rather straight on."""
+    """A direction with room and its free length, at random among the better ones; straight on where possible."""
     wanted_m = min(wanted_m, 5.0)
     if keep_heading:
         free = trajectory.free_length_m(trajectory.heading_rad, wanted_m)
@@ -206,24 +212,24 @@ def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bo
 
 
 def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
-    """Round and round, as wide as the room allows."""
+    """Walks in a circle, as wide as the room allows."""
     rng = trajectory.rng
     side = float(np.sign(step.arc_deg)) or (1.0 if rng.random() < 0.5 else -1.0)
     direction = trajectory.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
     speed = min(preferred_speed_mps(step, rng), 1.1 if step.lower == "walk" else 1.6)
-    for radius in (0.9, 0.75, 0.6, 0.5, 0.4):
+    for radius in CIRCLE_RADII_M:
         move = Move(
             start_s=begin, end_s=step.end_s, length_m=speed * (step.end_s - begin - sum(ramps) / 2),
             direction_rad=direction, ramp_in_s=ramps[0], ramp_out_s=ramps[1], curvature_per_m=side / radius,
         )  # fmt: skip
-        round_ = trajectory.position_m + move.shift_m(np.linspace(begin, step.end_s, 60))
-        if trajectory.floor.can_stand(round_).all():
+        circle_m = trajectory.position_m + move.shift_m(np.linspace(begin, step.end_s, 60))
+        if trajectory.floor.can_stand(circle_m).all():
             trajectory.moves[-1].append(move)
             trajectory.position_m = trajectory.position_m + move.end_shift_m
             trajectory.heading_rad = direction + move.curvature_per_m * move.length_m
             trajectory.last_direction_rad = None
-            trajectory.cost += float(trajectory.floor.cost_at(round_).mean()) + 0.3 * (0.9 - radius)
+            trajectory.cost += float(trajectory.floor.cost_at(circle_m).mean()) + 0.3 * (CIRCLE_RADII_M[0] - radius)
             return
     raise NoTrajectory("no room for a circle of 0.4 m")

@@ -1,0 +1,105 @@
+"""Augmentation of generated windows: points are dropped, clutter and false points added, time and sides reversed.
+
+Which weak points a real board reports (thresholds, antennas, cables, furniture) is unknown beforehand, so a recogniser
+should not depend on it. A copy costs a hundredth of a new window.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.records import PointCloud
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.window_features import SPEED_EDGES_MPS, STILL_MPS
+
+
+@dataclass(frozen=True, kw_only=True)
+class WindowAugmentation:
+    """Limits of the augmentation; each copy samples its own values.
+
+    Moving and static points are kept with a probability between the given minimum and 1, whole frames are dropped, and
+    some points of the slowest velocity are reported as static. Up to `most_things` static objects add up to three
+    neighbouring range cells each, detected always or intermittently; `false_points` is the largest mean number of
+    moving false alarms. Half of the copies are reversed in time (with the sign of velocity), half are reflected.
+    """
+
+    least_moving: float = 0.35
+    least_resting: float = 0.2
+    frames_lost: float = 0.15
+    slow_at_rest: float = 0.3
+    most_things: int = 4
+    false_points: float = 1.0
+    tilt_rad: float = 0.05
+    cell_m: float = 0.0436
+
+
+Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
+
+
+def augmented(
+    window: PointRecording, rng: np.random.Generator, how: WindowAugmentation | None = None
+) -> PointRecording:
+    """One augmented copy of a window; `snr_db` becomes nan."""
+    how = how or WindowAugmentation()
+    cloud, frames = window.cloud, window.num_frames
+    columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
+    body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
+    body = _reversed(body, frames, rng)
+    parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng)]
+    frame, columns = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
+    order = np.argsort(frame, kind="stable")
+    frame, (x, y, z, velocity) = frame[order], columns[order].T
+    tilt = rng.normal(0, how.tilt_rad)
+    return replace(
+        window,
+        cloud=PointCloud(
+            frame=frame, x_m=x, y_m=y * np.cos(tilt) - z * np.sin(tilt), z_m=z * np.cos(tilt) + y * np.sin(tilt),
+            radial_velocity_mps=velocity, snr_db=np.full(len(frame), np.nan),
+        ),
+    )  # fmt: skip
+
+
+def _thinned(
+    frame: np.ndarray, columns: np.ndarray, frames: int, how: WindowAugmentation, rng: np.random.Generator
+) -> Points:
+    """Drops points, frames, and the velocity of slow points; three copies in ten drop no single points."""
+    speed = np.abs(columns[:, 3])
+    spared = rng.random() < 0.3
+    moving, resting = (1.0 if spared else rng.uniform(least, 1.0) for least in (how.least_moving, how.least_resting))
+    kept = rng.random(len(frame)) < np.where(speed > STILL_MPS, moving, resting)
+    kept &= (rng.random(frames) >= rng.uniform(0, how.frames_lost))[frame]
+    columns = columns.copy()
+    stops = (speed < SPEED_EDGES_MPS[1]) & (rng.random(len(frame)) < rng.uniform(0, how.slow_at_rest))
+    columns[stops, 3] = 0.0
+    return frame[kept], columns[kept]
+
+
+def _reversed(points: Points, frames: int, rng: np.random.Generator) -> Points:
+    """Reverses time and reflects left-right, each with probability 1/2."""
+    frame, columns = points
+    backwards, reflected = rng.random(2) < 0.5
+    columns = columns * np.array([-1.0 if reflected else 1.0, 1.0, 1.0, -1.0 if backwards else 1.0])
+    return (frames - 1 - frame if backwards else frame), columns
+
+
+def _static_objects(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> list[Points]:
+    """Static objects at any range, detected always or intermittently."""
+    found = []
+    for _ in range(int(rng.integers(how.most_things + 1))):
+        nearest_m, aside = rng.uniform(0.9, 5.5), rng.normal(0, 0.3)
+        share = float(rng.choice([1.0, 0.98, 0.9, 0.6, 0.3, 0.1]))
+        for cell in range(int(rng.integers(1, 4))):
+            frame = np.flatnonzero(rng.random(frames) < share)
+            range_m = nearest_m + cell * how.cell_m
+            place = [range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.3), 0.0]
+            found.append((frame, np.tile(place, (len(frame), 1))))
+    return found
+
+
+def _false_points(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> Points:
+    """Moving false alarms."""
+    number = int(rng.poisson(float(rng.choice([0.0, 0.0, how.false_points / 4, how.false_points]))))
+    range_m, aside = rng.uniform(1, 5, number), rng.normal(0, 0.4, number)
+    velocity = rng.choice([-1.0, 1.0], number) * rng.choice([0.615, 1.23], number)
+    columns = np.stack([range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.4, number), velocity], axis=1)
+    return rng.integers(frames, size=number), columns

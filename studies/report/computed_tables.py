@@ -1,0 +1,168 @@
+"""Tables that need more than a declaration: best of each in bold, paired differences, the registry of activities."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+from mmweaver.motion.language.activities import BODY, HANDS
+from studies.network.ablation_variants import VARIANTS, WHOLE
+from studies.report.cell_formats import cell, line, markdown, number
+from studies.report.table_layouts import contexts_of, records_of
+
+OURS = ("mmw", "mmw_keep_noise")  # what the baseline codecs are compared with
+ERRORS = ("nmse_active_db", "nmse_moving_db", "nmse_db")
+Scores = dict[tuple[str, int], dict[str, list[float | None]]]  # {(signal, bytes): {codec: value of each of ERRORS}}
+
+
+def _codec_scores(results: Path) -> tuple[Scores, list[str]]:
+    """Errors of every codec, and the codecs, ours first."""
+    found: Scores = {}
+    records = sorted(records_of(results, "codecs/*"), key=lambda record: record["method"] not in OURS)
+    for record in records:
+        for row in record["rows"]:
+            scores = [row["metrics"][name]["value"] for name in ERRORS]
+            found.setdefault((row["dataset"]["name"], row["size"]["bytes_allowed"]), {})[record["method"]] = scores
+    return found, [record["method"] for record in records]
+
+
+def codecs_table(results: Path) -> str:
+    """Error over active / moving cells in dB, one row a codec, one column a size; the best of each in bold."""
+    found, codecs = _codec_scores(results)
+    sizes = sorted({size for _, size in found})
+    lines = []
+    for signal in dict.fromkeys(signal for signal, _ in found):
+        for codec in codecs:
+            pairs = [_with_best(found[signal, size], codec) for size in sizes]
+            lines.append([signal, codec, *pairs])
+    return markdown(["signal", "codec", *(f"{size:,} B" for size in sizes)], lines)
+
+
+def _with_best(scores: dict[str, list[float | None]], codec: str) -> str:
+    """Active / moving error of a codec, each in bold where no codec has less."""
+    words = []
+    for index in (0, 1):
+        value = scores.get(codec, [None] * 3)[index]
+        least = _least(one[index] for one in scores.values())
+        words.append(f"**{number(value)}**" if value is not None and value == least else number(value))
+    return " / ".join(words)
+
+
+def codec_margins_table(results: Path) -> str:
+    """How many dB less error .mmw has than the best baseline, active / moving / all cells; losses in bold."""
+    found, _ = _codec_scores(results)
+    sizes = sorted({size for _, size in found})
+    signals = dict.fromkeys(signal for signal, _ in found)
+    lines = [[signal, *(_margins(found[signal, size]) for size in sizes)] for signal in signals]
+    return markdown(["signal", *(f"{size:,} B" for size in sizes)], lines)
+
+
+def _margins(scores: dict[str, list[float | None]]) -> str:
+    words = []
+    for index, ours in enumerate(scores[OURS[0]]):
+        best = _least(score[index] for codec, score in scores.items() if codec not in OURS)
+        margin = None if best is None or ours is None else round(best - ours, 2)
+        words.append(f"**{number(margin)}**" if margin is not None and margin < 0 else number(margin))
+    return " / ".join(words)
+
+
+def _least(values: Iterable[float | None]) -> float | None:
+    return min((value for value in values if value is not None), default=None)
+
+
+def statistics_table(results: Path) -> str:
+    """Recorded compared with simulated, each with the spread over its quarters; bold where the spreads do not meet."""
+    rows = contexts_of(results, ("signal_statistics/physics",))
+    lines = []
+    for name, metric in rows[0]["metrics"].items():
+        cells: list[str] = []
+        for real, made in zip(rows[::2], rows[1::2], strict=True):
+            recorded, simulated = real["metrics"].get(name), made["metrics"].get(name)
+            cells += ["", ""] if recorded is None else _spreads(recorded, simulated)
+        lines.append([f"{metric['definition']} ({metric['unit']})", *cells])
+    return markdown(["number", *(f"{row['dataset']['name']}, {row['dataset']['origin']}" for row in rows)], lines)
+
+
+def _spreads(recorded: dict[str, Any], simulated: dict[str, Any]) -> list[str]:
+    (low, high), (least, most) = recorded["quarters"], simulated["quarters"]
+    texts = [
+        f"{number(one['value'])}; {number(one['quarters'][0])} to {number(one['quarters'][1])}"
+        for one in (recorded, simulated)
+    ]
+    return [f"**{text}**" for text in texts] if high < least or most < low else texts
+
+
+ABLATION = (
+    ("ra_ssim", "RA SSIM", 2), ("rd_ssim", "RD SSIM", 2), ("mean_ra_db", "expected RA map, dB", 1),
+    ("mean_rd_db", "expected RD map, dB", 1), ("person_ra_db", "person alone RA, dB", 1),
+    ("person_rd_db", "person alone RD, dB", 1),
+)  # fmt: skip
+
+
+def ablation_table(results: Path) -> str:
+    """A row a variant: its score, and the paired difference from the whole network with a bootstrap interval."""
+    rows = {row["method"]: row["metrics"] for row in contexts_of(results, ("ablation/*",))}
+    if WHOLE not in rows:
+        raise InputError(f"{results / 'ablation'} lacks the whole network; run the study first")
+    order = [name for name in (*VARIANTS, *sorted(set(rows) - set(VARIANTS))) if name in rows]
+    lines = [
+        [name, *(_difference(rows[name], rows[WHOLE], column, digits) for column, _, digits in ABLATION)]
+        for name in order
+    ]
+    return markdown(["variant", *(text for _, text, _ in ABLATION)], lines)
+
+
+def _difference(own: dict[str, Any], whole: dict[str, Any], column: str, digits: int) -> str:
+    if column not in own:
+        return ""
+    value = f"{own[column]['value']:.{digits}f}"
+    differences = np.array(own[column]["each"]) - np.array(whole[column]["each"])
+    if not differences.any():
+        return value
+    draws = stream(0, "bootstrap").integers(len(differences), size=(2000, len(differences)))
+    low, high = np.percentile(differences[draws].mean(axis=1), (2.5, 97.5))
+    more = digits + 1
+    return f"{value} ({differences.mean():+.{more}f}; {low:+.{more}f} to {high:+.{more}f})"
+
+
+def activities_table(results: Path) -> str:
+    """One row an activity, from the registry alone; `results` is not read."""
+    lines = [
+        [activity.name, activity.example, f"{activity.natural_s:g}", "yes" if activity.counted_s else ""]
+        for activity in (*BODY, *HANDS)
+    ]
+    return markdown(["activity", "example", "natural time, s", "can be counted"], lines)
+
+
+GROUPS = (("zero_shot/blind", ("blind",)), ("zero_shot/development", ("development", "first half", "second half")))
+VOTES = ("window", "three_windows", "recording")
+
+
+def zero_shot_table(results: Path) -> str:
+    """One row a recogniser and group of recordings, then the nested selection, then the confusion of windows."""
+    lines, last = [], {}
+    for source, names in GROUPS:
+        rows = contexts_of(results, (source,))
+        for name, row in zip(names, rows, strict=False):
+            scores = [cell(f"{{metrics.{vote}:interval.3}}", row) for vote in VOTES]
+            title = name if row is rows[0] else f"*{name}*"
+            chance = cell("{metrics.window.baseline.chance:.2f}", row)
+            lines.append([title, str(row["dataset"]["recordings"]), *scores, chance])
+        last = rows[0]
+    text = [markdown(["recogniser", "recordings", "windows of 2 s", "6 s", "a recording", "chance"], lines)]
+    (nested,) = records_of(results, "zero_shot/nested")
+    halves = [
+        f"{row['metrics']['window']['chosen_on']:.3f} on the {half} half, which chose; "
+        f"{row['metrics']['window']['value']:.3f} on the other"
+        for half, row in zip(("first", "second"), nested["rows"], strict=True)
+    ]
+    text += ["", f"Features, copies and trees chosen out of {nested['config']['candidates']}: {'; '.join(halves)}."]
+    kinds = last["classes"]
+    text += ["", "Windows of 2 s after development, true in rows, recognised in columns:", ""]
+    text += [line("", *kinds), line(*["---"] * (1 + len(kinds)))]
+    confusion = last["metrics"]["window"]["confusion"]
+    text += [line(kind, *map(str, counts)) for kind, counts in zip(kinds, confusion, strict=True)]
+    return "\n".join(text)

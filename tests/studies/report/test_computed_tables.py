@@ -1,0 +1,62 @@
+"""Tables that need more than a declaration, of small results."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mmweaver.core.errors import InputError
+from studies.report.computed_tables import ablation_table, codec_margins_table, codecs_table, zero_shot_table
+
+
+def put(folder: Path, name: str, rows: list[dict[str, Any]], **more: Any) -> None:
+    file = folder / f"{name}.json"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps({"method": file.stem, "rows": rows, **more}))
+
+
+def test_an_ablation_shows_differences_of_pairs(tmp_path: Path):
+    for name, each in (("whole", [0.2, 0.8]), ("no_ghosts", [0.1, 0.7]), ("realization", [0.9, 0.9])):
+        metrics = {"ra_ssim": {"value": sum(each) / 2, "each": each}}
+        put(tmp_path, f"ablation/{name}", [{"method": name.replace("_", " "), "metrics": metrics}])
+    lines = ablation_table(tmp_path).splitlines()
+    assert [line.split("|")[1].strip() for line in lines[2:]] == ["whole", "no ghosts", "realization"]
+    assert lines[2].startswith("| whole | 0.50 |")
+    assert "0.40 (-0.100; -0.100 to -0.100)" in lines[3]  # rooms differ, their differences do not
+
+
+def test_an_ablation_needs_the_whole_network(tmp_path: Path):
+    put(tmp_path, "ablation/no_ghosts", [{"method": "no ghosts", "metrics": {}}])
+    with pytest.raises(InputError, match="lacks the whole"):
+        ablation_table(tmp_path)
+
+
+def test_the_best_codec_is_bold_and_margins_are_to_the_best_baseline(tmp_path: Path):
+    for codec, error in (("mmw", -10.0), ("zfp", -8.0), ("svd", -9.0)):
+        metrics = {name: {"value": error} for name in ("nmse_active_db", "nmse_db")} | {
+            "nmse_moving_db": {"value": None}
+        }
+        put(tmp_path, f"codecs/{codec}", [{"dataset": {"name": "walk"}, "size": {"bytes_allowed": 2500},
+                                           "metrics": metrics}])  # fmt: skip
+    assert "| walk | mmw | **-10.0** / - |" in codecs_table(tmp_path)
+    assert codec_margins_table(tmp_path).endswith("| walk | 1.00 / - / 1.00 |")
+
+
+def test_zero_shot_has_groups_nested_selection_and_confusion(tmp_path: Path):
+    def metric(value: float) -> dict[str, Any]:
+        return {"value": value, "interval_95": [value - 0.1, value + 0.1], "baseline": {"chance": 0.2},
+                "confusion": [[3, 1], [0, 4]]}  # fmt: skip
+
+    for method, values in (("blind", (0.5,)), ("development", (0.9, 0.91, 0.88))):
+        rows = [{"dataset": {"recordings": 7}, "classes": ["a", "b"],
+                 "metrics": {key: metric(value) for key in ("window", "three_windows", "recording")}}
+                for value in values]  # fmt: skip
+        put(tmp_path, f"zero_shot/{method}", rows)
+    halves = [{"metrics": {"window": {"value": value, "chosen_on": 0.92}}} for value in (0.87, 0.89)]
+    put(tmp_path, "zero_shot/nested", halves, config={"candidates": 24})
+    table = zero_shot_table(tmp_path)
+    assert "out of 24: 0.920 on the first half, which chose; 0.870 on the other" in table
+    assert "| blind | 7 | 0.500 (0.400 to 0.600)" in table
+    assert "| *second half* | 7 | 0.880" in table
+    assert "| a | 3 | 1 |" in table
