@@ -209,7 +209,6 @@ PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json
         ([*PICTURES, "--radar", "lines.cfg"], "lines.cfg"),
         ([*PICTURES, "--radar", "missing.json"], "missing.json"),
         ([*PICTURES, "--background", "nowhere"], "does not exist"),
-        ([*PICTURES, "--background", ".", "--bin"], "--background is for the network"),
         ([*PICTURES, "--method", "magic"], "physics"),
         ([*PICTURES, "--tx-order", "0,1"], "tx_order"),
         ([*PICTURES, "--out", "full"], "--overwrite"),

@@ -12,7 +12,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.dsp.cube import adc_from_cube, cube_values, static_samples
+from mmweaver.dsp.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers
@@ -183,7 +183,7 @@ class LearnedRoom:
             window = FitWindow.of(self.config, len(paths.occluded), 0)
             points = signal_points(paths.moving, self.renderer.clock, window.response)
             layers = Layers(
-                points=points, static=self.layer / window.turn[:, self.config.num_loops // 2],
+                points=points, static=self.layer / window.phasor[:, self.config.num_loops // 2],
                 calibration=torch.ones(self.config.num_antennas, dtype=torch.complex64), noise_power=self.noise_power,
             )  # fmt: skip
         return ScattererField(layers, window, CubeGrid.of(self.config, len(paths.occluded)), 1.0, 1.0)
@@ -201,7 +201,7 @@ class LearnedRoom:
             paths = self._paths(motions)
             grid = CubeGrid.of(self.config, len(paths.occluded))
             noise = cell_noise(stream(seed, "scatterer field noise"), self.config, len(paths.occluded), 0)
-            noise *= np.float32(math.sqrt(self.noise_power))
+            noise *= np.float32(math.sqrt(self.noise_power)) * tdm_compensation(self.config)
             values = self.renderer.moving(paths.moving)
             lost = paths.occluded[:, : self._num_noticed].bool()
             occluded_layers = [self._noticed[row].layer() for row in lost]
@@ -231,8 +231,8 @@ class LearnedRoom:
             clean = synthesis.moving(moving) + (static - synthesis.occluded(here))[:, None]
             clean = clean.numpy() + self._sample_noise(noise.values[some], first, seed)
             samples[some] = clean if config.complex_samples else clean.real
-        count_sqrt_mw = self.background.unit if self.background and not self.background.is_calibrated else None
-        samples = quantised(torch.from_numpy(samples), count_sqrt_mw or config.adc_count_sqrt_mw).numpy()
+        count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
+        samples = quantised(torch.from_numpy(samples), count_sqrt_mw).numpy()
         return AdcCube(samples=samples, config=config, scale=1.0)
 
     def _static_adc(self, synthesis: AdcSynthesis) -> Tensor:
@@ -249,9 +249,8 @@ class LearnedRoom:
         config = self.config
         shape = (len(cells), config.num_loops, config.num_tx, config.num_rx, config.num_samples, 2)
         white = stream(seed, "learned receiver noise", first).standard_normal(shape, dtype=np.float32)
-        share = self.radar.noise / config.noise_power_mw  # of a sample's noise power in a cell
-        level = math.sqrt(self.noise_power / share / 2)
-        white = white.view(np.complex64)[..., 0] * np.float32(level)
+        power_mw = config.noise_power_mw if self.background is None else self.background.sample_noise_mw
+        white = white.view(np.complex64)[..., 0] * np.float32(math.sqrt(power_mw / 2))
         if not config.complex_samples:
             white = white.real.astype(np.complex64)
         missing = cells - cube_values(white, config)

@@ -30,12 +30,13 @@ SOMEBODY = "something moves in the background recording: its mean over time was 
 
 @dataclass(frozen=True, kw_only=True)
 class BackgroundRecording:
-    """Static clutter (range, antenna) at zero Doppler in sqrt(mW), and the noise power of a cell in mW."""
+    """What a recording tells of room and receiver."""
 
-    static: Tensor
-    noise_power: float
+    static: Tensor  # complex (range, antenna), the cube at zero Doppler, in sqrt(mW)
+    noise_power: float  # mW in a cell of the cube
+    sample_noise_mw: float  # of an ADC sample
     unit: float  # sqrt(mW) of 1.0 in the recording
-    is_calibrated: bool = True  # else the unit was inferred, and 1.0 is a count of the converter
+    count_sqrt_mw: float  # of the converter
     assumptions: tuple[str, ...]
 
     @classmethod
@@ -57,10 +58,12 @@ class BackgroundRecording:
         noise = noise_power(recording)
         if noise is not None and _moves(recording, noise):
             notes.append(SOMEBODY)
+        config, power = radar.config, radar.noise if noise is None else noise * unit**2
+        is_calibrated = np.isfinite(recording.scale)  # else 1.0 is a count of the converter
         return cls(
             static=torch.from_numpy((mean * unit).astype(np.complex64)), unit=float(unit),
-            noise_power=radar.noise if noise is None else noise * unit**2, assumptions=tuple(notes),
-            is_calibrated=bool(np.isfinite(recording.scale)),
+            noise_power=float(power), sample_noise_mw=float(power * config.noise_power_mw / radar.noise),
+            count_sqrt_mw=config.adc_count_sqrt_mw if is_calibrated else float(unit), assumptions=tuple(notes),
         )  # fmt: skip
 
     def conditioned(self, paths: StaticPaths, renderer: CubeRenderer) -> StaticPaths:
