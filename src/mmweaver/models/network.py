@@ -18,6 +18,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.ablations import flat_body, joints_alone, level_alone, uniform_surfaces
 from mmweaver.models.body_anchors import (
     BODY_FEATURES,
@@ -31,7 +32,7 @@ from mmweaver.models.body_anchors import (
     ghost_anchors,
 )
 from mmweaver.models.body_prior import BodyPrior, body_prior, ghost_section
-from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
+from mmweaver.models.environment_encoder import DEFAULT_ENCODER, ENCODERS, MAP_CHANNELS, Z_ENV
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
@@ -59,16 +60,16 @@ class SceneEncoding(TensorRecord):
 class WeaverNetwork(nn.Module):
     """Rooms and motions -> mean echoes. `encode_room` once a room, then `moving` for each motion.
 
-    `without` leaves parts out (`PARTS`), to see what they are worth.
+    `without` leaves parts out (`PARTS`), to see what they are worth. `encoder` names the environment encoder.
     """
 
-    def __init__(self, without: Iterable[str] = ()) -> None:
+    def __init__(self, without: Iterable[str] = (), encoder: str = DEFAULT_ENCODER) -> None:
         super().__init__()
         self.without = frozenset(without)
         unknown = self.without - set(PARTS)
         if unknown:
             raise InputError(f"unknown parts {', '.join(sorted(unknown))}; known: {', '.join(PARTS)}")
-        self.environment = EnvironmentEncoder()
+        self.environment = ENCODERS[encoder]()
         self.pose = PoseEncoder()
         self.point = _mlp(POINT_FEATURES + MAP_CHANNELS, 96, 1)
         self.face = _mlp(PLANE_FEATURES, 64, 1)
@@ -156,8 +157,7 @@ def _looked_up(places: Tensor, point_m: Tensor, view: SceneTensors) -> Tensor:
     """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
     camera = point_m @ view.camera_from_radar.transpose(-1, -2)
     depth = camera[..., 2].clamp(min=0.05)
-    column = view.camera[:, None, 0] * camera[..., 0] / depth + view.camera[:, None, 2]
-    row = view.camera[:, None, 1] * camera[..., 1] / depth + view.camera[:, None, 3]
+    column, row = pixel_coordinates(camera[..., 0], camera[..., 1], depth, *view.camera[:, None].unbind(-1))
     rows, columns = view.depth_m.shape[-2:]
     grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1)
     found = nn.functional.grid_sample(places, grid[:, None].clamp(-3, 3), align_corners=False)
