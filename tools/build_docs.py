@@ -30,7 +30,7 @@ REMOTE = re.compile(
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "docs")
     out = parser.parse_args().out.resolve()
     source = out / "source"
@@ -42,6 +42,7 @@ def main() -> int:
     decisions = write_decision_index(source / "decisions")
     packages = write_references(source / "reference")
     write_gallery(source / "gallery")
+    (source / "reference" / "studies.md").write_text(list_of_studies(), encoding="utf-8")
     for page in source.rglob("*.md"):
         page.write_text(rewritten(page.read_text(encoding="utf-8"), page, source), encoding="utf-8")
     settings = (ROOT / "zensical.toml").read_text(encoding="utf-8")
@@ -116,6 +117,15 @@ def write_references(folder: Path) -> str:
     return ", ".join(entries)
 
 
+def list_of_studies() -> str:
+    """What `python -m studies list` prints."""
+    command = [sys.executable, "-m", "studies", "list"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return (
+        f"# Studies\n\n`python -m studies run NAME` repeats one; `--help` lists its options.\n\n```text\n{listed}```\n"
+    )
+
+
 def command_line(parser: "Parser") -> str:
     """The help of every command, with all options."""
     parts = ["# Command line", "", "```text", parser.format_help().rstrip(), "```"]
@@ -132,6 +142,7 @@ def command_line(parser: "Parser") -> str:
 def write_gallery(folder: Path) -> None:
     """Runs every example and writes a page with its code, what it printed and its pictures, and a notebook of each."""
     import jupytext
+    from nbformat.v4 import new_markdown_cell
 
     folder.mkdir()
     page = ["# Gallery", "", "Each of these is a file of `examples/`, run as it is when this site is built.", ""]
@@ -143,12 +154,12 @@ def write_gallery(folder: Path) -> None:
         with chdir(work), redirect_stdout(printed):
             runpy.run_path(str(script), run_name="__main__")
         notebook = jupytext.reads(code, fmt="py:percent")
+        title = notebook.cells[0].source.strip().strip('"').rstrip(".")  # the docstring
+        notebook.cells[0] = new_markdown_cell(f"# {title}")
         jupytext.write(notebook, folder / f"{script.stem}.ipynb")
-        title = code.splitlines()[0].strip('"').rstrip(".")
         page += [f"## {title}", ""]
-        for cell in notebook.cells:
-            text = cell.source.removeprefix(f'"""{title}."""').strip()
-            page += [text if cell.cell_type == "markdown" else f"```python\n{text}\n```" if text else "", ""]
+        for cell in notebook.cells[1:]:
+            page += [cell.source if cell.cell_type == "markdown" else f"```python\n{cell.source}\n```", ""]
         page += ["It prints", "", f"```text\n{printed.getvalue().rstrip()}\n```", ""]
         page += [f"![{title}]({script.stem}/{picture.name})\n" for picture in sorted(work.glob("*.png"))]
         page += [f"[As a notebook]({script.stem}.ipynb)", ""]
