@@ -34,7 +34,7 @@ from mmweaver.core.shapes import (
 # Radar --------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True)
 class CubeGrid:
-    """Where the cells of a RadarCube lie: one axis a dimension, in the cube's order."""
+    """The axes of a RadarCube, one per dimension, in the cube's order."""
 
     frame_time_s: PerFrame  # start of each frame
     range_m: PerRange
@@ -44,7 +44,7 @@ class CubeGrid:
 
     @classmethod
     def of(cls, config: RadarConfig, num_frames: int) -> "CubeGrid":
-        """The grid that a radar's own FFTs give for so many frames."""
+        """The grid of a radar's own FFTs for `num_frames` frames."""
         return cls(
             frame_time_s=np.arange(num_frames) * config.frame_period_s,
             range_m=config.range_m,
@@ -62,10 +62,11 @@ class CubeGrid:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class AdcCube(ShownByFacts):
-    """What the receivers' converters wrote: complex64 (frame, loop, tx, rx, sample).
+    """Raw ADC samples: complex64 (frame, loop, tx, rx, sample).
 
-    `tx` counts physical transmitters, not turns. `scale` says what 1.0 means: the amplitude at the receiver's port in
-    sqrt(mW), nan where it is unknown (a recording). A radar with real samples has zero imaginary parts.
+    `tx` is the physical transmitter, not its position in the firing order. `scale` is the amplitude at the receiver's
+    port, in sqrt(mW), that the value 1.0 stands for; nan where it is unknown (a recording). The samples of a radar with
+    a real-valued converter have zero imaginary parts.
     """
 
     samples: AdcValues
@@ -83,7 +84,7 @@ class AdcCube(ShownByFacts):
 class RadarCube(ShownByFacts):
     """Range-Doppler spectrum of every virtual antenna: complex64 (frame, range, doppler, antenna).
 
-    TDM phase is compensated, so antennas of one cell differ by their places alone. `scale` as in AdcCube.
+    The TDM-MIMO phase is compensated, so antennas of one cell differ only by their positions. `scale` as in AdcCube.
     """
 
     values: CubeValues
@@ -105,7 +106,7 @@ class RadarCube(ShownByFacts):
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class PointCloud(ShownByFacts):
-    """Detections of all frames, one row each."""
+    """Detections of all frames, one row per point."""
 
     frame: np.ndarray  # (point,) int, index of the frame
     x_m: PerPoint
@@ -130,14 +131,14 @@ class PointCloud(ShownByFacts):
 class PoseSequence(ShownByFacts):
     """Joints of one person at given times, in the radar's frame; SMPL order, see core.skeleton.
 
-    A motion room gives it densely (100 Hz and more), so that slow time can be interpolated; `joints_m` at the radar's
-    frames is a resampled one.
+    Motion planning samples it densely (100 Hz and more), so that it can be interpolated in slow time; poses at the
+    radar's frames are resampled from that.
     """
 
     time_s: PerFrame
     joints_m: Joints
     height_m: float
-    subject: int = 0  # names the body: its surface points and micro-phases
+    subject: int = 0  # number of the body: its surface points and random phases
 
     def facts(self) -> dict[str, str]:
         """Times, joints and the body."""
@@ -152,7 +153,7 @@ class PoseSequence(ShownByFacts):
 # Scene --------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True)
 class CameraIntrinsics:
-    """Pinhole camera, in pixels of the picture it belongs to; pixel centres at whole numbers."""
+    """Pinhole camera, in pixels of its picture; pixel centres at integer coordinates."""
 
     fx: float
     fy: float
@@ -164,7 +165,7 @@ class CameraIntrinsics:
 
 @dataclass(frozen=True, kw_only=True)
 class ClassMask:
-    """What each pixel shows: an index into `names`, COCO-Stuff names ("couch", "wall-concrete"); 0 = not known."""
+    """Class of each pixel: an index into `names`, COCO-Stuff names ("couch", "wall-concrete"); 0 = unknown."""
 
     index: ClassPixels
     names: tuple[str, ...]  # names[0] is "unlabeled"
@@ -177,7 +178,7 @@ class RgbdPhoto(ShownByFacts):
     rgb: RgbPixels
     depth_m: DepthPixels
     intrinsics: CameraIntrinsics
-    classes: ClassMask | None = None  # where somebody said what is what
+    classes: ClassMask | None = None  # where a segmentation is given
 
     def facts(self) -> dict[str, str]:
         """Size, and how much of it has a depth."""
@@ -204,7 +205,7 @@ class Plane:
 
 @dataclass(frozen=True, kw_only=True)
 class FreeSpace:
-    """Which places of the floor a body may stand on, on a square grid of cells."""
+    """Where on the floor a body can stand, on a square grid of cells."""
 
     x_m: np.ndarray  # (x,) centres of the columns
     y_m: np.ndarray  # (y,) centres of the rows
@@ -223,7 +224,7 @@ class Seat:
 
 @dataclass(frozen=True, kw_only=True)
 class Landmark:
-    """Something that a sentence may name as a place to go to: a door, a table, a window, a bed."""
+    """Something that a sentence can name as a destination: a door, a table, a window, a bed."""
 
     kind: str  # the word for it: door | table | window | ...
     position_m: Vec3  # its middle
