@@ -70,11 +70,11 @@ def test_one_person_and_several():
 def test_a_sentence_is_parsed_once(monkeypatch: pytest.MonkeyPatch):
     parsed: list[str] = []
 
-    def counting(text: str):
+    def counting(text: str, *options: float):
         parsed.append(text)
-        return parse(text)
+        return plan_motion(text, *options)
 
-    parse = module.parse
-    monkeypatch.setattr(module, "parse", counting)
+    plan_motion = module.plan_motion
+    monkeypatch.setattr(module, "plan_motion", counting)
     parse_request(AWR1843, [TEXT, "a person waves"])
     assert parsed == [TEXT, "a person waves"]

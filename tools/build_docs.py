@@ -30,7 +30,7 @@ REMOTE = re.compile(
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "docs")
     out = parser.parse_args().out.resolve()
     source = out / "source"
@@ -45,7 +45,7 @@ def main() -> int:
     for page in source.rglob("*.md"):
         page.write_text(rewritten(page.read_text(encoding="utf-8"), page, source), encoding="utf-8")
     settings = (ROOT / "zensical.toml").read_text(encoding="utf-8")
-    for place in ("src", "tools/doctest_blocks.py"):
+    for place in ("src", "tools/docstring_blocks.py"):
         settings = settings.replace(f'["{place}"]', f'["{(ROOT / place).as_posix()}"]')
     settings = settings.replace('"reference/api.md" }] }, # packages', f'"reference/api.md" }}, {packages}] }},')
     settings = settings.replace('["decisions/index.md"] }, # decisions', f'["decisions/index.md", {decisions}] }},')
@@ -132,6 +132,7 @@ def command_line(parser: "Parser") -> str:
 def write_gallery(folder: Path) -> None:
     """Runs every example and writes a page with its code, what it printed and its pictures, and a notebook of each."""
     import jupytext
+    from nbformat.v4 import new_markdown_cell
 
     folder.mkdir()
     page = ["# Gallery", "", "Each of these is a file of `examples/`, run as it is when this site is built.", ""]
@@ -143,12 +144,12 @@ def write_gallery(folder: Path) -> None:
         with chdir(work), redirect_stdout(printed):
             runpy.run_path(str(script), run_name="__main__")
         notebook = jupytext.reads(code, fmt="py:percent")
+        title = notebook.cells[0].source.strip().strip('"').rstrip(".")  # the docstring
+        notebook.cells[0] = new_markdown_cell(f"# {title}")
         jupytext.write(notebook, folder / f"{script.stem}.ipynb")
-        title = code.splitlines()[0].strip('"').rstrip(".")
         page += [f"## {title}", ""]
-        for cell in notebook.cells:
-            text = cell.source.removeprefix(f'"""{title}."""').strip()
-            page += [text if cell.cell_type == "markdown" else f"```python\n{text}\n```" if text else "", ""]
+        for cell in notebook.cells[1:]:
+            page += [cell.source if cell.cell_type == "markdown" else f"```python\n{cell.source}\n```", ""]
         page += ["It prints", "", f"```text\n{printed.getvalue().rstrip()}\n```", ""]
         page += [f"![{title}]({script.stem}/{picture.name})\n" for picture in sorted(work.glob("*.png"))]
         page += [f"[As a notebook]({script.stem}.ipynb)", ""]

@@ -39,6 +39,8 @@ _HOME = {
     "read_recording": "recordings.read_recording",
 }
 
+_MODULES = ("register", "testing")
+
 __all__ = [
     "PRESETS",
     "AdcCube",
@@ -62,10 +64,12 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Imports a public name from the module that defines it, at its first use."""
+    if name in _MODULES:
+        return import_module(f"mmweaver.{name}")
     if name not in _HOME:
         raise AttributeError(f"module 'mmweaver' has no attribute {name!r}")
     return getattr(import_module(f"mmweaver.{_HOME[name]}"), name)
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return [*__all__, *_MODULES]

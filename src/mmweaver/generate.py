@@ -22,10 +22,10 @@ from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
-from mmweaver.dsp.detection import check_points, detect
+from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.generation import Generation, Room
-from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Signal
+from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.mocap.clip import MotionClip
@@ -43,18 +43,20 @@ from mmweaver.scene.sample_photo import sample_photo
 class Weaver:
     """Generates radar signals with one method and one radar.
 
-    `method` is a name in METHODS: "weaver", the network, "physics", or "auto", the network for all that it can make,
-    which is all but raw ADC samples, several people, and frames of long chirps (see `methods.Auto`). `radar` is a
-    preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener` hears the name of each stage as it begins.
-    `points` chooses the point cloud: "cfar", this project's own, or "firmware", that of TI's demo, which needs ADC
-    samples; `firmware` are its settings (default: what the radar's .cfg or preset says).
+    `method` is an object that follows `methods.Method`, or a name in METHODS: "weaver", the network, "physics", or
+    "auto", the network for all that it can make, which is all but raw ADC samples, several people, and frames of long
+    chirps (see `methods.Auto`). `radar` is a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
+    is called with the name of each stage as it begins.
+    `points` chooses the point cloud: "cfar", this project's own, "firmware", that of TI's demo, which needs ADC
+    samples, or a registered detector; `firmware` are the settings of TI's (default: what the radar's .cfg or preset
+    says).
     `weights`: a file or folder of `mmweaver train`, or a Hub name, for the network, which then makes all signals;
     `from_pretrained` is the short way. Raises InputError for what is not known.
     """
 
     def __init__(
         self,
-        method: str = DEFAULT_METHOD,
+        method: str | Method = DEFAULT_METHOD,
         radar: str | Path | RadarConfig = "awr1843",
         *,
         listener: Callable[[str], object] | None = None,
@@ -64,9 +66,14 @@ class Weaver:
     ):
         if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
-        self.method_name = method if weights is None else "weaver"
         file = None if weights is None else _found(weights)
-        self.method = METHODS[method]() if file is None else Learned(file)
+        self.method: Method
+        if not isinstance(method, str):
+            self.method_name = str(getattr(method, "__name__", type(method).__name__))
+            self.method = method
+        else:
+            self.method_name = method if file is None else "weaver"
+            self.method = METHODS[method]() if file is None else Learned(file)
         self.weights = None if file is None else file_digest(file)
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         self._listener = listener
@@ -156,7 +163,7 @@ class Weaver:
 
         Raises InputError for a request that cannot be met.
         """
-        return parse_request(self.radar, text, **asked, needs_adc=self.points == "firmware")
+        return parse_request(self.radar, text, **asked, needs_adc=needs_adc(self.points))
 
     def generate(
         self,
@@ -200,7 +207,7 @@ class Weaver:
         motions = tuple(person.pose for person in people)
         signal = self.method(
             room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
-            keep_adc=request.keep_adc or self.points == "firmware", stages=stages,
+            keep_adc=request.keep_adc or needs_adc(self.points), stages=stages,
         )  # fmt: skip
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -58,6 +58,7 @@ class Signal:
     method: str | None = None
 
 
+@runtime_checkable
 class Method(Protocol):
     """A way from a scene and the people moving in it to the signal.
 
@@ -206,5 +207,7 @@ class Auto:
 
 DEFAULT_METHOD = "auto"
 METHODS: Registry[Callable[[], Method]] = Registry(
-    "method", [(DEFAULT_METHOD, Auto), ("weaver", Learned), ("physics", Physics)]
+    "method",
+    [(DEFAULT_METHOD, Auto), ("weaver", Learned), ("physics", Physics)],
+    entry_points="mmweaver.methods",
 )

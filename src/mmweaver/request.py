@@ -12,6 +12,7 @@ from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE, Place
+from mmweaver.motion.register_activity import load_activity_plugins
 
 MAX_FRAMES = 2000
 FPS_LIMITS = (0.1, 1000.0)
@@ -119,7 +120,14 @@ def parse_request(
 
 
 def _scheduled(text: str, config: RadarConfig, frames: int) -> MotionPlan:
-    return plan_motion(text, frames * config.frame_period_s, 1 / config.frame_period_s)
+    """The parsed and scheduled sentence; activities of plug-ins are looked up where it is not understood without."""
+    duration_s = frames * config.frame_period_s
+    try:
+        return plan_motion(text, duration_s, 1 / config.frame_period_s)
+    except InputError:
+        if not load_activity_plugins():
+            raise
+        return plan_motion(text, duration_s, 1 / config.frame_period_s)
 
 
 def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:

@@ -90,7 +90,7 @@ def understood(sentences: list[Sentence]) -> dict[str, str]:
 
 
 def sampled(readings: dict[str, str], checking: list[Sentence], before: Collection[str]) -> list[str]:
-    """The names to annotate: the first 200 understood ones of the checking half in a fixed order, without earlier ones."""
+    """The names to annotate: the first 200 understood of the checking half in a fixed order, without earlier ones."""
     order = stream(SEED, "kitml", "judged").permutation(len(checking))
     return [checking[k].name for k in order if checking[k].name in readings and checking[k].name not in before][:JUDGED]
 

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import draw_azimuth_standing, draw_doppler_time, draw_photo
+from mmweaver.figures.preview import draw_azimuth_with_clutter, draw_doppler_time, draw_photo
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from studies.manifest import StudyRun
@@ -50,7 +50,7 @@ def draw_rooms(path: Path, rooms: Sequence[dict[str, FigureData]]) -> None:
             row[0].set_title(views[METHODS[0]].title.partition(":")[0])
             for index, name in enumerate(METHODS):
                 draw_doppler_time(row[1 + index], views[name])
-                draw_azimuth_standing(row[3 + index], views[name])
+                draw_azimuth_with_clutter(row[3 + index], views[name])
                 row[1 + index].set_title(f"{name}: Doppler over time")
                 row[3 + index].set_title(f"{name}: the room, from above")
         save_small(figure, path)

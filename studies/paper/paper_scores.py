@@ -37,8 +37,10 @@ Scores = dict[str, dict[str, float]]  # {row: {column: value}} of one case
 def scores_of(
     cases: list[Case], method: Callable[[Case], RadarCube], cache: RoomCache
 ) -> dict[str, dict[str, np.ndarray]]:
-    """{row: {column: value of each case}}: zeros, static_mean and the method; `energy_db` is that of the cube over that of
-    the ground truth, which reveals a collapse."""
+    """{row: {column: value of each case}}: zeros, static_mean and the method.
+
+    `energy_db` is the energy of the cube over that of the ground truth, which reveals a collapse.
+    """
     each: list[Scores] = [cache.figures(_name(case), partial(_scores, case, method)) for case in cases]
     return {row: {name: np.array([one[row][name] for one in each]) for name in each[0][row]} for row in each[0]}
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
-from mmweaver.figures.theme import INK, POWER_MAP, STYLE, TRUTH, colour_bar, label_axes
+from mmweaver.figures.theme import GROUND_TRUTH, INK, POWER_MAP, STYLE, colour_bar, label_axes
 from studies.physics.micro_doppler_measures import Spectrogram
 
 if TYPE_CHECKING:
@@ -47,5 +47,5 @@ def _spectrogram(axes: "Axes", seen: Spectrogram) -> Any:
         seen.time_s, seen.velocity_mps, power.T, cmap=POWER_MAP, vmin=-SPAN_DB, vmax=0, shading="nearest",
         rasterized=True,
     )  # fmt: skip
-    axes.plot(seen.time_s, seen.pelvis_mps, color=TRUTH, linewidth=0.8, linestyle="--")
+    axes.plot(seen.time_s, seen.pelvis_mps, color=GROUND_TRUTH, linewidth=0.8, linestyle="--")
     return image

@@ -146,7 +146,7 @@ def sample_room(config: RadarConfig, seed: int) -> AdcCube:
 
 
 def walker(config: RadarConfig, seed: int) -> AdcCube:
-    """One frame of a person walking at the place of one of the two recorded people, with a wall at that of the recording."""
+    """One frame of a person walking at the place of a recorded one, with a wall where the recording has it."""
     pose = pose_of("walking", seconds=2.0, seed=seed)
     middle_s = float(np.mean(pose.time_s))
     pelvis = pose.joints_m[len(pose.time_s) // 2, 0]

@@ -17,7 +17,7 @@ import numpy as np
 from mmweaver.core.seeding import stream
 from mmweaver.recognition.activity_classifier import ActivityClassifier
 from mmweaver.recognition.frozen_activity import Frozen, load_frozen
-from mmweaver.recognition.recording_files import read_recordings
+from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.window_features import feature_matrix
 from studies.manifest import StudyRun
@@ -42,7 +42,7 @@ def accuracy(
     rows, names = [features[is_training]], [labels[is_training]]
     weights = [np.ones(int(is_training.sum()))]
     if generated:
-        made = frozen.made
+        made = frozen.training
         rows, names = [*rows, made.features], [*names, made.labels]
         weights = [weights[0] * len(made.labels) / max(int(is_training.sum()), 1), np.ones(len(made.labels))]
     model = ActivityClassifier(replace(frozen.classifier, repetitions=1))
@@ -54,10 +54,10 @@ def accuracy(
 def measure(name: str, recordings: Path, run: StudyRun) -> Path:
     """Writes results/zero_shot/curve.json."""
     frozen = load_frozen(name)
-    people = read_recordings(recordings, frozen.labels)
+    people = read_point_recordings(recordings, frozen.labels)
     windows = [window for one in people for window in one.windows(frozen.window_s)]
     owner = np.repeat(np.arange(len(people)), [len(one.windows(frozen.window_s)) for one in people])
-    features, _ = feature_matrix(windows, frozen.made.names)
+    features, _ = feature_matrix(windows, frozen.training.names)
     labels = np.array([window.label for window in windows])
     kinds = np.array([one.label for one in people])
     rows: list[dict[str, Any]] = []

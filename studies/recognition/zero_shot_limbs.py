@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.radhar import radhar_recipe
-from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.scoring import evaluate_recogniser, report
 from mmweaver.recognition.variation import VariationSample
-from mmweaver.recognition.zero_shot import measured
+from mmweaver.recognition.zero_shot import featurize
 from studies.manifest import StudyRun
 from studies.recognition.zero_shot_scores import digest, first_draws, read_cache
 from studies.study import Reads
@@ -49,7 +49,7 @@ def measure(cache: Path, each: int, seed: int, recordings: Path, run: StudyRun) 
     """Writes results/zero_shot/limbs.json."""
     recipe = radhar_recipe()
     windows, source = read_cache(cache)
-    people = read_recordings(recordings, recipe.activities)
+    people = read_point_recordings(recordings, recipe.activities)
     samples, labels = first_draws(recipe, each, seed), tuple(recipe.activities)
     rows: list[dict[str, Any]] = []
     for limb in LIMBS:
@@ -57,7 +57,7 @@ def measure(cache: Path, each: int, seed: int, recordings: Path, run: StudyRun) 
         for third, word in enumerate(THIRDS):
             began = time.process_time()
             own = thirds(value) == third
-            model = measured([window for window, one in zip(windows, own, strict=True) if one], seed=seed).train()
+            model = featurize([window for window, one in zip(windows, own, strict=True) if one], seed=seed).train()
             found = report(evaluate_recogniser(model, people, recipe.window_s))["window"]
             rows.append({
                 "dataset": {"name": f"RadHAR, {limb[:4]}, {word} third", "sha256": digest(recordings)},

@@ -18,10 +18,10 @@ import numpy as np
 from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.recognition.body_features import body_features
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.recording_files import read_recordings
+from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.scoring import balanced_accuracy
 from mmweaver.recognition.window_features import STILL_MPS, feature_matrix, window_features
-from mmweaver.recognition.zero_shot import COPIES, measured
+from mmweaver.recognition.zero_shot import COPIES, featurize
 from studies.manifest import StudyRun
 from studies.recognition.zero_shot_scores import digest, in_first_half, read_cache
 from studies.study import Reads
@@ -57,7 +57,7 @@ def guesses(windows: list[PointRecording], real: list[PointRecording]) -> dict[C
     """The labels that each candidate predicts for the real windows."""
     sets = feature_sets(real[0])
     everything = sets["all, heights"]
-    made = measured(windows, names=everything)
+    made = featurize(windows, names=everything)
     rows, _ = feature_matrix(real, everything)
     found: dict[Candidate, np.ndarray] = {}
     for features, copies, trees in product(sets, (0, COPIES), TREES):
@@ -89,7 +89,7 @@ def measure(caches: list[Path], recordings: Path, run: StudyRun) -> Path:
     began = time.process_time()
     read = [read_cache(cache) for cache in caches]
     windows = [window for one, _ in read for window in one]
-    people = read_recordings(recordings, sorted({window.label for window in windows}))
+    people = read_point_recordings(recordings, sorted({window.label for window in windows}))
     real = [window for one in people for window in one.windows(windows[0].duration_s)]
     first = np.array([in_first_half(window.name) for window in real])
     truth = np.array([window.label for window in real])

@@ -11,8 +11,8 @@ import numpy as np
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.recognition.generated_windows import generate_window
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.radhar import radhar_recipe
-from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.window_features import STILL_MPS
 from studies.manifest import StudyRun
 from studies.study import Reads
@@ -62,7 +62,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     from dataclasses import replace
 
     recipe = replace(radhar_recipe(), window_s=SECONDS)
-    people = read_recordings(options.recordings, recipe.activities)
+    people = read_point_recordings(options.recordings, recipe.activities)
     real = {}
     for label in recipe.activities:
         own = [one for one in people if one.label == label]

@@ -22,11 +22,11 @@ from mmweaver.recognition.activity_classifier import ClassifierSettings
 from mmweaver.recognition.frozen_activity import FOLDER, load_frozen, save_frozen
 from mmweaver.recognition.generated_windows import GenerationRecipe, generate_window, read_window, write_window
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.point_recording_files import read_point_recordings
 from mmweaver.recognition.radhar import radhar_recipe
-from mmweaver.recognition.recording_files import read_recordings
 from mmweaver.recognition.scoring import Evaluation, balanced_accuracy, evaluate_recogniser, report
-from mmweaver.recognition.variation import VariationSample, draw
-from mmweaver.recognition.zero_shot import TrainingSet, measured, own_cache, training_set
+from mmweaver.recognition.variation import VariationSample, sample_variation
+from mmweaver.recognition.zero_shot import TrainingSet, check_cache, featurize, training_set
 from studies.manifest import StudyRun
 from studies.provenance import provenance
 from studies.study import Reads
@@ -68,7 +68,7 @@ VARIED = ("tempo", "distance_m", "radar_height_m", "noise_db", "threshold_db", "
 def first_draws(recipe: GenerationRecipe, each: int, seed: int) -> list[VariationSample]:
     """The circumstances of each window in the order of `generate_windows` (its first draw, where it drew again)."""
     return [
-        draw(recipe.variation_of(label), stream(seed, "zero shot", label, index))
+        sample_variation(recipe.variation_of(label), stream(seed, "zero shot", label, index))
         for index in range(each)
         for label in recipe.activities
     ]
@@ -81,7 +81,7 @@ def score(name: str, recordings: Path, run: StudyRun) -> Path:
     """
     began = time.process_time()
     frozen = load_frozen(name)
-    evaluated = evaluate_recogniser(frozen.train(), read_recordings(recordings, frozen.labels), frozen.window_s)
+    evaluated = evaluate_recogniser(frozen.train(), read_point_recordings(recordings, frozen.labels), frozen.window_s)
     seconds = time.process_time() - began
     first = np.array([in_first_half(one) for one in evaluated.names])[evaluated.recording]
     parts = {
@@ -119,7 +119,7 @@ def result_row(evaluated: Evaluation, recordings: Path, which: str, *, seconds: 
         "metrics": {
             key: {
                 "value": found[key]["balanced_accuracy"], "unit": "share", "definition": words, "version": 1,
-                "interval_95": found[key]["interval_95"], "baseline": {"chance": found[key]["floor"]},
+                "interval_95": found[key]["interval_95"], "baseline": found[key]["baseline"],
                 "n": found[key]["n"], "confusion": found[key]["confusion"],
             }
             for key, words in METRICS.items()
@@ -142,7 +142,7 @@ def freeze(name: str, caches: list[Path], run: StudyRun) -> Path:
     results/zero_shot/frozen.json says the same, with the digest of the features.
     """
     read = [read_cache(cache) for cache in caches]
-    made = [measured(windows) for windows, _ in read]
+    made = [featurize(windows) for windows, _ in read]
     sources = [source for _, source in read]
     pooled = TrainingSet(
         features=np.concatenate([one.features for one in made]),
@@ -178,7 +178,7 @@ def describe_frozen(name: str, run: StudyRun) -> Path:
 
 def generate(recipe: GenerationRecipe, cache: Path, *, each: int, seed: int, part: int = 0, parts: int = 1) -> None:
     """Fills a cache; several processes may share one, each with its part. Says in it what made it."""
-    own_cache(cache, recipe)
+    check_cache(cache, recipe)
     (cache / "commit.txt").write_text(f"{_commit_text()}\n", encoding="utf-8")
     note = cache / f"seconds_{part}.txt"
     spent_s = float(note.read_text(encoding="utf-8")) if note.exists() else 0.0

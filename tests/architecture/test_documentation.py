@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from mmweaver import PRESETS
+
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + [
     *sorted((ROOT / "docs").rglob("*.md")),
@@ -74,6 +76,16 @@ def test_every_page_is_in_the_navigation_of_the_site():
     navigation = (ROOT / "zensical.toml").read_text(encoding="utf-8")
     for page in sorted((ROOT / "docs").glob("*.md")):
         assert f'"{page.name}"' in navigation, f"add {page.name} to nav in zensical.toml"
+
+
+def test_every_preset_is_in_the_page_of_radars():
+    page = (ROOT / "docs" / "radars.md").read_text(encoding="utf-8")
+    for name, radar in PRESETS.items():
+        (row,) = [line for line in page.splitlines() if line.startswith("| ") and f"`{name}`" in line]
+        first, last = radar.range_m[0], radar.range_m[-1]
+        bins = f"{len(radar.range_m)} of {100 * radar.range_resolution_m:.2f} cm, {first:.2f} to {last:.2f} m"
+        assert bins.replace(" 0.00 ", " 0 ") in row, name
+        assert f"{radar.num_loops} of {radar.velocity_resolution_mps:.3f} m/s" in row, name
 
 
 def test_the_readme_is_short():

@@ -62,6 +62,7 @@ def test_it_tells_beforehand_what_it_costs(tmp_path: Path, capsys: pytest.Captur
     assert not (tmp_path / "d").exists()
 
 
+@pytest.mark.slow  # test_generate_rooms.py goes on from what a kill leaves
 @posix_only
 def test_killed_with_two_workers_nothing_is_lost_or_doubled(tmp_path: Path):
     """A kill of all processes while two rooms are under way; then the same command again."""

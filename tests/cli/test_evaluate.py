@@ -31,7 +31,7 @@ def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
     """Trained within a second, on a few of the windows."""
 
     def train(frozen: Frozen) -> ActivityClassifier:
-        few = replace(frozen.made, features=frozen.made.features[::23], labels=frozen.made.labels[::23])
+        few = replace(frozen.training, features=frozen.training.features[::23], labels=frozen.training.labels[::23])
         return few.train(replace(frozen.classifier, num_trees=5, boosting_rounds=2, repetitions=1))
 
     monkeypatch.setattr(Frozen, "train", train)
@@ -62,7 +62,7 @@ def test_the_whole_recogniser_knows_a_walk(frozen: str, recordings: Path, capsys
 
 
 def test_a_bad_folder_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    for folder, message in ((tmp_path, "holds no recordings"), (tmp_path / "none", "is no folder")):
+    for folder, message in ((tmp_path, "holds no recordings"), (tmp_path / "none", "is not a folder")):
         assert main(["evaluate", "zero-shot-activity", "--recordings", str(folder)]) == 2
         error = capsys.readouterr().err
         assert message in error

@@ -56,6 +56,7 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert not (tmp_path / "g").exists()
 
 
+@pytest.mark.slow  # test_network_training.py stops it between two steps
 def test_killed_and_called_again_it_ends_with_the_same_bits(
     tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):

@@ -56,6 +56,7 @@ def test_it_goes_on_from_weights_of_its_own_recipe_alone(
     assert "mmweaver train activity" in capsys.readouterr().err
 
 
+@pytest.mark.slow  # test_trainer.py does the same with a learner of two numbers
 def test_two_processes_that_were_killed_end_as_two_that_were_not(tiny_geometry: Path, tmp_path: Path):
     pytest.importorskip("accelerate")
     words = ["train", "activity", "--data", str(tiny_geometry), "--steps", "16", "--batch", "2", "--save-every", "0"]

@@ -18,9 +18,12 @@ def long_cube() -> RadarCube:
     return replace(cube, grid=replace(cube.grid, frame_time_s=2.0 + cube.grid.frame_time_s))
 
 
-@pytest.fixture
-def in_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mmw_codec, "CHUNK_FRAMES", 2)
+@pytest.fixture(scope="module")
+def long_file(long_cube: RadarCube) -> bytes:
+    """In three chunks."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mmw_codec, "CHUNK_FRAMES", 2)
+        return compress_cube(long_cube, num_bytes=8000)
 
 
 @pytest.mark.parametrize("num_bytes", [1500, 4000, 9000])
@@ -48,13 +51,14 @@ def test_the_quality_asked_for_is_met(tmp_path: Path):
 def test_noise_is_kept_where_asked(tmp_path: Path):
     """Signal gets the bytes unless noise is wanted too; both say what they did."""
     cube = crowd()
-    plain, even = (errors_db(compress_cube(cube, num_bytes=9000, keep_noise=keep), cube) for keep in (False, True))
+    files = [compress_cube(cube, num_bytes=9000, keep_noise=keep) for keep in (False, True)]
+    plain, even = (errors_db(data, cube) for data in files)
     assert plain["signal_error_db"] < even["signal_error_db"] - 1
     power = np.mean(np.abs(cube.values) ** 2, axis=-1)
     noise = power <= np.median(power) * 10**1.2
     left = []
-    for keep in (False, True):
-        (tmp_path / "a.mmw").write_bytes(compress_cube(cube, num_bytes=9000, keep_noise=keep))
+    for data in files:
+        (tmp_path / "a.mmw").write_bytes(data)
         left.append(error_db(read_cube(tmp_path / "a.mmw").values[noise], cube.values[noise]))
     assert left[1] < left[0] - 1
 
@@ -67,10 +71,8 @@ def test_files_of_version_1_are_still_read():
     assert describe_mmw(path)["chunks"][0]["scatterers"] > 10
 
 
-@pytest.mark.usefixtures("in_chunks")
-def test_frames_are_read_without_the_others(long_cube: RadarCube, tmp_path: Path):
-    path = tmp_path / "a.mmw"
-    data = compress_cube(long_cube, num_bytes=8000)
+def test_frames_are_read_without_the_others(long_cube: RadarCube, long_file: bytes, tmp_path: Path):
+    path, data = tmp_path / "a.mmw", long_file
     path.write_bytes(data)
     whole = read_cube(path)
     assert error_db(whole.values, long_cube.values) < -20
@@ -91,8 +93,8 @@ def test_the_same_cube_gives_the_same_bytes():
     assert compress_cube(crowd(), num_bytes=2000) == compress_cube(crowd(), num_bytes=2000)
 
 
-def test_a_file_says_what_is_in_it(long_cube: RadarCube, tmp_path: Path):
-    (tmp_path / "a.mmw").write_bytes(compress_cube(long_cube, num_bytes=5000))
+def test_a_file_says_what_is_in_it(long_file: bytes, tmp_path: Path):
+    (tmp_path / "a.mmw").write_bytes(long_file)
     facts = describe_mmw(tmp_path / "a.mmw")
     assert facts["shape"] == [5, 24, 16, 12]
     assert facts["chunks"][0]["scatterers"] > 10

@@ -23,6 +23,6 @@ def test_by_name():
 def test_another_name_is_refused():
     with pytest.raises(InputError, match="known: cfar, firmware"):
         check_points("lidar", AWR1843)
-    with pytest.raises(InputError, match="take --points cfar"):
+    with pytest.raises(InputError, match="use --points cfar"):
         check_points("firmware", BGT60)
     check_points("cfar", BGT60)

@@ -153,5 +153,5 @@ def test_silence_has_no_points_and_other_radars_are_refused():
     silent = targets_adc(IWR1443_MARS, noise=0.0, frames=2)
     assert len(firmware_points(silent).frame) == 0
     bgt = AdcCube(samples=np.zeros((1, 8, 1, 3, 64), np.complex64), config=BGT60, scale=1.0)
-    with pytest.raises(InputError, match="take --points cfar"):
+    with pytest.raises(InputError, match="use --points cfar"):
         firmware_points(bgt)

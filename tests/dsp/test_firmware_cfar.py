@@ -7,7 +7,7 @@ import pytest
 
 from mmweaver.core.firmware_settings import FirmwareCfar, FirmwareSettings
 from mmweaver.core.seeding import stream
-from mmweaver.dsp.firmware_cfar import detected, detection_matrix, is_local_peak, noise_level
+from mmweaver.dsp.firmware_cfar import cfar_detections, detection_matrix, is_local_peak, noise_level
 
 
 def test_fifteen_db_are_1280_or_5120():
@@ -45,7 +45,7 @@ def test_noise_against_a_loop(average: str, cyclic: bool):
 def test_a_map_with_no_room_for_a_side_detects_nothing():
     level = np.full((10, 4), 5)
     level[5, 2] = 9000
-    passed, _ = detected(level, FirmwareSettings(), 512.0)
+    passed, _ = cfar_detections(level, FirmwareSettings(), 512.0)
     assert not passed.any()
 
 
@@ -55,7 +55,7 @@ def test_caso_sees_beside_a_step_where_cago_does_not():
     level[27, 3] = 3000
     for average, seen in (("caso", True), ("cago", False)):
         settings = FirmwareSettings(range_cfar=FirmwareCfar(average=average, guard=1, threshold=1500))
-        passed, over_db = detected(level, settings, 512.0)
+        passed, over_db = cfar_detections(level, settings, 512.0)
         assert passed[27, 3] == seen
     assert over_db.shape == level.shape
 
@@ -66,8 +66,8 @@ def test_both_directions_must_pass():
     level[40, 9] = 4000
     one = FirmwareSettings(range_cfar=FirmwareCfar(threshold=1280))
     both = replace(one, doppler_cfar=FirmwareCfar(threshold=1280, cyclic=True))
-    assert detected(level, one, 512.0)[0][20].all()
-    assert [tuple(cell) for cell in np.argwhere(detected(level, both, 512.0)[0])] == [(40, 9)]
+    assert cfar_detections(level, one, 512.0)[0][20].all()
+    assert [tuple(cell) for cell in np.argwhere(cfar_detections(level, both, 512.0)[0])] == [(40, 9)]
 
 
 def test_the_window_is_of_both_sides_on_one_device_and_of_each_on_the_other():
@@ -78,7 +78,7 @@ def test_the_window_is_of_both_sides_on_one_device_and_of_each_on_the_other():
     assert noise == {4: 0, 8: 400}
     level[30] = 300
     passed = {
-        device: detected(level, FirmwareSettings(device=device, range_cfar=cfar), 512.0)[0][30, 0]
+        device: cfar_detections(level, FirmwareSettings(device=device, range_cfar=cfar), 512.0)[0][30, 0]
         for device in ("xwr14xx", "xwr16xx")
     }
     assert passed == {"xwr14xx": True, "xwr16xx": False}

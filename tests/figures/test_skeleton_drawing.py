@@ -1,11 +1,11 @@
-"""The skeleton is drawn where the camera would see the joints, and hidden where something stands before it."""
+"""The skeleton is drawn where the camera would see the joints, and occluded where something stands before it."""
 
 import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.skeleton_drawing import SkeletonInPhoto, bone_pieces, is_hidden, project
+from mmweaver.figures.skeleton_drawing import SkeletonInPhoto, bone_pieces, is_occluded, project
 
 
 def test_projection_follows_the_pinhole(view: FigureData):
@@ -18,17 +18,17 @@ def test_projection_follows_the_pinhole(view: FigureData):
     assert np.isnan(pixels[3]).all()  # behind the camera
 
 
-def test_what_stands_behind_the_block_is_hidden(view: FigureData):
+def test_what_stands_behind_the_block_is_occluded(view: FigureData):
     behind, before, beside, unknown = [130.0, 100.0, 3.0], [130.0, 100.0, 0.9], [20.0, 20.0, 3.0], [500.0, 20.0, 3.0]
     nothing = [np.nan, np.nan, np.nan]
     pixels = np.array([behind, before, beside, unknown, nothing])
-    assert is_hidden(pixels, view.photo).tolist() == [True, False, False, False, False]
+    assert is_occluded(pixels, view.photo).tolist() == [True, False, False, False, False]
 
 
 def test_bones_begin_and_end_at_the_joints(view: FigureData):
     joints_m = view.poses[0].joints_m[0]
-    pieces, hidden = bone_pieces(joints_m, view.photo, view.radar_from_camera)
-    assert len(pieces) == len(hidden) > 21
+    pieces, occluded = bone_pieces(joints_m, view.photo, view.radar_from_camera)
+    assert len(pieces) == len(occluded) > 21
     ends = pieces.reshape(-1, 2)
     for pixel in project(joints_m, view.photo, view.radar_from_camera)[:, :2]:
         assert np.linalg.norm(ends - pixel, axis=1).min() < 1e-6

@@ -23,7 +23,7 @@ def test_a_folder_read_back_bit_by_bit(folder: Path, tmp_path: Path):
     assert read_radar_capture(folder / "iwr1843").folder == folder / "iwr1843"
 
 
-def test_what_is_a_capture(folder: Path, tmp_path: Path):
+def test_recognition_of_a_capture_folder(folder: Path, tmp_path: Path):
     assert is_capture(folder)
     assert is_capture(folder / "iwr1843")
     assert not is_capture(tmp_path / "made.cfg")

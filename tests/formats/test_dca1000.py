@@ -1,4 +1,4 @@
-"""adc_data.bin, read and written, against a reader made from the format's description alone."""
+"""adc_data.bin, read and written, against a reader written from the format's description alone."""
 
 import struct
 from dataclasses import replace
@@ -49,7 +49,7 @@ def described_reader(data: bytes, config: RadarConfig, tx_order: tuple[int, ...]
 
 @pytest.mark.parametrize("iq_order", ["iq", "qi"])
 @pytest.mark.parametrize("tx_order", list(permutations(range(3))))
-def test_the_file_is_what_the_format_says(tmp_path: Path, iq_order: str, tx_order: tuple[int, ...]):
+def test_the_file_follows_the_format(tmp_path: Path, iq_order: str, tx_order: tuple[int, ...]):
     adc = counts_adc(replace(SMALL, tx_order=tx_order))
     path = tmp_path / "adc_data.bin"
     assert write_bin(path, adc, iq_order=iq_order, counts_per_unit=1.0) == 1.0
@@ -65,7 +65,7 @@ def test_the_file_is_what_the_format_says(tmp_path: Path, iq_order: str, tx_orde
 
 
 def test_a_recording_in_another_firing_order(tmp_path: Path):
-    """The caller knows better than the configuration; the record's configuration then says so, for TDM's sake."""
+    """The caller's order overrides the configuration's, and is kept for the TDM timing."""
     adc = counts_adc(replace(SMALL, tx_order=(1, 2, 0)))
     write_bin(tmp_path / "a.bin", adc, counts_per_unit=1.0)
     again = read_bin(tmp_path / "a.bin", SMALL, tx_order=(1, 2, 0))
@@ -75,7 +75,7 @@ def test_a_recording_in_another_firing_order(tmp_path: Path):
     assert np.array_equal(read_bin(tmp_path / "b.bin", SMALL, tx_order=(0, 1, 2)).samples, adc.samples)
 
 
-def test_the_wrong_iq_order_mirrors_the_range_axis(tmp_path: Path):
+def test_the_wrong_iq_order_reverses_the_range_axis(tmp_path: Path):
     config = replace(AWR1843, num_loops=1, num_range_bins=256, first_range_bin=0)
     tone = np.exp(2j * np.pi * 40 * np.arange(256) / 256)
     samples = np.broadcast_to(tone, (1, 1, 3, 4, 256)).astype(np.complex64)
@@ -92,7 +92,7 @@ def test_the_wrong_iq_order_mirrors_the_range_axis(tmp_path: Path):
     tx_order=st.permutations(range(3)),
     exponent=st.integers(-12, 6),
 )
-def test_any_signal_comes_back_to_half_a_count(tmp_path_factory, values, iq_order, tx_order, exponent: int):
+def test_any_signal_is_restored_to_half_a_count(tmp_path_factory, values, iq_order, tx_order, exponent: int):
     config = replace(SMALL, tx_order=tuple(tx_order))
     samples = (values * np.float32(10.0**exponent)).view(np.complex64)[..., 0]
     path = tmp_path_factory.mktemp("bin") / "adc_data.bin"
@@ -118,7 +118,7 @@ def test_a_file_of_the_wrong_size_is_refused(tmp_path: Path, size: int, words: l
         assert word in str(caught.value)
 
 
-def test_what_cannot_be_read_is_refused(tmp_path: Path):
+def test_unreadable_files_are_refused(tmp_path: Path):
     with pytest.raises(InputError, match="No such file"):
         read_bin(tmp_path / "none.bin", SMALL)
     with pytest.raises(InputError, match="cannot read"):
@@ -140,7 +140,7 @@ def test_what_cannot_be_read_is_refused(tmp_path: Path):
         (1.0, float("nan"), "finite"),
     ],
 )  # fmt: skip
-def test_what_does_not_fit_is_not_written(tmp_path: Path, value: float, counts: float | None, word: str):
+def test_samples_beyond_int16_are_not_written(tmp_path: Path, value: float, counts: float | None, word: str):
     adc = counts_adc(SMALL)
     adc.samples[0, 0, 0, 0, 0] = value
     with pytest.raises(InputError, match=word):
@@ -149,7 +149,7 @@ def test_what_does_not_fit_is_not_written(tmp_path: Path, value: float, counts: 
 
 
 def test_a_clipped_converter_is_written_as_it_is(tmp_path: Path):
-    """int16 reaches -32768 but only +32767: a receiver driven too hard leaves both."""
+    """int16 has -32768 but only +32767: a saturated receiver writes both."""
     adc = counts_adc(SMALL)
     samples = adc.samples.copy()
     samples.flat[0], samples.flat[1] = -32768 - 32768j, 32767 + 32767j

@@ -1,4 +1,4 @@
-"""Packets lost, late, repeated, cut off: zeros where nothing came, the same bits everywhere else."""
+"""Packets lost, late, repeated, truncated: zeros where nothing was received, the same bits everywhere else."""
 
 from pathlib import Path
 
@@ -58,7 +58,7 @@ def test_lost_packets_are_zeros_and_counted(tmp_path: Path, sent):
     assert capture.frame_time_s[0] == pytest.approx(START_S, abs=2e-3)  # from the frames after it
 
 
-def test_an_unfinished_frame_is_left_out_unless_the_radar_was_to_send_it(tmp_path: Path, sent):
+def test_an_unfinished_frame_is_omitted_unless_the_radar_was_configured_to_send_it(tmp_path: Path, sent):
     adc, packets = sent
     short = packets[: 2 * FRAME_BYTES // PAYLOAD + 4]
     capture = caught(tmp_path, adc, short)
@@ -72,7 +72,7 @@ def test_an_unfinished_frame_is_left_out_unless_the_radar_was_to_send_it(tmp_pat
     assert len(caught(tmp_path, adc, packets, num_frames=2).adc.samples) == 2
 
 
-def test_what_cannot_be_put_together(tmp_path: Path, sent):
+def test_inconsistent_packets_are_refused(tmp_path: Path, sent):
     adc, packets = sent
     with pytest.raises(InputError, match="no packets of a DCA1000"):
         caught(tmp_path, adc, [])

@@ -1,4 +1,4 @@
-"""mmWave Studio's set-up files, from a small one written here."""
+"""mmWave Studio's configuration files, from a small one written here."""
 
 import copy
 import json
@@ -43,7 +43,7 @@ def written(tmp_path: Path, setup: Any, swap: int = 0) -> Path:
     return path
 
 
-def test_the_set_up(tmp_path: Path):
+def test_the_radar_of_a_file(tmp_path: Path):
     config = read_mmwave_studio(written(tmp_path, SETUP))
     assert config.name == "capture"
     assert (config.num_tx, config.num_rx, config.tx_order, config.num_loops) == (3, 4, (0, 2, 1), 64)
@@ -84,7 +84,7 @@ def changed(change: Callable[[Any], Any]) -> Any:
         (lambda setup: setup["rlFrameCfg_t"].update(numLoops=4000), "frame period"),
     ],
 )
-def test_a_bad_set_up_is_refused(tmp_path: Path, change: Callable[[Any], Any], word: str):
+def test_a_bad_file_is_refused(tmp_path: Path, change: Callable[[Any], Any], word: str):
     path = written(tmp_path, changed(change))
     with pytest.raises(InputError, match=word) as caught:
         read_mmwave_studio(path)
@@ -99,7 +99,7 @@ def test_another_file_is_refused(tmp_path: Path, text: str):
         read_mmwave_studio(path)
 
 
-def test_what_looks_like_one():
+def test_recognition_of_the_format():
     assert is_mmwave_studio({"mmWaveDevices": []})
     assert not is_mmwave_studio([])
     assert not is_mmwave_studio({"name": "awr1843"})

@@ -1,4 +1,4 @@
-"""The project's own files: what is written is read back, the same bytes every time, and never a pickle."""
+"""The project's own files: restored as written, reproducible byte by byte, and never pickled."""
 
 import time
 import zipfile
@@ -31,7 +31,7 @@ def make_cube(num_frames: int = 2) -> RadarCube:
     return RadarCube(values=values.astype(np.complex64), grid=grid, config=AWR1843, scale=0.5)
 
 
-def test_radar_npz_has_the_keys_promised_and_comes_back(tmp_path: Path):
+def test_radar_npz_has_the_documented_keys_and_is_restored(tmp_path: Path):
     cube = make_cube()
     write_radar_npz(tmp_path / "radar.npz", cube)
     arrays = read_npz(tmp_path / "radar.npz")
@@ -54,7 +54,7 @@ def test_a_cube_needs_its_own_radar(tmp_path: Path):
         read_radar_npz(tmp_path / "radar.npz", MMMESH)
 
 
-def test_pose_and_points_come_back(tmp_path: Path):
+def test_pose_and_points_are_restored(tmp_path: Path):
     joints = stream(0, "test").normal(size=(4, 22, 3)).astype(np.float32)
     write_pose_npz(tmp_path / "pose.npz", PoseSequence(time_s=np.arange(4) / 10, joints_m=joints, height_m=1.7))
     pose = read_pose_npz(tmp_path / "pose.npz")
@@ -72,7 +72,7 @@ def test_pose_and_points_come_back(tmp_path: Path):
     assert np.array_equal(again.snr_db, column)
 
 
-def test_no_detections_is_a_file_too(tmp_path: Path):
+def test_a_file_without_detections(tmp_path: Path):
     none = np.zeros(0)
     cloud = PointCloud(frame=np.zeros(0, int), x_m=none, y_m=none, z_m=none, radial_velocity_mps=none, snr_db=none)
     write_points_npz(tmp_path / "points.npz", cloud)

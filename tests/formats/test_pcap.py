@@ -1,4 +1,4 @@
-"""Packets of a .pcap, and what is no .pcap."""
+"""Packets of a .pcap, and other files."""
 
 from pathlib import Path
 
@@ -22,14 +22,14 @@ def test_every_byte_order_clock_and_link(tmp_path: Path, magic: bytes, link: int
     assert list(udp_packets(path, 4096)) == []
 
 
-def test_a_cut_off_last_packet_is_left_out(tmp_path: Path):
+def test_a_truncated_last_packet_is_omitted(tmp_path: Path):
     path = tmp_path / "a.pcap"
     path.write_bytes(pcap_of(PACKETS)[:-7])
     assert len(list(udp_packets(path, 4098))) == 2
 
 
 @pytest.mark.parametrize(
-    ("content", "says"),
+    ("content", "message"),
     [
         (b"", "it is empty"),
         (b"no packets", "not a .pcap"),
@@ -38,10 +38,10 @@ def test_a_cut_off_last_packet_is_left_out(tmp_path: Path):
         (pcap_of([], link=1)[:20] + bytes((105, 0, 0, 0)), "type 105"),
     ],
 )
-def test_what_is_no_pcap(tmp_path: Path, content: bytes, says: str):
+def test_other_files_are_refused(tmp_path: Path, content: bytes, message: str):
     path = tmp_path / "a.pcap"
     path.write_bytes(content)
-    with pytest.raises(InputError, match=says):
+    with pytest.raises(InputError, match=message):
         list(udp_packets(path, 4098))
 
 

@@ -25,7 +25,7 @@ def simulated_frame(config: RadarConfig = HUPR, azimuth_rad: float = 0.3) -> np.
 
 
 def hupr_array(adc: np.ndarray) -> np.ndarray:
-    """What HuPR's own processing makes of a frame, step by step as its documentation says."""
+    """HuPR's own processing of a frame, step by step as documented."""
     loops, _, _, samples = adc.shape
     adc = adc - adc.mean(axis=0)
     spectrum = np.fft.fft(np.fft.fft(adc, axis=3), axis=0)
@@ -45,8 +45,8 @@ def hupr_frame(tmp_path: Path) -> Path:
     return tmp_path / "000000000.npy"
 
 
-def test_hupr_angle_spectra_are_undone(hupr_frame: Path):
-    """The antennas' range-Doppler spectra come back, in the middle 16 of 64 Doppler bins."""
+def test_hupr_angle_spectra_are_inverted(hupr_frame: Path):
+    """The antennas' range-Doppler spectra are restored in the middle 16 of 64 Doppler bins."""
     adc = simulated_frame()
     spectrum = np.fft.fftshift(np.fft.fft(np.fft.fft(adc - adc.mean(axis=0), axis=3), axis=0), axes=0)
     wanted = spectrum[..., 31:95].transpose(3, 0, 1, 2).reshape(64, 64, 12) / (64 * 256)
@@ -56,7 +56,7 @@ def test_hupr_angle_spectra_are_undone(hupr_frame: Path):
     assert not cube.values[0, :, :24].any()
 
 
-def test_a_hupr_frame_shows_the_point_where_it_is(hupr_frame: Path):
+def test_a_hupr_frame_shows_the_point_at_its_place(hupr_frame: Path):
     cube = read_recording(hupr_frame).cube
     assert cube.config == HUPR
     power = np.sum(np.abs(cube.values[0]) ** 2, axis=-1)

@@ -1,4 +1,4 @@
-"""A radar by its name or its file, and the table for people."""
+"""Radars by name or file, and their table."""
 
 import json
 from dataclasses import replace
@@ -29,19 +29,19 @@ def test_a_cfg(tmp_path: Path):
 
 
 @pytest.mark.parametrize("name", ["awr1834", "", "none.cfg", "none.json", "/"])
-def test_the_unknown_lists_the_known(name: str):
+def test_the_error_of_an_unknown_name_lists_the_known_ones(name: str):
     with pytest.raises(InputError, match=", ".join(PRESETS)):
         load_radar(name)
 
 
-def test_another_kind_of_file_lists_what_can_be_read(tmp_path: Path):
+def test_the_error_of_another_file_lists_the_formats(tmp_path: Path):
     (tmp_path / "radar.lua").write_text("ar1.ProfileConfig()")
     with pytest.raises(InputError, match=r"neither \.cfg nor \.json"):
         load_radar(str(tmp_path / "radar.lua"))
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}", json.dumps({"schema_version": 1, "name": "x"})])
-def test_a_json_that_is_no_radar(tmp_path: Path, text: str):
+def test_a_json_that_is_not_a_radar(tmp_path: Path, text: str):
     path = tmp_path / "radar.json"
     path.write_text(text)
     with pytest.raises(InputError, match=r"radar\.json"):

@@ -54,7 +54,7 @@ def test_missing_axes_have_size_one(tmp_path: Path, truth: np.ndarray):
     assert np.array_equal(adc.samples, truth[:1, :, :1, :1])
 
 
-def test_real_samples_lose_their_mean(tmp_path: Path):
+def test_the_mean_of_real_samples_is_removed(tmp_path: Path):
     counts = stream(0, "test npy real").integers(0, 4096, (3, 3, 8, 64)).astype(np.uint16)
     adc = read_adc_npy(saved(tmp_path, counts), BGT60, "frame,rx,loop,sample")
     assert adc.samples.shape == (3, 8, 1, 3, 64)
@@ -63,7 +63,7 @@ def test_real_samples_lose_their_mean(tmp_path: Path):
     assert adc.samples.real[2, 5, 0, 1] == pytest.approx(wanted, abs=1e-3)
 
 
-def test_int16_stored_as_uint16_is_turned_back(tmp_path: Path):
+def test_int16_stored_as_uint16_is_converted_back(tmp_path: Path):
     counts = stream(0, "test npy wrap").integers(-2000, 2000, (8, 3, 64)).astype(np.int16)
     path = saved(tmp_path, counts.view(np.uint16))
     wrapped = read_adc_npy(path, BGT60, "loop,rx,sample").samples

@@ -1,4 +1,4 @@
-"""The point cloud's lines of mmWave SDK .cfg files, of three generations."""
+"""Point-cloud settings of mmWave SDK .cfg files of three generations."""
 
 from pathlib import Path
 
@@ -76,7 +76,7 @@ def test_sdk_3_has_thresholds_in_db(tmp_path: Path):
     assert (settings.group_range, settings.group_doppler) == (True, False)
 
 
-def test_what_the_file_leaves_out_is_off_or_the_demo_s(tmp_path: Path):
+def test_missing_lines_are_off_or_the_demos_defaults(tmp_path: Path):
     text = "\n".join(SDK1.splitlines()[:9]).replace("adcbufCfg 0 1 0 1\n", "")
     settings = read_ti_firmware(written(tmp_path, text))
     assert settings == FirmwareSettings(second_peak=None)
@@ -90,7 +90,7 @@ def test_settings_by_radar(tmp_path: Path):
     assert load_firmware("awr1843") == FirmwareSettings()
 
 
-def test_a_cfg_without_cfar_is_a_radar_but_no_firmware(tmp_path: Path):
+def test_a_cfg_without_cfar_has_no_firmware_settings(tmp_path: Path):
     path = written(tmp_path, "\n".join(SDK1.splitlines()[:8]))
     assert load_radar(str(path)).num_loops == 16
     with pytest.raises(InputError, match=r"has no cfarCfg.*--points cfar"):

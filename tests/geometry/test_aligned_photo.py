@@ -41,7 +41,7 @@ def test_look_up_undoes_points(view: AlignedPhoto):
     np.testing.assert_allclose(seen.depth_m, 2.0)
 
 
-def test_what_is_behind_or_outside_is_not_in_the_picture(view: AlignedPhoto):
+def test_points_behind_or_outside_are_not_in_the_picture(view: AlignedPhoto):
     seen = view.look_up(np.array([[0.0, -2.0, 0.0], [50.0, 2.0, 0.0], [0.0, 0.0, 0.0]]))
     assert not seen.in_picture.any()
     assert (seen.row == 0).all()

@@ -33,7 +33,7 @@ def test_axes_are_right_down_forward():
     assert points[26, 30, 1] > 0
 
 
-def test_what_is_behind_has_no_pixel_and_holes_stay_holes():
+def test_points_behind_have_no_pixel_and_holes_stay_holes():
     pixels, depth = project(np.array([[0.1, 0.1, -1.0], [0, 0, 0]]), CAMERA)
     assert np.isnan(pixels).all()
     assert depth.tolist() == [-1, 0]
@@ -63,7 +63,7 @@ def test_binning_and_resizing_average_the_rays_of_a_block(small: CameraIntrinsic
 
 
 def test_rotating_the_picture_rotates_its_rays():
-    """Clockwise: what was at the left is now at the top."""
+    """Clockwise: the left edge becomes the top edge."""
     rays = np.rot90(viewing_rays(CAMERA), -1)
     rotated = viewing_rays(rotated_clockwise(CAMERA))
     np.testing.assert_allclose(rotated[..., 0], -rays[..., 1], atol=1e-12)

@@ -44,7 +44,7 @@ def test_clear_between_two_points(wall: RayCaster):
     assert wall.is_clear(start, end).tolist() == [True, False, True, True, True, True]
 
 
-def test_the_margin_forgives_what_touches_the_ends(wall: RayCaster):
+def test_faces_within_the_margin_do_not_block(wall: RayCaster):
     start, end = np.array([[0.0, 2.99, 0]]), np.array([[0.0, 4, 0]])
     assert wall.is_clear(start, end).tolist() == [True]
     assert wall.is_clear(start, end, margin_m=0.005).tolist() == [False]

@@ -17,7 +17,7 @@ def test_pitch_and_roll_come_back(pitch_deg: int, roll_deg: int):
     np.testing.assert_allclose(pitch_and_roll_rad(rotation), (pitch, roll), atol=1e-12)
 
 
-def test_y_is_the_level_direction_of_the_optical_axis():
+def test_y_is_the_horizontal_direction_of_the_optical_axis():
     forward = level_from_camera(np.array([0.0, -np.cos(0.5), -np.sin(0.5)])) @ np.array([0.0, 0, 1])
     assert forward[0] == pytest.approx(0)
     assert forward[1] == pytest.approx(np.cos(0.5))

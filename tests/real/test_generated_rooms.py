@@ -20,7 +20,12 @@ ROOMS = {
 }
 
 
-@pytest.mark.parametrize("room", list(ROOMS))
+EVERY_DAY = "kinect_dining_room"  # the others at night
+
+
+@pytest.mark.parametrize(
+    "room", [EVERY_DAY, *(pytest.param(room, marks=pytest.mark.slow) for room in ROOMS if room != EVERY_DAY)]
+)
 def test_the_person_is_where_the_skeleton_is(real_data: Path, room: str):
     folder = real_data / "rooms" / room
     weaver = Weaver("physics")

@@ -75,6 +75,12 @@ def recorded(folder: Path) -> list[Gait]:
     return found
 
 
+@pytest.fixture(scope="module")
+def pairs(real_data: Path) -> list[tuple[Gait, Gait]]:
+    """Recorded walks, and ours at the same speed."""
+    return [(gait, ours(gait.speed_mps, k)) for k, gait in enumerate(recorded(real_data))]
+
+
 def ours(speed_mps: float, seed: int) -> Gait:
     seconds = 4.0
     move = Move(
@@ -103,9 +109,8 @@ def ours(speed_mps: float, seed: int) -> Gait:
         ("bob_m", 0.5, 1.6),
     ],
 )
-def test_our_walk_is_like_recorded_ones(real_data: Path, figure: str, least: float, most: float):
+def test_our_walk_is_like_recorded_ones(pairs: list[tuple[Gait, Gait]], figure: str, least: float, most: float):
     """The median ratio of ours to theirs at the same speed."""
-    theirs = recorded(real_data)
-    assert len(theirs) >= 5
-    ratios = [getattr(ours(gait.speed_mps, k), figure) / getattr(gait, figure) for k, gait in enumerate(theirs)]
+    assert len(pairs) >= 5
+    ratios = [getattr(own, figure) / getattr(gait, figure) for gait, own in pairs]
     assert least < np.median(ratios) < most

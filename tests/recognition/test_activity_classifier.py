@@ -48,7 +48,7 @@ def test_columns_without_values_do_no_harm():
     features[:, 3], features[:, 4] = np.nan, 7.0
     model = ActivityClassifier(SMALL).fit(features, labels)
     assert np.mean(model.predict(features) == labels) > 0.8
-    with pytest.raises(InputError, match="alike"):
+    with pytest.raises(InputError, match="identical"):
         ActivityClassifier(SMALL).fit(features[:, 3:], labels)
 
 

@@ -15,18 +15,18 @@ def test_a_frozen_recogniser_is_complete(name):
     frozen = load_frozen(name)
     held = json.loads((FOLDER / f"{name}.json").read_text())
     windows = sum(source["windows"] for source in held["sources"])
-    assert len(frozen.made.labels) == len(frozen.made.features) == frozen.provenance["with_disturbed_copies"]
-    assert len(frozen.made.labels) == windows * (1 + (COPIES if name == "development" else 0))
+    assert len(frozen.training.labels) == len(frozen.training.features) == frozen.provenance["with_disturbed_copies"]
+    assert len(frozen.training.labels) == windows * (1 + (COPIES if name == "development" else 0))
     assert frozen.provenance["generated_windows"] == windows
-    assert frozen.made.features.shape[1] == len(frozen.made.names) == len(set(frozen.made.names))
+    assert frozen.training.features.shape[1] == len(frozen.training.names) == len(set(frozen.training.names))
     assert frozen.labels == ("boxing", "jack", "jump", "squats", "walk")
     assert all(source["commit"] and "+" not in source["commit"] for source in held["sources"])
-    counts = np.bincount(np.unique(frozen.made.labels, return_inverse=True)[1])
+    counts = np.bincount(np.unique(frozen.training.labels, return_inverse=True)[1])
     assert counts.min() > 0.8 * counts.max()
 
 
 def test_an_unknown_name_is_refused(tmp_path):
     with pytest.raises(InputError, match="known: blind, development"):
         load_frozen("none")
-    save_frozen("copy", load_frozen("blind").made, {"classifier": {}, "sources": []}, folder=tmp_path)
+    save_frozen("copy", load_frozen("blind").training, {"classifier": {}, "sources": []}, folder=tmp_path)
     assert (tmp_path / "copy.npz").read_bytes() == (FOLDER / "blind.npz").read_bytes()

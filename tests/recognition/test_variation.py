@@ -3,12 +3,12 @@
 import numpy as np
 
 from mmweaver.core.seeding import stream
-from mmweaver.recognition.variation import Variation, draw
+from mmweaver.recognition.variation import Variation, sample_variation
 
 
 def test_draws_fill_their_spans_and_stay_inside():
     variation = Variation()
-    drawn = [draw(variation, stream(seed, "draw")) for seed in range(300)]
+    drawn = [sample_variation(variation, stream(seed, "draw")) for seed in range(300)]
     for name in ("tempo", "vigour", "distance_m", "height_m", "noise_db", "threshold_db", "gain_db"):
         low, high = getattr(variation, name)
         values = np.array([getattr(one, name) for one in drawn])
@@ -20,6 +20,6 @@ def test_draws_fill_their_spans_and_stay_inside():
 
 
 def test_the_start_is_at_its_distance():
-    one = draw(Variation(), stream(0, "draw"))
+    one = sample_variation(Variation(), stream(0, "draw"))
     assert np.isclose(np.hypot(*one.start_m), one.distance_m)
     assert np.isclose(np.degrees(np.arctan2(*one.start_m)), one.azimuth_deg)

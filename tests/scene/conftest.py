@@ -1,4 +1,4 @@
-"""A room of boxes whose geometry is known, and its photo."""
+"""A room of boxes with known geometry, and its photo."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

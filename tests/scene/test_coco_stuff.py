@@ -1,4 +1,4 @@
-"""Names of classes and what they are made of."""
+"""Names of classes and their materials."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from mmweaver.scene.coco_stuff import ALIASES, GLASS, MATERIAL, MIRRORS, NAMES, 
 
 
 def test_numbers_are_those_of_coco_stuff():
-    """Some that are well known: 91 things up to hair brush, stuff from banner to wood."""
+    """Some well-known numbers: 91 things up to hair brush, stuff from banner to wood."""
     assert len(NAMES) == 183
     assert len(set(NAMES)) == 183
     known = {"person": 1, "chair": 62, "couch": 63, "bed": 65, "tv": 72, "hair brush": 91, "banner": 92, "rug": 152,
@@ -34,6 +34,6 @@ def test_labels_of_ade20k_and_coco_panoptic(label: str, name: str | None):
     assert coco_class(label) == name
 
 
-def test_a_class_that_says_no_material():
+def test_a_class_without_a_material():
     assert material_of("wall-other") is None
     assert material_of("window-other") == "glass"

@@ -233,7 +233,7 @@ def test_missing_keys_are_named(files: Files):
 
 # sizes, depths and formats of other cameras ----------------------------------------------------------------------
 def test_a_coarse_depth_picture_is_enlarged_by_whole_pixels(files: Files):
-    """As phones have it: the colour picture several times as large."""
+    """As on phones: the colour picture is several times as large."""
     ramp = (1500 + 10 * np.arange(96)[None, :] + np.zeros((72, 1))).astype(np.uint16)
     Image.fromarray(ramp).save(files.depth)
     Image.new("RGB", (960, 720), (10, 200, 30)).save(files.rgb)
@@ -289,7 +289,7 @@ def test_sixteen_bits_a_channel(files: Files):
     np.testing.assert_allclose(files.read()[0].rgb[5, 5], (156, 78, 39), atol=1)
 
 
-def test_nine_holes_in_ten_are_the_most(files: Files):
+def test_at_most_nine_pixels_in_ten_may_be_holes(files: Files):
     kept = np.random.default_rng(0).permutation(72 * 96).reshape(72, 96)
     Image.fromarray(np.where(kept < 0.101 * kept.size, DEPTH, 0).astype(np.uint16)).save(files.depth)
     photo, assumptions = files.read()
@@ -299,12 +299,12 @@ def test_nine_holes_in_ten_are_the_most(files: Files):
     assert "only 9.0 %" in files.error()
 
 
-def test_a_photo_without_depth_says_what_to_do(files: Files):
+def test_the_error_of_a_photo_without_depth_says_what_to_do(files: Files):
     with pytest.raises(InputError, match="--depth-model"):
         read_photo(files.rgb)
 
 
-def test_what_says_the_classes(files: Files, tmp_path: Path):
+def test_sources_of_classes_exclude_each_other(files: Files, tmp_path: Path):
     Image.fromarray(np.full((72, 96), 62, np.uint8)).save(tmp_path / "classes.png")
     photo, _ = read_photo(files.rgb, files.depth, files.camera, classes=tmp_path / "classes.png")
     assert photo.classes is not None
@@ -317,7 +317,7 @@ def test_what_says_the_classes(files: Files, tmp_path: Path):
         read_photo(files.rgb, files.depth, classes=tmp_path / "none.png")
 
 
-def test_a_model_takes_the_place_of_depth_and_of_classes(files: Files, tmp_path: Path):
+def test_models_replace_depth_and_classes(files: Files, tmp_path: Path):
     pytest.importorskip("transformers")
     from tests.scene import models
 

@@ -58,7 +58,7 @@ def test_the_table_is_a_top_and_no_seat(scene: Scene):
 
 
 def test_the_mesh_says_the_measured_depth(scene: Scene):
-    """Rays through pixels meet the mesh where the depth picture says, and its faces look at the radar."""
+    """Rays through pixels hit the mesh at the measured depth, and its faces are oriented towards the radar."""
     photo = scene.photo
     row, column = (grid.ravel() for grid in np.mgrid[6:474:13, 6:634:13])
     camera = photo.intrinsics

@@ -1,4 +1,4 @@
-"""The bundled room: small, remade from its seed, and what its maker says is what is found."""
+"""The bundled room: small, reproducible from its seed, and reconstructed as it was built."""
 
 import importlib.util
 from pathlib import Path
@@ -37,7 +37,7 @@ def test_it_is_small():
     assert sum(file.stat().st_size for file in SAMPLE_FOLDER.iterdir()) < 600_000
 
 
-def test_its_geometry_is_the_maker_s(scene: Scene, maker: ModuleType):
+def test_its_geometry_is_reconstructed(scene: Scene, maker: ModuleType):
     assert scene.floor_z_m == pytest.approx(-maker.CAMERA_HEIGHT_M, abs=0.01)
     pitch = np.rad2deg(np.arcsin(-scene.radar_from_camera[2, 2]))
     assert pitch == pytest.approx(maker.PITCH_DEG, abs=0.5)
@@ -68,7 +68,7 @@ def test_there_is_room_to_walk(scene: Scene):
 
 
 def test_its_depth_is_remade_from_the_seed(maker: ModuleType):
-    """The depth is remade whole; the photo takes half a minute, so its light is remade coarsely, twice."""
+    """The whole depth is rendered again; the photo takes half a minute, so its light is rendered coarsely, twice."""
     photo, _ = sample_photo()
     first, depth_m = maker.render(0, 1, 1, 1)
     again, _ = maker.render(0, 1, 1, 1)

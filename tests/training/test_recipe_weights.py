@@ -22,4 +22,4 @@ def test_weights_are_read_again_and_their_page_gives_the_baseline(tiny_signals: 
     assert "| chance | 0.0833 |" in page
     assert "# mmweaver activity" in page
     count = sum(name in TRAIN_SPLITS for room in read_rooms(data) for name in room.split)
-    assert f"{count} sequences of 1 rooms, {4 / count:.1f} passes" in page  # two steps of two
+    assert f"{count} sequences in 1 rooms, {4 / count:.1f} epochs" in page  # two steps of two

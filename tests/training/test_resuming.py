@@ -44,7 +44,7 @@ def test_it_goes_on_with_the_threads_it_began_with(tmp_path: Path, caplog: pytes
         assert torch.get_num_threads() == 2
     finally:
         torch.set_num_threads(1)
-    assert "goes on with 2" in caplog.text
+    assert "resumes with 2" in caplog.text
     del state["threads"]  # as an earlier version wrote it
     torch.save(state, tmp_path / "state.pt")
     run(tmp_path / "state.pt", 2)

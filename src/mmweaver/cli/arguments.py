@@ -160,7 +160,7 @@ def add_layout_options(parser: Options, *, rare: bool = False) -> None:
 def add_points_option(parser: Options) -> None:
     """The option that chooses the point cloud."""
     parser.add_argument(
-        "--points", choices=("cfar", "firmware"), default="cfar",
+        "--points", default="cfar", metavar="cfar|firmware",
         help="point cloud: cfar, ours (default), or firmware, as TI's out-of-box demo would report it with the"
         " cfarCfg, peakGrouping, clutterRemoval and multiObjBeamForming of the radar's .cfg",
     )  # fmt: skip

@@ -35,11 +35,11 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Prints the scores on stdout. Raises InputError for a folder without readable recordings."""
     from mmweaver.recognition.frozen_activity import load_frozen
-    from mmweaver.recognition.recording_files import read_recordings
+    from mmweaver.recognition.point_recording_files import read_point_recordings
     from mmweaver.recognition.scoring import evaluate_recogniser, report
 
     frozen = load_frozen(arguments.frozen)
-    recordings = read_recordings(arguments.recordings, frozen.labels)
+    recordings = read_point_recordings(arguments.recordings, frozen.labels)
     scores = report(evaluate_recogniser(frozen.train(), recordings, frozen.window_s))
     scores = {"task": arguments.task, "frozen": arguments.frozen, **frozen.provenance, **scores}
     print(json.dumps(scores, indent=2) if arguments.json else "\n".join(lines(scores)))
@@ -54,7 +54,7 @@ def lines(scores: dict[str, Any]) -> list[str]:
         low, high = row["interval_95"]
         text.append(
             f"  {words:15s} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
-            f" {row['floor']:.3f}, n {row['n']}"
+            f" {row['baseline']['chance']:.3f}, n {row['n']}"
         )
     width = max(len(name) for name in scores["classes"]) + 2
     text.append("  windows, true in rows, recognised in columns")

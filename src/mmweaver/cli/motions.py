@@ -23,8 +23,11 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the table of activities on stdout."""
-    from mmweaver.motion.language.activities import BODY, HANDS
+    from mmweaver.motion.language.activities import BY_KEY
+    from mmweaver.motion.register_activity import load_activity_plugins
 
+    load_activity_plugins()
+    body, hands = ([one for one in BY_KEY.values() if one.hands == is_hands] for is_hands in (False, True))
     if arguments.json:
         rows = [
             {
@@ -36,11 +39,11 @@ def run(arguments: argparse.Namespace) -> int:
                 "natural_s": activity.natural_s,
                 "can_be_counted": activity.counted_s is not None,
             }
-            for activity in (*BODY, *HANDS)
+            for activity in (*body, *hands)
         ]
         print(json.dumps(rows, indent=2))
         return 0
-    for title, activities in (("the body", BODY), ("hands and head, over any of these", HANDS)):
+    for title, activities in (("the body", body), ("hands and head, over any of these", hands)):
         print(f"{title}:")
         for activity in activities:
             print(f"  {activity.name:24s} {activity.natural_s:3.1f} s   {activity.example}")

@@ -7,10 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli import train_recipes
-from mmweaver.cli.arguments import number, whole
+from mmweaver.cli.arguments import Rare, number, source, whole
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
+    from torch import Tensor
+
+    from mmweaver.models.weights import WeightsCard
     from mmweaver.training.device import ComputeDevice
     from mmweaver.training.trainer import Listener, Progress
 
@@ -31,8 +34,8 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         help="train the network on a data set",
         epilog=EXAMPLES,
         description="Trains the network on a data set of mmweaver dataset and writes its weights with their model "
-        "card. It may be stopped or killed at any time: the same command goes on from its last checkpoint. What it has "
-        "learned is drawn beside the truth in OUT/pictures at every validation.",
+        "card. It may be stopped or killed at any time: the same command resumes from its last checkpoint. At "
+        "every validation OUT/pictures compares what it has learned with the ground truth.",
     )
     parser.add_argument(
         "recipe", choices=("weaver", "activity"),
@@ -44,19 +47,20 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "--from",
         "--start",
         dest="start",
+        type=source,
         metavar="FILE|DIR|HUB",
-        help="weights of the same recipe to go on from (default: from nothing)",
+        help="weights of the same recipe to start from (default: random)",
     )
     own = parser.add_argument_group("your own recordings instead of --data (needs --from)")
     own.add_argument(
         "--captures", type=Path, nargs="+", metavar="DIR",
         help="folders of mmweaver process or generate (radar.npz), or of mmwave-capture-std; with pose.npz where the "
-        "joints are known, else only the resting room is tuned; the last one is kept aside for validation",
+        "joints are known, else only the static room is tuned; the last one is held out for validation",
     )  # fmt: skip
     own.add_argument("--rgb", type=Path, metavar="PNG", help="photo of the room, where the folders hold none")
     own.add_argument("--depth", type=Path, metavar="FILE", help="its depth")
     own.add_argument("--camera", type=Path, metavar="JSON", help="its fx, fy, cx, cy")
-    loop = parser.add_argument_group("the loop")
+    loop = parser.add_argument_group("optimisation")
     loop.add_argument("--steps", type=whole, help="steps in all (default 6000; activity 800, captures 300)")
     loop.add_argument(
         "--batch",
@@ -70,8 +74,11 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     )
     loop.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
     loop.add_argument("--validate-every", type=whole, metavar="STEPS", help="(default 250; activity 100, captures 25)")
+    loop.add_argument(
+        "--encoder", metavar="NAME", help=Rare("recipe weaver's environment encoder (default efficientnet)")
+    )
     loop.add_argument("--save-every", type=number, default=60.0, metavar="S", help="seconds between checkpoints (60)")
-    place = parser.add_argument_group("where")
+    place = parser.add_argument_group("device")
     place.add_argument("--device", default="auto", help="cpu, cuda, cuda:1 ... (default auto: a GPU if there is one)")
     place.add_argument(
         "--precision", choices=("auto", "float32", "bf16"), default="auto", help="(default auto: bf16 on a GPU)"
@@ -99,7 +106,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(summary))
     elif not is_quiet:
-        where = summary.get("judged_on", "unseen rooms")
+        where = summary.get("evaluated_on", "unseen rooms")
         print(f"{summary['weights']}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}")
     return 0
 
@@ -112,7 +119,9 @@ def _check(arguments: argparse.Namespace) -> None:
             "what to train on? give --data, a data set of mmweaver dataset, or --captures, your recordings"
         )
     if arguments.captures is not None and arguments.start is None:
-        raise InputError("--captures tunes weights that are there; give them with --from")
+        raise InputError("--captures fine-tunes existing weights; give them with --from")
+    if arguments.encoder is not None and (arguments.recipe != "weaver" or arguments.data is None):
+        raise InputError("--encoder is for recipe weaver on --data; fine-tuning keeps the encoder of its weights")
     photo = (arguments.rgb, arguments.depth, arguments.camera)
     if arguments.captures is None and any(given is not None for given in photo):
         raise InputError("--rgb, --depth and --camera are the photo of --captures; a data set has its own")
@@ -124,26 +133,26 @@ def _check(arguments: argparse.Namespace) -> None:
 
 def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
     if arguments.recipe != "weaver":
-        return _on_data_otherwise(arguments, place, is_quiet)
+        return _activity_on_data(arguments, place, is_quiet)
     from mmweaver.training.network_training import TrainingRecipe, train, write_weights
 
-    recipe = TrainingRecipe(**_given(arguments))
-    start = None if arguments.start is None else _start(arguments.start)[0]
-    with _bar(recipe.steps, is_quiet) as told:
+    start, card = (None, None) if arguments.start is None else _start(arguments.start)
+    recipe = TrainingRecipe(**{**({} if card is None else _encoder_of(card)), **_given(arguments)})
+    with _bar(recipe.steps, is_quiet) as listener:
         trainer = train(
-            arguments.data, arguments.out, recipe, start=start, listener=told, compute=place, **_options(arguments)
+            arguments.data, arguments.out, recipe, start=start, listener=listener, compute=place, **_options(arguments)
         )
     file = write_weights(arguments.out, arguments.data, trainer, start=start) if place.is_first else None
     return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
 
 
-def _on_data_otherwise(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
+def _activity_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
     from mmweaver.training.activity_training import ActivityRecipe
     from mmweaver.training.recipe_weights import write_activity_weights
 
     given = _given(arguments)
-    with _bar(ActivityRecipe(**given).steps, is_quiet) as told:
-        trainer = train_recipes.train_on_data(arguments, given, told, place, _options(arguments))
+    with _bar(ActivityRecipe(**given).steps, is_quiet) as listener:
+        trainer = train_recipes.train_on_data(arguments, given, listener, place, _options(arguments))
     file = write_activity_weights(arguments.out, arguments.data, trainer) if place.is_first else None
     return {
         "weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value,
@@ -155,27 +164,29 @@ def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet
     from mmweaver.recordings.captures import read_capture
     from mmweaver.training.capture_training import recipe_for, tune, write_tuned
 
-    start, licence = _start(arguments.start)
+    start, card = _start(arguments.start)
     photo = {"rgb": arguments.rgb, "depth": arguments.depth, "camera": arguments.camera}
     captures = [read_capture(folder, **photo) for folder in arguments.captures]
-    recipe = recipe_for(captures, **_given(arguments))
-    with _bar(recipe.steps, is_quiet) as told:
-        tuned = tune(captures, arguments.out, recipe, start=start, listener=told, compute=place, **_options(arguments))
-    file = write_tuned(arguments.out, tuned, start=start, licence_of_start=licence) if place.is_first else None
+    recipe = recipe_for(captures, **{**_given(arguments), **_encoder_of(card)})
+    with _bar(recipe.steps, is_quiet) as listener:
+        tuned = tune(
+            captures, arguments.out, recipe, start=start, listener=listener, compute=place, **_options(arguments)
+        )
+    file = write_tuned(arguments.out, tuned, start=start, licence_of_start=card.licence) if place.is_first else None
     held_out = tuned.held_out
     return {
         "weights": str(file), "steps": tuned.trainer.step, "validation_loss": tuned.trainer.best.value,
         "loss_before": tuned.loss_before, "with_joints": sum(room.has_joints for room in tuned.rooms),
         "captures": len(tuned.rooms), "gain": tuned.gain,
-        "judged_on": "the captures themselves" if held_out is None else f"{held_out.folder.name}, kept aside,",
+        "evaluated_on": "the captures themselves" if held_out is None else f"{held_out.folder.name}, held out,",
     }  # fmt: skip
 
 
 def _given(arguments: argparse.Namespace) -> dict[str, Any]:
-    """What of the recipe was said."""
+    """The settings of the recipe that the user gave."""
     given = {
         "steps": arguments.steps, "batch_size": arguments.batch, "learning_rate": arguments.learning_rate,
-        "seed": arguments.seed, "validate_every": arguments.validate_every,
+        "seed": arguments.seed, "validate_every": arguments.validate_every, "encoder": arguments.encoder,
     }  # fmt: skip
     return {name: value for name, value in given.items() if value is not None}
 
@@ -186,23 +197,27 @@ def _options(arguments: argparse.Namespace) -> dict[str, Any]:
 
 @contextmanager
 def _bar(steps: int, is_quiet: bool) -> "Iterator[Listener]":
-    """What is called at every step, and shows it."""
+    """A listener for the trainer that shows each step."""
     from tqdm import tqdm
 
     with tqdm(total=steps, unit="step", disable=is_quiet or None) as bar:
 
-        def told(progress: "Progress") -> None:
+        def show(progress: "Progress") -> None:
             bar.update(progress.step - bar.n)
             if progress.validation is not None:
                 bar.set_postfix(loss=f"{progress.loss:.3f}", validation=f"{progress.validation:.3f}")
 
-        yield told
+        yield show
 
 
-def _start(source: str) -> tuple[Any, str]:
-    """Weights to begin with, and their licence."""
+def _start(source: str) -> "tuple[dict[str, Tensor], WeightsCard]":
+    """The weights to start from, and what their file says of them."""
     from mmweaver.models.find_weights import find_weights
     from mmweaver.models.weights import load_weights
 
     network, card = load_weights(find_weights(source))
-    return network.state_dict(), card.licence
+    return network.state_dict(), card
+
+
+def _encoder_of(card: "WeightsCard") -> dict[str, str]:
+    return {"encoder": card.settings["encoder"]} if "encoder" in card.settings else {}

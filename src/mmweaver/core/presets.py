@@ -170,4 +170,5 @@ PRESETS: Registry[RadarConfig] = Registry(
         (config.name, config)
         for config in (AWR1843, MMMESH, RF_GENESIS, HUPR, IWR6843, IWR1443_RADHAR, IWR1443_MARS, BGT60)
     ],
+    entry_points="mmweaver.radars",
 )

@@ -1,35 +1,77 @@
-"""Names that arrive from outside as strings."""
+"""Names that arrive from outside as strings: built in, registered by a program, or found in an installed plug-in."""
 
 from collections.abc import Iterator, Mapping
-from typing import TypeVar
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from mmweaver.core.errors import InputError
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 Entry = TypeVar("Entry")
 
 
 class Registry(Mapping[str, Entry]):
-    """A read-only table from name to entry; a second entry of one name is a bug, an unknown name an InputError."""
+    """A table from name to entry; an unknown name is an InputError.
 
-    def __init__(self, kind: str, entries: list[tuple[str, Entry]]):
+    `entry_points`: the group of entry points in which installed packages may offer further entries. These are looked
+    up only for names that are not built in, and loaded when they are first used.
+    """
+
+    def __init__(self, kind: str, entries: list[tuple[str, Entry]], *, entry_points: str | None = None):
         self.kind = kind
+        self._group = entry_points
         self._entries: dict[str, Entry] = {}
         for name, entry in entries:
             if name in self._entries:
                 raise RuntimeError(f"two entries named {name!r} among the {kind}s")
             self._entries[name] = entry
 
+    def register(self, name: str, entry: Entry) -> None:
+        """Adds an entry; the same entry again changes nothing. Raises InputError for a name that is taken."""
+        if self._entries.get(name, entry) is not entry:
+            raise InputError(f"there is a {self.kind} {name!r} already; choose another name")
+        self._entries[name] = entry
+
     def __getitem__(self, name: str) -> Entry:
-        try:
-            return self._entries[name]
-        except KeyError:
-            raise InputError(f"unknown {self.kind} {name!r}; known: {', '.join(self._entries)}") from None
+        if name not in self._entries:
+            if name not in self._plugins:
+                raise InputError(f"unknown {self.kind} {name!r}; known: {', '.join(self)}")
+            self._entries[name] = load_plugin(self._plugins[name])
+        return self._entries[name]
 
     def __contains__(self, name: object) -> bool:
-        return name in self._entries
+        return name in self._entries or name in self._plugins
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._entries)
+        return iter(dict.fromkeys((*self._entries, *self._plugins)))
 
     def __len__(self) -> int:
-        return len(self._entries)
+        return len(list(iter(self)))
+
+    @cached_property
+    def _plugins(self) -> "dict[str, EntryPoint]":
+        return {} if self._group is None else plugins(self._group)
+
+
+def plugins(group: str) -> "dict[str, EntryPoint]":
+    """The entry points of a group, by name; of two with one name the first found."""
+    from importlib.metadata import entry_points
+
+    found: dict[str, EntryPoint] = {}
+    for one in entry_points(group=group):
+        found.setdefault(one.name, one)
+    return found
+
+
+def load_plugin(plugin: "EntryPoint") -> Any:
+    """What an entry point names. Raises InputError where it cannot be imported."""
+    try:
+        return plugin.load()
+    except Exception as error:  # a plug-in can fail in any way
+        package = f" of {plugin.dist.name} {plugin.dist.version}" if plugin.dist else ""
+        raise InputError(
+            f"plug-in {plugin.name!r}{package} ({plugin.group}: {plugin.value}) cannot be loaded:"
+            f" {type(error).__name__}: {error}; update or uninstall it"
+        ) from error

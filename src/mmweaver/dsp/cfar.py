@@ -1,7 +1,7 @@
-"""Constant false alarm rate detection on range-Doppler power, with thresholds from the statistics of noise.
+"""Constant false alarm rate (CFAR) detection on range-Doppler power, with thresholds from noise statistics.
 
-A cell of noise that is the mean of |.|^2 over M antennas ("looks") is gamma distributed with shape M. Under Hann
-windows neighbouring cells share noise, so a ring of N training cells is worth fewer independent ones; both enter.
+The mean of |.|^2 of noise over M antennas ("looks") is gamma distributed with shape M. Hann windows correlate
+neighbouring cells, so a ring of N training cells has fewer effective independent ones; both are accounted for.
 
 Reference: Richards, Fundamentals of Radar Signal Processing, ch. 6; Rohling 1983 (OS-CFAR).
 """
@@ -25,7 +25,7 @@ OS_QUANTILE = 0.75
 class CfarCells:
     """Half extents (range, doppler) of the guard area around the cell under test and of the training ring around it.
 
-    By default wide enough for a body, which fills some 8 by 8 cells of 4.4 cm and 0.27 m/s, not to hide itself.
+    By default wide enough that a body, which fills some 8 by 8 cells of 4.4 cm and 0.27 m/s, does not mask itself.
     """
 
     guard: tuple[int, int] = (4, 4)
@@ -34,7 +34,7 @@ class CfarCells:
 
 @dataclass(frozen=True, kw_only=True)
 class CfarResult:
-    """What was found, and the noise power estimated around each cell."""
+    """Detections, and the noise power estimated around each cell, (frame, range, doppler)."""
 
     is_detected: RangeDopplerMask
     noise_power: RangeDopplerMap
@@ -59,9 +59,9 @@ def ca_cfar(
 ) -> CfarResult:
     """Cell averaging: a cell is detected where it exceeds a factor times the mean of its training cells.
 
-    `num_looks` = antennas averaged in `power`; `hann_windowed` says that neighbouring cells are correlated as Hann
-    windows make them (False: independent cells). Doppler wraps around; near the ends of range the ring is what is
-    left of it. Raises InputError for a rate outside (0, 1) or a map too small for any training cell.
+    `num_looks` = antennas averaged in `power`; `hann_windowed`: neighbouring cells are correlated by Hann windows
+    (False: independent cells). Doppler is cyclic; near the ends of range the ring is truncated. Raises InputError for a
+    rate outside (0, 1) or a map too small for any training cell.
     """
     _check(power, false_alarm_rate)
     rings = _rings(power.shape[1], power.shape[2], cells, POWER_CORRELATION if hann_windowed else None)
@@ -93,7 +93,7 @@ def os_cfar(
         columns = (np.arange(num_doppler)[:, None] + ring.doppler_offset) % num_doppler
         training = power[:, at + ring.range_offset[None, :], columns]
         ordered = np.partition(training, rank - 1, axis=-1)[..., rank - 1]
-        # fewer independent cells spread the ranked one wider, but do not move its mean, rank / (num + 1)
+        # fewer independent cells widen the distribution of the ranked one, but keep its mean, rank / (num + 1)
         independent_rank = rank * (ring.num_independent + 1) / (num + 1)
         level, factor[at] = os_factor(false_alarm_rate, independent_rank, ring.num_independent, num_looks)
         noise[:, at] = ordered / level
@@ -150,11 +150,11 @@ def _check(power: RangeDopplerMap, false_alarm_rate: float) -> None:
     if not 0 < false_alarm_rate < 1:
         raise InputError(f"the false alarm rate must lie between 0 and 1, not {false_alarm_rate}")
     if power.shape[1] * power.shape[2] < 2:
-        raise InputError("a range-Doppler map of one cell has nothing to compare it with")
+        raise InputError("a range-Doppler map of one cell has no training cells")
 
 
 def _half_extents(num_doppler: int, cells: CfarCells) -> tuple[int, int]:
-    """Guard and whole half extents in Doppler, cut so that no cell is met twice around the circle."""
+    """Guard and total half extents in Doppler, limited so that no cell occurs twice on the cyclic axis."""
     limit = (num_doppler - 1) // 2
     guard = min(cells.guard[1], limit)
     return guard, min(guard + cells.training[1], limit)
@@ -175,7 +175,7 @@ def _rings(num_range: int, num_doppler: int, cells: CfarCells, correlation: np.n
 
 
 def _ring(cut: tuple[int, int], extents: tuple[int, int, int], correlation: np.ndarray | None) -> _Ring:
-    """From the bins nearer and farther that there are, and half extents: guard in range, guard and all in Doppler."""
+    """The ring from the available bins nearer and farther, and half extents (guard range, guard and total Doppler)."""
     guard, guard_doppler, whole_doppler = extents
     in_range, in_doppler = np.arange(-cut[0], cut[1] + 1), np.arange(-whole_doppler, whole_doppler + 1)
     is_training = (np.abs(in_range)[:, None] > guard) | (np.abs(in_doppler)[None, :] > guard_doppler)
@@ -187,7 +187,7 @@ def _ring(cut: tuple[int, int], extents: tuple[int, int, int], correlation: np.n
 
 
 def _num_independent(is_training: np.ndarray, correlation: np.ndarray) -> float:
-    """N^2 over the sum of all pairwise correlations: how many independent cells have as steady a mean."""
+    """Effective number of independent cells: N^2 over the sum of all pairwise correlations."""
     mask = np.pad(is_training.astype(float), ((2, 2), (2, 2)))
     pairs = 0.0
     for rows in range(-2, 3):
@@ -199,7 +199,7 @@ def _num_independent(is_training: np.ndarray, correlation: np.ndarray) -> float:
 
 @lru_cache(maxsize=16)
 def _exceedance_correlation(num_looks: int) -> np.ndarray:
-    """As POWER_CORRELATION, but of "this cell lies above the OS quantile", which is what steadies an ordered cell.
+    """As POWER_CORRELATION, but of the event that a cell exceeds the OS quantile, which governs an ordered cell.
 
     Kibble's expansion of two correlated gamma variables in Laguerre polynomials; integrated from the quantile up,
     each term is r^n c_n^2.

@@ -1,7 +1,7 @@
-"""The point cloud that TI's out-of-box demo would report: its windows, whole numbers, CFAR, grouping and angles.
+"""Emulation of the point cloud of TI's out-of-box demo: windows, fixed-point arithmetic, CFAR, grouping and angles.
 
-Imitated from the behaviour that TI documents (mmWave SDK User Guide; demo documentation of xWR14xx and xWR16xx); what
-is known and what is guessed: docs/decisions/0012-firmware-points.md.
+Based on the behaviour that TI documents (mmWave SDK User Guide; demo documentation of xWR14xx and xWR16xx); what is
+known and what is assumed: docs/decisions/0012-firmware-points.md.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.shapes import PerIndex, PerPoint
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.dsp.cube import adc_from_cube
-from mmweaver.dsp.firmware_cfar import DetectionMatrix, detected, detection_matrix, is_local_peak
+from mmweaver.dsp.firmware_cfar import DetectionMatrix, cfar_detections, detection_matrix, is_local_peak
 
 AZIMUTH_BINS = 64
 BLACKMAN = (0.42, 0.5, 0.08)
@@ -29,9 +29,9 @@ Spectrum = Complex[np.ndarray, "frame range doppler antenna"]
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class FirmwareCloud(PointCloud):
-    """A PointCloud with what the firmware sends besides: `intensity` in the device's own counts (mean of antennas).
+    """A PointCloud with the further outputs of the firmware: `intensity` in the device's counts (mean of antennas).
 
-    `snr_db` is the detection over the noise that its CFAR estimated in range (in Doppler where range has none).
+    `snr_db`: the detection relative to the noise estimated by its range CFAR (Doppler CFAR if there is none in range).
     """
 
     intensity: PerPoint
@@ -46,23 +46,24 @@ class _Objects:
     range_bin: np.ndarray
     doppler_bin: np.ndarray
     azimuth_bin: np.ndarray
-    up: np.ndarray
+    up: np.ndarray  # direction cosine upwards, in half wavelengths of the device
     intensity: np.ndarray
     snr_db: np.ndarray
 
 
 def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = FirmwareSettings()) -> FirmwareCloud:  # noqa: B008
-    """Points of each frame, as the demo's firmware would send them.
+    """Points of each frame, as the demo's firmware would report them.
 
-    1. Range FFT (Blackman window, next power of two of the samples, 16-bit results); `static_removal` takes the mean
-       over the loops away; Doppler FFT (Hann window, 16-bit results).
-    2. Detection matrix: log2 magnitudes of all antennas, summed as the device does, whole numbers.
+    1. Range FFT (Blackman window, next power of two of the samples, 16-bit results); `static_removal` subtracts the
+       mean over the loops; Doppler FFT (Hann window, 16-bit results).
+    2. Detection matrix: log2 magnitudes of all antennas, summed in the device's fixed-point format.
     3. CFAR in range, in Doppler, or in both: a cell must pass each. Then peak grouping, then the limit of the list,
        filled column by column from Doppler zero upwards.
     4. Azimuth: the highest of 64 bins of the FFT over the horizontal row, with Doppler compensation by the bin;
        elevation from the phase of the row above; a second azimuth peak where the settings allow.
-    Nothing is interpolated between bins. A cube is turned back into samples first: what it does not hold is silence.
-    A recording's samples count as ADC counts. Raises InputError for a radar with real samples or fewer than four loops.
+    Nothing is interpolated between bins. A cube is first converted back to samples; bins it does not contain are zero.
+    Samples of a recording are taken as ADC counts. Raises InputError for a radar with real samples or fewer than four
+    loops.
     """
     adc = adc_from_cube(signal) if isinstance(signal, RadarCube) else signal
     config = adc.config
@@ -77,11 +78,11 @@ def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = Fi
 
 
 def check_firmware_radar(config: RadarConfig) -> None:
-    """Raises InputError for a radar that the firmware is not for."""
+    """Raises InputError for a radar that the firmware does not support."""
     if not config.complex_samples or config.num_loops < 4:
         raise InputError(
             f"firmware points are for TI radars with complex samples and four loops or more; radar {config.name!r}"
-            " has others; take --points cfar"
+            " has others; use --points cfar"
         )
 
 
@@ -96,7 +97,7 @@ def range_step_m(config: RadarConfig) -> float:
 
 
 def firmware_spectrum(adc: AdcCube, settings: FirmwareSettings, frames: slice = slice(None)) -> Spectrum:
-    """Range-Doppler spectrum in the device's counts, whole numbers; Doppler bin num_loops // 2 is zero."""
+    """Range-Doppler spectrum in integer counts of the device; Doppler bin num_loops // 2 is zero velocity."""
     config = adc.config
     counts = adc.samples[frames]
     if np.isfinite(adc.scale):
@@ -109,25 +110,25 @@ def firmware_spectrum(adc: AdcCube, settings: FirmwareSettings, frames: slice = 
     loops = config.num_loops
     slow = one.reshape(len(one), loops, config.num_antennas, size).transpose(0, 3, 1, 2)
     weight = _symmetric_window(loops, (0.5, 0.5, 0.0)).astype(np.float32)[:, None]
-    # every stage but the first halves: the Hann window halves once already
+    # every stage but the first halves; the Hann window already halves once
     two = _fft(slow * weight, loops, 2) / np.float32(1 << max((loops - 1).bit_length() - 1, 0))
     return _whole(np.fft.fftshift(two, axes=2))
 
 
 def _fft(values: np.ndarray, size: int, axis: int) -> np.ndarray:
-    """scipy's FFT, which keeps single precision."""
+    """FFT of scipy, which preserves single precision."""
     from scipy import fft
 
     return np.asarray(fft.fft(values, n=size, axis=axis))
 
 
 def _symmetric_window(num: int, terms: tuple[float, float, float]) -> Float[np.ndarray, " num"]:
-    turn = 2 * np.pi * np.arange(num) / (num - 1)
-    return terms[0] - terms[1] * np.cos(turn) + terms[2] * np.cos(2 * turn)
+    phase = 2 * np.pi * np.arange(num) / (num - 1)
+    return terms[0] - terms[1] * np.cos(phase) + terms[2] * np.cos(2 * phase)
 
 
 def _whole(values: np.ndarray) -> np.ndarray:
-    """As 16-bit registers hold it: whole numbers, saturating."""
+    """Rounds to saturating 16-bit integers."""
     real, imaginary = (np.clip(np.rint(part), -INT16, INT16) for part in (np.real(values), np.imag(values)))
     return (real + 1j * imaginary).astype(np.complex64)
 
@@ -137,9 +138,9 @@ def _objects(
     matrix: DetectionMatrix, index: int, config: RadarConfig, settings: FirmwareSettings,
 ) -> _Objects:  # fmt: skip
     level = matrix.level[index]
-    passed, snr = detected(level, settings, matrix.counts_per_octave)
+    passed, snr = cfar_detections(level, settings, matrix.counts_per_octave)
     passed &= is_local_peak(level, settings)
-    # the list is filled in the order of the FFT's columns: zero and up, then the negative velocities
+    # the list is filled in FFT order: zero and positive velocities, then negative ones
     loops = config.num_loops
     column, row = np.nonzero(np.fft.ifftshift(passed, axes=1).T)
     column = (column + loops // 2) % loops
@@ -166,24 +167,24 @@ def _objects(
 
 
 def _azimuth_peaks(magnitude: Float[np.ndarray, "object azimuth"], share: float | None) -> tuple[PerIndex, PerIndex]:
-    """Bin of the highest azimuth, and of the highest beyond its slopes where it reaches `share` of it (else -1)."""
+    """Bin of the highest azimuth peak, and of a second one of at least `share` of it outside its main lobe (or -1)."""
     first = np.argmax(magnitude, axis=1) if len(magnitude) else np.zeros(0, np.intp)
     second = np.full(len(first), -1)
     if share is not None:
         for row, (line, top) in enumerate(zip(magnitude, first, strict=True)):
-            # seen from the peak, the line falls to a valley on either side; what lies between the valleys is left
-            turned = np.roll(line, -top)
-            right = _first_rise(turned)
-            left = len(line) - _first_rise(np.roll(turned[::-1], 1))
+            # on either side the main lobe ends in a valley; the second peak lies beyond both valleys
+            rotated = np.roll(line, -top)
+            right = _first_rise(rotated)
+            left = len(line) - _first_rise(np.roll(rotated[::-1], 1))
             if right <= left:
-                at = right + int(np.argmax(turned[right : left + 1]))
-                if turned[at % len(line)] > share * line[top]:
+                at = right + int(np.argmax(rotated[right : left + 1]))
+                if rotated[at % len(line)] > share * line[top]:
                     second[row] = (at + top) % len(line)
     return first, second
 
 
 def _first_rise(line: np.ndarray) -> int:
-    """The first place higher than the one before it; the length where there is none."""
+    """Index of the first value higher than its predecessor; the length if there is none."""
     rises = np.flatnonzero(line[1:] > line[:-1])
     return int(rises[0]) + 1 if len(rises) else len(line)
 
@@ -191,7 +192,7 @@ def _first_rise(line: np.ndarray) -> int:
 def _elevation(
     signal: np.ndarray, beam: np.ndarray, azimuth_bin: np.ndarray, across: PerIndex, config: RadarConfig
 ) -> np.ndarray:
-    """Direction cosine upwards in the device's half-wave units; 0 without a second row."""
+    """Direction cosine upwards in half wavelengths of the device; 0 without a second row."""
     pair = elevation_rows(config.antenna_position_m, config.wavelength_m)
     if pair is None:
         return np.zeros(len(signal))
@@ -208,17 +209,17 @@ def _signed(azimuth_bin: np.ndarray) -> np.ndarray:
 
 
 def _cloud(found: list[tuple[int, _Objects]], config: RadarConfig) -> FirmwareCloud:
-    """Objects of all frames with their places; y is 0 where the angles leave no way ahead, as the device has it."""
+    """Objects of all frames with their positions; y is 0 for impossible angles, as on the device."""
 
-    def joined(name: str) -> np.ndarray:
+    def column(name: str) -> np.ndarray:
         return np.concatenate([np.zeros(0), *(getattr(objects, name) for _, objects in found)])
 
-    range_bin, doppler_bin = joined("range_bin").astype(int), joined("doppler_bin").astype(int)
+    range_bin, doppler_bin = column("range_bin").astype(int), column("doppler_bin").astype(int)
     step_m = range_step_m(config)
     grain = 2.0 ** -np.ceil(np.log2(16 / step_m))  # the device's fixed point
     range_m = range_bin * step_m
-    x_m = range_m * _signed(joined("azimuth_bin")) * 2 / AZIMUTH_BINS
-    z_m = range_m * joined("up")
+    x_m = range_m * _signed(column("azimuth_bin")) * 2 / AZIMUTH_BINS
+    z_m = range_m * column("up")
     y_m = np.sqrt(np.maximum(range_m**2 - x_m**2 - z_m**2, 0))
     x_m, y_m, z_m = (np.rint(value / grain) * grain for value in (x_m, y_m, z_m))
     counts = [len(objects.range_bin) for _, objects in found]
@@ -226,5 +227,5 @@ def _cloud(found: list[tuple[int, _Objects]], config: RadarConfig) -> FirmwareCl
         frame=np.repeat(np.array([frame for frame, _ in found], int), np.array(counts, int)),
         x_m=x_m, y_m=y_m, z_m=z_m,
         radial_velocity_mps=config.radial_velocity_mps[doppler_bin],
-        snr_db=joined("snr_db"), intensity=joined("intensity"), range_bin=range_bin, doppler_bin=doppler_bin,
+        snr_db=column("snr_db"), intensity=column("intensity"), range_bin=range_bin, doppler_bin=doppler_bin,
     )  # fmt: skip

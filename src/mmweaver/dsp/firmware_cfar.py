@@ -1,4 +1,4 @@
-"""The detection matrix of TI's demo, its CFAR along range and Doppler in whole logarithms, and its peak grouping."""
+"""Detection matrix of TI's demo, its CFAR along range and Doppler in integer logarithms, and its peak grouping."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ Level = Int[np.ndarray, "range doppler"]
 
 @dataclass(frozen=True, kw_only=True)
 class DetectionMatrix:
-    """`level` (frame, range, doppler), whole numbers: log2 of the magnitudes' geometric mean, times
+    """`level` (frame, range, doppler), integers: log2 of the magnitudes' geometric mean, times
     `counts_per_octave`."""
 
     level: Int[np.ndarray, "frame range doppler"]
@@ -22,7 +22,7 @@ class DetectionMatrix:
 
 
 def counts_per_db(device: str, num_antennas: int) -> float:
-    """How many counts of a threshold one dB is.
+    """Threshold counts per dB.
 
     >>> round(1280 / counts_per_db("xwr14xx", 8), 1), round(1280 / counts_per_db("xwr14xx", 12), 1)
     (15.1, 20.1)
@@ -34,7 +34,7 @@ def counts_per_db(device: str, num_antennas: int) -> float:
 
 
 def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"], device: str) -> DetectionMatrix:
-    """Sum of the antennas' log2 magnitudes: in Q8 as it is ("xwr16xx"), or in Q9 over a power of two ("xwr14xx")."""
+    """Sum of the antennas' log2 magnitudes: Q8 ("xwr16xx"), or Q9 divided by a power of two ("xwr14xx")."""
     num = spectrum.shape[-1]
     octaves = np.log2(np.maximum(np.abs(spectrum), 1))  # the device's logarithm of 0 is 0
     if device == "xwr16xx":
@@ -45,20 +45,20 @@ def detection_matrix(spectrum: Complex[np.ndarray, "frame range doppler antenna"
     return DetectionMatrix(level=level, counts_per_octave=512.0 * num / 2**shift)
 
 
-def detected(
+def cfar_detections(
     level: Level, settings: FirmwareSettings, counts_per_octave: float
 ) -> tuple[Bool[np.ndarray, "range doppler"], Float[np.ndarray, "range doppler"]]:
-    """Cells that pass every CFAR of the settings, and how many dB they stand over the first one's noise."""
+    """Cells that pass every CFAR of the settings, and their level over the noise of the first CFAR in dB."""
     passed = np.ones(level.shape, bool)
     over: np.ndarray | None = None
-    for cfar, turned in ((settings.range_cfar, False), (settings.doppler_cfar, True)):
+    for cfar, is_doppler in ((settings.range_cfar, False), (settings.doppler_cfar, True)):
         if cfar is None:
             continue
         half = cfar.window // 2 if settings.device == "xwr14xx" else cfar.window
-        # Doppler is tested in the FFT's own order, so a CFAR that does not wrap ends at the fastest velocities
-        line = np.fft.ifftshift(level, axes=1).T if turned else level
+        # Doppler is tested in FFT order, so a non-cyclic CFAR ends at the fastest velocities
+        line = np.fft.ifftshift(level, axes=1).T if is_doppler else level
         noise = noise_level(line, cfar, half)
-        noise = np.fft.fftshift(noise.T, axes=1) if turned else noise
+        noise = np.fft.fftshift(noise.T, axes=1) if is_doppler else noise
         excess = level - noise
         passed &= excess > cfar.threshold
         over = excess if over is None else over
@@ -67,11 +67,11 @@ def detected(
 
 
 def noise_level(level: Int[np.ndarray, "along across"], cfar: FirmwareCfar, half: int) -> Int[np.ndarray, "along _"]:
-    """Noise around each cell along the first axis, from `half` cells on either side beyond the guard cells.
+    """Noise level at each cell along the first axis, from `half` cells on either side beyond the guard cells.
 
     "ca" shifts the sum of both sides right by `noise_shift`, "caso" and "cago" the smaller or greater side by one
-    less. Without `cyclic`, a cell with no room on one side takes the other side alone; with room on neither its noise
-    is beyond reach.
+    less. Without `cyclic`, a cell near one end uses the other side only; if both sides are missing, its noise is
+    infinite.
     """
     num = len(level)
     reach = cfar.guard + half
@@ -96,16 +96,16 @@ def noise_level(level: Int[np.ndarray, "along across"], cfar: FirmwareCfar, half
 
 
 def _padded(level: np.ndarray, reach: int, cyclic: bool) -> np.ndarray:
-    """Wrapped around, as often as the reach asks, or with silence beyond the ends."""
+    """The level padded cyclically, or with zeros."""
     padding = ((reach, reach), (0, 0))
     return np.pad(level, padding, mode="wrap") if cyclic else np.pad(level, padding)
 
 
 def is_local_peak(level: Level, settings: FirmwareSettings) -> Bool[np.ndarray, "range doppler"]:
-    """Cells within the range bins asked for that no neighbour exceeds.
+    """Cells within the configured range bins that no neighbour exceeds.
 
     Neighbours: the eight around with grouping in range and Doppler, the two along the one direction that is grouped,
-    none without grouping. Doppler wraps; beyond the range bins asked for there is nothing.
+    none without grouping. Doppler is cyclic; cells outside the configured range bins are ignored.
     """
     rows = np.arange(len(level))
     inside = (rows >= settings.first_range_bin) & (rows <= settings.last_range_bin)

@@ -1,4 +1,4 @@
-"""Point clouds: CFAR detections with range, velocity, azimuth and elevation between the bins."""
+"""Point clouds: CFAR detections with interpolated range, velocity, azimuth and elevation."""
 
 from dataclasses import dataclass
 
@@ -39,8 +39,8 @@ def point_cloud(
 ) -> PointCloud:
     """Detections of each frame in the radar's frame of reference, the strongest (by SNR) up to a limit.
 
-    1. CFAR ("ca" or "os") on the range-Doppler power; a detection is kept where it peaks along range or along Doppler.
-       `moving_only` takes the Doppler bins of what stands still out of the map first.
+    1. CFAR ("ca" or "os") on the range-Doppler power; a detection counts where it peaks along range or along Doppler.
+       `moving_only` first removes the Doppler bins of static clutter.
     2. Azimuth by beamforming on the horizontal row: every peak within `azimuth_peak_db` of the cell's highest is a
        point of its own (at most `max_azimuth_peaks`).
     3. Elevation from the phase between two rows, 0 where the array has none.
@@ -52,11 +52,11 @@ def point_cloud(
     if max_points_per_frame < 1:
         raise InputError(f"max_points_per_frame must be at least 1, not {max_points_per_frame}")
     power = range_doppler_power(cube)
-    kept = moving_doppler(cube) if moving_only else np.ones(power.shape[2], bool)
+    used_bins = moving_doppler(cube) if moving_only else np.ones(power.shape[2], bool)
     found = CFAR_METHODS[method](
-        power[:, :, kept], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1], cells=cells
+        power[:, :, used_bins], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1], cells=cells
     )
-    detections = _detected_cells(cube, power, found, kept)
+    detections = _detected_cells(cube, power, found, used_bins)
     which, direction, gain_db = _azimuth_peaks(cube, detections.signal, azimuth_peak_db, max_azimuth_peaks)
     up = _elevation(cube, detections.signal[which], direction)
     ahead_squared = 1 - direction**2 - up**2
@@ -74,12 +74,12 @@ def point_cloud(
     )
 
 
-def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, kept: np.ndarray) -> _Cells:
-    """Peaks among the detections, interpolated; their antennas' samples freed of the TDM phase left within a bin."""
-    candidates = found.is_detected & _peaks(power)[:, :, kept]
+def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, used_bins: np.ndarray) -> _Cells:
+    """Interpolated peaks of the detections, with the residual TDM phase of their antenna signals removed."""
+    candidates = found.is_detected & _peaks(power)[:, :, used_bins]
     frame, row, column = np.nonzero(candidates)
-    snr = power[:, :, kept][frame, row, column] / np.maximum(found.noise_power[frame, row, column], 1e-300)
-    doppler = np.flatnonzero(kept)[column]
+    snr = power[:, :, used_bins][frame, row, column] / np.maximum(found.noise_power[frame, row, column], 1e-300)
+    doppler = np.flatnonzero(used_bins)[column]
     config = cube.config
     num_range, num_doppler = power.shape[1:]
     at = power[frame, row, doppler]
@@ -106,7 +106,7 @@ def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, 
 
 
 def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
-    """Cells not below their two neighbours along range, or not below those along Doppler (which wraps)."""
+    """Local maxima along range, or along Doppler (cyclic)."""
     padded = np.pad(power, ((0, 0), (1, 1), (0, 0)))
     along_range = (power >= padded[:, :-2]) & (power >= padded[:, 2:])
     along_doppler = (power >= np.roll(power, 1, 2)) & (power >= np.roll(power, -1, 2))
@@ -114,9 +114,9 @@ def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
 
 
 def _parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarray:
-    """Where the top of a parabola through three levels in dB lies, in bins from the middle, at most half a bin away.
+    """Vertex of the parabola through three levels in dB, in bins from the middle, at most half a bin away.
 
-    A cell on a slope is drawn towards the top beside it; 0 in a hollow.
+    A cell on a slope shifts towards the adjacent peak; 0 at a minimum.
     """
     low, middle, high = (np.log(np.maximum(level, 1e-300)) for level in (before, at, after))
     bend = low - 2 * middle + high
@@ -126,7 +126,7 @@ def _parabola(before: np.ndarray, at: np.ndarray, after: np.ndarray) -> np.ndarr
 def _azimuth_peaks(
     cube: RadarCube, signal: Complex[np.ndarray, "cell antenna"], within_db: float, most: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(index of the cell, direction cosine to the right, dB below the cell's highest peak), one row a peak."""
+    """(index of the cell, direction cosine to the right, dB relative to the cell's highest peak), each (peak,)."""
     row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     if len(row) < 2 or not len(signal):
         return np.arange(len(signal)), np.zeros(len(signal)), np.zeros(len(signal))
@@ -147,7 +147,7 @@ def _azimuth_peaks(
 
 
 def _elevation(cube: RadarCube, signal: Complex[np.ndarray, "point antenna"], right: np.ndarray) -> np.ndarray:
-    """Direction cosine upwards, from the phase between two rows that look towards each point's azimuth."""
+    """Direction cosine upwards (point,), from the phase between two rows steered to each point's azimuth."""
     pair = elevation_rows(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     if pair is None:
         return np.zeros(len(signal))
@@ -161,7 +161,7 @@ def _elevation(cube: RadarCube, signal: Complex[np.ndarray, "point antenna"], ri
 
 
 def _strongest(frame: np.ndarray, snr_db: np.ndarray, is_possible: np.ndarray, most: int) -> np.ndarray:
-    """Indices of up to `most` possible points of each frame, by frame and falling SNR."""
+    """Indices of up to `most` valid points of each frame, by frame and decreasing SNR."""
     index = np.flatnonzero(is_possible)
     index = index[np.lexsort((-snr_db[index], frame[index]))]
     _, first, count = np.unique(frame[index], return_index=True, return_counts=True)

@@ -1,4 +1,4 @@
-"""Maps of a cube: range-Doppler, range-azimuth, range-elevation, all of mean power over the antennas used."""
+"""Power maps of a cube: range-Doppler, range-azimuth, range-elevation, averaged over the antennas used."""
 
 import math
 
@@ -36,16 +36,16 @@ def elevation_axis_rad(num: int = 61, limit_deg: float = 40.0) -> PerAngle:
 
 
 def moving_doppler(cube: RadarCube) -> Bool[np.ndarray, " doppler"]:
-    """Which Doppler bins a Hann-windowed static scene does not touch: all but zero and its two neighbours.
+    """Mask of the Doppler bins without Hann-windowed static clutter: all but zero and its two neighbours.
 
-    With fewer than five loops nothing would be left; then only bin zero is dropped.
+    With fewer than five loops, only bin zero is excluded.
     """
     num = cube.values.shape[2]
     return np.abs(np.arange(num) - num // 2) > (1 if num >= 5 else 0)
 
 
 def noise_power(cube: RadarCube) -> float | None:
-    """Of a cell: the median where nothing rests, for people fill few cells. None for a radar of one loop."""
+    """Noise power per cell: the median outside static Doppler bins. None for a radar of one loop."""
     moving = moving_doppler(cube)
     return float(np.median(range_doppler_power(cube)[:, :, moving])) if moving.any() else None
 
@@ -54,7 +54,7 @@ def range_azimuth_power(cube: RadarCube, azimuth_rad: PerAngle, *, moving_only: 
     """Beamforming on the array's horizontal row, power summed over Doppler, (frame, range, azimuth).
 
     A lone scatterer that gives amplitude a at every antenna shows a^2 (summed over its Doppler cells) at its angle.
-    `moving_only` leaves out the Doppler bins of what stands still.
+    `moving_only` excludes the Doppler bins of static clutter.
     """
     row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     direction = np.stack([np.sin(azimuth_rad), np.cos(azimuth_rad), np.zeros_like(azimuth_rad)])
@@ -65,12 +65,12 @@ def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_on
     """Beamforming between two rows, power summed over Doppler and averaged over columns, (frame, range, elevation).
 
     Each column of the two rows that share columns is beamformed by itself, so the target's azimuth does not matter;
-    two rows give a wide beam. Raises InputError for an array that cannot tell elevation (ask `has_elevation`).
+    two rows give a wide beam. Raises InputError for an array without elevation (see `has_elevation`).
     """
     pair = elevation_rows(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     if pair is None:
         raise InputError(
-            f"the array of radar {cube.config.name!r} has no column of two antennas, so it cannot tell elevation;"
+            f"the array of radar {cube.config.name!r} has no column of two antennas, so it has no elevation;"
             " use a radar with an elevated transmitter, such as awr1843"
         )
     direction = np.stack([np.zeros_like(elevation_rad), np.cos(elevation_rad), np.sin(elevation_rad)])
@@ -81,17 +81,17 @@ def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_on
 def steering(
     cube: RadarCube, antennas: PerIndex, direction: Float[np.ndarray, "3 angle"]
 ) -> Complex[np.ndarray, "_ angle"]:
-    """exp(+j 2 pi / wavelength u.p): times a far target's samples at direction u it makes them equal."""
+    """Steering phasors exp(+j 2 pi / wavelength u.p) (antenna, angle), which align a far target at direction u."""
     path_m = cube.grid.antenna_position_m[antennas] @ direction
     return np.exp(2j * np.pi / cube.grid.wavelength_m * path_m)
 
 
 def _beam_power(cube: RadarCube, groups: list[PerIndex], direction: np.ndarray, moving_only: bool) -> RangeAngleMap:
     """Each group beamformed coherently, groups averaged in power; by covariance over Doppler, so cheap in angles."""
-    kept = moving_doppler(cube) if moving_only else slice(None)
+    bins = moving_doppler(cube) if moving_only else slice(None)
     power = np.zeros((*cube.values.shape[:2], direction.shape[1]))
     for antennas in groups:
-        signal = cube.values[:, :, kept][..., antennas].astype(np.complex128)
+        signal = cube.values[:, :, bins][..., antennas].astype(np.complex128)
         covariance = signal.swapaxes(-1, -2) @ signal.conj()
         weight = steering(cube, antennas, direction) / len(antennas)
         # sum over a, b of w_a R_ab conj(w_b)

@@ -1,4 +1,4 @@
-"""preview.gif: the same over time. One figure is laid out once; only what moves is drawn again."""
+"""preview.gif: photo, range-Doppler and range-azimuth over time. The layout is drawn once, only moving parts anew."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
 DPI = 100
 SKELETON_COLOUR = (0.99, 0.90, 0.14)
-SHORTEST_MS, LONGEST_MS = 40, 1000  # how long a picture stands
+SHORTEST_MS, LONGEST_MS = 40, 1000  # duration of one picture
 
 
 def draw_animation(view: FigureData, path: Path) -> None:
-    """Writes a GIF in real time (as far as pictures of 0.04 to 1 s allow), 900 pixels wide, that repeats for ever."""
+    """Writes a looping GIF in real time (within 0.04 to 1 s per picture), 900 pixels wide."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
@@ -44,11 +44,11 @@ def _render(view: FigureData) -> list[np.ndarray]:
     movers = _lay_out(figure, view)
     canvas.draw()
     pixels = np.asarray(canvas.buffer_rgba())
-    still = pixels.copy()
+    background = pixels.copy()
     maps = [CellsOnScreen.of(mover.axes, mover.cells[0]) for mover in movers if mover.axes and mover.cells is not None]
     pictures = []
     for index in range(len(view.frames)):
-        pixels[:] = still
+        pixels[:] = background
         shown = (mover.cells[index] for mover in movers if mover.cells is not None)
         for place, values_db in zip(maps, shown, strict=True):
             place.paint(pixels, values_db)
@@ -61,7 +61,7 @@ def _render(view: FigureData) -> list[np.ndarray]:
 
 @dataclass(frozen=True)
 class CellsOnScreen:
-    """The pixels of an axes that show a map, and which cell each of them shows."""
+    """The pixels of an axes that show a map, and the cell shown by each."""
 
     rows: slice
     columns: slice
@@ -70,8 +70,10 @@ class CellsOnScreen:
 
     @classmethod
     def of(cls, axes: "Axes", cells: np.ndarray) -> "CellsOnScreen":
-        """For a map (up, right) that fills the axes, once the figure is laid out; the frame around it is spared."""
-        height = round(axes.get_figure(root=True).bbox.height)
+        """For a map (up, right) that fills the axes, once the figure is laid out; the frame around it stays."""
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        height = round(figure.bbox.height)
         left, bottom, right, top = axes.bbox.extents
         columns = np.arange(int(left) + 1, int(right) + 1)
         rows = np.arange(int(height - top) + 1, int(height - bottom) + 1)
@@ -95,7 +97,7 @@ class CellsOnScreen:
 
 @dataclass(frozen=True)
 class Mover:
-    """What changes from frame to frame in an axes, or in the whole figure: a map, and lines or words over it."""
+    """The moving content of an axes, or of the whole figure: a map, and lines or text over it."""
 
     axes: Any  # Axes or None
     update: Callable[[int], list[Any]]  # the artists to draw at a frame
@@ -173,7 +175,7 @@ def _azimuth_mover(axes: "Axes", view: FigureData) -> Mover:
 
 
 def _share_palette(pictures: list[np.ndarray]) -> "list[Image]":
-    """All frames in the 256 colours that suit a few of them, so that nothing flickers."""
+    """All frames in one palette of 256 colours, which avoids flicker."""
     from PIL import Image
 
     chosen = sorted({0, len(pictures) // 2, len(pictures) - 1})

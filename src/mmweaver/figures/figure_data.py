@@ -1,4 +1,4 @@
-"""FigureData: all that the pictures show, and the power maps that are made of it once."""
+"""FigureData: everything the pictures show, with power maps computed once."""
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
@@ -19,7 +19,7 @@ from mmweaver.dsp.spectra import (
 )
 from mmweaver.figures.theme import SPAN_DB
 
-MAX_FRAMES = 100  # more are thinned out: no picture shows more
+MAX_FRAMES = 100  # longer sequences are thinned out
 Power = Float[Array, "frame range column"]
 RangeAngle = Float[Array, "range column"]
 Raster = Float[Array, "ahead aside"]
@@ -27,7 +27,7 @@ Raster = Float[Array, "ahead aside"]
 
 @dataclass(frozen=True, kw_only=True)
 class FigureData:
-    """A cube and its points; with a photo and poses where the signal was made, without them for a recording.
+    """A cube and its points; photo and poses for a generated signal, none for a recording.
 
     `poses` hold each person's joints at the cube's frames, `motions` the same people densely in time.
     """
@@ -42,7 +42,7 @@ class FigureData:
 
     @cached_property
     def frames(self) -> Int[Array, " shown"]:
-        """The frames that the pictures show: all, or so many evenly spaced."""
+        """Indices of the shown frames: all, or evenly spaced ones."""
         count = len(self.cube.grid.frame_time_s)
         return np.unique(np.linspace(0, count - 1, min(count, MAX_FRAMES)).round().astype(int))
 
@@ -52,7 +52,7 @@ class FigureData:
 
     @property
     def heading(self) -> str:
-        """The title, and how many of the frames are shown where it is not all."""
+        """The title, with the number of shown frames if not all."""
         count = len(self.cube.grid.frame_time_s)
         return self.title if count == len(self.frames) else f"{self.title}   {len(self.frames)} of {count} frames shown"
 
@@ -81,12 +81,12 @@ class FigureData:
 
     @property
     def has_elevation(self) -> bool:
-        """Whether the array can tell up from down."""
+        """Whether the array resolves elevation."""
         return has_elevation(self.cube.config)
 
     @cached_property
     def range_doppler(self) -> Power:
-        """Power (frame, range, doppler), the standing room included."""
+        """Power (frame, range, doppler), static clutter included."""
         return range_doppler_power(self._shown)
 
     @cached_property
@@ -104,7 +104,7 @@ class FigureData:
 
     @cached_property
     def range_azimuth(self) -> Power:
-        """Power (frame, range, azimuth), the standing room included."""
+        """Power (frame, range, azimuth), static clutter included."""
         return range_azimuth_power(self._shown, self.azimuth_rad)
 
     @cached_property
@@ -118,8 +118,8 @@ class FigureData:
         return range_elevation_power(self._moving, self.elevation_rad)
 
     @cached_property
-    def liveliest(self) -> int:
-        """Index into `frames` of the one with the most moving power."""
+    def most_active_frame(self) -> int:
+        """Index into `frames` of the one with the most clutter-removed power."""
         return int(np.argmax(self.range_doppler_moving.sum(axis=(1, 2))))
 
     @property
@@ -143,12 +143,12 @@ class FigureData:
 
     @property
     def time_edges_s(self) -> tuple[float, float]:
-        """First frame's start and the last one's end."""
+        """Start of the first and end of the last frame."""
         return float(self.time_s[0]), float(self.time_s[-1]) + self.frame_step_s
 
 
 def decibels(power: Array) -> Array:
-    """Power relative to its own peak, from -SPAN_DB to 0 dB; all at the floor where there is no power at all."""
+    """Power relative to its own peak, from -SPAN_DB to 0 dB; -SPAN_DB everywhere if there is no power."""
     peak = float(np.max(power, initial=0.0))
     if not peak > 0:
         return np.full(power.shape, -SPAN_DB)
@@ -158,7 +158,7 @@ def decibels(power: Array) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Fan:
-    """A raster in metres onto which (range, angle) maps are laid; nan outside the fan.
+    """A Cartesian raster in metres for (range, angle) maps; nan outside the fan.
 
     Angle 0 looks along the raster's first axis given as `ahead`, positive angles towards `aside`. `extent` is
     (aside from, aside to, ahead from, ahead to) in metres.
@@ -171,7 +171,7 @@ class Fan:
 
     @classmethod
     def over(cls, range_m: Array, angle_rad: Array, size: int = 260) -> "Fan":
-        """The raster that just holds the fan of these ranges and rising angles."""
+        """The smallest raster that contains the fan of these ranges and increasing angles."""
         step_m = float(range_m[1] - range_m[0]) if len(range_m) > 1 else 1.0
         reach_m = float(range_m[-1]) + step_m / 2
         ahead_m = np.linspace(0.0, reach_m, size)[:, None]

@@ -1,4 +1,4 @@
-"""A motion on paper: the skeleton at even times, side by side; left limbs blue, right limbs red."""
+"""A motion as a strip: the skeleton at evenly spaced times, side by side; left limbs blue, right limbs red."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 LEFT_COLOUR, RIGHT_COLOUR = "#2b7bba", "#c8442f"
 SPACING_M = 0.85
-AZIMUTH_RAD = np.radians(35.0)  # looked at from the radar's side, turned by this
-TILT = 0.18  # how much of a step away from the looker is drawn upwards
+AZIMUTH_RAD = np.radians(35.0)  # azimuth of the viewpoint relative to the radar
+TILT = 0.18  # upward shift per metre of distance
 
 
 def draw_strip(pose: PoseSequence, path: Path, *, title: str = "", count: int = 10) -> None:
@@ -26,7 +26,7 @@ def draw_strip(pose: PoseSequence, path: Path, *, title: str = "", count: int = 
 
 
 def draw_sheet(motions: list[tuple[str, PoseSequence]], path: Path, *, columns: int = 3, count: int = 6) -> None:
-    """Writes one picture of many motions, a strip each."""
+    """Writes one picture of several motions, a strip each."""
     import matplotlib.pyplot as plt
 
     rows = -(-len(motions) // columns)
@@ -44,7 +44,7 @@ def draw_sheet(motions: list[tuple[str, PoseSequence]], path: Path, *, columns: 
 
 
 def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
-    """Each instant moved to its own place along the strip, the way gone kept only in how it is posed."""
+    """Draws each instant at its own place along the strip; locomotion is removed."""
     instants = np.linspace(0, len(pose.time_s) - 1, count).round().astype(int)
     middle = (pose.joints_m[..., :2].min(axis=(0, 1)) + pose.joints_m[..., :2].max(axis=(0, 1))) / 2
     floor = float(np.percentile(pose.joints_m[..., 2].min(axis=1), 5))
@@ -64,7 +64,7 @@ def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
 
 
 def _flat(joints_m: Float[np.ndarray, "*shape 3"]) -> Float[np.ndarray, "*shape 2"]:
-    """Looked at by somebody beside the radar, a little from above."""
+    """Projection seen from the side of the radar, slightly from above."""
     cos, sin = np.cos(AZIMUTH_RAD), np.sin(AZIMUTH_RAD)
     across = joints_m[..., 0] * cos + joints_m[..., 1] * sin
     away = -joints_m[..., 0] * sin + joints_m[..., 1] * cos

@@ -1,4 +1,4 @@
-"""preview.png: one page that shows what a radar saw and, where known, what was truly there."""
+"""preview.png: one page of radar maps and points with, where known, the ground truth."""
 
 from collections.abc import Callable
 from functools import partial
@@ -12,13 +12,13 @@ from mmweaver.core.skeleton import joint
 from mmweaver.figures.figure_data import Fan, FigureData, decibels
 from mmweaver.figures.skeleton_drawing import SkeletonInPhoto, project
 from mmweaver.figures.theme import (
+    GROUND_TRUTH,
     INK,
     PAPER,
     POWER_MAP,
     SPAN_DB,
     STYLE,
     TIME_MAP,
-    TRUTH,
     VELOCITY_MAP,
     colour_bar,
     label_axes,
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from matplotlib.image import AxesImage
 
 DPI = 100
-GHOST_POSES = 7  # skeletons drawn into the photo, first to last,
-GHOST_POSES_OF_MANY = 3  # and of each of several people
+SHOWN_POSES = 7  # skeletons drawn over the photo
+SHOWN_POSES_OF_MANY = 3  # skeletons per person of several people
 DB_LABEL = "dB relative to peak"
 
 
 def draw_preview(view: FigureData, path: Path) -> None:
-    """Writes the page as a PNG, 1600 pixels wide; with a photo 900 high, without one 700."""
+    """Writes the page as a PNG, 1600 pixels wide; 900 high with a photo, 700 without."""
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -82,7 +82,7 @@ def _layout(figure: "Figure", photo: bool) -> "list[tuple[Callable[[Axes, Figure
             (draw_range_doppler, places[0, 2]), (draw_range_elevation, places[0, 3]),
         ]  # fmt: skip
     panels += [
-        (draw_azimuth_standing, places[last, 0]), (draw_azimuth_moving, places[last, 1]),
+        (draw_azimuth_with_clutter, places[last, 0]), (draw_azimuth_moving, places[last, 1]),
         (draw_points_top, places[last, 2]), (draw_points_side, places[last, 3]),
     ]  # fmt: skip
     return [(drawer, figure.add_subplot(place)) for drawer, place in panels]
@@ -90,7 +90,7 @@ def _layout(figure: "Figure", photo: bool) -> "list[tuple[Callable[[Axes, Figure
 
 # photo --------------------------------------------------------------------------------------------------------------
 def draw_photo(axes: "Axes", view: FigureData) -> None:
-    """The photo with the skeletons at several times, first to last; what furniture hides is faint."""
+    """The photo with skeletons at several times; parts occluded by furniture are faint."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize, to_rgb
@@ -104,7 +104,7 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
     if len(people) == 1:
         axes.set_title("The room, and the person at several times (faint: occluded)", y=1.0)
         colours = matplotlib.colormaps[TIME_MAP]
-        _draw_person(axes, view, people[0], GHOST_POSES, lambda share: _time_colour(colours, share))
+        _draw_person(axes, view, people[0], SHOWN_POSES, lambda share: _time_colour(colours, share))
         low_s, high_s = float(people[0].time_s[0]), float(people[0].time_s[-1])
         span = Normalize(low_s, high_s if high_s > low_s else low_s + 1)
         colour_bar(axes, ScalarMappable(norm=span, cmap=_time_map()), "time (s)")
@@ -112,7 +112,7 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
     axes.set_title("The room, and the people at several times, the last the brightest (faint: occluded)", y=1.0)
     for index, person in enumerate(people):
         own = to_rgb(person_colour(index, len(people)))
-        _draw_person(axes, view, person, GHOST_POSES_OF_MANY, partial(_constant, own))
+        _draw_person(axes, view, person, SHOWN_POSES_OF_MANY, partial(_constant, own))
 
 
 def _constant(colour: tuple[float, float, float], _share: float) -> tuple[float, float, float]:
@@ -126,7 +126,7 @@ def _draw_person(
     most: int,
     colour_at: Callable[[float], tuple[float, float, float]],
 ) -> None:
-    """One person at so many times, and the way of the pelvis."""
+    """One person at several times, and the path of the pelvis."""
     assert view.photo is not None
     assert view.radar_from_camera is not None
     count = len(pose.time_s)
@@ -140,7 +140,7 @@ def _draw_person(
 
 
 def _time_colour(colours: "Callable[[float], tuple[float, ...]]", share: float) -> tuple[float, float, float]:
-    red, green, blue, _ = colours(0.25 + 0.75 * share)  # the map's dark end does not show on a photo
+    red, green, blue, _ = colours(0.25 + 0.75 * share)  # the dark end of the map is invisible on a photo
     return float(red), float(green), float(blue)
 
 
@@ -153,44 +153,44 @@ def _time_map():
 
 # strips over time ---------------------------------------------------------------------------------------------------
 def draw_range_time(axes: "Axes", view: FigureData) -> None:
-    """Moving power over time and range, with the true extent of the joints."""
+    """Clutter-removed power over time and range, with the ground-truth extent of the joints."""
     strip = decibels(view.range_doppler_moving.max(axis=2))
     image = _power(axes, strip.T, (*view.time_edges_s, *view.range_edges_m))
     if view.poses:
         middle_s = view.time_s + view.frame_step_s / 2
-        for pose, colour in _coloured(view.shown_poses):
+        for pose, colour in _with_colours(view.shown_poses):
             distance_m = np.linalg.norm(pose.joints_m, axis=2)
             for edge in (distance_m.min(axis=1), distance_m.max(axis=1)):
                 axes.plot(middle_s, edge, color=colour, linewidth=0.9)
         _within(axes, view.time_edges_s, view.range_edges_m)
         _note(axes, "lines: nearest and farthest joint")
-    label_axes(axes, "Range over time, what moves", "time (s)", "range (m)")
+    label_axes(axes, "Range over time, clutter removed", "time (s)", "range (m)")
     colour_bar(axes, image, DB_LABEL)
 
 
 def draw_doppler_time(axes: "Axes", view: FigureData) -> None:
-    """Power over time and radial velocity (micro-Doppler), summed over range, with the true velocity of the pelvis."""
+    """Power over time and radial velocity (micro-Doppler), summed over range, with the velocity of the pelvis."""
     strip = decibels(view.range_doppler_moving.sum(axis=1))
     image = _power(axes, strip.T, (*view.time_edges_s, *view.velocity_edges_mps))
     if view.motions:
-        for motion, colour in _coloured(view.motions):
+        for motion, colour in _with_colours(view.motions):
             distance_m = np.linalg.norm(motion.joints_m[:, joint("pelvis")], axis=1)
             if len(distance_m) > 1:
                 velocity_mps = np.interp(view.time_s, motion.time_s, np.gradient(distance_m, motion.time_s))
                 axes.plot(view.time_s + view.frame_step_s / 2, velocity_mps, color=colour, linewidth=0.9)
         _within(axes, view.time_edges_s, view.velocity_edges_mps)
         _note(axes, "line: pelvis")
-    label_axes(axes, "Doppler over time, what moves", "time (s)", "radial velocity (m/s), away +")
+    label_axes(axes, "Doppler over time, clutter removed", "time (s)", "radial velocity (m/s), away +")
     colour_bar(axes, image, DB_LABEL)
 
 
 # maps ---------------------------------------------------------------------------------------------------------------
 def draw_range_doppler(axes: "Axes", view: FigureData) -> None:
-    """Power over range and radial velocity in the liveliest frame, the standing room included."""
-    at = view.liveliest
+    """Power over range and radial velocity in the most active frame, static clutter included."""
+    at = view.most_active_frame
     image = _power(axes, decibels(view.range_doppler[at]), (*view.velocity_edges_mps, *view.range_edges_m))
     if view.motions:
-        for motion, colour in _coloured(view.motions):
+        for motion, colour in _with_colours(view.motions):
             _mark_joints(axes, motion, float(view.time_s[at]), colour)
         _within(axes, view.velocity_edges_mps, view.range_edges_m)
         _note(axes, "dots: joints")
@@ -200,10 +200,10 @@ def draw_range_doppler(axes: "Axes", view: FigureData) -> None:
 
 
 def draw_range_elevation(axes: "Axes", view: FigureData) -> None:
-    """Moving power seen from the side, mean over frames; two rows of antennas tell little about height."""
+    """Clutter-removed power from the side, mean over frames; two antenna rows resolve little elevation."""
     if not view.has_elevation:
         axes.set_axis_off()
-        axes.text(0.5, 0.5, "this array cannot tell up from down", transform=axes.transAxes, ha="center")
+        axes.text(0.5, 0.5, "this array does not resolve elevation", transform=axes.transAxes, ha="center")
         return
     power = view.range_elevation_moving.mean(axis=0)
     fan = Fan.over(view.cube.grid.range_m, view.elevation_rad)
@@ -211,23 +211,23 @@ def draw_range_elevation(axes: "Axes", view: FigureData) -> None:
     image = _power(axes, fan.lay(decibels(power)).T, (near, far, low, high))
     axes.set_aspect("equal", anchor="N")
     if view.poses:
-        for pose, colour in _coloured(view.shown_poses):
-            joints_m = pose.joints_m[:: max(len(pose.time_s) // GHOST_POSES, 1)].reshape(-1, 3)
+        for pose, colour in _with_colours(view.shown_poses):
+            joints_m = pose.joints_m[:: max(len(pose.time_s) // SHOWN_POSES, 1)].reshape(-1, 3)
             axes.plot(np.hypot(joints_m[:, 0], joints_m[:, 1]), joints_m[:, 2], ".", color=colour, markersize=1.2)
         _note(axes, "dots: joints", corner="upper left")
     axes.set(xlim=(0, far), ylim=(low, high))
-    label_axes(axes, "Range-elevation, what moves", "ahead (m)", "up (m)")
+    label_axes(axes, "Range-elevation, clutter removed", "ahead (m)", "up (m)")
     colour_bar(axes, image, DB_LABEL)
 
 
-def draw_azimuth_standing(axes: "Axes", view: FigureData) -> None:
-    """Power from above with the standing room, mean over frames."""
-    _draw_azimuth(axes, view, view.range_azimuth, "Range-azimuth, room included")
+def draw_azimuth_with_clutter(axes: "Axes", view: FigureData) -> None:
+    """Power from above with static clutter, mean over frames."""
+    _draw_azimuth(axes, view, view.range_azimuth, "Range-azimuth, static clutter included")
 
 
 def draw_azimuth_moving(axes: "Axes", view: FigureData) -> None:
-    """Power from above of what moves, mean over frames, with the true path of the pelvis."""
-    _draw_azimuth(axes, view, view.range_azimuth_moving, "Range-azimuth, what moves")
+    """Clutter-removed power from above, mean over frames, with the path of the pelvis."""
+    _draw_azimuth(axes, view, view.range_azimuth_moving, "Range-azimuth, clutter removed")
 
 
 def _draw_azimuth(axes: "Axes", view: FigureData, power: np.ndarray, title: str) -> None:
@@ -235,7 +235,7 @@ def _draw_azimuth(axes: "Axes", view: FigureData, power: np.ndarray, title: str)
     image = _power(axes, fan.lay(decibels(power.mean(axis=0))), fan.extent)
     axes.set_aspect("equal", anchor="N")
     if view.poses:
-        for pose, colour in _coloured(view.shown_poses):
+        for pose, colour in _with_colours(view.shown_poses):
             path_m = pose.joints_m[:, joint("pelvis")]
             axes.plot(path_m[:, 0], path_m[:, 1], color=colour, linewidth=1.0)
             axes.plot(*path_m[-1, :2], ">", color=colour, markersize=4)
@@ -251,7 +251,7 @@ def draw_points_top(axes: "Axes", view: FigureData) -> None:
     reach_m = view.range_edges_m[1]
     _scatter(axes, view, view.shown_points.x_m, view.shown_points.y_m)
     if view.poses:
-        for pose, colour in _coloured(view.shown_poses, on_white=True):
+        for pose, colour in _with_colours(view.shown_poses, on_white=True):
             path_m = pose.joints_m[:, joint("pelvis")]
             axes.plot(path_m[:, 0], path_m[:, 1], color=colour, linewidth=1.0)
         _note(axes, "line: pelvis", corner="upper right")
@@ -265,7 +265,7 @@ def draw_points_side(axes: "Axes", view: FigureData) -> None:
     reach_m = view.range_edges_m[1]
     _scatter(axes, view, view.shown_points.y_m, view.shown_points.z_m)
     if view.poses:
-        for pose, colour in _coloured(view.shown_poses, on_white=True):
+        for pose, colour in _with_colours(view.shown_poses, on_white=True):
             for name in ("head", "left_foot"):
                 trace_m = pose.joints_m[:, joint(name)]
                 axes.plot(trace_m[:, 1], trace_m[:, 2], color=colour, linewidth=0.8)
@@ -278,7 +278,7 @@ def draw_points_side(axes: "Axes", view: FigureData) -> None:
 
 
 def _scatter(axes: "Axes", view: FigureData, across_m: np.ndarray, up_m: np.ndarray) -> None:
-    """Weak detections are pale; the colours span all but the fastest few, which are mostly noise."""
+    """Weak detections are pale; colours span all but the fastest 5 %, which are mostly noise."""
     from matplotlib.cm import ScalarMappable
 
     velocity_mps, snr_db = view.shown_points.radial_velocity_mps, view.shown_points.snr_db
@@ -303,13 +303,13 @@ def _power(axes: "Axes", values_db: np.ndarray, extent: tuple[float, float, floa
     )  # fmt: skip
 
 
-def _coloured(people: tuple[PoseSequence, ...], *, on_white: bool = False) -> list[tuple[PoseSequence, str]]:
-    """Each person with the colour of what is known about them."""
+def _with_colours(people: tuple[PoseSequence, ...], *, on_white: bool = False) -> list[tuple[PoseSequence, str]]:
+    """Each person with the colour of their ground truth."""
     return [(person, person_colour(index, len(people), on_white=on_white)) for index, person in enumerate(people)]
 
 
 def _mark_joints(axes: "Axes", motion: PoseSequence, time_s: float, colour: str) -> None:
-    """Joints as dots at their true range and radial velocity at a time."""
+    """Joints as dots at their range and radial velocity at a given time."""
     if len(motion.time_s) < 2:
         return
     at = int(np.clip(np.searchsorted(motion.time_s, time_s), 1, len(motion.time_s) - 1))
@@ -323,10 +323,10 @@ def _within(axes: "Axes", x: tuple[float, float], y: tuple[float, float]) -> Non
 
 
 def _note(axes: "Axes", text: str, *, corner: str = "lower right") -> None:
-    """What a line or dot means: bright on the picture's lower right, dark in a corner that a fan leaves white."""
+    """Legend of a line or dot: bright at the lower right of the picture, dark in a corner that a fan leaves white."""
     vertical, horizontal = corner.split()
     x, y = {"left": 0.02, "right": 0.98}[horizontal], {"lower": 0.02, "upper": 0.97}[vertical]
-    colour, ground = (TRUTH, "black") if corner == "lower right" else (INK, PAPER)
+    colour, ground = (GROUND_TRUTH, "black") if corner == "lower right" else (INK, PAPER)
     axes.text(
         x, y, text, transform=axes.transAxes, ha=horizontal, va={"lower": "bottom", "upper": "top"}[vertical],
         fontsize=7.5, color=colour, bbox={"facecolor": ground, "edgecolor": "none", "alpha": 0.6, "pad": 1.0},

@@ -1,1 +1,1 @@
-"""Rays, pinhole cameras and planes: geometry that knows nothing of radars."""
+"""Geometry without radar: cameras, photos aligned with gravity, ray casting, rotations, body capsules."""

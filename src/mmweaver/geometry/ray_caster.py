@@ -1,17 +1,18 @@
-"""The one ray caster: Embree over a triangle mesh, called directly (wrappers cost 2 to 8 times as much)."""
+"""Ray casting with Embree on a triangle mesh, called directly: wrapper libraries take 2 to 8 times as long."""
 
 import numpy as np
 from jaxtyping import Bool, Int
 
 from mmweaver.core.shapes import Array, Faces, PerPoint, Points, Vertices
 
-# Embree says 1e37 where nothing is hit.
-_FARTHEST_M = 1e30
+# Embree returns 1e37 where nothing is hit.
+_MAX_DISTANCE_M = 1e30
 
 
 class RayCaster:
-    """Answers what a ray meets first. Both sides of a face stop it. Embree works in float32: errors are
-    some 1e-6 m, and up to 1e-4 m where the ray grazes the face.
+    """Finds the first face that a ray hits, from either side.
+
+    Embree computes in float32: errors are about 1e-6 m, and up to 1e-4 m at grazing incidence.
 
     >>> wall = RayCaster(np.array([[-1.0, 2, -1], [1, 2, -1], [0, 2, 1]]), np.array([[0, 1, 2]]))
     >>> wall.distance_m(np.zeros((2, 3)), np.array([[0.0, 1, 0], [0, -1, 0]])).tolist()
@@ -33,32 +34,32 @@ class RayCaster:
         )
 
     def distance_m(self, origins: Points, directions: Points) -> PerPoint:
-        """Distance to the first face along unit directions; inf where there is none."""
-        if self._is_trivial(origins):
+        """Distance to the first face along unit directions, (point,) metres; inf where there is none."""
+        if self._is_empty(origins):
             return np.full(len(origins), np.inf)
         tfar = self._scene.run(_packed(origins), _packed(directions), query="DISTANCE")
-        return _with_infinity(tfar)
+        return _with_inf(tfar)
 
     def first_hit(self, origins: Points, directions: Points) -> tuple[PerPoint, Int[Array, " point"]]:
-        """Distance to the first face along unit directions, and its index; inf and -1 where there is none."""
-        if self._is_trivial(origins):
+        """Distance to the first face along unit directions, metres, and its index; inf and -1 where there is none."""
+        if self._is_empty(origins):
             return np.full(len(origins), np.inf), np.full(len(origins), -1)
         hits = self._scene.run(_packed(origins), _packed(directions), output=True)
-        return _with_infinity(hits["tfar"]), hits["primID"].astype(np.int64)
+        return _with_inf(hits["tfar"]), hits["primID"].astype(np.int64)
 
     def is_clear(self, start: Points, end: Points, margin_m: float = 0.02) -> Bool[Array, " point"]:
-        """True where no face lies between start and end; the margin at either end does not count.
+        """Whether no face lies between start and end, (point,), except within the margin at either end.
 
-        A segment shorter than its two margins is clear. (The query OCCLUDED knows no far end, hence the distance.)
+        A segment shorter than its two margins is clear. (Embree's OCCLUDED query has no far end, hence the distance.)
         """
-        if self._is_trivial(start):
+        if self._is_empty(start):
             return np.ones(len(start), bool)
-        along = end - start
-        length = np.linalg.norm(along, axis=1)
-        unit = along / np.maximum(length, 1e-12)[:, None]
+        segment = end - start
+        length = np.linalg.norm(segment, axis=1)
+        unit = segment / np.maximum(length, 1e-12)[:, None]
         return (self.distance_m(start + margin_m * unit, unit) >= length - 2 * margin_m) | (length <= 2 * margin_m)
 
-    def _is_trivial(self, origins: Points) -> bool:
+    def _is_empty(self, origins: Points) -> bool:
         return self.num_faces == 0 or len(origins) == 0
 
 
@@ -66,7 +67,7 @@ def _packed(vectors: Points) -> Points:
     return np.ascontiguousarray(vectors, np.float32)
 
 
-def _with_infinity(tfar: PerPoint) -> PerPoint:
+def _with_inf(tfar: PerPoint) -> PerPoint:
     distance = np.asarray(tfar, np.float64)
-    distance[distance > _FARTHEST_M] = np.inf
+    distance[distance > _MAX_DISTANCE_M] = np.inf
     return distance

@@ -1,4 +1,4 @@
-"""Rotations between the camera and a level frame."""
+"""Rotations between the camera frame and a level frame."""
 
 import numpy as np
 
@@ -21,7 +21,7 @@ def level_from_camera(up_camera: Vec3) -> Rotation:
 
 
 def pitch_and_roll_rad(radar_from_camera: Rotation) -> tuple[float, float]:
-    """Pitch (positive: the camera looks down) and roll (positive: it leans to its right) of the camera."""
+    """Pitch (positive: the camera points down) and roll (positive: it leans to its right) of the camera, radians."""
     up_camera = radar_from_camera[2]
     pitch = np.arcsin(np.clip(-up_camera[2], -1, 1))
     roll = np.arctan2(-up_camera[0], -up_camera[1])

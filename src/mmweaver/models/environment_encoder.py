@@ -6,9 +6,11 @@ Reference: paper, section "Generalization via Hypernetworks", Environment Encode
 """
 
 import math
+from collections.abc import Callable
 
 from torch import Tensor, nn
 
+from mmweaver.core.registry import Registry
 from mmweaver.models.efficientnet import Block, Stem, shapes
 from mmweaver.models.scene_tensors import IMAGE_CHANNELS
 
@@ -45,3 +47,9 @@ def _group_norms(module: nn.Module) -> None:
             setattr(module, name, nn.GroupNorm(math.gcd(child.num_features, 8), child.num_features))
         else:
             _group_norms(child)
+
+
+DEFAULT_ENCODER = "efficientnet"
+ENCODERS: Registry[Callable[[], nn.Module]] = Registry(
+    "environment encoder", [(DEFAULT_ENCODER, EnvironmentEncoder)], entry_points="mmweaver.encoders"
+)

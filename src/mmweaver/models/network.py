@@ -31,7 +31,7 @@ from mmweaver.models.body_anchors import (
     ghost_anchors,
 )
 from mmweaver.models.body_prior import BodyPrior, body_prior, ghost_section
-from mmweaver.models.environment_encoder import MAP_CHANNELS, Z_ENV, EnvironmentEncoder
+from mmweaver.models.environment_encoder import DEFAULT_ENCODER, ENCODERS, MAP_CHANNELS, Z_ENV
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
@@ -59,16 +59,16 @@ class SceneEncoding(TensorRecord):
 class WeaverNetwork(nn.Module):
     """Rooms and motions -> mean echoes. `encode_room` once a room, then `moving` for each motion.
 
-    `without` leaves parts out (`PARTS`), to see what they are worth.
+    `without` leaves parts out (`PARTS`), to see what they are worth. `encoder` names the environment encoder.
     """
 
-    def __init__(self, without: Iterable[str] = ()) -> None:
+    def __init__(self, without: Iterable[str] = (), encoder: str = DEFAULT_ENCODER) -> None:
         super().__init__()
         self.without = frozenset(without)
         unknown = self.without - set(PARTS)
         if unknown:
             raise InputError(f"unknown parts {', '.join(sorted(unknown))}; known: {', '.join(PARTS)}")
-        self.environment = EnvironmentEncoder()
+        self.environment = ENCODERS[encoder]()
         self.pose = PoseEncoder()
         self.point = _mlp(POINT_FEATURES + MAP_CHANNELS, 96, 1)
         self.face = _mlp(PLANE_FEATURES, 64, 1)

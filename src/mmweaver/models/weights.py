@@ -16,6 +16,7 @@ from torch import nn
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import WeaverNetwork
 
 FORMAT = "mmweaver weights"
@@ -69,8 +70,10 @@ def sha256_of(tensors: dict[str, torch.Tensor]) -> str:
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
     """Reads a weaver, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
-    network = WeaverNetwork()
-    return network, load_into(network, file)
+    card, tensors = _read(file)
+    network = WeaverNetwork(encoder=card.settings.get("encoder", DEFAULT_ENCODER))
+    _fill(network, file, tensors)
+    return network, card
 
 
 def load_into(network: nn.Module, file: Path, *, recipe: str | None = None, made_by: str | None = None) -> WeightsCard:
@@ -80,6 +83,12 @@ def load_into(network: nn.Module, file: Path, *, recipe: str | None = None, made
     command = f"mmweaver train {recipe}"
     if recipe is not None and card.recipe != recipe:
         raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: {made_by or command}")
+    _fill(network, file, tensors)
+    return card
+
+
+def _fill(network: nn.Module, file: Path, tensors: dict[str, torch.Tensor]) -> None:
+    """Puts tensors into a network and makes it ready to use. Raises InputError where they do not fit it."""
     wanted = network.state_dict()
     wrong = [name for name in wanted if name not in tensors or tensors[name].shape != wanted[name].shape]
     wrong += [name for name in tensors if name not in wanted]
@@ -90,7 +99,6 @@ def load_into(network: nn.Module, file: Path, *, recipe: str | None = None, made
         )
     network.load_state_dict({name: tensor.to(wanted[name].dtype) for name, tensor in tensors.items()})
     network.eval()
-    return card
 
 
 def read_card(file: Path) -> WeightsCard:

@@ -1,7 +1,7 @@
-"""What a body does while it holds still: it sways over its feet, its limbs waver and tremble, its chest breathes.
+"""Micro-motion of a body that stands still: postural sway, wavering and tremor of limbs, breathing and heartbeat.
 
-Millimetres, and yet what a radar sees of somebody who stands: clutter removal takes away only what truly rests.
-Amplitudes are those of posturography (centre of mass 3 to 5 mm rms to and fro, 2 to 3 mm sideways, 4 to 6 mm/s), of
+Millimetres, and yet what a radar sees of a standing person: clutter removal suppresses only what is truly static.
+Amplitudes are those of posturography (centre of mass 3 to 5 mm rms fore and aft, 2 to 3 mm sideways, 4 to 6 mm/s), of
 physiological tremor (8 to 12 Hz, some 0.1 mm at the hand) and of the chest wall (4 to 12 mm at 0.2 to 0.33 Hz
 breathing, 0.2 to 0.5 mm at the heartbeat). Reference: docs/radar_primer.md, section 4.
 """
@@ -13,19 +13,19 @@ import numpy as np
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS, joint
 
-CENTRE_OF_MASS = 0.55  # of the height; sway is given there
-SEATED, STANDING = 0.36, 0.48  # height of the pelvis over the feet, of the body's: who sits sways over the pelvis
-# How far each joint wavers against the one before it, relative to the hand. What stands on the floor does not.
+CENTRE_OF_MASS = 0.55  # of the height; sway amplitudes are given there
+SEATED, STANDING = 0.36, 0.48  # pelvis above the feet, of the height: a seated body sways about the pelvis
+# Wavering of each joint relative to its parent, as a share of `waver_m`. Standing feet do not waver.
 WAVER = {"knee": 0.4, "spine1": 0.2, "spine3": 0.2, "head": 0.5, "shoulder": 0.3, "elbow": 0.6, "wrist": 0.8}
 WEIGHT = np.array([WAVER.get(name.split("_")[-1], 0.0) for name in JOINT_NAMES])
 
 
 @dataclass(frozen=True, kw_only=True)
 class MicroMotionSettings:
-    """How strong each is, for a typical person; each person and each take draws its own about these.
+    """Amplitudes for a typical person; those of each person and sequence are sampled around these.
 
-    `sway_m` and `waver_m` are rms over minutes, `tremor_m` rms at the hand, `breath_m` and `heart_m` from the innermost
-    to the outermost place of the chest's front.
+    `sway_m` and `waver_m` are rms over minutes, `tremor_m` rms at the hand, `breath_m` and `heart_m` peak to peak at
+    the front of the chest.
     """
 
     sway_m: float = 4.0e-3
@@ -39,9 +39,9 @@ STILL = MicroMotionSettings(sway_m=0.0, waver_m=0.0, tremor_m=0.0, breath_m=0.0,
 
 
 class Waves:
-    """Smooth random functions of time, (function,): sums of sines, spread evenly over octaves from `low` to `high` Hz.
+    """Smooth random functions of time: sums of sines, spread evenly over octaves from `low` to `high` Hz; rms 1.
 
-    Each has the rms 1. `steepness` 1 lets amplitude fall as 1/f, so that every octave is as fast.
+    Amplitudes fall as f^-`steepness`; with 1 every octave has the same velocity.
     """
 
     def __init__(self, rng: np.random.Generator, shape: tuple[int, ...], low: float, high: float, steepness: float):
@@ -51,53 +51,53 @@ class Waves:
         self.frequency_hz = edges[:-1] ** (1 - share) * edges[1:] ** share
         amplitude = self.frequency_hz**-steepness
         self.amplitude = amplitude * np.sqrt(2 / (amplitude**2).sum(axis=-1, keepdims=True))
-        self.turns = rng.random((*shape, count))
+        self.phase_cycles = rng.random((*shape, count))
 
     def at(self, time_s: np.ndarray) -> np.ndarray:
-        """(time, *shape)."""
-        time = time_s.reshape(-1, *(1,) * self.turns.ndim)
-        return (self.amplitude * np.sin(2 * np.pi * (self.frequency_hz * time + self.turns))).sum(axis=-1)
+        """Values (time, *shape) at times (time,) in seconds."""
+        time = time_s.reshape(-1, *(1,) * self.phase_cycles.ndim)
+        return (self.amplitude * np.sin(2 * np.pi * (self.frequency_hz * time + self.phase_cycles))).sum(axis=-1)
 
 
 class MicroMotion:
-    """One person's small motions in one take: rates and sizes belong to the person, the moment to the take's seed."""
+    """Micro-motion of one person in one sequence: rates and amplitudes by the subject, phases by the seed."""
 
-    def __init__(self, subject: int, seed: int, motions: MicroMotionSettings):
-        self.motions = motions
+    def __init__(self, subject: int, seed: int, settings: MicroMotionSettings):
+        self.settings = settings
         person = stream(subject, "small motions")
         self.size = np.exp(0.25 * person.standard_normal(4))  # sway, waver and tremor, breath, heart
         self.breath_hz, self.heart_hz = person.uniform(0.2, 0.33), person.uniform(0.95, 1.35)
-        moment = stream(seed, "small motions", subject)
-        self.breath_turns, self.heart_turns = moment.random(2)
-        self.sway = Waves(moment, (2,), 0.08, 1.2, 1.0)
-        self.waver = Waves(moment, (NUM_JOINTS, 3), 0.15, 3.0, 1.0)
-        self.tremor = Waves(moment, (NUM_JOINTS, 3), 8.0, 12.0, 0.0)
+        phases = stream(seed, "small motions", subject)
+        self.breath_cycles, self.heart_cycles = phases.random(2)
+        self.sway = Waves(phases, (2,), 0.08, 1.2, 1.0)
+        self.waver = Waves(phases, (NUM_JOINTS, 3), 0.15, 3.0, 1.0)
+        self.tremor = Waves(phases, (NUM_JOINTS, 3), 8.0, 12.0, 0.0)
 
     def moved(self, joints_m: np.ndarray, time_s: np.ndarray, height_m: float) -> np.ndarray:
-        """Joints (time, 22, 3) with sway, wavering and tremor; times (time,) in seconds."""
-        if not (self.motions.sway_m or self.motions.waver_m or self.motions.tremor_m):
+        """Joints (time, 22, 3) in metres with sway, wavering and tremor added; times (time,) in seconds."""
+        if not (self.settings.sway_m or self.settings.waver_m or self.settings.tremor_m):
             return joints_m
         lever = _height_over_support(joints_m, height_m) / (CENTRE_OF_MASS * height_m)
         right = joints_m[:, joint("right_hip")] - joints_m[:, joint("left_hip")]
         right = right[:, :2] / np.maximum(np.linalg.norm(right[:, :2], axis=1, keepdims=True), 1e-6)
         front = np.stack([-right[:, 1], right[:, 0]], axis=1)
-        sway = self.motions.sway_m * self.size[0] * self.sway.at(time_s)
+        sway = self.settings.sway_m * self.size[0] * self.sway.at(time_s)
         level = sway[:, :1] * front + 0.6 * sway[:, 1:] * right
         moved = joints_m.astype(float)
         moved[..., :2] += lever[..., None] * level[:, None]
-        own = self.motions.waver_m * self.waver.at(time_s) + self.motions.tremor_m * self.tremor.at(time_s)
+        own = self.settings.waver_m * self.waver.at(time_s) + self.settings.tremor_m * self.tremor.at(time_s)
         return moved + self.size[1] * _along_limbs(own)
 
     def chest_m(self, time_s: np.ndarray) -> np.ndarray:
-        """How far the chest's front stands out at each time, metres, (time,). Breathing in is quicker than out."""
-        breath = 2 * np.pi * (self.breath_hz * time_s + self.breath_turns)
-        heart = 2 * np.pi * (self.heart_hz * time_s + self.heart_turns)
-        out = self.motions.breath_m * self.size[2] / 2 * (np.sin(breath) + 0.2 * np.sin(2 * breath))
-        return out + self.motions.heart_m * self.size[3] / 2 * (np.sin(heart) + 0.5 * np.sin(2 * heart + 1.0))
+        """Displacement (time,) of the chest's front in metres. Breathing in is faster than breathing out."""
+        breath = 2 * np.pi * (self.breath_hz * time_s + self.breath_cycles)
+        heart = 2 * np.pi * (self.heart_hz * time_s + self.heart_cycles)
+        out = self.settings.breath_m * self.size[2] / 2 * (np.sin(breath) + 0.2 * np.sin(2 * breath))
+        return out + self.settings.heart_m * self.size[3] / 2 * (np.sin(heart) + 0.5 * np.sin(2 * heart + 1.0))
 
 
 def _height_over_support(joints_m: np.ndarray, height_m: float) -> np.ndarray:
-    """(time, 22): over the lower foot, for those who sit over the pelvis; never below 0."""
+    """Height (time, 22) in metres above the lower foot, of a seated body above the pelvis; never below 0."""
     z = joints_m[..., 2]
     foot = np.minimum(z[:, joint("left_foot")], z[:, joint("right_foot")])[:, None]
     pelvis = z[:, joint("pelvis")][:, None]
@@ -107,12 +107,12 @@ def _height_over_support(joints_m: np.ndarray, height_m: float) -> np.ndarray:
 
 
 def _along_limbs(own: np.ndarray) -> np.ndarray:
-    """Each joint's own wavering added to those before it; (time, 22, 3)."""
+    """Wavering (time, 22, 3) accumulated along the limbs."""
     total = np.zeros_like(own)
     for index, parent in enumerate(PARENTS):
         if parent >= 0:
             total[:, index] = total[:, parent] + own[:, index] * WEIGHT[index]
-    for side in ("left", "right"):  # what stands does not waver: the knee gives way, the foot stays
+    for side in ("left", "right"):  # feet stay planted; only the knees waver
         for name in ("ankle", "foot"):
             total[:, joint(f"{side}_{name}")] = 0.0
     return total

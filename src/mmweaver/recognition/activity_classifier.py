@@ -1,5 +1,4 @@
-"""Which activity a window shows: two kinds of decision trees, trained on features of labelled windows, their votes
-averaged."""
+"""Activity classifier: the averaged votes of two kinds of tree ensembles on window features."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -14,7 +13,7 @@ Features = Float[np.ndarray, "window feature"]
 
 @dataclass(frozen=True, kw_only=True)
 class ClassifierSettings:
-    """How the trees grow; equal settings, seed and data give equal trees."""
+    """Hyperparameters of the trees; equal settings, seed and data give equal trees."""
 
     num_trees: int = 400
     leaf_size: int = 3
@@ -22,7 +21,7 @@ class ClassifierSettings:
     boosting_rounds: int = 150
     learning_rate: float = 0.08
     leaves: int = 15
-    repetitions: int = 1  # of both kinds, with seeds of their own: their mean depends less on chance
+    repetitions: int = 1  # ensembles of both kinds with different seeds, averaged
     seed: int = 0
 
     def as_dict(self) -> dict[str, Any]:
@@ -32,7 +31,7 @@ class ClassifierSettings:
 class ActivityClassifier:
     """Extremely randomised trees and gradient boosting. `classes` are the labels in the order of the columns.
 
-    `names` of its features say what is to be measured of a window; None = all that are measured.
+    `names`: the window features it uses; None = all.
     """
 
     def __init__(self, settings: ClassifierSettings | None = None, names: tuple[str, ...] | None = None):
@@ -43,7 +42,7 @@ class ActivityClassifier:
         self._used = np.zeros(0, bool)
 
     def fit(self, features: Features, labels: np.ndarray, weights: np.ndarray | None = None) -> "ActivityClassifier":
-        """Learns from one row a window (nan = not known); weights default to 1. Returns itself.
+        """Fits on one row per window (nan = unknown); weights default to 1. Returns itself.
 
         Raises InputError where scikit-learn is missing.
         """
@@ -64,9 +63,9 @@ class ActivityClassifier:
                     **shared,
                 ),
             ]  # fmt: skip
-        self._used = _varied(features)
+        self._used = _informative_columns(features)
         if not self._used.any():
-            raise InputError("the features of all windows are alike; is anything detected at all?")
+            raise InputError("the features of all windows are identical; is anything detected at all?")
         for model in self._models:
             model.fit(features[:, self._used], labels, sample_weight=weights)
         self.classes = tuple(str(name) for name in self._models[0].classes_)
@@ -77,11 +76,11 @@ class ActivityClassifier:
         return np.mean([model.predict_proba(features[:, self._used]) for model in self._models], axis=0)
 
     def predict(self, features: Features) -> np.ndarray:
-        """The activity with most votes, one a window."""
+        """The activity with most votes for each window (window,)."""
         return np.array(self.classes)[np.argmax(self.probabilities(features), axis=1)]
 
 
-def _varied(features: Features) -> np.ndarray:
-    """Columns with more than one known value; trees cannot take others."""
+def _informative_columns(features: Features) -> np.ndarray:
+    """Columns with more than one finite value; trees cannot use others."""
     filled = [column[np.isfinite(column)] for column in features.T]
     return np.array([len(column) > 0 and bool(np.ptp(column) > 0) for column in filled])

@@ -1,7 +1,7 @@
-"""Numbers about a body that hardly moves: points at rest that come and go, and where the body is as time passes.
+"""Features of nearly stationary bodies: static points that come and go, and the position of the body over time.
 
-Slow motion has no velocity for a coarse radar: who squats is mostly a spot at rest that wanders 20 cm and back, who
-hops one that flickers twice a second. Cells of range that are full nearly always are taken for the room.
+Slow motion has zero velocity for a radar of coarse resolution: squats look like a static spot that shifts by 20 cm and
+back, hops like one that flickers twice per second. Range cells that are nearly always occupied count as the room.
 """
 
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ from mmweaver.recognition.point_recording import PointRecording
 
 CELL_M = 0.05
 FARTHEST_M = 6.0
-FIXED = 0.9  # share of a window's frames from which a cell belongs to the room
+FIXED = 0.9  # share of frames from which a cell counts as the room
 SELDOM = 0.03
-REACH_M = 0.7  # of a body about its middle
+REACH_M = 0.7  # extent of a body about its centre
 SEGMENTS = 8
-FEWEST = 3  # points for a place
+FEWEST = 3  # points for a position
 BANDS_HZ = ((0.3, 0.8), (0.8, 1.3), (1.3, 1.8), (1.8, 2.3), (2.3, 3.3), (3.3, 5.3), (5.3, 10.0))
 
 Row = dict[str, float]
@@ -26,13 +26,13 @@ Row = dict[str, float]
 
 @dataclass(frozen=True, kw_only=True)
 class BodyPoints:
-    """Points of a window's body: those that move, and those at rest that are not the room's."""
+    """Points of the body in a window: moving ones, and static ones that do not belong to the room."""
 
     window: PointRecording
     range_m: Float[np.ndarray, " point"]
     moves: Bool[np.ndarray, " point"]
     rests: Bool[np.ndarray, " point"]
-    cells: Float[np.ndarray, "frame cell"]  # 1 where a cell of the body holds a point at rest
+    cells: Float[np.ndarray, "frame cell"]  # 1 where a cell of the body has a static point
 
     @property
     def cloud(self) -> PointCloud:
@@ -40,7 +40,7 @@ class BodyPoints:
 
 
 def body_points(window: PointRecording, still_mps: float) -> BodyPoints:
-    """Takes the room away, then what is farther than a body reaches from the middle of all that changes."""
+    """Removes the room, then everything beyond a body's extent from the median range of change."""
     cloud, frames = window.cloud, window.num_frames
     range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
     moves = np.abs(cloud.radial_velocity_mps) > still_mps
@@ -63,7 +63,7 @@ def body_points(window: PointRecording, still_mps: float) -> BodyPoints:
 
 
 def body_features(window: PointRecording, still_mps: float) -> Row:
-    """Named features of one window; nan says that too few points are there."""
+    """Named features of one window; nan means too few points."""
     points = body_points(window, still_mps)
     row = _flicker(points)
     row.update(_whereabouts(points, points.moves | points.rests, "body"))
@@ -73,7 +73,7 @@ def body_features(window: PointRecording, still_mps: float) -> Row:
 
 
 def band_shares(power: np.ndarray, frequency_hz: np.ndarray, word: str) -> Row:
-    """Shares of the power in bands of frequency; nan where there is none."""
+    """Shares of the power in frequency bands; nan without power."""
     inside = (frequency_hz >= BANDS_HZ[0][0]) & (frequency_hz < BANDS_HZ[-1][1])
     total = power[inside].sum()
     row: Row = {}
@@ -84,7 +84,7 @@ def band_shares(power: np.ndarray, frequency_hz: np.ndarray, word: str) -> Row:
 
 
 def _flicker(points: BodyPoints) -> Row:
-    """In what rhythm cells at rest fill and empty, one by one and all together."""
+    """Rhythm in which static cells fill and empty, individually and jointly."""
     cells, frames = points.cells, points.window.num_frames
     frequency_hz = np.fft.rfftfreq(4 * frames, 1 / points.window.frame_rate_hz)
     centred = cells - cells.mean(axis=0)
@@ -104,7 +104,7 @@ def _flicker(points: BodyPoints) -> Row:
 
 
 def _whereabouts(points: BodyPoints, which: np.ndarray, word: str) -> Row:
-    """How the body's middle, nearest and farthest range and its height change from segment to segment."""
+    """Changes of the body's median, nearest and farthest range and its height between segments."""
     frames = points.window.num_frames
     frame = points.cloud.frame.astype(int)
     segment = np.minimum(frame * SEGMENTS // frames, SEGMENTS - 1)

@@ -1,7 +1,7 @@
-"""The recognisers of RadHAR's five activities that were frozen: features of generated windows, and their settings.
+"""Frozen recognisers of RadHAR's five activities: features of generated windows, and classifier settings.
 
-`blind` was made before any score on a real recording was looked at, `development` after. Both hold generated windows
-alone; training from them takes seconds and gives the same trees each time.
+`blind` was frozen before any score on real recordings was seen, `development` after. Both contain generated windows
+only; training from them takes seconds and is deterministic.
 """
 
 import json
@@ -20,45 +20,45 @@ NAMES = ("blind", "development")
 
 @dataclass(frozen=True, kw_only=True)
 class Frozen:
-    """A training set and all that decides what is made of it."""
+    """A training set and the settings of its classifier."""
 
-    made: TrainingSet
+    training: TrainingSet
     classifier: ClassifierSettings
     window_s: float
-    provenance: dict[str, Any]  # commits and seeds of what was generated, and how many windows
+    provenance: dict[str, Any]  # commits and seeds of the generated windows, and their number
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """The activities."""
-        return tuple(sorted({str(label) for label in self.made.labels}))
+        """The activities, sorted."""
+        return tuple(sorted({str(label) for label in self.training.labels}))
 
     def train(self) -> ActivityClassifier:
-        """The recogniser."""
-        return self.made.train(self.classifier)
+        """The trained recogniser."""
+        return self.training.train(self.classifier)
 
 
 def load_frozen(name: str) -> Frozen:
-    """One of NAMES. Raises InputError where there is none of this name."""
+    """Loads one of NAMES. Raises InputError for an unknown name."""
     settings = FOLDER / f"{name}.json"
     if not settings.is_file():
         raise InputError(f"no frozen recogniser is called {name!r}; known: {', '.join(NAMES)}")
     held = json.loads(settings.read_text(encoding="utf-8"))
-    made = read_training_set(FOLDER / f"{name}.npz")
+    training = read_training_set(FOLDER / f"{name}.npz")
     return Frozen(
-        made=made,
+        training=training,
         classifier=ClassifierSettings(**held["classifier"]),
         window_s=held["sources"][0]["recipe"]["window_s"],
         provenance={
             "commits": [source["commit"] for source in held["sources"]],
             "seeds": [source["seed"] for source in held["sources"]],
             "generated_windows": sum(source["windows"] for source in held["sources"]),
-            "with_disturbed_copies": len(made.labels),
+            "with_disturbed_copies": len(training.labels),
         },
     )
 
 
-def save_frozen(name: str, made: TrainingSet, settings: dict[str, Any], folder: Path = FOLDER) -> None:
-    """Writes both files; `settings` holds the classifier's, and for each source its commit, seed and recipe."""
-    write_training_set(folder / f"{name}.npz", made)
+def save_frozen(name: str, training: TrainingSet, settings: dict[str, Any], folder: Path = FOLDER) -> None:
+    """Writes both files; `settings`: the classifier's, and for each source its commit, seed and recipe."""
+    write_training_set(folder / f"{name}.npz", training)
     with atomic_file(folder / f"{name}.json") as temporary:
         temporary.write_text(json.dumps(settings, indent=1) + "\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Sentences -> labelled point-cloud recordings, in rooms and of people drawn by chance, as one radar reports them."""
+"""Sentences -> labelled point-cloud recordings of random people in random rooms, as one radar reports them."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -24,20 +24,20 @@ from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.recognition.diffuse_clutter import diffuse_clutter
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.point_recording import PointRecording
-from mmweaver.recognition.variation import Span, Variation, VariationSample, draw
+from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
 
-LEAD_S = 0.75  # of the motion's own time that is left out at the start at least: nobody is recorded from rest
-SLOWEST_MPS = 0.06  # slower, somebody who should go somewhere has arrived
+LEAD_S = 0.75  # least start of a window in the motion's own time: recordings do not begin at rest
+SLOWEST_MPS = 0.06  # below this speed, locomotion has ended
 TRIES, UNSEEN_TRIES = 20, 3
-WITHIN_M = (0.55, 3.1)  # slant ranges of who stays in place
+WITHIN_M = (0.55, 3.1)  # slant ranges of stationary people
 BODY_REACH_M, SEEN_SHARE = 0.6, 0.5
-ROAM_HZ = (0.1, 0.6)  # of whoever stays in place, but not quite
-HURRY_HZ = (0.1, 0.5)  # of how a tempo changes on the way
+ROAM_HZ = (0.1, 0.6)  # frequencies of the sway of stationary people
+HURRY_HZ = (0.1, 0.5)  # frequencies of tempo changes along a path
 
 
 @dataclass(frozen=True, kw_only=True)
 class GenerationRecipe:
-    """All that decides what is generated: the activities in words, the radar and its firmware, and the variation.
+    """Everything that determines the generated data: sentences per activity, radar and firmware, and variation.
 
     Raises InputError where a sentence is not understood or an activity has none.
     """
@@ -46,7 +46,9 @@ class GenerationRecipe:
     radar: RadarConfig
     firmware: FirmwareSettings
     variation: Variation = Variation()  # noqa: RUF009 (frozen)
-    habits: Mapping[str, Mapping[str, Span]] = field(default_factory=dict)  # an activity's own spans, by their names
+    habits: Mapping[str, Mapping[str, Span]] = field(
+        default_factory=dict
+    )  # ranges of single activities that override the variation, by name
     window_s: float = 2.0
 
     def __post_init__(self) -> None:
@@ -67,26 +69,26 @@ class GenerationRecipe:
 
     @property
     def frames(self) -> int:
-        """Frames of a window."""
+        """Number of frames per window."""
         return max(round(self.window_s / self.radar.frame_period_s), 1)
 
     def variation_of(self, activity: str) -> Variation:
-        """The spans that windows of an activity draw from."""
+        """The ranges that windows of an activity are sampled from."""
         return replace(self.variation, **self.habits.get(activity, {}))
 
     def as_json(self) -> str:
-        """Everything in it, as text: equal recipes give equal text."""
+        """All settings as JSON text; equal recipes give equal text."""
         return json.dumps(asdict(self), sort_keys=True)
 
 
 def generate_window(recipe: GenerationRecipe, label: str, index: int, seed: int) -> PointRecording:
-    """The index-th window of an activity: the same recipe, label, index and seed give the same points."""
+    """Generates the index-th window of an activity; deterministic in recipe, label, index and seed."""
     rng = stream(seed, "zero shot", label, index)
     own = recipe.variation_of(label)
     unseen: list[PointRecording] = []
     refused: InputError | None = None
     for _ in range(TRIES):
-        now = draw(own, rng)
+        now = sample_variation(own, rng)
         sentence = str(rng.choice(recipe.activities[label]))
         person = int(rng.integers(2**31))
         try:
@@ -94,10 +96,10 @@ def generate_window(recipe: GenerationRecipe, label: str, index: int, seed: int)
         except InputError as error:
             refused = error
             continue
-        made = _observed(recipe, now, pose, label, f"{label}_{index}", person)
-        if _is_seen(made, pose) or len(unseen) == UNSEEN_TRIES:
-            return made
-        unseen.append(made)
+        window = _observed(recipe, now, pose, label, f"{label}_{index}", person)
+        if _is_seen(window, pose) or len(unseen) == UNSEEN_TRIES:
+            return window
+        unseen.append(window)
     if unseen:
         return unseen[-1]
     raise refused or InputError(f"no window of {label!r} could be generated")
@@ -111,48 +113,48 @@ def generate_windows(
     cache: Path | None = None,
     report: Callable[[int, int], object] | None = None,
 ) -> list[PointRecording]:
-    """`each` windows of every activity, in turn. A cache folder keeps them: what is there is not made again.
+    """Generates `each` windows of every activity, in turn; windows in the cache folder are read instead.
 
-    `report` hears how many of how many are done.
+    `report` is called with the number of windows done and the total.
     """
-    made: list[PointRecording] = []
+    windows: list[PointRecording] = []
     total = each * len(recipe.activities)
     for index in range(each):
         for label in recipe.activities:
             path = None if cache is None else cache / f"{label}_{seed}_{index}.npz"
             if path is not None and path.exists():
-                made.append(read_window(path, label, recipe))
+                windows.append(read_window(path, label, recipe))
             else:
-                made.append(generate_window(recipe, label, index, seed))
+                windows.append(generate_window(recipe, label, index, seed))
                 if path is not None:
-                    write_window(path, made[-1])
+                    write_window(path, windows[-1])
             if report is not None:
-                report(len(made), total)
-    return made
+                report(len(windows), total)
+    return windows
 
 
-def _is_seen(made: PointRecording, pose: PoseSequence) -> bool:
-    """Whether most of the time there is a point at the body: a board that sees nobody would be put elsewhere."""
-    time_s = np.arange(made.num_frames) / made.frame_rate_hz
+def _is_seen(window: PointRecording, pose: PoseSequence) -> bool:
+    """Whether the body is detected in most frames: a radar that misses the person would be placed elsewhere."""
+    time_s = np.arange(window.num_frames) / window.frame_rate_hz
     pelvis_m = pose.joints_m[:, joint("pelvis")]
-    cloud = made.cloud
+    cloud = window.cloud
     body_m = np.interp(time_s, pose.time_s, np.linalg.norm(pelvis_m, axis=1))[cloud.frame]
     range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
     there = cloud.frame[np.abs(range_m - body_m) < BODY_REACH_M]
-    return len(np.unique(there)) >= SEEN_SHARE * made.num_frames
+    return len(np.unique(there)) >= SEEN_SHARE * window.num_frames
 
 
 # the person ---------------------------------------------------------------------------------------------------------
 def _pose(
     recipe: GenerationRecipe, now: VariationSample, sentence: str, person: int, rng: np.random.Generator
 ) -> PoseSequence:
-    """A stretch from the middle of the motion, at the tempo, vigour and heading drawn; time 0 is the first frame."""
+    """A section of the motion at the sampled tempo, vigour and heading; time 0 is the first frame."""
     plan = parse(sentence)
     moves = any(step.moves for step in plan.steps)
     tempo = now.tempo * (recipe.variation.way_tempo if moves else 1.0)
     lasts_s = (recipe.frames * recipe.radar.frame_period_s + 0.1) * tempo  # of the motion's own time
     lead_s = LEAD_S + float(rng.uniform(0.0, 1.5))
-    if moves:  # any part of the way
+    if moves:  # any part of the path
         lead_s = float(rng.uniform(LEAD_S, max(now.way_s - lasts_s, 2 * LEAD_S)))
     whole_s = max(now.way_s if moves else 0.0, lead_s + lasts_s + 0.5)
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
@@ -161,35 +163,35 @@ def _pose(
         schedule(plan, whole_s), scene, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,
         start_m=start_m, height_m=now.height_m,
     ).pose  # fmt: skip
-    joints_m = _vigorous(pose.joints_m, now.vigour)
+    joints_m = _scaled_excursion(pose.joints_m, now.vigour)
     if moves and tempo * _speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
-        raise InputError("the way ends before the window does")
+        raise InputError("the path ends before the window does")
     if not moves:
-        joints_m = _turned(joints_m, np.radians(now.turn_deg))
-    joints_m = joints_m + _roaming(pose.time_s, now.roam_mps, rng)
-    time_s = _hurried(pose.time_s - lead_s, tempo, now.hurry if moves else 0.0, rng)
+        joints_m = _rotated(joints_m, np.radians(now.turn_deg))
+    joints_m = joints_m + _sway(pose.time_s, now.roam_mps, rng)
+    time_s = _time_warped(pose.time_s - lead_s, tempo, now.hurry if moves else 0.0, rng)
     if time_s[-1] < recipe.frames * recipe.radar.frame_period_s:
-        raise InputError("the way ends before the window does")
+        raise InputError("the path ends before the window does")
     return replace(pose, time_s=time_s, joints_m=joints_m, subject=person % 1000)
 
 
-def _hurried(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
-    """When each pose is reached, 0 where it was: at a tempo whose logarithm wanders by `hurry` rms."""
-    turn, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
-    slower = np.exp(-hurry * np.sin(turn * time_s + phase).sum(axis=0)) / tempo
+def _time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
+    """Times (time,) warped by a tempo whose logarithm varies by `hurry` rms; 0 stays 0."""
+    omega, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
+    slower = np.exp(-hurry * np.sin(omega * time_s + phase).sum(axis=0)) / tempo
     reached = np.concatenate([[0.0], np.cumsum((slower[1:] + slower[:-1]) / 2 * np.diff(time_s))])
     return reached - np.interp(0.0, time_s, reached)
 
 
 def _speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
-    """How fast the pelvis goes over the floor on average."""
+    """Mean horizontal speed of the pelvis in m/s."""
     inside = (pose.time_s >= start_s) & (pose.time_s <= end_s)
-    way_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
-    return float(way_m / (end_s - start_s))
+    path_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
+    return float(path_m / (end_s - start_s))
 
 
-def _vigorous(joints_m: np.ndarray, vigour: float) -> np.ndarray:
-    """Joints as far from their mean places around the pelvis's ground point as `vigour` says."""
+def _scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
+    """Joints (time, 22, 3) with their excursion from the mean, relative to the pelvis, scaled by `vigour`."""
     root = joints_m[:, :1].copy()
     root[..., 2] = 0.0
     local = joints_m - root
@@ -197,16 +199,16 @@ def _vigorous(joints_m: np.ndarray, vigour: float) -> np.ndarray:
     return root + mean + vigour * (local - mean)
 
 
-def _roaming(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
-    """How far somebody who should stay in place has got, (time, 1, 3): to and fro, slowly, at this rms speed."""
+def _sway(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
+    """Slow displacement (time, 1, 3) in metres of a stationary person, at this rms speed."""
     frequency_hz, phase = rng.uniform(*ROAM_HZ, (2, 3, 1)), rng.uniform(0, 2 * np.pi, (2, 3, 1))
-    turn = 2 * np.pi * frequency_hz
-    way_m = (np.sin(turn * time_s + phase) / turn).sum(axis=1) * speed_mps * np.sqrt(2 / 3)
-    return np.stack([way_m[0], way_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
+    omega = 2 * np.pi * frequency_hz
+    shift_m = (np.sin(omega * time_s + phase) / omega).sum(axis=1) * speed_mps * np.sqrt(2 / 3)
+    return np.stack([shift_m[0], shift_m[1], np.zeros_like(time_s)], axis=1)[:, None, :]
 
 
-def _turned(joints_m: np.ndarray, angle_rad: float) -> np.ndarray:
-    """Turned about the vertical through the pelvis's mean place."""
+def _rotated(joints_m: np.ndarray, angle_rad: float) -> np.ndarray:
+    """Joints (time, 22, 3) rotated about the vertical through the mean position of the pelvis."""
     axis = joints_m[:, joint("pelvis")].mean(axis=0) * np.array([1.0, 1.0, 0.0])
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     return (joints_m - axis) @ np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]]) + axis
@@ -216,7 +218,7 @@ def _turned(joints_m: np.ndarray, angle_rad: float) -> np.ndarray:
 def _observed(
     recipe: GenerationRecipe, now: VariationSample, pose: PoseSequence, label: str, name: str, person: int
 ) -> PointRecording:
-    """What the firmware reports of the person in a room of chance."""
+    """The points that the firmware reports of the person in the sampled room."""
     radar = replace(
         recipe.radar,
         noise_figure_db=recipe.radar.noise_figure_db + now.noise_db,
@@ -241,7 +243,7 @@ def _observed(
 
 
 def _tilted(cloud: PointCloud, angle_rad: float) -> PointCloud:
-    """The points as a radar has them that looks down by so much: they seem higher."""
+    """Points as reported by a radar pitched down by this angle: they appear higher."""
     cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     return PointCloud(
         frame=cloud.frame, x_m=cloud.x_m, y_m=cos * cloud.y_m - sin * cloud.z_m,
@@ -250,7 +252,7 @@ def _tilted(cloud: PointCloud, angle_rad: float) -> PointCloud:
 
 
 def _less_sensitive(settings: FirmwareSettings, by_db: float, num_antennas: int) -> FirmwareSettings:
-    """The CFARs' thresholds raised by so many dB, in the device's counts."""
+    """Settings with CFAR thresholds raised by `by_db`, in the device's counts."""
     counts = round(by_db * counts_per_db(settings.device, num_antennas))
     cfars = (settings.range_cfar, settings.doppler_cfar)
     high, low = (None if cfar is None else replace(cfar, threshold=cfar.threshold + counts) for cfar in cfars)
@@ -259,7 +261,7 @@ def _less_sensitive(settings: FirmwareSettings, by_db: float, num_antennas: int)
 
 # the cache ----------------------------------------------------------------------------------------------------------
 def write_window(path: Path, recording: PointRecording) -> None:
-    """One generated window into a cache."""
+    """Writes one generated window to a cache."""
     cloud = recording.cloud
     columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps, cloud.snr_db], axis=1)
     with atomic_file(path) as temporary, temporary.open("wb") as file:
@@ -267,7 +269,7 @@ def write_window(path: Path, recording: PointRecording) -> None:
 
 
 def read_window(path: Path, label: str, recipe: GenerationRecipe) -> PointRecording:
-    """What `write_window` wrote."""
+    """Reads a window of `write_window`."""
     with np.load(path, allow_pickle=False) as held:
         frame, columns = held["frame"], held["columns"].astype(float)
     names = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
@@ -279,7 +281,7 @@ def read_window(path: Path, label: str, recipe: GenerationRecipe) -> PointRecord
 
 
 def _skin(now: VariationSample) -> SkinEcho:
-    """A lobe as wide as cos^exponent that returns as much over all angles as Lambert's skin of that albedo."""
+    """A lobe of cos^exponent with the total reflected power of Lambertian skin of the sampled albedo."""
     exponent = now.skin_exponent
     reflectivity = 8 / 3 * (exponent + 1) / exponent * LAMBERT.albedo * 10 ** (now.albedo_db / 10)
     return SkinEcho(

@@ -1,4 +1,4 @@
-"""Rooms of chance: a floor, walls behind and beside, and flat things that stand about, as boxes of metal or wood."""
+"""Random open rooms: a floor, perhaps a wall, and upright panels of metal or wood."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ CELL_M = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
-    """A flat upright thing that faces the radar more or less."""
+    """A flat upright object that roughly faces the radar."""
 
     centre_m: tuple[float, float, float]
     half_size_m: tuple[float, float]
@@ -23,7 +23,7 @@ class Panel:
 def open_room(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Panel, ...] = ()) -> Scene:
     """A concrete floor `floor_z_m` below the radar (negative), perhaps a wall ahead, and panels; all floor is free.
 
-    Panels scatter and cast shadows, but nobody walks around them: put them where nobody walks.
+    Panels reflect and occlude, but motion planning ignores them: place them where nobody walks.
     """
     planes = [_plane("floor", (0.0, HALF_M, floor_z_m), (0, 0, 1), (1, 0, 0), "concrete", (HALF_M, HALF_M))]
     if wall_y_m is not None:
@@ -53,12 +53,12 @@ def open_room(*, floor_z_m: float, wall_y_m: float | None, panels: tuple[Panel, 
         floor_z_m=float(floor_z_m),
         free_space=FreeSpace(x_m=x_m, y_m=y_m, is_free=free, is_seen=free),
         seats=(),
-        assumptions=("the room is drawn by chance",),
+        assumptions=("the room is sampled at random",),
     )
 
 
 def _no_photo() -> RgbdPhoto:
-    """A camera that sees everything ahead, for the motion room asks what is in the picture."""
+    """A camera that sees everything ahead, for motion planning asks what is in the picture."""
     return RgbdPhoto(
         rgb=np.zeros((2, 2, 3), np.uint8),
         depth_m=np.full((2, 2), np.nan),

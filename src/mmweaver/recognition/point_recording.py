@@ -1,4 +1,4 @@
-"""A recording of a point-cloud radar, generated or real: frames of points, and what is done in it."""
+"""A recording of a point-cloud radar, generated or real, with its activity."""
 
 from dataclasses import dataclass, fields, replace
 
@@ -9,31 +9,31 @@ from mmweaver.core.records import PointCloud
 
 @dataclass(frozen=True, kw_only=True)
 class PointRecording:
-    """Points of frames 0 to num_frames - 1 (empty frames included), and how often a second a frame comes."""
+    """Points of frames 0 to num_frames - 1 (empty frames included) at a constant frame rate."""
 
     name: str
     cloud: PointCloud
     num_frames: int
     frame_rate_hz: float
-    label: str = ""  # the activity, where it is known
+    label: str = ""  # the activity, if known
 
     @property
     def duration_s(self) -> float:
         return self.num_frames / self.frame_rate_hz
 
     def windows(self, seconds: float, step_s: float | None = None) -> "list[PointRecording]":
-        """Pieces of so many seconds, one after the other (or every `step_s`); what is left over is dropped."""
+        """Windows of this length, consecutive or every `step_s`; an incomplete last window is dropped."""
         length = max(round(seconds * self.frame_rate_hz), 1)
         step = max(round((step_s or seconds) * self.frame_rate_hz), 1)
         return [self.part(first, length) for first in range(0, self.num_frames - length + 1, step)]
 
     def part(self, first: int, num_frames: int) -> "PointRecording":
-        """The frames from `first` on, numbered from 0."""
+        """`num_frames` frames starting at `first`, renumbered from 0."""
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
-        cloud = chosen(self.cloud, inside)
+        cloud = select(self.cloud, inside)
         return replace(self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames)
 
 
-def chosen(cloud: PointCloud, which: np.ndarray) -> PointCloud:
-    """Some of a cloud's points, by mask or index."""
+def select(cloud: PointCloud, which: np.ndarray) -> PointCloud:
+    """The points of a cloud selected by mask or index (point,)."""
     return PointCloud(**{field.name: getattr(cloud, field.name)[which] for field in fields(PointCloud)})

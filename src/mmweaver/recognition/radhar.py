@@ -1,4 +1,4 @@
-"""The five activities of the RadHAR recordings in words, and the board that recorded them."""
+"""Sentences for the five activities of the RadHAR recordings, and the radar that recorded them."""
 
 from mmweaver.core.firmware_settings import FIRMWARE
 from mmweaver.core.presets import IWR1443_RADHAR
@@ -28,7 +28,7 @@ ACTIVITIES = {
     ),
 }  # fmt: skip
 
-# What people did in the recordings that were looked at, where it is not what the motion library does by itself.
+# How people moved in the inspected recordings, where the motion library differs.
 HABITS = {
     "boxing": {"roam_mps": (0.0, 0.35), "vigour": (0.8, 1.5), "tempo": (0.8, 1.6)},  # they step to and fro
     "jack": {"vigour": (0.75, 1.3)},

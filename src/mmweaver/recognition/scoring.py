@@ -1,4 +1,4 @@
-"""How well a recogniser does on recordings: windows, longer windows, whole recordings, with intervals."""
+"""Scores of a recogniser on recordings: single windows, groups of windows and whole recordings, with intervals."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,12 +13,12 @@ from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.window_features import feature_matrix
 
 RESAMPLINGS = 2000
-LONG_WINDOWS = 3  # windows that vote together: 6 s of 2 s each
+LONG_WINDOWS = 3  # windows that are averaged: 6 s
 
 
 @dataclass(frozen=True, kw_only=True)
 class Evaluation:
-    """Votes of each window (window, activity), the true activity's index, and the recording it comes from."""
+    """Votes (window, activity), index of the true activity (window,), and index of the recording (window,)."""
 
     classes: tuple[str, ...]
     votes: Float[np.ndarray, "window activity"]
@@ -31,11 +31,11 @@ class Evaluation:
         return np.argmax(self.votes, axis=1)
 
     def part(self, which: np.ndarray) -> "Evaluation":
-        """Some of the windows, by mask."""
+        """The windows selected by a mask (window,)."""
         return replace(self, votes=self.votes[which], truth=self.truth[which], recording=self.recording[which])
 
     def pooled(self, group: np.ndarray) -> "Evaluation":
-        """One row a group: the mean vote of its windows."""
+        """Mean vote of the windows of each group; `group` (window,)."""
         _, first, inverse = np.unique(group, return_index=True, return_inverse=True)
         total = np.zeros((len(first), self.votes.shape[1]))
         np.add.at(total, inverse.ravel(), self.votes)
@@ -47,7 +47,7 @@ class Evaluation:
 
 
 def evaluate_recogniser(model: ActivityClassifier, recordings: list[PointRecording], window_s: float) -> Evaluation:
-    """The recogniser's votes on all windows, one after the other. Raises InputError where none is long enough."""
+    """Evaluates on all consecutive windows. Raises InputError where no recording is long enough."""
     cut = [recording.windows(window_s) for recording in recordings]
     windows = [window for windows in cut for window in windows]
     if not windows:
@@ -63,7 +63,7 @@ def evaluate_recogniser(model: ActivityClassifier, recordings: list[PointRecordi
 
 
 def balanced_accuracy(truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"]) -> float:
-    """Mean over the classes that occur of the share recognised.
+    """Recall averaged over the classes that occur.
 
     >>> balanced_accuracy(np.array([0, 0, 0, 1]), np.array([0, 0, 0, 0]))
     0.5
@@ -71,43 +71,43 @@ def balanced_accuracy(truth: Int[np.ndarray, " n"], guess: Int[np.ndarray, " n"]
     return float(np.mean([np.mean(guess[truth == kind] == kind) for kind in np.unique(truth)]))
 
 
-def confusion(judged: Evaluation) -> Int[np.ndarray, "true guessed"]:
-    """How often each activity (row) was taken for which (column)."""
-    size = len(judged.classes)
-    return np.bincount(judged.truth * size + judged.guess, minlength=size * size).reshape(size, size)
+def confusion(evaluation: Evaluation) -> Int[np.ndarray, "true guessed"]:
+    """Confusion matrix in counts: true activity (row), recognised activity (column)."""
+    size = len(evaluation.classes)
+    return np.bincount(evaluation.truth * size + evaluation.guess, minlength=size * size).reshape(size, size)
 
 
-def interval(judged: Evaluation, seed: int = 0) -> tuple[float, float]:
-    """95 % interval of the balanced accuracy: recordings of each activity drawn again with replacement."""
+def interval(evaluation: Evaluation, seed: int = 0) -> tuple[float, float]:
+    """95 % bootstrap interval of the balanced accuracy, resampling recordings within each activity."""
     rng = stream(seed, "recordings drawn again")
-    size = len(judged.classes)
-    hits = np.bincount(judged.recording, judged.guess == judged.truth, minlength=len(judged.names))
-    count = np.bincount(judged.recording, minlength=len(judged.names)).astype(float)
-    kind = np.full(len(judged.names), -1)
-    kind[judged.recording] = judged.truth
+    size = len(evaluation.classes)
+    hits = np.bincount(evaluation.recording, evaluation.guess == evaluation.truth, minlength=len(evaluation.names))
+    count = np.bincount(evaluation.recording, minlength=len(evaluation.names)).astype(float)
+    kind = np.full(len(evaluation.names), -1)
+    kind[evaluation.recording] = evaluation.truth
     shares = []
     for one in range(size):
         own = np.flatnonzero(kind == one)
         if len(own):
-            drawn = own[rng.integers(len(own), size=(RESAMPLINGS, len(own)))]
-            shares.append(hits[drawn].sum(axis=1) / count[drawn].sum(axis=1))
+            resampled = own[rng.integers(len(own), size=(RESAMPLINGS, len(own)))]
+            shares.append(hits[resampled].sum(axis=1) / count[resampled].sum(axis=1))
     low, high = np.quantile(np.mean(shares, axis=0), [0.025, 0.975])
     return float(low), float(high)
 
 
-def report(judged: Evaluation) -> dict[str, Any]:
-    """Balanced accuracy of windows, of three windows together and of whole recordings, each with its interval."""
-    place = np.concatenate([np.arange(n) for n in np.bincount(judged.recording) if n])
-    whole = judged.pooled(judged.recording)
-    long = judged.pooled(judged.recording * 10_000 + place // LONG_WINDOWS)
-    chance = 1 / len(judged.classes)
-    rows: dict[str, Any] = {"classes": list(judged.classes), "recordings": len(np.unique(judged.recording))}
-    for name, one in (("window", judged), ("three_windows", long), ("recording", whole)):
+def report(evaluation: Evaluation) -> dict[str, Any]:
+    """Balanced accuracy of windows, groups of three and whole recordings, with intervals and baseline."""
+    place = np.concatenate([np.arange(n) for n in np.bincount(evaluation.recording) if n])
+    whole = evaluation.pooled(evaluation.recording)
+    long = evaluation.pooled(evaluation.recording * 10_000 + place // LONG_WINDOWS)
+    chance = 1 / len(evaluation.classes)
+    rows: dict[str, Any] = {"classes": list(evaluation.classes), "recordings": len(np.unique(evaluation.recording))}
+    for name, one in (("window", evaluation), ("three_windows", long), ("recording", whole)):
         low, high = interval(one)
         rows[name] = {
             "balanced_accuracy": round(balanced_accuracy(one.truth, one.guess), 4),
             "interval_95": [round(low, 4), round(high, 4)],
-            "floor": round(chance, 4),
+            "baseline": {"chance": round(chance, 4)},
             "n": len(one.truth),
             "confusion": confusion(one).tolist(),
         }

@@ -1,4 +1,4 @@
-"""What differs from one recording to the next: people, rooms, radars. Each generated recording draws all of it."""
+"""Domain randomisation: people, rooms and radars, sampled anew for each generated recording."""
 
 from dataclasses import dataclass
 
@@ -11,15 +11,14 @@ Span = tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Variation:
-    """Spans that a recording draws from, evenly (`tempo` evenly in its logarithm).
+    """Ranges from which each recording samples uniformly (`tempo` log-uniformly).
 
-    `tempo` speeds a motion up, times `way_tempo` where the person goes somewhere (slowly, in a small room); `vigour`
-    scales how far joints leave their mean place. Of a way through the room: `near_m` and `far_m` say between which
-    distances it goes to and fro, `way_s` how long it lasts in the motion's own time (a window is any part of it),
-    `hurry` how much the tempo wanders (rms of its logarithm). `turn_deg` is the standard deviation of how far someone
-    who stays in place is turned away from the radar. `tilt_deg` turns the reported points about the radar, up where
-    positive. What ends in `_db` changes the radar's own noise figure, its CFAR's threshold, its receiver's gain, the
-    skin's albedo, and how bright arms and legs are beside the trunk.
+    `tempo` scales the speed of a motion, times `way_tempo` for locomotion (slower in a small room); `vigour` scales the
+    excursion of joints from their mean position. Of a path through the room: `near_m` and `far_m` bound its distances,
+    `way_s` is its duration in the motion's own time (a window is any part of it), `hurry` the variation of tempo (rms
+    of its logarithm). `turn_deg`: standard deviation of the heading of stationary people. `tilt_deg`
+    rotates the reported points about the radar, up where positive. Values in `_db` change the noise figure, the CFAR
+    threshold, the receiver gain, the albedo of skin, and the reflectivity of arms and legs relative to the trunk.
     """
 
     tempo: Span = (0.75, 1.6)
@@ -53,7 +52,7 @@ class Variation:
 
 @dataclass(frozen=True, kw_only=True)
 class VariationSample:
-    """One recording's circumstances, in the units of Variation."""
+    """The sampled conditions of one recording, in the units of Variation."""
 
     tempo: float
     reach_m: Span
@@ -82,12 +81,12 @@ class VariationSample:
     @property
     def start_m(self) -> tuple[float, float]:
         """Where the person starts, (x right, y away)."""
-        turn = np.radians(self.azimuth_deg)
-        return float(self.distance_m * np.sin(turn)), float(self.distance_m * np.cos(turn))
+        azimuth = np.radians(self.azimuth_deg)
+        return float(self.distance_m * np.sin(azimuth)), float(self.distance_m * np.cos(azimuth))
 
 
-def draw(variation: Variation, rng: np.random.Generator) -> VariationSample:
-    """Circumstances by chance."""
+def sample_variation(variation: Variation, rng: np.random.Generator) -> VariationSample:
+    """Samples the conditions of one recording."""
 
     def of(span: Span) -> float:
         return float(rng.uniform(*span))
@@ -120,7 +119,7 @@ def draw(variation: Variation, rng: np.random.Generator) -> VariationSample:
 
 
 def _panel(rng: np.random.Generator) -> Panel:
-    """Something flat beside the person's place, or behind it."""
+    """A flat object to the side of the person, or behind."""
     aside = float(rng.choice([-1.0, 1.0]) * rng.uniform(0.9, 2.5))
     return Panel(
         centre_m=(aside, float(rng.uniform(0.5, 5.0)), float(rng.uniform(-0.8, 0.5))),

@@ -1,7 +1,7 @@
-"""Numbers that describe one window of a point-cloud recording: what moves how fast, where, and in what rhythm.
+"""Features of one window of a point-cloud recording: speeds, extents, travel and periodicity of moving points.
 
-Here only points that move count; what a body does that hardly moves is in body_features. Nothing depends on where the
-room or the radar stands, or on left and right. nan says that too few points are there.
+Only moving points count here; nearly stationary bodies are covered by body_features. Features are invariant to the
+placement of room and radar and to left-right reflection. nan means too few points.
 """
 
 import itertools
@@ -17,7 +17,7 @@ STILL_MPS = 0.1
 SPEED_EDGES_MPS = (0.1, 0.9, 1.5, 2.2, 3.2, 99.0)  # of one, two, three, four and five, and more bins of 0.615 m/s
 SEGMENTS = 4
 FEWEST = 3  # points for a spread
-UNFORETOLD = {"up", "uneven"}  # words in names of features that are left out by default
+UNPREDICTABLE = {"up", "uneven"}  # words in names of features that are excluded by default
 
 
 def window_features(window: PointRecording) -> Row:
@@ -38,13 +38,13 @@ def window_features(window: PointRecording) -> Row:
 def feature_matrix(
     windows: list[PointRecording], names: tuple[str, ...] | None = None
 ) -> tuple[Float[np.ndarray, "window feature"], tuple[str, ...]]:
-    """Features of many windows, float32, and their names; by default all but what no simulation can foretell.
+    """Features of windows, float32, and their names; by default all except those a simulation cannot predict.
 
-    That are heights (the phase between two rows of antennas: a tilted radar or an uncalibrated board shifts them), and
-    how unevenly points are spread over time, which is the vertical beam's doing.
+    These are heights (from the phase between two antenna rows, biased by a tilted or uncalibrated board), and the
+    unevenness of points over time, which depends on the elevation beam.
     """
     rows = [{**window_features(window), **body_features(window, STILL_MPS)} for window in windows]
-    chosen = names or tuple(name for name in rows[0] if not UNFORETOLD & set(name.split("_")))
+    chosen = names or tuple(name for name in rows[0] if not UNPREDICTABLE & set(name.split("_")))
     return np.array([[row[name] for name in chosen] for row in rows], np.float32), chosen
 
 
@@ -68,7 +68,7 @@ class _Moving:
 
 
 def _speeds(points: _Moving) -> Row:
-    """How many points a frame have which velocity, and which share of the moving ones."""
+    """Points per frame and share of moving points by velocity."""
     row: Row = {}
     total = max(len(points), 1)
     magnitude = np.abs(points.speed)
@@ -87,7 +87,7 @@ def _speeds(points: _Moving) -> Row:
 
 
 def _duty(points: _Moving) -> Row:
-    """In how many frames there is motion, one way, both ways; how long it lasts at a time."""
+    """Share of frames with motion, in either or both directions, and duration of bursts."""
     away, near = points.per_frame((points.speed > 0) * 1.0), points.per_frame((points.speed < 0) * 1.0)
     fast = points.per_frame((np.abs(points.speed) > SPEED_EDGES_MPS[2]) * 1.0)
     count = away + near
@@ -108,7 +108,7 @@ def _duty(points: _Moving) -> Row:
 
 
 def _runs(on: np.ndarray) -> tuple[int, float]:
-    """Number of runs of True (gaps of a frame closed) and their mean length in frames."""
+    """Number of runs of True (gaps of one frame closed) and their mean length in frames."""
     closed = on.copy()
     closed[1:-1] |= on[:-2] & on[2:]
     starts = int(closed[0]) + int(((~closed[:-1]) & closed[1:]).sum())
@@ -116,7 +116,7 @@ def _runs(on: np.ndarray) -> tuple[int, float]:
 
 
 def _places(points: _Moving) -> Row:
-    """Spread in range, across and in height of all moving points, the slow and the fast ones."""
+    """Spread in range, cross-range and height of all, slow and fast moving points."""
     row: Row = {}
     magnitude = np.abs(points.speed)
     groups = {
@@ -133,7 +133,7 @@ def _places(points: _Moving) -> Row:
             row[f"{axis}_std_{word}"] = float(there.std()) if enough else np.nan
             low, high = np.quantile(there, [0.1, 0.9]) if enough else (np.nan, np.nan)
             row[f"{axis}_span_{word}"] = float(high - low)
-    for axis, value in axes.items():  # where the fast ones are beside the slow ones
+    for axis, value in axes.items():  # position of fast points relative to slow ones
         slow, quick = value[groups["slow"]], value[groups["quick"]]
         both = len(slow) >= FEWEST and len(quick) >= FEWEST
         gap_m = float(quick.mean() - slow.mean()) if both else np.nan
@@ -145,17 +145,17 @@ def _places(points: _Moving) -> Row:
 
 
 def _within_frame(points: _Moving, value: np.ndarray) -> float:
-    """Standard deviation within frames that have two points or more."""
+    """Pooled standard deviation within frames of two points or more."""
     count = points.per_frame()
     mean = points.per_frame(value) / np.maximum(count, 1)
-    left = (value - mean[points.frame]) ** 2
+    deviation = (value - mean[points.frame]) ** 2
     several = count[points.frame] >= 2
     free = float(several.sum() - (count >= 2).sum())
-    return float(np.sqrt(left[several].sum() / free)) if free >= 2 else np.nan
+    return float(np.sqrt(deviation[several].sum() / free)) if free >= 2 else np.nan
 
 
 def _travel(points: _Moving) -> Row:
-    """Whether the body goes somewhere: range over time, and whether it agrees with the velocity measured."""
+    """Locomotion: range over time, and its consistency with the measured velocity."""
     row: Row = {"drift_mps": np.nan, "drift_left_m": np.nan, "travel_m": np.nan, "drift_less_velocity": np.nan}
     if len(points) >= 2 * FEWEST and np.ptp(points.time_s) > 0:
         slope, start = np.polyfit(points.time_s, points.range_m, 1)
@@ -175,7 +175,7 @@ def _travel(points: _Moving) -> Row:
 
 
 def _couplings(points: _Moving) -> Row:
-    """What goes with what: velocity with height, range and side."""
+    """Correlations of velocity with height, range and cross-range."""
     row: Row = {}
     magnitude = np.abs(points.speed)
     aside = np.abs(points.across_m - np.median(points.across_m)) if len(points) else points.across_m
@@ -200,7 +200,7 @@ def _correlation(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def _rhythm(points: _Moving) -> Row:
-    """Shares of the power of three signals in bands of frequency, and the strongest period of each."""
+    """Band powers and strongest frequency of three time series."""
     row: Row = {}
     signals = {
         "momentum": points.per_frame(points.speed),

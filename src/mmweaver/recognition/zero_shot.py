@@ -1,6 +1,6 @@
-"""Recognising activities with no recording at all: generate, keep the features, train.
+"""Zero-shot activity recognition: generate windows, compute features, train; no recording is involved.
 
-Training from kept features takes seconds. Nothing of a real recording reaches them, and trees need no scaling.
+Training from stored features takes seconds. Trees need no scaling of features.
 """
 
 import zipfile
@@ -15,9 +15,9 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
-from mmweaver.recognition.disturbances import disturbed
 from mmweaver.recognition.generated_windows import GenerationRecipe, generate_windows
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.window_augmentation import augmented
 from mmweaver.recognition.window_features import feature_matrix
 
 COPIES = 3
@@ -32,7 +32,7 @@ class TrainingSet:
     names: tuple[str, ...]  # of the features
 
     def train(self, settings: ClassifierSettings | None = None) -> ActivityClassifier:
-        """A recogniser that knows nothing else."""
+        """Trains a recogniser on this set alone."""
         return ActivityClassifier(settings, self.names).fit(self.features, self.labels)
 
 
@@ -40,23 +40,23 @@ def training_set(
     recipe: GenerationRecipe, *, each: int, seed: int = 0, cache: Path | None = None, copies: int = COPIES,
     report: Callable[[int, int], object] | None = None,
 ) -> TrainingSet:  # fmt: skip
-    """`each` generated windows of every activity as features; about 0.7 s of one CPU core a window.
+    """Features of `each` generated windows of every activity; about 0.7 CPU-seconds per window.
 
-    Each window trains with `copies` disturbed copies. A `cache` folder keeps the windows, so that an interrupted run
-    goes on where it was; it must not be shared by different recipes, and says so.
+    Each window is joined by `copies` augmented copies. A `cache` folder stores the windows, so that an interrupted run
+    resumes; recipes cannot share one. Raises InputError for the cache of another recipe.
     """
     if cache is not None:
-        own_cache(Path(cache), recipe)
+        check_cache(Path(cache), recipe)
     windows = generate_windows(recipe, each=each, seed=seed, cache=cache, report=report)
-    return measured(windows, copies=copies, seed=seed)
+    return featurize(windows, copies=copies, seed=seed)
 
 
-def measured(
+def featurize(
     windows: list[PointRecording], *, copies: int = COPIES, seed: int = 0, names: tuple[str, ...] | None = None
 ) -> TrainingSet:
-    """Features of windows, and after them of the first disturbed copies of all, the second, and so on."""
+    """Features of windows, followed by those of the first augmented copy of each, the second, and so on."""
     copied = [
-        disturbed(window, stream(seed, "disturbed", window.name, copy)) for copy in range(copies) for window in windows
+        augmented(window, stream(seed, "disturbed", window.name, copy)) for copy in range(copies) for window in windows
     ]
     features, names = feature_matrix([*windows, *copied], names)
     return TrainingSet(
@@ -65,12 +65,12 @@ def measured(
 
 
 def rounded_to_digits(features: np.ndarray) -> np.ndarray:
-    """Rounded to what a frozen file keeps (half precision), so that training from it gives the same trees."""
+    """Features rounded to half precision as in a frozen file, so that training from it gives the same trees."""
     return features.astype(np.float16).astype(np.float32)
 
 
-def own_cache(cache: Path, recipe: GenerationRecipe) -> None:
-    """Writes the recipe into a cache, or checks that it is the one there. Raises InputError for another's."""
+def check_cache(cache: Path, recipe: GenerationRecipe) -> None:
+    """Writes the recipe into a cache, or checks the existing one. Raises InputError for another recipe."""
     note = cache / "recipe.json"
     text = recipe.as_json()
     if note.exists() and note.read_text(encoding="utf-8") != text:
@@ -80,23 +80,23 @@ def own_cache(cache: Path, recipe: GenerationRecipe) -> None:
 
 
 # files --------------------------------------------------------------------------------------------------------------
-def write_training_set(path: Path, made: TrainingSet) -> None:
+def write_training_set(path: Path, training: TrainingSet) -> None:
     """An .npz of features (float32), labels and names; the same arrays give the same bytes."""
     with atomic_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-        arrays = {"features": _small(made.features), "labels": made.labels, "names": np.array(made.names)}
+        arrays = {"features": _small(training.features), "labels": training.labels, "names": np.array(training.names)}
         for name, array in arrays.items():
             with archive.open(zipfile.ZipInfo(f"{name}.npy", (1980, 1, 1, 0, 0, 0)), "w") as file:
                 np.lib.format.write_array(file, array, allow_pickle=False)
 
 
 def _small(features: np.ndarray) -> np.ndarray:
-    """Half precision where nothing is lost by it."""
+    """Half precision if lossless, else float32."""
     half = features.astype(np.float16)
     return half if np.array_equal(half.astype(np.float32), features, equal_nan=True) else features.astype(np.float32)
 
 
 def read_training_set(path: Path) -> TrainingSet:
-    """What `write_training_set` wrote. Raises InputError for other files."""
+    """Reads a file of `write_training_set`. Raises InputError for other files."""
     try:
         with np.load(path, allow_pickle=False) as held:
             return TrainingSet(
@@ -106,5 +106,5 @@ def read_training_set(path: Path) -> TrainingSet:
             )
     except (OSError, ValueError, KeyError, zipfile.BadZipFile):
         raise InputError(
-            f"{path} is no training set; make one with mmweaver.recognition.zero_shot.training_set"
+            f"{path} is not a training set; make one with mmweaver.recognition.zero_shot.training_set"
         ) from None

@@ -13,6 +13,7 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.version import __version__
 from mmweaver.datasets.dataset_store import plan_text, read_plan
+from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import SceneEncoding, WeaverNetwork
 from mmweaver.models.precision import exactly
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
@@ -39,6 +40,7 @@ class TrainingRecipe(LoopRecipe):
     frames: int = 8  # sampled from each sequence
     mirror: bool = True  # reflect every second batch left-right
     without: tuple[str, ...] = ("correction",)  # parts of the network left to physics (decision 102)
+    encoder: str = DEFAULT_ENCODER  # environment encoder, a name in ENCODERS
 
 
 class NetworkLearner(Learner):
@@ -123,7 +125,7 @@ def train(
 def initial_network(recipe: LoopRecipe, start: dict[str, torch.Tensor] | None) -> WeaverNetwork:
     """The network that training starts from; the recipe may switch off parts of it."""
     torch.manual_seed(recipe.seed)
-    network = WeaverNetwork(without=recipe.without if isinstance(recipe, TrainingRecipe) else ())
+    network = WeaverNetwork(recipe.without, recipe.encoder) if isinstance(recipe, TrainingRecipe) else WeaverNetwork()
     if start is not None:
         network.load_state_dict(start)
     return network

@@ -13,7 +13,7 @@ def _at(space: FreeSpace, x_m: float, y_m: float) -> tuple[bool, bool]:
     return bool(space.is_free[row, column]), bool(space.is_seen[row, column])
 
 
-def test_free_blocked_hidden_and_outside(box_room: Callable):
+def test_free_blocked_occluded_and_outside_places(box_room: Callable):
     cabinet = ((0.6, 1.4), (2.4, 2.8), (0.0, 2.0))
     table = ((-1.0, -0.2), (2.2, 2.8), (0.69, 0.73))
     space = reconstruct(box_room(boxes=[cabinet, table]).photo(width=640, height=480)).free_space

@@ -18,14 +18,14 @@ def office() -> ProceduralRoom:
 
 
 def _near(scene: Scene, room: ProceduralRoom, kind: str) -> list[float]:
-    """Distance of each found thing of a kind to the nearest true one."""
+    """Distance of each landmark of a kind to the nearest true one, metres."""
     places = [mark.position_m[:2] for mark in room.landmarks if mark.kind == kind]
     found = [mark.position_m[:2] for mark in scene.landmarks if mark.kind == kind]
     return [float(min(np.hypot(*(place - one)) for place in places)) for one in found]
 
 
 @pytest.mark.parametrize("with_mask", [True, False])
-def test_door_and_desks_are_where_they_are(office: ProceduralRoom, with_mask: bool):
+def test_doors_and_tables_are_found_at_their_true_places(office: ProceduralRoom, with_mask: bool):
     photo = office.photo("lamps", noise=True)
     scene = reconstruct(photo if with_mask else dataclasses.replace(photo, classes=None))
     for kind in ("door", "table"):
@@ -34,7 +34,7 @@ def test_door_and_desks_are_where_they_are(office: ProceduralRoom, with_mask: bo
         assert max(distances) < 0.6, kind
 
 
-def test_one_can_stand_where_one_uses_them(office: ProceduralRoom):
+def test_approaches_are_free_and_face_the_landmark(office: ProceduralRoom):
     scene = reconstruct(office.photo("lamps"))
     space = scene.free_space
     for mark in scene.landmarks:
@@ -45,7 +45,7 @@ def test_one_can_stand_where_one_uses_them(office: ProceduralRoom):
         assert np.angle(np.exp(1j * (np.arctan2(gap[1], gap[0]) - mark.facing_rad))) == pytest.approx(0, abs=1e-6)
 
 
-def test_a_mask_rules_out_a_box_as_a_seat():
+def test_a_mask_excludes_boxes_from_the_seats():
     room = next(
         room for room in (make_room("workshop", layout, 300) for layout in range(8)) if "carton" in room.boxes.names
     )

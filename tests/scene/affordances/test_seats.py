@@ -1,4 +1,4 @@
-"""Seats, and what is none."""
+"""Seats, and surfaces that are none."""
 
 from collections.abc import Callable
 
@@ -10,7 +10,7 @@ from mmweaver.scene.reconstruction import reconstruct
 SOFA = [((-0.8, 0.8), (2.3, 2.9), (0.0, 0.44)), ((-0.8, 0.8), (2.9, 3.1), (0.0, 0.85))]
 
 
-def test_a_sofa_seats_people_who_look_at_the_radar(box_room: Callable):
+def test_the_seats_of_a_sofa_face_the_radar(box_room: Callable):
     scene = reconstruct(box_room(boxes=SOFA).photo(width=640, height=480))
     assert 2 <= len(scene.seats) <= 3
     for seat in scene.seats:
@@ -21,7 +21,7 @@ def test_a_sofa_seats_people_who_look_at_the_radar(box_room: Callable):
 
 
 def test_a_chair_seen_from_its_side(box_room: Callable):
-    """Its back at the left: the sitter looks to the right, +x, which is 0."""
+    """Its back is at the left: the sitter faces right, +x, which is 0."""
     chair = [((0.2, 0.65), (2.0, 2.45), (0.40, 0.46)), ((0.15, 0.2), (2.0, 2.45), (0.40, 0.95))]
     seats = reconstruct(box_room(boxes=chair).photo(width=640, height=480)).seats
     assert len(seats) == 1
@@ -38,11 +38,11 @@ def test_a_chair_seen_from_its_side(box_room: Callable):
     ],
     ids=["low table", "table", "bench at the wall"],
 )
-def test_tables_are_no_seats(box_room: Callable, thing: tuple):
+def test_tables_are_not_seats(box_room: Callable, thing: tuple):
     assert reconstruct(box_room(boxes=[thing]).photo(width=640, height=480)).seats == ()
 
 
-def test_a_low_table_before_a_sofa_is_no_seat(box_room: Callable):
+def test_a_low_table_in_front_of_a_sofa_is_not_a_seat(box_room: Callable):
     table = ((-0.5, 0.5), (1.4, 1.9), (0.36, 0.40))
     seats = reconstruct(box_room(boxes=[*SOFA, table], pitch_deg=22.0).photo(width=640, height=480)).seats
     assert len(seats) >= 2

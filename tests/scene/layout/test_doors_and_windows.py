@@ -17,7 +17,7 @@ WALL = Plane(
 
 
 def _found(*patches: tuple[float, float, float, float], hidden_below_m: float = 0.0) -> list[str]:
-    """What is found on a white wall with red patches (left, right, bottom, top over the floor)."""
+    """Openings found on a white wall with red patches (left, right, bottom, top above the floor)."""
     rows, columns = np.mgrid[0:480, 0:640]
     x, z = (columns - LENS.cx) / LENS.fx * AWAY_M, -(rows - LENS.cy) / LENS.fy * AWAY_M - FLOOR_Z_M
     rgb = np.full((480, 640, 3), 220, np.uint8)
@@ -31,7 +31,7 @@ def _found(*patches: tuple[float, float, float, float], hidden_below_m: float = 
     return [opening.kind for opening in find_openings(view, (WALL,))]
 
 
-def test_a_door_reaches_the_floor_and_ends_under_the_wall():
+def test_a_door_reaches_the_floor_and_ends_below_the_lintel():
     assert _found((-0.4, 0.5, 0.0, 2.05)) == ["door"]
     assert _found((-0.4, 0.5, 0.0, 2.05), hidden_below_m=0.2) == ["door"]
 
@@ -45,10 +45,10 @@ def test_a_door_reaches_the_floor_and_ends_under_the_wall():
         ((-0.4, 0.5, 0.45, 2.05), 0.0),
     ],
 )
-def test_what_is_like_a_door_in_part_is_none(patch: tuple[float, float, float, float], hidden: float):
+def test_a_partial_match_is_not_a_door(patch: tuple[float, float, float, float], hidden: float):
     assert "door" not in _found(patch, hidden_below_m=hidden)
 
 
-def test_a_window_is_over_a_sill():
+def test_a_window_is_above_a_sill():
     assert _found((-0.7, 0.7, 0.95, 2.1)) == ["window"]
     assert _found() == []

@@ -1,4 +1,4 @@
-"""Up and the floor, against rooms whose tilt and height are known."""
+"""Gravity and floor of rooms with known tilt and height."""
 
 from collections.abc import Callable
 
@@ -38,8 +38,8 @@ def test_a_large_table_is_not_the_floor(box_room: Callable):
     assert find_gravity(make_grid(photo)).floor_z_m == pytest.approx(-1.4, abs=0.03)
 
 
-def test_without_a_floor_it_says_what_it_assumed(box_room: Callable):
-    """A camera that looks level at a wall from afar: nothing horizontal is visible."""
+def test_without_a_floor_the_assumption_is_reported(box_room: Callable):
+    """A level camera far from a wall: nothing horizontal is visible."""
     room = box_room(pitch_deg=0.0, has_floor=False, ceiling_m=40.0, walls=(-1.0, 1.3, 2.5))
     photo = room.photo()
     gravity = find_gravity(make_grid(photo))

@@ -1,4 +1,4 @@
-"""Material guesses: the names are those of the standard, and nothing daring is guessed."""
+"""Material guesses: the names are those of the standard, and metal and glass are not guessed."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -34,7 +34,7 @@ def test_names():
 
 
 def classed(photo: RgbdPhoto, scene: Scene, name_of_wall: str, name_of_floor: str) -> RgbdPhoto:
-    """The same photo, its back wall and its floor told by where they are known to lie."""
+    """The photo with a class mask of its back wall and floor, from their known positions."""
     from mmweaver.geometry.pinhole import unproject
 
     points_m = unproject(photo.depth_m, photo.intrinsics) @ scene.radar_from_camera.T
@@ -43,7 +43,7 @@ def classed(photo: RgbdPhoto, scene: Scene, name_of_wall: str, name_of_floor: st
     return replace(photo, classes=ClassMask(index=index, names=NAMES))
 
 
-def test_the_class_decides_where_it_says_a_material(box_room: Callable):
+def test_the_class_decides_where_it_implies_a_material(box_room: Callable):
     photo = box_room().photo()
     guessed = reconstruct(photo)
     told = reconstruct(classed(photo, guessed, "wall-brick", "floor-wood"))
@@ -55,7 +55,7 @@ def test_the_class_decides_where_it_says_a_material(box_room: Callable):
     assert any("class of each pixel" in sentence for sentence in told.assumptions)
 
 
-def test_geometry_decides_where_the_class_says_nothing(box_room: Callable):
+def test_geometry_decides_where_the_class_implies_none(box_room: Callable):
     photo = box_room().photo()
     guessed = reconstruct(photo)
     told = reconstruct(classed(photo, guessed, "wall-other", "rug"))
@@ -65,7 +65,7 @@ def test_geometry_decides_where_the_class_says_nothing(box_room: Callable):
 
 @pytest.mark.parametrize(("name", "material"), [("window-other", "glass"), ("mirror-stuff", "metal")])
 @pytest.mark.parametrize("behind_m", [float("nan"), 12.0])
-def test_a_pane_in_the_wall_is_closed_and_of_its_material(
+def test_a_pane_in_the_wall_is_on_its_plane_and_of_its_material(
     box_room: Callable, name: str, material: str, behind_m: float
 ):
     """The camera sees through the window (or another room in the mirror); the radar meets the pane."""

@@ -1,4 +1,4 @@
-"""Windows and mirrors are closed where they hang."""
+"""Windows and mirrors get the depth of their plane."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ LENS = CameraIntrinsics(fx=120.0, fy=120.0, cx=79.5, cy=59.5, width=160, height=
 
 
 def wall_with_pane(behind_m: float, name: str = "window-other") -> tuple[RgbdPhoto, np.ndarray, np.ndarray]:
-    """A slanting wall from 2.5 to 4 m with a pane in it that shows `behind_m`; its depth, and where the pane is."""
+    """An oblique wall from 2.5 to 4 m with a pane that shows `behind_m`: its depth, and the mask of the pane."""
     wall_m = 1 / np.linspace(1 / 2.5, 1 / 4.0, 160)[None, :] + np.zeros((120, 1))
     pane = np.zeros(SHAPE, bool)
     pane[30:80, 60:110] = True
@@ -28,7 +28,7 @@ def wall_with_pane(behind_m: float, name: str = "window-other") -> tuple[RgbdPho
 
 @pytest.mark.parametrize("name", ["window-other", "mirror-stuff"])
 @pytest.mark.parametrize("behind_m", [float("nan"), 9.0])
-def test_holes_and_what_lies_behind_come_onto_the_walls_plane(behind_m: float, name: str):
+def test_holes_and_points_behind_are_put_on_the_walls_plane(behind_m: float, name: str):
     photo, wall_m, _ = wall_with_pane(behind_m, name)
     closed, sentences = with_transparent_surfaces(photo)
     assert closed.depth_m == pytest.approx(wall_m, rel=0.01)
@@ -44,7 +44,7 @@ def test_a_vase_before_the_window_stays():
     assert closed.depth_m[35:55, 65:105] == pytest.approx(wall_m[35:55, 65:105], rel=0.01)
 
 
-def test_what_is_no_pane_or_has_no_plane_about_it_is_left():
+def test_other_classes_and_borders_that_are_not_planar_are_left():
     photo, _, _ = wall_with_pane(9.0, "couch")
     assert with_transparent_surfaces(photo) == (photo, ())
     assert with_transparent_surfaces(replace(photo, classes=None))[1] == ()
@@ -56,7 +56,7 @@ def test_what_is_no_pane_or_has_no_plane_about_it_is_left():
     assert with_transparent_surfaces(empty)[1] == ()
 
 
-def test_a_curtain_at_its_side_does_not_pull_the_pane_forward():
+def test_a_curtain_next_to_a_pane_does_not_shift_its_plane():
     photo, wall_m, pane = wall_with_pane(9.0)
     assert photo.classes is not None
     index, depth = np.full(SHAPE, NAMES.index("wall-other"), np.uint8), photo.depth_m.copy()

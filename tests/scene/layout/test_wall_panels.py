@@ -43,7 +43,7 @@ def test_a_pane_is_a_rectangle_of_its_own_material(name: str, material: str):
     assert panel.half_size_m == pytest.approx((0.5, 0.5), abs=0.03)
 
 
-def test_a_leaf_before_its_wall_is_put_there():
+def test_a_leaf_in_front_of_its_wall_keeps_its_offset():
     (panel,) = _found(_photo("door", depth_m=WALL_M - 0.05))
     assert panel.centre_m[1] == pytest.approx(WALL_M - 0.05, abs=0.005)
 

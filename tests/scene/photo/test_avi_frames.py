@@ -1,4 +1,4 @@
-"""Pictures out of an .avi."""
+"""Frames of an .avi."""
 
 import shutil
 from pathlib import Path
@@ -24,17 +24,17 @@ def test_motion_jpeg_and_uncompressed(tmp_path: Path, codec: bytes):
         avi_frame(path, 2)
 
 
-def test_what_is_no_avi(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_other_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     path = tmp_path / "color.avi"
     with pytest.raises(InputError, match="cannot read"):
         avi_frame(path, 0)
-    for content, says in (
+    for content, message in (
         (b"", "empty"),
         (b"RIFF1234WAVE", "not an .avi"),
         (b"RIFF\xff\0\0\0AVI " + bytes(30), "no video"),
     ):
         path.write_bytes(content)
-        with pytest.raises(InputError, match=says):
+        with pytest.raises(InputError, match=message):
             avi_frame(path, 0)
     whole = avi_of(PICTURES)
     at = whole.index(b"\xff\xd8")
@@ -48,8 +48,8 @@ def test_what_is_no_avi(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
 
 
 @posix_only
-def test_anything_else_goes_through_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    """A stand-in for ffmpeg that is asked for the right frame, and one that fails."""
+def test_other_codecs_go_through_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """A fake ffmpeg that is asked for the right frame, and one that fails."""
     from PIL import Image
 
     Image.fromarray(PICTURES[1]).save(tmp_path / "frame.png")

@@ -1,4 +1,4 @@
-"""The RealSense of a capture folder."""
+"""The photo of a capture folder."""
 
 import json
 from pathlib import Path
@@ -38,14 +38,14 @@ def test_a_photo_with_its_depth(folder: Path):
 
 
 @pytest.mark.parametrize(("index", "depth_m"), [(0, 2.0), (1, 3.0)])
-def test_colours_come_from_where_the_colour_camera_saw_the_point(folder: Path, index: int, depth_m: float):
+def test_colours_are_reprojected_from_the_colour_camera(folder: Path, index: int, depth_m: float):
     """The edge at the colour camera's middle lies 59 mm to the right of the depth camera's, so 1.8 or 1.2 columns."""
     red = read_capture_photo(folder, index).photo.rgb[30, :, 0] > 120
     edge = int(np.argmin(red))
     assert edge == pytest.approx(LENS.cx + 0.059 * LENS.fx / depth_m, abs=1)
 
 
-def test_a_picture_of_ones_own_takes_the_place_of_the_video(folder: Path):
+def test_an_own_picture_replaces_the_video(folder: Path):
     (folder / "realsense" / "color.avi").unlink()
     Image.new("RGB", WIDE[::-1], (9, 8, 7)).save(folder / "own.png")
     photo = read_capture_photo(folder, 0, folder / "own.png").photo
@@ -104,9 +104,9 @@ def test_broken_folders(folder: Path, tmp_path: Path):
         read_capture_photo(folder)
     (camera / "depth.zst").write_bytes(whole)
     config = json.loads((camera / "depth_config.json").read_text())
-    for change, says in (({"depth_units": 1.0}, "depth_units"), ({"intrinsics": {"fx": 3}}, "lacks intrinsics")):
+    for change, message in (({"depth_units": 1.0}, "depth_units"), ({"intrinsics": {"fx": 3}}, "lacks intrinsics")):
         (camera / "depth_config.json").write_text(json.dumps({**config, **change}))
-        with pytest.raises(InputError, match=says):
+        with pytest.raises(InputError, match=message):
             read_capture_photo(folder)
     (camera / "depth_config.json").write_text("no json")
     with pytest.raises(InputError, match="not a JSON file"):

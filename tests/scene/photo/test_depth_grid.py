@@ -1,4 +1,4 @@
-"""Thinning without bridging, and normals."""
+"""Binning without bridging edges, and normals."""
 
 from collections.abc import Callable
 
@@ -10,7 +10,7 @@ from mmweaver.scene.photo.depth_grid import make_grid, remove_outliers
 
 
 def test_edges_are_not_bridged(box_room: Callable):
-    """Between a box at 1.5 m and a wall at 3.8 m nothing lies; no cell may say so."""
+    """Nothing lies between a box at 1.5 m and a wall at 3.8 m, so no cell may have such a depth."""
     room = box_room(boxes=[((-0.3, 0.3), (1.5, 1.7), (0.0, 2.0))], pitch_deg=0.0)
     depth = make_grid(room.photo(width=640, height=480)).depth_m
     middle = depth[40:80]

@@ -1,4 +1,4 @@
-"""Depth by a model."""
+"""Monocular depth models."""
 
 from pathlib import Path
 
@@ -21,7 +21,7 @@ def test_a_metric_model_gives_metres(tmp_path: Path):
     assert np.nanmin(depth_m) > 0
 
 
-def test_models_without_a_unit_are_refused(tmp_path: Path):
+def test_models_of_relative_depth_are_refused(tmp_path: Path):
     with pytest.raises(InputError, match="relative depth"):
         estimate_depth(RGB, models.depth_anything(tmp_path / "relative", "relative"))
     with pytest.raises(InputError, match="no metric depth"):

@@ -1,4 +1,4 @@
-"""Folders and names that give no model: one line that says what to do."""
+"""Folders and names without a model: one line that says what to do."""
 
 import json
 import sys
@@ -24,15 +24,15 @@ def error(source: str) -> str:
     return str(raised.value)
 
 
-def test_what_is_no_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setenv("HF_HUB_OFFLINE", "1")
+def test_missing_models_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("huggingface_hub.constants.HF_HUB_OFFLINE", True)  # read when it was imported
     assert "without config.json" in error(str(tmp_path))
     assert "is not a folder" in error(str(tmp_path / "none"))
     assert "is not a folder" in error("./none")
     assert "hf download" in error("nobody/no-such-model")
 
 
-def test_spoilt_folders(tmp_path: Path):
+def test_damaged_folders_are_refused(tmp_path: Path):
     folder = tmp_path / "model"
     models.segformer(folder)
     weights = folder / "model.safetensors"

@@ -18,7 +18,7 @@ def test_a_dense_picture_is_left_alone():
     assert sentences == ()
 
 
-def test_scattered_holes_take_measurements_and_large_holes_stay():
+def test_scattered_holes_are_filled_and_large_holes_stay():
     rng = np.random.default_rng(0)
     depth_m = np.where(rng.random((240, 320)) < 0.1, np.where(np.arange(320) < 160, 2.0, 4.0), np.nan)
     depth_m[:, 220:280] = np.nan
@@ -30,7 +30,7 @@ def test_scattered_holes_take_measurements_and_large_holes_stay():
 
 
 def test_a_room_from_one_pixel_in_ten(box_room: Callable):
-    """90 % holes, scattered: floor, back wall and free floor are found as in the whole picture."""
+    """90 % scattered holes: floor, back wall and free floor are found as in the whole picture."""
     whole = box_room().photo(width=640, height=480)
     sparse = box_room().photo(holes=0.9, width=640, height=480)
     scene, full = reconstruct(replace(sparse, depth_m=fill_scattered_holes(sparse.depth_m)[0])), reconstruct(whole)

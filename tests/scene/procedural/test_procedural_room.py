@@ -1,4 +1,4 @@
-"""Rooms made from a seed: sound, different, and with a truth that their own photo confirms."""
+"""Procedural rooms: valid, different, and with a ground truth that agrees with their photo."""
 
 import time
 
@@ -36,7 +36,7 @@ def test_nothing_overlaps(rooms: list[ProceduralRoom]):
 
 
 def test_nothing_floats(rooms: list[ProceduralRoom]):
-    """From the floor, walls and ceiling one gets to every box by boxes that touch."""
+    """Every box is connected to floor, walls or ceiling by boxes that touch."""
     for room in rooms:
         boxes, (w, d, h) = room.boxes, room.shell.size_m
         low = boxes.centre_m[:, 2] - boxes.half_m[:, 2] - room.floor_z_m
@@ -66,7 +66,7 @@ def test_meshes_lie_in_their_boxes_and_in_the_room(rooms: list[ProceduralRoom]):
         assert (inside <= np.array(room.shell.size_m) + 1e-6).all()
 
 
-def test_one_can_walk_and_the_window_holds_walls_and_furniture(rooms: list[ProceduralRoom]):
+def test_there_is_room_to_walk_and_the_window_holds_walls_and_furniture(rooms: list[ProceduralRoom]):
     for room in rooms:
         assert room.free_m2 >= MIN_FREE_M2
         assert room.walkable_m2 >= MIN_WALKABLE_M2
@@ -76,7 +76,7 @@ def test_one_can_walk_and_the_window_holds_walls_and_furniture(rooms: list[Proce
         assert min(offsets) < 3.4
 
 
-def test_the_photo_shows_the_truth(rooms: list[ProceduralRoom]):
+def test_the_photo_agrees_with_the_ground_truth(rooms: list[ProceduralRoom]):
     """Every pixel's point lies on a box or on the shell; floor pixels lie at the floor's height."""
     room = rooms[0]
     photo = room.photo()
@@ -92,7 +92,7 @@ def test_the_photo_shows_the_truth(rooms: list[ProceduralRoom]):
     assert photo.rgb.std() > 15
 
 
-def test_noise_errs_as_a_stereo_camera_does():
+def test_noise_is_that_of_a_stereo_camera():
     room = make_room("living_room", 1, 4)
     true, noisy = room.photo(), room.photo(noise=True)
     assert np.array_equal(true.rgb, noisy.rgb)
@@ -110,7 +110,7 @@ def test_lightings_differ_and_unknown_ones_are_refused():
         room.photo("moon")
 
 
-def test_the_same_seed_gives_the_same_bits_and_others_other_rooms():
+def test_equal_seeds_give_equal_bits_and_different_seeds_different_rooms():
     one, again, layout, seed = (make_room("library", *key) for key in ((1, 2), (1, 2), (3, 2), (1, 4)))
     assert np.array_equal(one.vertices_m, again.vertices_m)
     assert np.array_equal(one.photo("lamps", True).depth_m, again.photo("lamps", True).depth_m, equal_nan=True)
@@ -121,7 +121,7 @@ def test_the_same_seed_gives_the_same_bits_and_others_other_rooms():
 
 
 @pytest.mark.parametrize(("kind", "layout", "seed"), [("castle", 0, 0), ("office", -1, 0), ("office", 0, -1)])
-def test_what_cannot_be_made_is_refused(kind: str, layout: int, seed: int):
+def test_invalid_requests_are_refused(kind: str, layout: int, seed: int):
     with pytest.raises(InputError):
         make_room(kind, layout, seed)
 
@@ -136,7 +136,7 @@ def test_every_kind_has_its_furniture(rooms: list[ProceduralRoom]):
         assert needed[room.kind] in room.boxes.names
 
 
-def test_the_simulator_takes_the_true_scene():
+def test_the_simulator_accepts_the_true_scene():
     room = make_room("living_room", 0, 1)
     simulator = Simulator(room.scene(), AWR1843)
     assert np.isfinite(simulator.room_adc).all()

@@ -1,4 +1,4 @@
-"""Rooms as files."""
+"""Files of a procedural room."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The segmenter that comes with the project."""
+"""The built-in segmenter."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def test_groups_are_classes_of_coco_stuff_and_each_class_is_in_one():
     assert group_of_classes(("couch", "pillow", "person")).tolist() == [GROUP_NAMES.index("couch")] * 2 + [0]
 
 
-def test_it_finds_floor_and_walls_of_a_kind_of_room_it_never_saw():
+def test_it_finds_floor_and_walls_in_an_unseen_kind_of_room():
     photo = make_room("dining_room", 0, 77).photo(noise=True)
     assert photo.classes is not None
     mask = segment_builtin(photo)
@@ -38,7 +38,7 @@ def test_it_finds_floor_and_walls_of_a_kind_of_room_it_never_saw():
     assert np.array_equal(segment_builtin(photo).index, mask.index)
 
 
-def test_weights_are_small_and_rubbish_is_refused(tmp_path: Path):
+def test_weights_are_small_and_corrupt_files_are_refused(tmp_path: Path):
     assert WEIGHTS.stat().st_size < 3_000_000
     (tmp_path / "weights.safetensors").write_bytes(b"a pickle of something else")
     with pytest.raises(InputError, match="no weights of the built-in segmenter"):

@@ -34,7 +34,7 @@ def test_another_size_of_the_same_view(path: Path):
         read_class_file(path, 64, 64)
 
 
-def test_numbers_of_ones_own(path: Path):
+def test_own_numbers_are_defined_by_a_json(path: Path):
     Image.fromarray(np.full((48, 64), 3, np.uint8)).save(path)
     path.with_suffix(".json").write_text(json.dumps({"3": "windowpane, window", "4": "wall-brick"}))
     mask = read_class_file(path, 64, 48)
@@ -42,7 +42,7 @@ def test_numbers_of_ones_own(path: Path):
 
 
 @pytest.mark.parametrize(
-    ("table", "says"),
+    ("table", "message"),
     [
         ("{", "not a JSON object"),
         ("[1]", "not a JSON object"),
@@ -50,14 +50,14 @@ def test_numbers_of_ones_own(path: Path):
         ('{"4": "bed"}', "class number 3"),
     ],
 )
-def test_bad_tables(path: Path, table: str, says: str):
+def test_bad_tables(path: Path, table: str, message: str):
     Image.fromarray(np.full((48, 64), 3, np.uint8)).save(path)
     path.with_suffix(".json").write_text(table)
-    with pytest.raises(InputError, match=says):
+    with pytest.raises(InputError, match=message):
         read_class_file(path, 64, 48)
 
 
-def test_what_is_no_picture_of_classes(path: Path):
+def test_other_pictures_are_refused(path: Path):
     Image.fromarray(np.zeros((48, 64, 3), np.uint8)).save(path)
     with pytest.raises(InputError, match="mode RGB"):
         read_class_file(path, 64, 48)

@@ -1,4 +1,4 @@
-"""Segmenters of other people: built tiny, saved as published ones are, and loaded again from the folder."""
+"""Pretrained segmenters: tiny ones, saved as published ones are, and loaded from the folder."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ KNOWN = {0, *(NAMES.index(name) for name in ("wall-other", "floor-other", "couch
 
 
 @pytest.mark.parametrize("make", [models.segformer, models.mask2former, models.maskformer])
-def test_every_family_gives_coco_stuffs_classes(tmp_path: Path, make):
+def test_every_model_family_gives_classes_of_coco_stuff(tmp_path: Path, make):
     mask = segment(RGB, make(tmp_path / "model"))
     assert mask.index.shape == RGB.shape[:2]
     assert mask.names == NAMES
@@ -26,7 +26,7 @@ def test_every_family_gives_coco_stuffs_classes(tmp_path: Path, make):
     assert np.array_equal(mask.index, again.index)
 
 
-def test_the_labels_of_the_model_decide(tmp_path: Path):
+def test_the_models_labels_determine_the_classes(tmp_path: Path):
     """The same weights under other labels give the same regions under other names."""
     one = segment(RGB, models.segformer(tmp_path / "one"))
     other = segment(RGB, models.segformer(tmp_path / "other", {0: "bed", 1: "door", 2: "tree", 3: "sky"}))
@@ -47,7 +47,7 @@ def test_sams_masks_are_masks_of_the_picture(tmp_path: Path, monkeypatch: pytest
     assert set(np.unique(mask.index).tolist()) <= KNOWN
 
 
-def test_a_mask_takes_the_class_of_most_of_it():
+def test_a_mask_takes_the_class_of_its_majority():
     index = np.zeros((10, 10), np.uint8)
     index[:, :5], index[:, 5:] = 63, 172
     large, small, mixed = (np.zeros((10, 10), bool) for _ in range(3))
@@ -58,7 +58,7 @@ def test_a_mask_takes_the_class_of_most_of_it():
     assert out[9, 7] == 172  # half and half: left as it was
 
 
-def test_models_that_are_no_segmenters(tmp_path: Path):
+def test_other_models_are_refused(tmp_path: Path):
     with pytest.raises(InputError, match="does not segment"):
         segment(RGB, models.depth_anything(tmp_path / "depth"))
     with pytest.raises(InputError, match="not a SAM"):

@@ -1,4 +1,4 @@
-"""What the built-in segmenter sees."""
+"""Features of the built-in segmenter."""
 
 import dataclasses
 
@@ -24,7 +24,7 @@ def photo():
     return sample_photo()[0]
 
 
-def test_features_tell_height_slope_and_what_was_measured(photo):
+def test_features_encode_height_slope_and_measured_cells(photo):
     grid = make_grid(photo)
     features = grid_features(grid)
     assert features.shape == (CHANNELS, *grid.depth_m[::STRIDE, ::STRIDE].shape)

@@ -113,6 +113,6 @@ def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
     rest = AWR1843.num_loops // 2
     cubes = [make(pose, seed) for seed in (1, 2)]
     still = [cube.values[:, :, rest].mean(axis=0) for cube in cubes]
-    truth = room.room.empty
+    truth = room.room.static
     for one in still:
         assert np.abs(np.vdot(one, truth)) > 0.5 * np.linalg.norm(one) * np.linalg.norm(truth)

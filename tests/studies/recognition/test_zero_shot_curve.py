@@ -29,7 +29,7 @@ def test_real_windows_mend_what_generated_ones_got_wrong():
     names = ("p", "q", "r", "s")
     made = TrainingSet(features=rows(5.0), labels=LABELS, names=names)  # generated far away from the real ones
     frozen = Frozen(
-        made=made,
+        training=made,
         classifier=ClassifierSettings(num_trees=30, boosting_rounds=15, leaf_size=1),
         window_s=2.0,
         provenance={},

@@ -1,4 +1,4 @@
-"""Arm angles that put a wrist at a given place: two-bone inverse kinematics in the chest's frame."""
+"""Arm angles that put a wrist at a given position: two-bone inverse kinematics in the chest's frame."""
 
 import numpy as np
 from jaxtyping import Float
@@ -15,15 +15,15 @@ Array = np.ndarray
 def reach(
     body: SkeletonProportions, target_m: Float[Array, "n 3"], elbow: tuple[float, float, float] = (-0.3, 0.5, -1.0)
 ) -> Float[Array, "n 4"]:
-    """Angles (n, 4) of one arm whose wrist is at `target_m`, seen from spine3 in the chest's frame.
+    """Angles (n, 4) in radians of an arm whose wrist is at `target_m`, relative to spine3 in the chest's frame.
 
-    y is outward (left for the left arm, right for the right arm), so one target serves both arms by its mirror.
+    y is outward (left for the left arm, right for the right arm), so that one target serves both arms.
     `elbow` is the direction in which the elbow points. A target out of reach is approached as far as the arm goes.
     """
     angles = np.zeros((len(target_m), 4))
     collar = body.offset_m[joint("left_collar")]
     rest = body.offset_m[joint("left_shoulder")]
-    for _ in range(4):  # the shoulder rises with the arm: settle both
+    for _ in range(4):  # the shoulder rises with the arm: iterate to a fixed point
         shoulder = collar + rotated(collar_frame(angles, LEFT), rest)
         angles = _angles(body, target_m - shoulder, np.array(elbow))
     return angles

@@ -1,4 +1,4 @@
-"""Timed steps and a root path -> one dense, smooth PoseSequence."""
+"""From scheduled steps and a root path to one dense, smooth PoseSequence."""
 
 from dataclasses import replace
 
@@ -16,12 +16,12 @@ from mmweaver.motion.animation.step_context import StepContext
 from mmweaver.motion.language.plan import Step
 
 RATE_HZ = 120.0
-MARGIN_SAMPLES = 2
+MARGIN_SAMPLES = 2  # before the start and after the end, for interpolation
 LONGEST_BLEND_S = 0.45
 
 
 def dense_times(duration_s: float) -> Float[np.ndarray, " n"]:
-    """120 Hz from two samples before 0 to at least two samples after the end."""
+    """Times (n,) in seconds at 120 Hz, from two samples before 0 to at least two samples after the end."""
     count = int(np.ceil(duration_s * RATE_HZ - 1e-9))
     return np.arange(-MARGIN_SAMPLES, count + MARGIN_SAMPLES + 1) / RATE_HZ
 
@@ -37,10 +37,13 @@ def assemble(
     duration_s: float,
     floor_z_m: float,
 ) -> PoseSequence:
-    """Acts out every step along the path, blends neighbours, solves the joints. `moves` and seats are by step."""
+    """Animates every step along the path, blends neighbours and solves the joints, in the radar's frame.
+
+    `moves` and `seat_height_m` hold one entry for each step.
+    """
     time_s = dense_times(duration_s)
     parts, starts, blends = [], [], []
-    steps, moves, seat_height_m = _one_gait(steps, moves, seat_height_m)
+    steps, moves, seat_height_m = _merge_gait(steps, moves, seat_height_m)
     for k, step in enumerate(steps):
         context = StepContext(
             time_s=time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
@@ -56,20 +59,20 @@ def assemble(
     return PoseSequence(time_s=time_s, joints_m=joints_m, height_m=body.height_m)
 
 
-def _one_gait(
+def _merge_gait(
     steps: tuple[Step, ...], moves: tuple[tuple[Move, ...], ...], seat_height_m: tuple[float, ...]
 ) -> tuple[tuple[Step, ...], tuple[tuple[Move, ...], ...], tuple[float, ...]]:
-    """Walking, turning and walking on is one gait with one rhythm of steps: blending two would throw the feet about."""
+    """Merges walking, turning and walking on into one gait: blending two rhythms would make the feet jump."""
     whole: list[Step] = []
-    ways: list[tuple[Move, ...]] = []
+    merged_moves: list[tuple[Move, ...]] = []
     seats: list[float] = []
-    for step, way, seat in zip(steps, moves, seat_height_m, strict=True):
+    for step, own_moves, seat in zip(steps, moves, seat_height_m, strict=True):
         alike = step.lower in ("walk", "turn") and not step.upper
         if alike and whole and whole[-1].lower in ("walk", "turn") and not whole[-1].upper:
             whole[-1] = replace(whole[-1], lower="walk", end_s=step.end_s)
-            ways[-1] = (*ways[-1], *way)
+            merged_moves[-1] = (*merged_moves[-1], *own_moves)
         else:
             whole.append(step)
-            ways.append(way)
+            merged_moves.append(own_moves)
             seats.append(seat)
-    return tuple(whole), tuple(ways), tuple(seats)
+    return tuple(whole), tuple(merged_moves), tuple(seats)

@@ -1,6 +1,6 @@
-"""Controls: the few numbers from which a pose is solved, and how two of them are blended.
+"""Controls: the parameters from which a pose is solved, and their blending.
 
-Motions of different activities are blended here, not in joints: feet stay where they stand and bones keep their length.
+Activities are blended in these parameters, not in joints: feet stay planted and bones keep their lengths.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -14,32 +14,33 @@ LEFT, RIGHT = 0, 1
 
 @dataclass(frozen=True, kw_only=True)
 class Controls:
-    """A pose at each of n times. Floor frame: x right, y away from the radar, z up from the floor; angles in radians.
+    """Pose parameters at n times. Floor frame: x right, y away from the radar, z up from the floor; angles in radians.
 
     The body's own frame has x forward and y to its left. Arms: flexion (forward and up), abduction (outward), twist
-    (outward about the upper arm), elbow flexion; feet: the point of the floor under the ankle of the flat foot, its z
-    being how far the sole is lifted, then yaw and pitch (heel up positive).
+    (outward about the upper arm), elbow flexion. Feet: the point of the floor under the ankle of the flat foot, its z
+    being the height of the sole, then yaw and pitch (heel up positive).
     """
 
     pelvis_m: Float[Array, "n 3"]
     heading_rad: Float[Array, " n"]  # from +x towards +y
     pelvis_rad: Float[Array, "n 3"]  # roll (right side down), pitch (forward), yaw (to the left)
-    spine_rad: Float[Array, "n 3"]  # roll, pitch, yaw, shared by three joints
+    spine_rad: Float[Array, "n 3"]  # roll, pitch, yaw, shared equally by three joints
     head_rad: Float[Array, "n 2"]  # pitch (chin down), yaw
     arm_rad: Float[Array, "n 2 4"]
     foot_m: Float[Array, "n 2 3"]
     foot_rad: Float[Array, "n 2 2"]
     knee_out_rad: Float[Array, "n 2"]  # how far the knees point outward of the feet
-    knee_up_rad: Float[Array, " n"]  # where knees point: 0 ahead, pi/2 up (on the back), -pi/2 down (on the belly)
-    knee_room: Float[Array, " n"]  # 0: legs may be straight as in standing, 1: knees stay soft as in stepping
+    knee_up_rad: Float[Array, " n"]  # where the knees point: 0 ahead, pi/2 up (on the back), -pi/2 down (belly)
+    knee_room: Float[Array, " n"]  # 0: legs may be straight as in standing, 1: knees stay bent as in stepping
     contact: Float[Array, "n 2"]  # 1: the foot carries weight, 0: it is in the air
 
     def copy(self) -> "Controls":
+        """A deep copy."""
         return replace(self, **{field.name: getattr(self, field.name).copy() for field in fields(self)})
 
 
 def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[Float[Array, "n 2"]]) -> Controls:
-    """Weighted sum of Controls over the same times; weights of each time sum to 1, feet have weights of their own."""
+    """Weighted sum of Controls over the same times; weights sum to 1 at each time, feet have their own (n, 2)."""
     values: dict[str, Array] = {}
     for field in fields(Controls):
         of_feet = field.name in ("foot_m", "foot_rad", "contact", "knee_out_rad")
@@ -55,9 +56,9 @@ def blend(parts: list[Controls], weights: list[Float[Array, " n"]], feet: list[F
 def blended(
     parts: list[Controls], starts_s: list[float], blends_s: list[float], time_s: Float[Array, " n"]
 ) -> Controls:
-    """Parts one after the other: part k takes over around starts_s[k] within blends_s[k].
+    """Concatenates parts: part k takes over around `starts_s[k]`, within `blends_s[k]` seconds.
 
-    Where the two stand at different places, the feet step over one after the other, lifted.
+    Where the feet of two parts are at different positions, they step over one after the other.
     """
     from mmweaver.motion.animation.profiles import bump, rise
 
@@ -71,7 +72,7 @@ def blended(
         foot_ups.append(rise(each))
     ups.append(np.zeros_like(time_s))
     foot_ups.append(np.zeros((len(time_s), 2)))
-    # A blend that has ended stays ended: part k weighs what has begun with k and not yet with k + 1.
+    # Part k has the weight of blend k, as far as blend k + 1 has not taken over.
     weights = [ups[k] * (1 - ups[k + 1]) for k in range(len(parts))]
     foot_weights = [foot_ups[k] * (1 - foot_ups[k + 1]) for k in range(len(parts))]
     total, foot_total = np.sum(weights, axis=0), np.sum(foot_weights, axis=0)

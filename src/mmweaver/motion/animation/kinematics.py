@@ -1,6 +1,6 @@
-"""Controls -> joints: forward kinematics of trunk and arms, two-bone inverse kinematics of the legs.
+"""From Controls to joints: forward kinematics of trunk and arms, two-bone inverse kinematics of the legs.
 
-Bones keep their lengths whatever the controls ask for: a foot out of reach stays short of its place.
+Bones keep their lengths: a foot whose target is out of reach stops short of it.
 """
 
 import numpy as np
@@ -17,20 +17,23 @@ Angles = Float[Array, " n"]
 Frames = Float[Array, "n 3 3"]
 Vectors = Float[Array, "n 3"]
 
-LONGEST_STANCE = 0.998  # of the leg's length: a knee never locks
-LONGEST_LEG = 0.9995
+LONGEST_STANCE = 0.998  # of the leg's length, hip to ankle of a standing leg: the knee never locks
+LONGEST_LEG = 0.9995  # and of any leg
 SIDES = ("left", "right")
 
 
 def about_x(angle: Angles) -> Frames:
+    """Rotation matrices (n, 3, 3) about x; angles (n,) in radians."""
     return _about(angle, 1, 2)
 
 
 def about_y(angle: Angles) -> Frames:
+    """Rotation matrices (n, 3, 3) about y."""
     return _about(angle, 2, 0)
 
 
 def about_z(angle: Angles) -> Frames:
+    """Rotation matrices (n, 3, 3) about z."""
     return _about(angle, 0, 1)
 
 
@@ -44,19 +47,19 @@ def _about(angle: Angles, first: int, second: int) -> Frames:
 
 
 def rotated(frame: Frames, vector: Array) -> Vectors:
-    """Rotates one vector (3,) or one a frame (n, 3)."""
+    """Rotates one vector (3,), or one for each frame (n, 3), by (n, 3, 3)."""
     if vector.ndim == 1:
         return frame @ vector
     return np.einsum("nij,nj->ni", frame, vector)
 
 
 def roll_pitch_yaw(angles: Vectors) -> Frames:
-    """Roll (right side down), pitch (forward), yaw (to the left), applied in this order from the inside."""
+    """Rotations (n, 3, 3) of roll (right side down), pitch (forward) and yaw (to the left), applied in this order."""
     return about_z(angles[:, 2]) @ about_y(angles[:, 1]) @ about_x(angles[:, 0])
 
 
 def solve(body: SkeletonProportions, controls: Controls) -> Joints:
-    """Joints (n, 22, 3) in the floor frame (z up from the floor)."""
+    """Joints (n, 22, 3) in metres in the floor frame (z up from the floor)."""
     joints = np.zeros((len(controls.heading_rad), NUM_JOINTS, 3))
     pelvis_frame = about_z(controls.heading_rad) @ roll_pitch_yaw(controls.pelvis_rad)
     ankles = [_ankle(body, controls, side) for side in (LEFT, RIGHT)]
@@ -70,27 +73,27 @@ def solve(body: SkeletonProportions, controls: Controls) -> Joints:
 
 
 def arm_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
-    """Upper arm in the chest's frame."""
+    """Rotation of the upper arm in the chest's frame, (n, 3, 3)."""
     sign = 1.0 if side == LEFT else -1.0
     flexion, abduction, twist = arm_rad[:, 0], sign * arm_rad[:, 1], sign * arm_rad[:, 2]
     return about_y(-flexion) @ about_x(abduction) @ about_z(twist)
 
 
 def collar_frame(arm_rad: Float[Array, "n 4"], side: int) -> Frames:
-    """The collar bone goes up with the arm."""
+    """Rotation of the collar bone, which rises with the arm, (n, 3, 3)."""
     sign = 1.0 if side == LEFT else -1.0
     share = 0.5 - 0.5 * np.cos(arm_rad[:, 0]) * np.cos(arm_rad[:, 1])  # 0 hanging, 1 overhead
     return about_x(sign * 0.45 * share)
 
 
 def _ankle(body: SkeletonProportions, controls: Controls, side: int) -> Vectors:
-    """Where the foot's place and pitch put the ankle."""
+    """Position of an ankle (n, 3) in metres."""
     yaw, pitch = controls.foot_rad[:, side, 0], controls.foot_rad[:, side, 1]
     return controls.foot_m[:, side] + ankle_from_foot(body, yaw, pitch)
 
 
 def ankle_from_foot(body: SkeletonProportions, yaw: Angles, pitch: Angles) -> Vectors:
-    """The ankle over the place of the flat foot: it turns about the ball or, toes up, about the heel."""
+    """The ankle (n, 3) from the flat foot's position: the foot pivots on its ball or, toes up, on its heel."""
     height, ball, heel = body.ankle_height_m, body.ball_m, body.heel_m
     on_ball = rise((pitch + 0.2) / 0.4)
     forward = on_ball * ball * (1 - np.cos(pitch)) - (1 - on_ball) * heel * (1 - np.cos(pitch)) + height * np.sin(pitch)
@@ -99,7 +102,7 @@ def ankle_from_foot(body: SkeletonProportions, yaw: Angles, pitch: Angles) -> Ve
 
 
 def _pelvis(body: SkeletonProportions, controls: Controls, frame: Frames, ankles: list[Vectors]) -> Vectors:
-    """The pelvis as asked, lowered where a foot that carries weight would be out of reach."""
+    """The requested pelvis (n, 3), lowered where a foot that carries weight would be out of reach."""
     pelvis = controls.pelvis_m.copy()
     limits = [pelvis[:, 2]]
     longest = (LONGEST_STANCE - 0.012 * controls.knee_room) * body.leg_m
@@ -120,7 +123,7 @@ def _place_leg(
     away = ankle - hip
     distance = np.linalg.norm(away, axis=1)
     direction = away / distance[:, None]
-    # A leg in the air or stepping is not stretched fully, so that the knee does not snap.
+    # A swinging leg is not fully extended, so that the knee does not snap.
     loose = 1 - controls.contact[:, side] * (1 - controls.knee_room)
     reach = cap(distance, (LONGEST_LEG - 0.0015 * loose) * body.leg_m, (0.0012 + 0.034 * loose) * body.leg_m)
     along = (body.thigh_m**2 - body.shank_m**2 + reach**2) / (2 * reach)
@@ -136,7 +139,7 @@ def _place_leg(
 
 
 def _knee_direction(controls: Controls, side: int, leg: Vectors) -> Vectors:
-    """Unit vectors square to the leg: between where the foot and where the pelvis point, turned outward."""
+    """Unit vectors (n, 3) perpendicular to the leg: between the directions of foot and pelvis, rotated outward."""
     outward = controls.knee_out_rad[:, side] * (1.0 if side == LEFT else -1.0)
     foot, pelvis = controls.foot_rad[:, side, 0], controls.heading_rad + controls.pelvis_rad[:, 2]
     yaw = 0.5 * (foot + pelvis) + outward
@@ -147,7 +150,7 @@ def _knee_direction(controls: Controls, side: int, leg: Vectors) -> Vectors:
 
 
 def _place_trunk(joints: Joints, body: SkeletonProportions, controls: Controls, frame: Frames) -> Frames:
-    """Spine, neck and head; returns the chest's frame (that of spine3)."""
+    """Places spine, neck and head; returns the chest's rotation (that of spine3), (n, 3, 3)."""
     third = roll_pitch_yaw(controls.spine_rad / 3)
     place = joints[:, 0]
     for name in ("spine1", "spine2", "spine3"):

@@ -1,4 +1,4 @@
-"""Smooth functions of time that motions are made of: all at least C2, so that joint accelerations are continuous."""
+"""Smooth functions of time: all at least C2, so that joint accelerations are continuous. Shapes are kept."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ Values = Float[np.ndarray, "..."]
 
 
 def rise(u: Values) -> Values:
-    """0 for u <= 0, 1 for u >= 1, a quintic between; C2.
+    """Smooth step: 0 for u <= 0, 1 for u >= 1, a quintic between; C2.
 
     >>> rise(np.array([-1.0, 0.5, 2.0])).tolist()
     [0.0, 0.5, 1.0]
@@ -38,7 +38,7 @@ def plateau(time_s: Values, start_s: float, end_s: float, up_s: float, down_s: f
 def travel(u: Values, ramp_in: float, ramp_out: float) -> Values:
     """Progress 0 to 1 over u in [0, 1] at constant speed, with speed ramps of these lengths; C3.
 
-    Without a ramp the progress goes on at its speed outside [0, 1] (the motion was under way, or goes on).
+    Without a ramp the progress continues at its speed outside [0, 1] (the motion was under way, or goes on).
     """
     total = 1 - ramp_in / 2 - ramp_out / 2
     start = ramp_in * rise_integral(np.asarray(u / ramp_in)) if ramp_in > 0 else u
@@ -53,14 +53,14 @@ def cap(x: Values, limit: Values | float, width: Values | float) -> Values:
 
 
 def softmin(values: Sequence[Values], width: Values | float) -> Values:
-    """A smooth minimum of several functions, at most width * ln(count) below the true one."""
+    """A smooth minimum of several functions, at most width * ln(count) below the exact one."""
     stack = np.stack(values)
     low = stack.min(axis=0)
     return low - width * np.log(np.exp(-(stack - low) / width).sum(axis=0))
 
 
 def through(time_s: Values, knots: Sequence[tuple[float, float, float, float]]) -> Values:
-    """Quintic pieces through knots of (time, value, velocity, acceleration), constant outside; C2 if it rests there."""
+    """Quintic spline through knots of (time, value, velocity, acceleration); constant outside, C2 if at rest there."""
     from scipy.interpolate import BPoly
 
     times = [knot[0] for knot in knots]
@@ -69,7 +69,7 @@ def through(time_s: Values, knots: Sequence[tuple[float, float, float, float]]) 
 
 
 def wander(time_s: Values, rng: np.random.Generator, *, slow_hz: float, fast_hz: float, count: int = 4) -> Values:
-    """A smooth random function of unit standard deviation: a few sines between two frequencies."""
+    """A smooth random function of unit standard deviation: `count` sines between two frequencies."""
     frequency_hz = np.exp(rng.uniform(np.log(slow_hz), np.log(fast_hz), count))
     phase = rng.uniform(0, 2 * np.pi, count)
     waves = np.sin(2 * np.pi * np.multiply.outer(time_s, frequency_hz) + phase)

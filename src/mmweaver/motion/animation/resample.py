@@ -1,4 +1,4 @@
-"""A motion at other times: cubic splines through the joints."""
+"""Resampling of a motion by cubic splines through the joints."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from mmweaver.core.shapes import Joints, PerFrame
 
 
 def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
-    """The same motion at `time_s`, (frame,), by cubic interpolation; for radar frames and for slow time.
+    """The motion at `time_s` (frame,) in seconds by cubic interpolation, for radar frames or chirps.
 
     Raises InputError where a time is outside the motion: it is never extrapolated.
     """
@@ -18,14 +18,14 @@ def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
     if len(time_s) and (time_s.min() < first - 1e-9 or time_s.max() > last + 1e-9):
         raise InputError(
             f"the motion lasts from {first:.3f} to {last:.3f} s, times from {time_s.min():.3f} to {time_s.max():.3f} s"
-            " were asked for; make the motion longer"
+            " were requested; make the motion longer"
         )
     joints = np.asarray(CubicSpline(pose.time_s, pose.joints_m, axis=0)(time_s), dtype=float)
     return PoseSequence(time_s=time_s, joints_m=joints, height_m=pose.height_m, subject=pose.subject)
 
 
 def joints_and_velocities(pose: PoseSequence, time_s: PerFrame) -> tuple[Joints, Joints]:
-    """Joints in metres and their velocities in m/s at given times, (time, 22, 3) float32 each; held beyond the ends."""
+    """Joints in metres and their velocities in m/s at given times, (time, 22, 3) float32 each; clamped at the ends."""
     from scipy.interpolate import CubicSpline
 
     spline = CubicSpline(pose.time_s, pose.joints_m, axis=0)

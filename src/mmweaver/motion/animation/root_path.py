@@ -1,4 +1,4 @@
-"""Where the person is and which way they face over time: straight or curved moves and turns, all C2."""
+"""Position and heading of the body's root over time: straight or curved moves and turns, all C2."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,9 @@ Times = Float[Array, "*shape"]
 
 @dataclass(frozen=True, kw_only=True)
 class Move:
-    """A way along an arc (a line where curvature is 0), at constant speed but for its ramps.
+    """A move along an arc (a line where curvature is 0) at constant speed, with ramps at its ends.
 
-    With `ramp_in_s` 0 the person was already moving before the start, with `ramp_out_s` 0 goes on after the end.
+    With `ramp_in_s` 0 the person was moving before the start, with `ramp_out_s` 0 goes on after the end.
     """
 
     start_s: float
@@ -27,16 +27,18 @@ class Move:
     curvature_per_m: float = 0.0
 
     def gone_m(self, time_s: Times) -> Times:
+        """Distance covered, in metres, at each time in seconds."""
         span_s = self.end_s - self.start_s
         u = np.asarray((time_s - self.start_s) / span_s)
         return np.asarray(self.length_m * travel(u, self.ramp_in_s / span_s, self.ramp_out_s / span_s))
 
     @property
     def speed_mps(self) -> float:
-        """Speed between the ramps."""
+        """Speed between the ramps, in m/s."""
         return self.length_m / (self.end_s - self.start_s - self.ramp_in_s / 2 - self.ramp_out_s / 2)
 
     def shift_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
+        """Displacement (x, y) in metres from the start of the move, at each time."""
         gone = self.gone_m(time_s)
         bend = self.curvature_per_m
         ahead = np.sin(bend * gone) / bend if bend else gone
@@ -46,12 +48,13 @@ class Move:
 
     @property
     def end_shift_m(self) -> Float[Array, "2"]:
+        """Displacement (x, y) of the whole move."""
         return self.shift_m(np.array([self.end_s]))[0]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Turn:
-    """A change of heading, to the person's left where positive."""
+    """A turn on the spot, to the person's left where positive."""
 
     start_s: float
     end_s: float
@@ -60,7 +63,7 @@ class Turn:
 
 @dataclass(frozen=True, kw_only=True)
 class RootPath:
-    """The ground point under a person: start, moves and turns. Frame: x right, y away from the radar."""
+    """Path of the ground point under a person: start, moves and turns. Frame: x right, y away from the radar."""
 
     start_m: tuple[float, float]
     heading_rad: float
@@ -68,12 +71,14 @@ class RootPath:
     turns: tuple[Turn, ...] = ()
 
     def position_m(self, time_s: Times) -> Float[Array, "*shape 2"]:
-        place = np.zeros((*np.shape(time_s), 2)) + np.array(self.start_m)
+        """Position (x, y) in metres at each time in seconds."""
+        position = np.zeros((*np.shape(time_s), 2)) + np.array(self.start_m)
         for move in self.moves:
-            place = place + move.shift_m(time_s)
-        return place
+            position = position + move.shift_m(time_s)
+        return position
 
     def facing_rad(self, time_s: Times) -> Times:
+        """Heading from +x towards +y at each time."""
         heading = np.full(np.shape(time_s), self.heading_rad)
         for turn in self.turns:
             heading = heading + turn.angle_rad * rise((time_s - turn.start_s) / (turn.end_s - turn.start_s))
@@ -82,6 +87,7 @@ class RootPath:
         return heading
 
     def speed_mps(self, time_s: Times) -> Times:
+        """Speed over the floor at each time, by central differences."""
         step = 1e-3
         gap = self.position_m(time_s + step) - self.position_m(time_s - step)
         return np.hypot(gap[..., 0], gap[..., 1]) / (2 * step)

@@ -1,4 +1,4 @@
-"""The proportions of a body: where the joints are at rest, from its height alone."""
+"""Proportions of a body: bone vectors at rest, from its height alone."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,7 +8,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import NUM_JOINTS, joint
 
-SHORTEST_M, TALLEST_M = 1.63, 1.96  # what a seed draws from (the paper's participants)
+SHORTEST_M, TALLEST_M = 1.63, 1.96  # range of sampled heights (the paper's participants)
 ALLOWED_M = (1.2, 2.2)
 
 # Fractions of the height, in the body's own frame: x forward, y to its left, z up; arms hang, feet point forward.
@@ -48,7 +48,7 @@ class SkeletonProportions:
 
     @cached_property
     def offset_m(self) -> np.ndarray:
-        """Each joint from its parent at rest, (22, 3); the pelvis from the ground under it."""
+        """Offset of each joint from its parent at rest, (22, 3) in metres; of the pelvis from the floor."""
         offsets = np.zeros((NUM_JOINTS, 3))
         for name, place in _MIDDLE.items():
             offsets[joint(name)] = place
@@ -69,7 +69,7 @@ class SkeletonProportions:
 
     @property
     def leg_m(self) -> float:
-        """Hip to ankle, the leg straight."""
+        """Hip to ankle of the straight leg, in metres."""
         return self.thigh_m + self.shank_m
 
     @cached_property
@@ -100,9 +100,9 @@ class SkeletonProportions:
 
     @cached_property
     def mouth_m(self) -> np.ndarray:
-        """The mouth from the head joint, in the head's frame."""
+        """Offset of the mouth from the head joint in the head's frame, (3,) in metres."""
         return np.array(MOUTH_FROM_HEAD) * self.height_m
 
     def pelvis_height_m(self, stretch: float) -> float:
-        """Height of the pelvis over the floor when standing on legs stretched to this share of their length."""
+        """Height in metres of the pelvis above the floor, on legs extended to this share of their length."""
         return self.ankle_height_m + self.leg_m * stretch + self.hip_below_pelvis_m

@@ -1,4 +1,4 @@
-"""What an activity is given to act on."""
+"""What the function of an activity gets as input."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ Array = np.ndarray
 
 @dataclass(frozen=True, kw_only=True)
 class StepContext:
-    """One step's part of the motion: the times asked for reach beyond the step, so that neighbours can be blended."""
+    """One step of the motion. `time_s` covers the whole motion, so that neighbouring steps can be blended."""
 
     time_s: Float[Array, " n"]
     step: Step
@@ -23,8 +23,8 @@ class StepContext:
     rng: np.random.Generator
     moves: tuple[Move, ...] = ()  # the moves of the path that belong to this step
     seat_height_m: float = 0.45
-    first: bool = True  # nothing was before, so the motion is already under way at its start
-    last: bool = True  # nothing comes after, so it goes on
+    first: bool = True  # no step before: the motion is already under way at its start
+    last: bool = True  # no step after: the motion continues at its end
 
     @property
     def start_s(self) -> float:
@@ -39,6 +39,6 @@ class StepContext:
         return self.step.end_s - self.step.start_s
 
     def tempo(self, slow: float, usual: float, fast: float, spread: float = 0.1) -> float:
-        """A rate for 'slowly', no word and 'quickly', with natural variation."""
+        """A sampled rate: `slow` for 'slowly', `fast` for 'quickly', else `usual`; log-normal with `spread`."""
         chosen = (usual, fast, slow)[self.step.speed]
         return chosen * float(np.exp(self.rng.normal(0.0, spread / 2)))

@@ -134,4 +134,4 @@ def known() -> str:
     >>> known().count(", ") > 50
     True
     """
-    return ", ".join(activity.name if activity.key != "raise" else "raising a hand" for activity in (*BODY, *HANDS))
+    return ", ".join(activity.name if activity.key != "raise" else "raising a hand" for activity in BY_KEY.values())

@@ -2,10 +2,8 @@
 
 from dataclasses import dataclass
 
-from mmweaver.motion.language.activities import BODY, BY_KEY, HANDS
+from mmweaver.motion.language.activities import BY_KEY
 
-LOWER = tuple(activity.key for activity in BODY)
-UPPER = tuple(activity.key for activity in HANDS)
 ON_THE_SPOT = ("jog", "leap")  # moving, unless the direction is "spot"
 
 
@@ -13,8 +11,8 @@ ON_THE_SPOT = ("jog", "leap")  # moving, unless the direction is "spot"
 class Step:
     """One step. Directions are the viewer's (left in the photo), hands, feet and bends the person's own."""
 
-    lower: str = "stand"  # one of LOWER
-    upper: str = ""  # one of UPPER, overlaid
+    lower: str = "stand"  # key of a body activity
+    upper: str = ""  # key of a hand activity, overlaid
     hand: str = ""  # left | right | both | "" (chosen by the seed)
     foot: str = ""  # left | right | "": the leg that moves
     direction: str = (

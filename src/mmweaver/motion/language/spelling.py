@@ -139,3 +139,9 @@ def _forms(verbs: Iterable[str]) -> frozenset[str]:
 @lru_cache(maxsize=1)
 def _other_forms() -> frozenset[str]:
     return _forms(OTHER_VERBS)
+
+
+def forget_known_words() -> None:
+    """For when a verb was added."""
+    _known.cache_clear()
+    corrected_word.cache_clear()

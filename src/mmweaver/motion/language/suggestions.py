@@ -4,7 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mmweaver.motion.language.activities import BODY, HANDS
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.lexicon import FILLERS
 from mmweaver.motion.language.paraphrases import PARAPHRASES
 
@@ -16,7 +16,8 @@ def not_known(clause_text: str, word: str = "") -> str:
     which = f" ({word.replace('_', ' ')!r})" if word else ""
     found = nearest(clause_text)
     guess = f"did you mean {found[0][1]!r}? " if found and found[0][0] > NEAR else ""
-    names = ", ".join(activity.name for activity in BODY[:2]) + f" and {len(BODY) + len(HANDS) - 2} more"
+    first = [activity.name for activity in list(BY_KEY.values())[:2]]
+    names = ", ".join(first) + f" and {len(BY_KEY) - 2} more"
     return (
         f"the clause {clause_text!r} names no activity that is known{which}; {guess}known are {names}, listed by"
         " 'mmweaver motions'"
@@ -48,7 +49,7 @@ def _grams(text: str) -> list[str]:
 @lru_cache(maxsize=1)
 def _table() -> tuple[list[str], list[str], np.ndarray, dict[str, tuple[int, float]]]:
     """Keys, examples, TF-IDF matrix (paraphrase, n-gram), and (column, weight) of each n-gram."""
-    examples = {activity.key: activity.example for activity in (*BODY, *HANDS)}
+    examples = {activity.key: activity.example for activity in BY_KEY.values()}
     texts, keys = [], []
     for key, example in examples.items():
         for text in (example, *PARAPHRASES.get(key, ())):
@@ -72,3 +73,8 @@ def _vector(text: str, weight: dict[str, tuple[int, float]]) -> np.ndarray:
             column, value = weight[gram]
             vector[column] += value
     return vector
+
+
+def forget_suggestions() -> None:
+    """For when an activity was added."""
+    _table.cache_clear()

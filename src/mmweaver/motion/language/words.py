@@ -7,7 +7,6 @@ from functools import lru_cache
 from mmweaver.motion.language.lexicon import GOING, IRREGULAR, LIGHT, PHRASES
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 
-_LEMMAS = frozenset(ACTIVITY_OF_LEMMA) | GOING | LIGHT
 _TOKEN = re.compile(r"[a-z_']+[0-9_]*(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
 
 
@@ -51,7 +50,7 @@ def word_of(token: str) -> Word:
         lemma = IRREGULAR[token]
         return Word(token, lemma, "s" if token in ("does", "has", "goes") else "past")
     for lemma, form in _candidates(token):
-        if lemma in _LEMMAS:
+        if lemma in ACTIVITY_OF_LEMMA or lemma in GOING or lemma in LIGHT:
             return Word(token, lemma, form)
     return Word(token, token, "")
 

@@ -162,6 +162,7 @@ def _near_seats(height_map: HeightMap, seats: tuple[Seat, ...]) -> GridMask:
 
 
 def _candidate(kind: str, squares: GridMask, height_map: HeightMap) -> _Candidate:
+    """The candidate that covers some squares, at the median height of their tops."""
     row, column = np.nonzero(squares)
     squares_m = np.stack([height_map.x_m[column], height_map.y_m[row]], axis=1)
     top_m = float(np.nanmedian(height_map.top_m[squares]))

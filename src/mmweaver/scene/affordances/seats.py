@@ -173,10 +173,12 @@ def bed_squares(height_map: HeightMap) -> GridMask:
 
 
 def _is_open(height_map: HeightMap) -> GridMask:
+    """Squares where legs have room: floor that is visible or inferred."""
     return height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
 
 
 def _candidates(height_map: HeightMap, squares: GridMask) -> _Candidates:
+    """All squares of the mask, each in every direction."""
     row, column = np.nonzero(squares)
     facing_rad = 2 * np.pi * np.arange(_NUM_DIRECTIONS) / _NUM_DIRECTIONS
     return _Candidates(

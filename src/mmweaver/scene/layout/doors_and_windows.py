@@ -126,6 +126,7 @@ def _is_door(image: _WallImage, span: Span) -> bool:
 
 
 def _rows(image: _WallImage, band_m: BandM) -> Bool[Array, " height"]:
+    """The image's rows within a band of heights."""
     return (image.height_m > band_m[0]) & (image.height_m < band_m[1])
 
 

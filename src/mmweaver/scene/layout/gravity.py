@@ -91,7 +91,7 @@ def _up_direction(normals: Points) -> Vec3 | None:
     hypotheses = candidates[np.linspace(0, len(candidates) - 1, min(150, len(candidates))).astype(int)]
     alignment = hypotheses @ normals.T
     horizontal, vertical = (alignment > _HORIZONTAL).sum(axis=1), (np.abs(alignment) < _VERTICAL).sum(axis=1)
-    # Walls tell a horizontal surface from a sloped one, to which few others are perpendicular.
+    # Walls distinguish a horizontal surface from a sloped one, to which few others are perpendicular.
     best = hypotheses[np.argmax(np.minimum(horizontal, len(normals) // 4) + 0.7 * vertical)]
     for _ in range(4):
         alignment = normals @ best

@@ -36,6 +36,7 @@ def align_room(grid: DepthGrid) -> AlignedRoom:
 
 
 def _aligned(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) -> AlignedGrid:
+    """The grid rotated into the radar's frame."""
     return AlignedGrid(
         points_m=grid.points_m @ radar_from_camera.T,
         normals=grid.normals @ radar_from_camera.T,

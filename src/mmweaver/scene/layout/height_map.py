@@ -199,4 +199,5 @@ def _first_visible_floor_m(view: AlignedPhoto) -> Float[Array, " bearing"]:
 
 
 def _bearing_bin(bearing_rad: Float[Array, "..."]) -> Int[Array, "..."]:
+    """Index of the degree of bearing, 0 to 359, any shape."""
     return np.floor(np.rad2deg(bearing_rad)).astype(int) % _NUM_BEARINGS

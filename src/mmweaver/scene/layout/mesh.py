@@ -9,13 +9,11 @@ from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
 from mmweaver.scene.layout.connected_components import bounding_slices, dilated, label_components
 from mmweaver.scene.layout.surfaces import AlignedGrid, Surface
-from mmweaver.scene.photo.depth_grid import GridBool, GridVectors, depth_tolerance_m
+from mmweaver.scene.photo.depth_grid import GridBool, GridInt, GridVectors, depth_tolerance_m
 
 _MAX_HOLE = 0.04  # share of the grid: larger holes stay open
 _MIN_BORDER = 0.5  # share of a hole's border on one surface
 _GRAZING = np.sin(np.deg2rad(4))
-
-GridInt = Int[Array, "row column"]
 
 
 def make_mesh(
@@ -119,7 +117,7 @@ def _continuous_faces(points: GridVectors, grid: AlignedGrid, surface_of: GridIn
 
 
 def _joined(
-    points: GridVectors, grid: AlignedGrid, surface_of: GridInt, a: np.ndarray, b: np.ndarray
+    points: GridVectors, grid: AlignedGrid, surface_of: GridInt, a: Int[Array, " edge"], b: Int[Array, " edge"]
 ) -> Bool[Array, " edge"]:
     """Whether two neighbouring cells are on one surface: near, on one plane, or each in the other's tangent plane."""
     flat, normals, surface = points.reshape(-1, 3), grid.normals.reshape(-1, 3), surface_of.ravel()

@@ -173,6 +173,7 @@ def _wall_material(planes: Sequence[Plane]) -> str:
 
 
 def _lies_on(plane: Plane, normal: Vec3, distance: float) -> bool:
+    """Whether a plane has that normal and that distance from the radar, metres."""
     return bool(plane.normal @ normal > _SAME_FACING and abs(plane.centre_m @ normal + distance) < _SAME_PLANE_M)
 
 

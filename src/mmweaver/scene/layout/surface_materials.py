@@ -13,7 +13,7 @@ from mmweaver.core.records import Plane, Seat
 from mmweaver.core.shapes import Array
 from mmweaver.scene.coco_stuff import material_of
 from mmweaver.scene.layout.surfaces import AlignedGrid, Surface
-from mmweaver.scene.photo.depth_grid import GridVectors
+from mmweaver.scene.photo.depth_grid import GridBool, GridInt, GridVectors
 
 # ITU-R P.2040-3, table 3, and upholstery (fabric), which it does not list.
 MATERIAL_NAMES = (
@@ -55,9 +55,9 @@ def cell_materials(
     grid: AlignedGrid,
     rgb: GridVectors,
     surfaces: Sequence[Surface],
-    is_floor: Bool[Array, "row column"],
+    is_floor: GridBool,
     seats: Sequence[Seat],
-) -> tuple[np.ndarray, tuple[str, ...]]:
+) -> tuple[GridInt, tuple[str, ...]]:
     """Guesses materials: index into MATERIAL_NAMES of every cell (row, column), and the name of each surface's."""
     wooden = _wooden_cells(rgb)
     material = np.where(wooden, MATERIAL_NAMES.index("wood"), MATERIAL_NAMES.index("chipboard"))
@@ -81,13 +81,13 @@ def cell_materials(
 
 
 def with_class_materials(
-    material: np.ndarray,
+    material: GridInt,
     names: tuple[str, ...],
-    class_index: Int[Array, "row column"],
+    class_index: GridInt,
     class_names: tuple[str, ...],
     surfaces: Sequence[Surface],
-    is_floor: Bool[Array, "row column"],
-) -> tuple[np.ndarray, tuple[str, ...]]:
+    is_floor: GridBool,
+) -> tuple[GridInt, tuple[str, ...]]:
     """Replaces the guesses of `cell_materials` where the class of a cell implies a material.
 
     A surface, and the floor, takes the majority's material where the classes of half of its cells imply one.
@@ -112,9 +112,7 @@ def _majority(implied: Int[Array, " cell"]) -> int | None:
     return int(np.bincount(known).argmax()) if len(known) > 0.5 * len(implied) else None
 
 
-def _upholstered(
-    grid: AlignedGrid, rgb: GridVectors, open_cells: Bool[Array, "row column"], seats: Sequence[Seat]
-) -> list[Bool[Array, "row column"]]:
+def _upholstered(grid: AlignedGrid, rgb: GridVectors, open_cells: GridBool, seats: Sequence[Seat]) -> list[GridBool]:
     """The cells around each seat that is as wide as a sofa or not of a wooden colour."""
     found = []
     above_floor = grid.points_m[..., 2] - grid.floor_z_m
@@ -130,10 +128,12 @@ def _upholstered(
 
 
 def _furniture(colours: Float[Array, "cell 3"]) -> str:
+    """Wood or chipboard, by the colours (cell, 3)."""
     return "wood" if _is_wooden(colours) else "chipboard"
 
 
 def _is_wooden(colours: Float[Array, "cell 3"]) -> bool:
+    """Whether the median of colours (cell, 3) is that of wood."""
     return bool(len(colours)) and bool(_wooden_cells(np.median(colours, axis=0)))
 
 

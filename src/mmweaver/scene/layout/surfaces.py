@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Array, Points, Vec3
@@ -82,6 +82,7 @@ def find_surfaces(grid: AlignedGrid) -> tuple[Surface, ...]:
 
 # Vertical: walls and panels ------------------------------------------------------------------------------------------
 def _vertical_surfaces(grid: AlignedGrid, open_cells: GridBool) -> tuple[Surface, ...]:
+    """Walls first, then panels, each by decreasing area."""
     open_cells = open_cells & (np.abs(grid.normals[..., 2]) < _VERTICAL)
     surfaces: list[Surface] = []
     for _ in range(_MAX_VERTICAL):
@@ -146,6 +147,7 @@ def _refined_vertical(grid: AlignedGrid, open_cells: GridBool, normal: Vec3, off
 
 
 def _vertical_surface(grid: AlignedGrid, normal: Vec3, offset: float, cells: GridBool) -> Surface | None:
+    """The bounding rectangle of cells on a vertical plane as wall or panel; None where it is too small or sparse."""
     if cells.sum() < _MIN_CELLS:
         return None
     axis_u = np.cross(UP, normal)
@@ -180,7 +182,7 @@ def _is_wall(grid: AlignedGrid, normal: Vec3, offset: float, extents: tuple[floa
     return bool(seen_through < 0.25 * cells.sum())
 
 
-def _first_measured_row(grid: AlignedGrid) -> tuple[np.ndarray, np.ndarray]:
+def _first_measured_row(grid: AlignedGrid) -> tuple[Int[Array, "3 column"], Int[Array, "3 column"]]:
     """Rows and columns, (3, column) each, of the three topmost measured cells of every column."""
     measured = np.isfinite(grid.depth_m)
     columns = np.flatnonzero(measured.any(axis=0))
@@ -192,6 +194,7 @@ def _first_measured_row(grid: AlignedGrid) -> tuple[np.ndarray, np.ndarray]:
 
 # Horizontal: ceilings and tops --------------------------------------------------------------------------------------
 def _horizontal_surfaces(grid: AlignedGrid, open_cells: GridBool) -> tuple[Surface, ...]:
+    """Tops and ceilings by decreasing area."""
     surfaces = []
     for sign in (1.0, -1.0):
         facing = open_cells & (sign * grid.normals[..., 2] > _HORIZONTAL)
@@ -223,6 +226,7 @@ def _peeled_surfaces(grid: AlignedGrid, facing: GridBool, sign: float) -> list[S
 
 
 def _horizontal_surface(grid: AlignedGrid, cells: GridBool, sign: float) -> Surface | None:
+    """The tightest rectangle around cells at one height; None where it is too small or sparse."""
     if cells.sum() < _MIN_CELLS:
         return None
     points = grid.points_m[cells]
@@ -263,6 +267,7 @@ def _is_on(grid: AlignedGrid, normal: Vec3, offset: float, tolerance_factor: flo
 def _plane(
     kind: str, normal: Vec3, offset: float, axis_u: Vec3, axis_v: Vec3, extents: tuple[float, float, float, float]
 ) -> Plane:
+    """The rectangle with these extents (left, right, low, high) along the axes, on the plane n . p = offset; metres."""
     left, right, low, high = extents
     centre = offset * normal + (left + right) / 2 * axis_u + (low + high) / 2 * axis_v
     half_size_m = ((right - left) / 2, (high - low) / 2)

@@ -54,7 +54,7 @@ def with_transparent_surfaces(photo: RgbdPhoto) -> tuple[RgbdPhoto, tuple[str, .
 
 
 def _border(pane: PixelMask, photo: RgbdPhoto) -> PixelMask:
-    """Measured pixels just around a pane: those of the wall if there are enough, for curtains hang before it."""
+    """Measured pixels just around a pane: those of the wall if there are enough, for curtains hang in front of it."""
     reach = max(2, round(BORDER * pane.shape[1]))
     border = dilated(pane, reach) & ~pane & np.isfinite(photo.depth_m)
     assert photo.classes is not None

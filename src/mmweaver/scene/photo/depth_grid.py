@@ -11,6 +11,7 @@ from mmweaver.geometry.pinhole import binned, normalized_coordinates, unproject
 
 GridBool = Bool[Array, "row column"]
 GridFloat = Float[Array, "row column"]
+GridInt = Int[Array, "row column"]
 GridVectors = Float[Array, "row column 3"]
 
 _CELLS_ACROSS = 160
@@ -29,7 +30,7 @@ class DepthGrid:
     points_m: GridVectors
     normals: GridVectors  # unit, towards the camera; nan where no plane could be fitted
     rgb: GridVectors  # mean colour, 0 to 1
-    class_index: Int[Array, "row column"] | None = None  # most frequent class of the cell, if the photo has classes
+    class_index: GridInt | None = None  # most frequent class of the cell, if the photo has classes
 
 
 def depth_tolerance_m(depth_m: Float[Array, "..."]) -> Float[Array, "..."]:
@@ -58,7 +59,7 @@ def make_grid(photo: RgbdPhoto) -> DepthGrid:
     )
 
 
-def _most_common(index: ClassPixels, size: int) -> Int[Array, "row column"]:
+def _most_common(index: ClassPixels, size: int) -> GridInt:
     """The most frequent class of each cell of size x size pixels."""
     rows, columns = index.shape[0] // size, index.shape[1] // size
     blocks = index[: rows * size, : columns * size].reshape(rows, size, columns, size)
@@ -79,6 +80,7 @@ def remove_outliers(depth_m: DepthPixels, min_neighbours: int = 2) -> DepthPixel
 
 
 def _blocks(depth_m: DepthPixels, size: int) -> Float[Array, "row column pixel"]:
+    """The pixels of each block of size x size pixels."""
     rows, columns = depth_m.shape[0] // size, depth_m.shape[1] // size
     blocks = depth_m.reshape(rows, size, columns, size).transpose(0, 2, 1, 3)
     return blocks.reshape(rows, columns, size * size)
@@ -142,5 +144,6 @@ def _fitted_planes(sums: Float[Array, "9 row column"]) -> tuple[GridFloat, GridF
 
 
 def _shifted(padded: Float[Array, "a b"], rows: int, columns: int, pad: int) -> Float[Array, "c d"]:
+    """The unpadded array, each element replaced by that `rows` below and `columns` to the right."""
     height, width = padded.shape
     return padded[pad + rows : height - pad + rows, pad + columns : width - pad + columns]

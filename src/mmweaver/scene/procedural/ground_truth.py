@@ -102,6 +102,7 @@ def _plane(
     material: str,
     frame: RadarFrame,
 ) -> Plane:
+    """A plane from quantities in the room's frame, metres."""
     normal, axis_u = frame.vectors(normal), frame.vectors(axis_u)
     return Plane(
         kind=kind,

@@ -58,6 +58,7 @@ def make_room_mesh(size_m: tuple[float, float, float], placed: Sequence[PlacedPi
 
 
 def _shell(size_m: tuple[float, float, float], palette: Palette) -> list[tuple[np.ndarray, Appearance]]:
+    """The corners (4, 3), metres, and appearance of floor, ceiling and walls."""
     w, d, h = size_m
     quads = [
         ([(0, 0, 0), (w, 0, 0), (w, d, 0), (0, d, 0)], palette.floor),
@@ -80,6 +81,7 @@ def _triangles(part: Part) -> tuple[Vertices, Faces]:
 
 
 def _box(low: Float[Array, "3"], high: Float[Array, "3"]) -> tuple[Vertices, Faces]:
+    """A box from corner to corner, metres, with faces of at most `FACE_M`."""
     size = high - low
     count = np.maximum(np.ceil(size / FACE_M).astype(int), 1)
     vertices, faces, first = [], [], 0

@@ -151,6 +151,7 @@ class Boxes:
 
 
 def _axes(yaw_rad: Float[Array, " box"]) -> Float[Array, "box 2 2"]:
+    """The two horizontal unit axes of each box."""
     cosine, sine = np.cos(yaw_rad), np.sin(yaw_rad)
     return np.stack([np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)], axis=1)
 

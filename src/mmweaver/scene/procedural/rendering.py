@@ -83,6 +83,7 @@ def render_classes(mesh: Mesh, view: CameraView) -> ClassMask:
 
 
 def _normals(mesh: Mesh) -> Float[Array, "face 3"]:
+    """Unit normals of the faces."""
     corners = mesh.vertices_m[mesh.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return normals / np.maximum(np.linalg.norm(normals, axis=1), 1e-15)[:, None]

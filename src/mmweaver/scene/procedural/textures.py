@@ -41,6 +41,8 @@ def _random(cell: np.ndarray, other: np.ndarray) -> Shade:
     return _TABLE[(cell * 7 + other * 13).astype(int) & 63, (cell * 3 - other * 5).astype(int) & 63] / 2 + 0.5
 
 
+# Each texture maps surface coordinates, (point, 2) metres, and a base colour (3,) to a factor of that colour, (point,),
+# or to colours, (point, 3).
 def _plain(plane: Plane2, colour: np.ndarray) -> Shade:
     return 1 + 0.03 * lattice_noise(plane, 0.06)
 

@@ -1,4 +1,4 @@
-"""Which function acts out which step."""
+"""The function that animates each activity, by the activity's key in `motion/language/activities.py`."""
 
 from collections.abc import Callable
 
@@ -107,7 +107,7 @@ GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
 
 
 def perform(context: StepContext) -> Controls:
-    """The Controls of one step over the times of its stage."""
+    """The Controls of one step at all times of its context."""
     with np.errstate(all="raise", under="ignore"):
         controls = POSTURES[context.step.lower](context)
         if context.step.upper:

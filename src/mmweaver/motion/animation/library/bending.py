@@ -1,4 +1,4 @@
-"""Down with the trunk: bowing, bending, picking up from the floor and putting down."""
+"""Bending the trunk: bowing, bending down, picking up from the floor and putting down."""
 
 import numpy as np
 
@@ -12,16 +12,16 @@ PerTime = np.ndarray
 
 
 def bowing(context: StepContext) -> Controls:
-    """The trunk leans forward from the hips, straight, the hips going back a little; stays, and comes up."""
+    """The straight trunk leans forward from the hips, which move back a little; holds, and comes up."""
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     deep = float(context.rng.uniform(0.55, 0.95))
-    way = int(context.rng.integers(3))  # arms at the sides, hands on the thighs, one hand before the belly
+    arms = int(context.rng.integers(3))  # arms at the sides, hands on the thighs, one hand in front of the belly
     for begin, lasts in repeats(context, 2.1, 1.25, 3.2):
         down = plateau(time_s, begin, begin + lasts, 0.38 * lasts, 0.4 * lasts)
         _hinge(controls, h, down, deep)
-        if way == 1:
+        if arms == 1:
             controls.arm_rad[:, :, 0] += (0.55 * deep * down)[:, None]
-        elif way == 2:
+        elif arms == 2:
             arm = np.tile([0.35, 0.25, -0.9, 1.5], (len(time_s), 1))
             mix_arm(controls, RIGHT, arm, down)
         else:
@@ -30,7 +30,7 @@ def bowing(context: StepContext) -> Controls:
 
 
 def _hinge(controls: Controls, height_m: float, down: PerTime, angle_rad: float) -> None:
-    """Bends at the hips by an angle; the pelvis goes back so that the weight stays over the feet."""
+    """Bends at the hips by an angle, scaled by `down` (n,); the pelvis moves back to keep the balance."""
     shift_pelvis(controls, -0.085 * height_m * np.sin(angle_rad) * down, 0.0, -0.01 * height_m * down)
     controls.pelvis_rad[:, 1] += 0.62 * angle_rad * down
     controls.spine_rad[:, 1] += 0.38 * angle_rad * down
@@ -51,7 +51,7 @@ def bending(context: StepContext) -> Controls:
 
 
 def picking_up(context: StepContext) -> Controls:
-    """Knees and hips bend, the hand goes to the floor before the feet, and brings something up before the body."""
+    """Knees and hips bend, the hand reaches the floor in front of the feet and brings something up to the belly."""
     controls, time_s = upright(context), context.time_s
     arms = sides(context)
     hold_s = 0.0
@@ -65,7 +65,7 @@ def picking_up(context: StepContext) -> Controls:
 
 
 def putting_down(context: StepContext) -> Controls:
-    """Something is held before the body, goes to the floor, and the body comes up without it."""
+    """Something held in front of the body is put on the floor, and the body comes up without it."""
     controls, time_s = upright(context), context.time_s
     arms = sides(context)
     hold_s = context.end_s
@@ -77,7 +77,7 @@ def putting_down(context: StepContext) -> Controls:
 
 
 def _to_the_floor(controls: Controls, context: StepContext, down: PerTime, arms: tuple[int, ...]) -> None:
-    """Deep enough that the hands come near the floor: by the knees or by the back, as the seed has it."""
+    """Down until the hands are near the floor, more by the knees or more by the back, as the seed decides."""
     depth = float(context.rng.uniform(0.72, 0.95))
     crouched(controls, context.body, depth * down, lean_rad=1.5 / depth)
     for side in (LEFT, RIGHT):
@@ -92,7 +92,7 @@ def _to_the_floor(controls: Controls, context: StepContext, down: PerTime, arms:
 
 
 def _hold(controls: Controls, context: StepContext, share: PerTime, arms: tuple[int, ...]) -> None:
-    """Forearms level before the belly, once the trunk is upright."""
+    """Forearms level in front of the belly, once the trunk is upright."""
     up = share * np.clip(1 - 0.8 * controls.pelvis_rad[:, 1], 0, 1)
     for side in arms:
         controls.arm_rad[:, side, 3] += 1.25 * up

@@ -40,7 +40,7 @@ def dancing(context: StepContext) -> Controls:
 def _feet(
     controls: Controls, context: StepContext, beat: Float[Array, " n"], lead: float, on: Float[Array, " n"]
 ) -> None:
-    """The free foot goes out, touches and returns within its beat."""
+    """The free foot steps out, touches and returns within its beat."""
     h, wide, ahead = context.body.height_m, vary(context, 0.055), float(context.rng.uniform(-0.04, 0.05))
     for side in (LEFT, RIGHT):
         first = 0.0 if lead * SIDE_SIGN[side] < 0 else 1.0  # free while the weight is on the other side
@@ -56,17 +56,17 @@ def _arms(
     controls: Controls, rng: np.random.Generator, beat: Float[Array, " n"], sway: Float[Array, " n"],
     on: Float[Array, " n"],
 ) -> None:  # fmt: skip
-    """One of three ways: bent arms that pump, arms that swing, hands in the air."""
-    way = int(rng.integers(3))
+    """One of three styles: pumping bent arms, swinging arms, hands in the air."""
+    style = int(rng.integers(3))
     size = float(rng.uniform(0.7, 1.2))
     for side in (LEFT, RIGHT):
         other = SIDE_SIGN[side] * sway
         arm = controls.arm_rad[:, side]
-        if way == 0:
+        if style == 0:
             arm[:, 3] += on * (1.3 + 0.25 * size * np.cos(2 * np.pi * beat))
             arm[:, 0] += on * 0.15 + 0.45 * size * other
             arm[:, 1] += 0.2 * on
-        elif way == 1:
+        elif style == 1:
             arm[:, 1] += on * 0.25 + 0.45 * size * np.maximum(other, 0) ** 2
             arm[:, 0] += 0.4 * size * other
             arm[:, 3] += 0.5 * on

@@ -1,4 +1,4 @@
-"""Walking, jogging and turning: feet planted along the root's path, the rest following the phase of the steps."""
+"""Walking, jogging and turning: feet planted along the root's path, the body driven by the phase of the steps."""
 
 import itertools
 from collections.abc import Callable
@@ -17,49 +17,49 @@ from mmweaver.motion.animation.step_context import StepContext
 Array = np.ndarray
 GRAVITY_MPS2 = 9.81
 ELBOW_LAG = 0.15  # of a step, behind the shoulder
-NOD = 0.4  # share of the pelvis's surge that the neck does not make
+NOD = 0.4  # share of the pelvis's surge that the neck does not follow
 
 
 @dataclass(frozen=True)
 class Style:
-    """How one person moves: lengths in metres, angles in radians, times in steps (half a gait cycle)."""
+    """Gait parameters of one person: lengths in metres, angles in radians, times in steps (half a gait cycle)."""
 
     steps_hz: float
-    # Share of a step between a foot's strike and the other's lift-off on the clock of steps. The swing begins and ends
-    # slowly: for a tenth of a step more both feet are down, or the fewer are in the air.
+    # Share of a step between a foot's strike and the other's lift-off. The swing begins and ends slowly, which prolongs
+    # double support (shortens flight) by another tenth of a step.
     double_support: float
     half_stance_m: float
     toes_out_rad: float
-    ahead_m: float  # how much further back a foot is planted than the middle of its stance would have it
+    ahead_m: float  # how much farther back than the middle of its stance a foot is planted
     heel_strike_rad: float
     toe_off_rad: float
-    heel_rises: float  # this share of the stance is over when the heel leaves the floor
+    heel_rises: float  # share of the stance after which the heel leaves the floor
     folded: float  # share of the swing after which the foot points down most
-    swing_ramps: tuple[float, float]  # shares of the swing in which the foot gets, and loses, its speed
-    toe_lift_m: float  # of the ball of the foot, early in the swing, whole steps
-    lift_m: float  # of the swinging sole, whole steps
-    spot_lift_m: float  # of the sole when the step leads nowhere (jogging on the spot)
+    swing_ramps: tuple[float, float]  # shares of the swing in which the foot accelerates and decelerates
+    toe_lift_m: float  # of the ball of the foot, early in the swing of a full step
+    lift_m: float  # of the swinging sole in a full step
+    spot_lift_m: float  # of the sole in a step on the spot
     arm_swing_rad: float
-    arm_back_rad: float  # where it swings about
+    arm_back_rad: float  # centre of the swing
     elbow_rad: float
     elbow_swing_rad: float
     lean_rad: float
     bob_m: float
-    sink: float  # stretch of the legs that the pelvis is carried at
+    sink: float  # extension of the legs, as a share of their length
     pelvis_yaw_rad: float
-    twist_rad: float  # of the shoulders against the pelvis
+    twist_rad: float  # of the shoulders relative to the pelvis
     sway_m: float
-    surge_mps: float  # how much faster than its mean the pelvis goes once a step
-    surge_sharp: float  # its second harmonic: short and fast, long and slow
-    fastest: float  # share of a step, from the strike, at which it does
-    highest: float  # and at which the pelvis is highest
-    uneven: float = 0.0  # share of a step that the right foot's strike is late (early where negative): a limp
-    lopsided: float = 0.0  # how much higher the left foot swings than the right one, as a share
-    weave_m: float = 0.0  # how far the whole body sways to the sides of its way
+    surge_mps: float  # amplitude of the pelvis's speed variation, once a step
+    surge_sharp: float  # share of its second harmonic: short fast, long slow phases
+    fastest: float  # share of a step, from the strike, at which the pelvis is fastest
+    highest: float  # and highest
+    uneven: float = 0.0  # share of a step by which the right foot strikes late (negative: early): a limp
+    lopsided: float = 0.0  # relative height of the left foot's swing above the right one's
+    weave_m: float = 0.0  # lateral sway of the whole body
 
 
 def walking_style(context: StepContext, speed_mps: float) -> Style:
-    """Step rate from speed (walk ratio about 0.42 m s, longer legs step slower), the rest from the rate."""
+    """Gait of a walk: step rate from speed (walk ratio about 0.42 m s; longer legs step slower), the rest from it."""
     rng, height_m = context.rng, context.body.height_m
     share = min(speed_mps / 1.3, 1.4)
     steps_hz = 1.87 * max(share, 0.25) ** 0.55 * (REFERENCE_HEIGHT_M / height_m) ** 0.5 * np.exp(rng.normal(0, 0.03))
@@ -99,7 +99,7 @@ def jogging_style(context: StepContext, speed_mps: float) -> Style:
 
 @dataclass(frozen=True, kw_only=True)
 class Footfall:
-    """One foot's stay on the floor."""
+    """One stance of a foot: strike and lift-off in seconds, position (x, y) and yaw."""
 
     strike_s: float
     off_s: float
@@ -121,12 +121,12 @@ def turning(context: StepContext) -> Controls:
 
 
 def cruise_mps(context: StepContext) -> float:
-    """The fastest that the step's way is gone, between its ramps."""
+    """The highest speed of the step's moves, between their ramps, in m/s."""
     return max((move.speed_mps for move in context.moves), default=0.0)
 
 
 def stepping(context: StepContext, style: Style, *, jog: bool) -> Controls:
-    """Steps along the root's path. A foot whose next place is its old one stays where it is, unless jogging."""
+    """Steps along the root's path. A foot whose next position equals its last one stays planted, unless jogging."""
     controls = upright(context)
     time_s = context.time_s
     first_side = int(context.rng.integers(2))
@@ -145,9 +145,9 @@ def stepping(context: StepContext, style: Style, *, jog: bool) -> Controls:
 
 
 def _clock(context: StepContext, style: Style, first_side: int) -> Float[Array, " k"]:
-    """Times of the foot strikes, alternating feet, from well before the stage to well after it."""
+    """Times (k,) of the foot strikes in seconds, alternating feet, from well before the motion to well after it."""
     period = 1 / style.steps_hz
-    # After standing, the first foot leaves the floor at once; under way already, any phase will do.
+    # From standing, the first foot leaves the floor at once; a motion under way may begin at any phase.
     lead = context.rng.uniform(0, period) if context.first else period * (1 - style.double_support) - 0.02
     begin, end = float(context.time_s[0]), float(context.time_s[-1])
     anchor = context.start_s + lead
@@ -161,7 +161,7 @@ def _clock(context: StepContext, style: Style, first_side: int) -> Float[Array, 
 def _weave(
     controls: Controls, context: StepContext, style: Style
 ) -> Callable[[Float[Array, " k"]], Float[Array, " k"]]:
-    """Sways the pelvis to the sides; returns how far, to the left, so that the feet come along."""
+    """Adds lateral sway to the pelvis; returns it as a function of time (to the left, metres) for the feet."""
     phase, rate = context.rng.uniform(0, 2 * np.pi, 2), context.rng.uniform(0.35, 0.6)
 
     def aside(time_s: Float[Array, " k"]) -> Float[Array, " k"]:
@@ -198,7 +198,7 @@ def _footfall(
 
 
 def _moving(context: StepContext, time_s: Float[Array, " n"], jog: bool) -> Float[Array, " n"]:
-    """1 while the root goes or turns, 0 while it stands, before and after and where the room ends early; C2."""
+    """(n,) 1 while the root moves or turns, 0 while it stands; C2."""
     if jog and context.step.direction == "spot":
         start = np.ones_like(time_s) if context.first else rise((time_s - context.start_s) / 0.35)
         end = np.ones_like(time_s) if context.last else rise((context.end_s - time_s) / 0.35)
@@ -211,7 +211,7 @@ def _moving(context: StepContext, time_s: Float[Array, " n"], jog: bool) -> Floa
 def _write_foot(
     controls: Controls, time_s: Float[Array, " n"], falls: list[Footfall], side: int, style: Style, jog: bool
 ) -> None:
-    """Stance, then swing to the next place, for every footfall of one foot."""
+    """Stance, then swing to the next position, for every footfall of one foot."""
     before = 0.0
     for fall, after in itertools.pairwise(falls):
         gap = after.place_m - fall.place_m
@@ -220,7 +220,7 @@ def _write_foot(
         inside = (time_s >= fall.strike_s) & (time_s < after.strike_s)
         t = time_s[inside]
         long = float(np.hypot(*gap)) + 0.3 * abs(after.yaw_rad - fall.yaw_rad)
-        effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays
+        effort = float(np.tanh((long / 0.15) ** 2))  # 0: the foot stays planted
         u = (t - fall.off_s) / (after.strike_s - fall.off_s)
         across = travel(np.clip(u, 0, 1), *style.swing_ramps)
         controls.foot_m[inside, side, :2] = fall.place_m + across[:, None] * gap
@@ -234,8 +234,8 @@ def _write_foot(
         if jog:
             pitch = pitch + 0.2 * bump((t - fall.off_s + 0.08) / (after.strike_s - fall.off_s + 0.08))
         controls.foot_rad[inside, side, 1] = pitch
-        # Weight leaves the foot before its toes do, and comes fully onto it only after the heel has struck: so the
-        # knee is never stretched at speed, and the pelvis comes down in time for the foot that is about to land.
+        # A foot is unloaded before toe-off and fully loaded only after heel strike: so the knee is never extended at
+        # speed, and the pelvis comes down in time for the foot that is about to land.
         swing = after.strike_s - fall.off_s
         air = plateau(time_s, fall.off_s - 0.3 * swing, after.strike_s + 0.15 * swing, 0.55 * swing, 0.75 * swing)
         controls.contact[:, side] -= air * min(effort + float(jog), 1.0)
@@ -244,7 +244,7 @@ def _write_foot(
 def _pitch(
     t: Float[Array, " n"], fall: Footfall, after: Footfall, style: Style, came_m: float, ahead_m: float
 ) -> Float[Array, " n"]:
-    """Heel strike, flat, heel rise, toe off, back in the swing; scaled by how far the foot came and goes."""
+    """Foot pitch in radians: heel strike, flat, heel rise, toe-off, swing; scaled with the length of the steps."""
     came, goes = np.clip(np.array([came_m, ahead_m]) / 1.2, -0.35, 1.15)
     stance, swing = fall.off_s - fall.strike_s, after.strike_s - fall.off_s
     down = -style.heel_strike_rad * max(came, 0.0) * (1 - rise((t - fall.strike_s) / (0.22 * stance)))
@@ -257,7 +257,7 @@ def _pitch(
 def _write_trunk_and_arms(
     controls: Controls, context: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
 ) -> None:
-    """Phase counts steps: even at the left foot's strike, odd at the right one's."""
+    """`phase` (n,) counts steps: even at the left foot's strike, odd at the right one's."""
     body, heading = context.body, controls.heading_rad
     left_ahead = np.cos(np.pi * phase) * moving  # the left leg is in front at its strike
     right_stance = -np.sin(np.pi * (phase - 0.1)) * moving  # +1 over the right foot, -1 over the left one
@@ -290,13 +290,13 @@ def _write_trunk_and_arms(
 def _surge(
     controls: Controls, context: StepContext, style: Style, phase: Float[Array, " n"], moving: Float[Array, " n"]
 ) -> None:
-    """The pelvis is ahead of its even way and behind it once a step; the trunk gives half of that back."""
+    """Speed variation of the pelvis, once a step; the trunk compensates part of it."""
     surge_m = style.surge_mps / (2 * np.pi * style.steps_hz)
     turn = 2 * np.pi * (phase - style.fastest)
     ahead = surge_m * (np.sin(turn) + 0.5 * style.surge_sharp * np.sin(2 * turn)) * moving
-    way = context.path.position_m(context.time_s + 0.01) - context.path.position_m(context.time_s - 0.01)
-    gone = np.linalg.norm(way, axis=1)
-    along = way / np.maximum(gone, 1e-6)[:, None] * np.tanh(gone / 0.005)[:, None]
+    velocity = context.path.position_m(context.time_s + 0.01) - context.path.position_m(context.time_s - 0.01)
+    speed = np.linalg.norm(velocity, axis=1)
+    along = velocity / np.maximum(speed, 1e-6)[:, None] * np.tanh(speed / 0.005)[:, None]
     controls.pelvis_m[:, :2] += ahead[:, None] * along
     forward = along[:, 0] * np.cos(controls.heading_rad) + along[:, 1] * np.sin(controls.heading_rad)
     controls.spine_rad[:, 1] -= NOD * ahead * forward / (0.2 * context.body.height_m)

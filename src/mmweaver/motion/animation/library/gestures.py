@@ -1,6 +1,6 @@
-"""What the arms do over any posture: waving, clapping, raising a hand, drinking, punching.
+"""Hand activities overlaid on any posture: waving, clapping, raising a hand, drinking, punching.
 
-Each takes the Controls of the posture and returns them with arms, trunk and head changed; legs are left alone.
+Each takes the Controls of the posture and returns them with arms, trunk and head changed; the legs are kept.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ PerTime = Float[Array, " n"]
 
 
 def waving(context: StepContext, controls: Controls) -> Controls:
-    """Upper arm out and ahead, the forearm up and swinging from side to side; the upper arm rolls, so the hand nods."""
+    """Upper arm out and ahead, forearm up and swinging sideways; the upper arm twists, so that the hand nods."""
     time_s, rng = context.time_s, context.rng
     rate, end = cycles(context, context.tempo(1.0, 1.6, 2.2), 0.8, 2.5)
     swing = float(rng.uniform(0.35, 0.5)) * min(1.0, 1.5 / rate)
@@ -44,18 +44,18 @@ def waving(context: StepContext, controls: Controls) -> Controls:
 
 
 def clapping(context: StepContext, controls: Controls) -> Controls:
-    """Palms meet in front of the chest, never crossing: each wrist keeps to its own side of the middle."""
+    """Palms meet in front of the chest; each wrist stays on its own side of the midline."""
     time_s, rng, body = context.time_s, context.rng, context.body
     rate, end = cycles(context, context.tempo(1.2, 2.0, 2.8), 0.9, 3.5)
     on = rise((end + 0.2 - time_s) / 0.5) if context.step.count else np.ones_like(time_s)
     phase = 2 * np.pi * rate * (time_s - context.start_s)
-    apart = (0.5 + 0.5 * np.cos(phase)) ** 1.0  # 0 when the palms meet
+    opening = (0.5 + 0.5 * np.cos(phase)) ** 1.0  # 0 when the palms meet
     open_m = float(rng.uniform(0.08, 0.13)) * min(1.0, 2.0 / rate) * body.height_m
     ahead, up = rng.uniform(0.16, 0.19), rng.uniform(0.02, 0.07)
     target = np.zeros((len(time_s), 3))
-    target[:, 0] = (ahead - rng.uniform(0.0, 0.04) * apart) * body.height_m
-    target[:, 1] = 0.024 * body.height_m + open_m * apart
-    target[:, 2] = (up + 0.01 * apart) * body.height_m
+    target[:, 0] = (ahead - rng.uniform(0.0, 0.04) * opening) * body.height_m
+    target[:, 1] = 0.024 * body.height_m + open_m * opening
+    target[:, 2] = (up + 0.01 * opening) * body.height_m
     arm = reach(body, target, elbow=(-0.1, 0.8, -1.0))
     for side in (LEFT, RIGHT):
         mix_arm(controls, side, arm, on)
@@ -63,7 +63,7 @@ def clapping(context: StepContext, controls: Controls) -> Controls:
 
 
 def raising(context: StepContext, controls: Controls) -> Controls:
-    """The arm goes up straight in front or at the side, stays, and comes down at the end of the step."""
+    """The straight arm goes up in front or at the side, holds, and comes down at the end of the step."""
     time_s, rng = context.time_s, context.rng
     count = max(context.step.count, 1)
     each = float(min(context.duration_s / count, 6.0 if count == 1 else 3.5))
@@ -72,22 +72,22 @@ def raising(context: StepContext, controls: Controls) -> Controls:
     for k in range(count):
         begin = context.start_s + k * each
         up += plateau(time_s, begin, max(begin + each - 0.02, begin + 2 * move), move, move)
-    side_way = rng.random() < 0.3
+    sideways = rng.random() < 0.3
     top = float(rng.uniform(2.75, 2.98))
     for side in sides(context):
         arm = controls.arm_rad[:, side].copy()
-        arm[:, 1 if side_way else 0] = top
-        arm[:, 0 if side_way else 1] = 0.12 if side_way else 0.08
+        arm[:, 1 if sideways else 0] = top
+        arm[:, 0 if sideways else 1] = 0.12 if sideways else 0.08
         arm[:, 3] = rng.uniform(0.12, 0.25)
         arm[:, 2] = 0.0
         mix_arm(controls, side, arm, up)
-        controls.arm_rad[:, side, 3] += 0.8 * np.sin(np.pi * up) * (not side_way)
+        controls.arm_rad[:, side, 3] += 0.8 * np.sin(np.pi * up) * (not sideways)
         controls.spine_rad[:, 0] += 0.05 * up * (-1 if side == LEFT else 1) * (len(sides(context)) == 1)
     return controls
 
 
 def mouth_in_chest_m(body: SkeletonProportions, controls: Controls) -> Float[Array, "n 3"]:
-    """The mouth seen from spine3 in the chest's frame, metres."""
+    """Position of the mouth relative to spine3 in the chest's frame, (n, 3) in metres."""
     from mmweaver.motion.animation.kinematics import about_y, about_z, rotated
 
     half = about_z(controls.head_rad[:, 1] / 2) @ about_y(controls.head_rad[:, 0] / 2)
@@ -96,7 +96,7 @@ def mouth_in_chest_m(body: SkeletonProportions, controls: Controls) -> Float[Arr
 
 
 def drinking(context: StepContext, controls: Controls) -> Controls:
-    """A cup held before the belly goes to the mouth, the head tilts back for the sip, and the cup comes down."""
+    """A cup in front of the belly goes to the mouth, the head tilts back for the sip, and the cup comes down."""
     time_s, rng, body = context.time_s, context.rng, context.body
     side = sides(context)[0]
     sip_s = context.tempo(3.4, 2.6, 1.9)
@@ -112,10 +112,10 @@ def drinking(context: StepContext, controls: Controls) -> Controls:
     sign = 1.0 if side == LEFT else -1.0
     controls.head_rad[:, 0] -= rng.uniform(0.2, 0.32) * tilt
     mouth = mouth_in_chest_m(body, controls)
-    mouth[:, 1] *= sign  # seen from the acting arm's side
+    mouth[:, 1] *= sign  # in the frame of the acting arm
     cup = mouth + np.array([0.032, 0.022, -0.036]) * body.height_m
     rest = np.array([rng.uniform(0.15, 0.18), rng.uniform(0.05, 0.08), rng.uniform(-0.08, -0.04)]) * body.height_m
-    bow = np.array([0.03, 0.0, 0.0]) * body.height_m  # the way up goes a little outside the straight line
+    bow = np.array([0.03, 0.0, 0.0]) * body.height_m  # the path bows slightly outward
     target = rest + lift[:, None] * (cup - rest) + (4 * lift * (1 - lift))[:, None] * bow
     arm = reach(body, target, elbow=(-0.25, 0.75, -1.0))
     mix_arm(controls, side, arm, np.ones_like(time_s))
@@ -123,9 +123,9 @@ def drinking(context: StepContext, controls: Controls) -> Controls:
 
 
 def _sway(controls: Controls, context: StepContext, lunge_m: PerTime) -> None:
-    """A boxer's trunk is never at rest: it goes with each blow and sways between them, over feet that stay."""
+    """A boxer's trunk moves with each punch, `lunge_m` (n,) ahead, and sways in between over planted feet."""
     rng, time_s = context.rng, context.time_s
-    calm = 0.3 if context.step.hand in ("left", "right") else 1.0  # one hand alone is shown, not a fight
+    calm = 0.3 if context.step.hand in ("left", "right") else 1.0  # a single hand is a demonstration rather than boxing
     ahead = lunge_m + calm * float(rng.uniform(0.015, 0.075)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.5)
     aside = calm * float(rng.uniform(0.02, 0.07)) * wander(time_s, rng, slow_hz=0.35, fast_hz=1.2)
     cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
@@ -136,7 +136,7 @@ def _sway(controls: Controls, context: StepContext, lunge_m: PerTime) -> None:
 
 
 def punching(context: StepContext, controls: Controls) -> Controls:
-    """Fists before the face; one after the other shoots forward at shoulder height and comes back."""
+    """Fists in front of the face; one after the other shoots forward at shoulder height and comes back."""
     time_s, rng, body = context.time_s, context.rng, context.body
     rate, _ = cycles(context, context.tempo(1.1, 1.7, 2.3), 0.9, 2.6)
     period = 1 / rate
@@ -155,13 +155,13 @@ def punching(context: StepContext, controls: Controls) -> Controls:
     controls.spine_rad[:, 1] += 0.06
     _sway(controls, context, float(rng.uniform(0.02, 0.06)) * (out[RIGHT] + out[LEFT]))
     guard = np.array([rng.uniform(0.13, 0.175), rng.uniform(0.04, 0.09), rng.uniform(0.06, 0.15)])
-    hook = float(rng.choice([0.0, 0.0, rng.uniform(0.04, 0.12)]))  # round the side rather than straight
+    hook = float(rng.choice([0.0, 0.0, rng.uniform(0.04, 0.12)]))  # hooks curve around the side
     restless = float(rng.uniform(0.004, 0.02)) * (context.step.count == 0 and len(arms) == 2)
     for side in (LEFT, RIGHT):
         aim = np.array([rng.uniform(0.25, 0.29), 0.035, 0.08 + rng.normal(0, 0.03)])
         target = guard + out[side][:, None] * (aim - guard)
         target[:, 1] += hook * 4 * out[side] * (1 - out[side])
-        for axis in range(3):  # fists are never at rest in the guard
+        for axis in range(3):  # fists keep moving in the guard
             target[:, axis] += restless * wander(time_s, rng, slow_hz=0.8, fast_hz=2.2) * (1 - out[side])
         arm = reach(body, target * body.height_m, elbow=(-0.15, 0.45 + 3 * hook, -1.0))
         mix_arm(controls, side, arm, np.ones_like(time_s))

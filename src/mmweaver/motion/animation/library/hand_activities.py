@@ -1,4 +1,4 @@
-"""Work of the hands in front of the body: eating, typing, reading, phoning, wiping, writing, instruments, doors."""
+"""Hand activities in front of the body: eating, typing, reading, phoning, wiping, writing, instruments, doors."""
 
 import numpy as np
 
@@ -8,15 +8,14 @@ from mmweaver.motion.animation.library.movement_primitives import cycles, hand_t
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.step_context import StepContext
 
-ALWAYS = 1.0
-
 
 def _on(context: StepContext) -> np.ndarray:
+    """(n,) ones: the arm is in place all the time."""
     return np.ones_like(context.time_s)
 
 
 def eating(context: StepContext, controls: Controls) -> Controls:
-    """From a plate before the belly to the mouth and back, again and again; the head meets the hand."""
+    """From a plate in front of the belly to the mouth and back, again and again; the head meets the hand."""
     time_s, rng, n = context.time_s, context.rng, len(context.time_s)
     side = one_side(context)
     bite_s = context.tempo(2.6, 2.0, 1.5)
@@ -39,7 +38,7 @@ def eating(context: StepContext, controls: Controls) -> Controls:
 
 
 def typing(context: StepContext, controls: Controls) -> Controls:
-    """Both hands over a keyboard: centimetres, fast and irregular, with pauses."""
+    """Both hands over a keyboard: movements of centimetres, fast and irregular, with pauses."""
     time_s, rng, n = context.time_s, context.rng, len(context.time_s)
     controls.head_rad[:, 0] += 0.22
     controls.spine_rad[:, 1] += 0.05
@@ -54,7 +53,7 @@ def typing(context: StepContext, controls: Controls) -> Controls:
 
 
 def reading(context: StepContext, controls: Controls) -> Controls:
-    """A book in both hands before the chest, the eyes down; now and then a page is turned."""
+    """A book in both hands in front of the chest, eyes down; a page is turned every few seconds."""
     time_s, rng, n = context.time_s, context.rng, len(context.time_s)
     controls.head_rad[:, 0] += 0.32
     controls.head_rad[:, 1] += 0.07 * np.sin(2 * np.pi * 0.35 * time_s)
@@ -71,7 +70,7 @@ def reading(context: StepContext, controls: Controls) -> Controls:
 
 
 def phoning(context: StepContext, controls: Controls) -> Controls:
-    """One hand goes to the ear and stays there; the head tilts a little, the talk makes it nod."""
+    """One hand at the ear; the head tilts slightly and nods while talking."""
     time_s, rng, n = context.time_s, context.rng, len(context.time_s)
     side = one_side(context)
     ear = place(0.035, 0.075, float(rng.uniform(0.12, 0.135)), n)
@@ -82,7 +81,7 @@ def phoning(context: StepContext, controls: Controls) -> Controls:
 
 
 def texting(context: StepContext, controls: Controls) -> Controls:
-    """A phone before the chest in one hand or both, the head down, thumbs moving the wrists by millimetres."""
+    """A phone in one or both hands in front of the chest, head down; thumbs move the wrists by millimetres."""
     time_s, rng, n = context.time_s, context.rng, len(context.time_s)
     hands = sides(context) if context.step.hand else ((LEFT, RIGHT) if rng.random() < 0.5 else (RIGHT,))
     controls.head_rad[:, 0] += 0.4
@@ -94,12 +93,13 @@ def texting(context: StepContext, controls: Controls) -> Controls:
 
 
 def _to_and_fro(context: StepContext, rate: tuple[float, float, float], spread: float = 0.1) -> np.ndarray:
+    """A sine (n,) at a sampled rate, (slow, usual, fast) in Hz, with a random phase."""
     rate_hz = context.tempo(*rate, spread)
     return np.sin(2 * np.pi * rate_hz * (context.time_s - context.start_s) + context.rng.uniform(0, 2 * np.pi))
 
 
 def brushing_teeth(context: StepContext, controls: Controls) -> Controls:
-    """A hand before the mouth goes to and fro a few centimetres, three times a second."""
+    """A hand in front of the mouth moves to and fro by a few centimetres, three times a second."""
     n, side = len(context.time_s), one_side(context)
     stroke = _to_and_fro(context, (2.0, 2.8, 3.6)) * vary(context, 0.011)
     drift = wander(context.time_s, context.rng, slow_hz=0.1, fast_hz=0.4)
@@ -122,7 +122,7 @@ def combing(context: StepContext, controls: Controls) -> Controls:
 
 
 def wiping(context: StepContext, controls: Controls) -> Controls:
-    """Over a table before the body: to and fro, or in circles, the shoulder and trunk going along."""
+    """Over a table ahead: to and fro or in circles, with shoulder and trunk."""
     n, side, rng = len(context.time_s), one_side(context), context.rng
     rate = context.tempo(0.6, 0.95, 1.4)
     phase = 2 * np.pi * rate * (context.time_s - context.start_s)
@@ -138,7 +138,7 @@ def wiping(context: StepContext, controls: Controls) -> Controls:
 
 
 def writing(context: StepContext, controls: Controls) -> Controls:
-    """On a board at head height or a table: small strokes that wander along a line."""
+    """On a board at head height (standing) or a table: small strokes along a line."""
     time_s, n, side = context.time_s, len(context.time_s), one_side(context)
     standing = context.step.lower == "stand"
     stroke = wander(time_s, context.rng, slow_hz=1.2, fast_hz=2.4)
@@ -156,7 +156,7 @@ def writing(context: StepContext, controls: Controls) -> Controls:
 
 
 def stirring(context: StepContext, controls: Controls) -> Controls:
-    """Circles over a pot before the belly; the other hand holds it."""
+    """Circles over a pot in front of the belly; the other hand holds it."""
     n, side = len(context.time_s), one_side(context)
     phase = 2 * np.pi * context.tempo(0.7, 1.1, 1.6) * (context.time_s - context.start_s)
     wide = vary(context, 0.03)
@@ -184,7 +184,7 @@ def knocking(context: StepContext, controls: Controls) -> Controls:
 
 
 def opening_door(context: StepContext, controls: Controls) -> Controls:
-    """The hand goes to a handle, turns it, and draws the door past the side of the body."""
+    """The hand reaches for a handle, turns it, and pulls the door past the side of the body."""
     time_s, n, side = context.time_s, len(context.time_s), one_side(context)
     ((begin, lasts),) = repeats(context, 2.2, 1.6, 3.2)[:1]
     up = plateau(time_s, begin, begin + lasts, 0.28 * lasts, 0.26 * lasts)
@@ -198,7 +198,7 @@ def opening_door(context: StepContext, controls: Controls) -> Controls:
 
 
 def playing_guitar(context: StepContext, controls: Controls) -> Controls:
-    """One hand strums before the belly, the other holds the neck outward; left-handed only if said."""
+    """One hand strums in front of the belly, the other holds the neck; left-handed only if the sentence says so."""
     time_s, n = context.time_s, len(context.time_s)
     side = LEFT if context.step.hand == "left" else RIGHT
     rate = context.tempo(1.4, 2.1, 2.9)
@@ -215,7 +215,7 @@ def playing_guitar(context: StepContext, controls: Controls) -> Controls:
 
 
 def playing_violin(context: StepContext, controls: Controls) -> Controls:
-    """The neck held out to one side at shoulder height, the bow drawn across by the other arm."""
+    """The neck held out to one side at shoulder height, the bow moved across by the other arm."""
     time_s, n = context.time_s, len(context.time_s)
     side = LEFT if context.step.hand == "left" else RIGHT
     bow_hz = context.tempo(0.5, 0.8, 1.3)

@@ -1,4 +1,4 @@
-"""Jumping, jumping jacks and squats: the legs drive the pelvis up and down, in flight it falls freely."""
+"""Jumping, hopping, jumping jacks and squats: the legs drive the pelvis; in flight it follows a ballistic curve."""
 
 from dataclasses import dataclass, replace
 
@@ -14,13 +14,13 @@ from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
 GRAVITY_MPS2 = 9.81
-LAUNCH_S, CATCH_S = 0.26, 0.3
+LAUNCH_S, CATCH_S = 0.26, 0.3  # of a leap: acceleration before take-off, deceleration after landing
 Knot = tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Hop:
-    """One flight: takes off and lands with the pelvis at the same height, rising by `rise_m` between."""
+    """One flight: the pelvis takes off and lands at the same height and rises by `rise_m` in between."""
 
     off_s: float
     rise_m: float
@@ -38,14 +38,14 @@ class Hop:
         return self.off_s + self.flight_s
 
     def knots(self, height_m: float) -> list[Knot]:
-        """Take-off and landing of the pelvis; the quintic between them is the parabola of free fall."""
+        """Knots of take-off and landing of the pelvis; the quintic between them is the parabola of free fall."""
         return [
             (self.off_s, height_m, self.speed_mps, -GRAVITY_MPS2),
             (self.land_s, height_m, -self.speed_mps, -GRAVITY_MPS2),
         ]
 
     def sole_m(self, time_s: Float[Array, " n"]) -> Float[Array, " n"]:
-        """How high the soles are: they follow the pelvis, taking up and giving back its speed within `ramp`."""
+        """Height (n,) of the soles in metres: they follow the pelvis, accelerating and decelerating within `ramp`."""
         ramp = min(0.07, 0.3 * self.flight_s)
         fine = np.linspace(self.off_s, self.land_s, 400)
         speed = -GRAVITY_MPS2 * (fine - (self.off_s + self.land_s) / 2)
@@ -56,11 +56,11 @@ class Hop:
         return np.where((time_s > self.off_s) & (time_s < self.land_s), height(np.clip(time_s, fine[0], fine[-1])), 0.0)
 
     def air(self, time_s: Float[Array, " n"]) -> Float[Array, " n"]:
-        """1 in flight, 0 on the floor."""
+        """(n,) 1 in flight, 0 on the floor."""
         return plateau(time_s, self.off_s, self.land_s, 0.3 * self.flight_s, 0.3 * self.flight_s)
 
     def toes_down(self, time_s: Float[Array, " n"], before_s: float, after_s: float) -> Float[Array, " n"]:
-        """Heels rise before take-off, come down after landing; greatest early in the flight."""
+        """Plantar flexion (n,): heels rise before take-off and come down after landing; largest early in flight."""
         up = rise((time_s - self.off_s + before_s) / (before_s + 0.35 * self.flight_s))
         half = 0.5 * rise((time_s - self.off_s - 0.35 * self.flight_s) / (0.6 * self.flight_s))
         down = 0.5 * rise((time_s - self.land_s + 0.03) / (after_s + 0.03))
@@ -75,10 +75,10 @@ def hop_all(
     ready_m: float = -0.02,
     heels: float = 0.95,
 ) -> None:
-    """Writes pelvis height, soles, heels and contact for hops with dips (time, depth, upward acceleration) between.
+    """Writes pelvis height, soles, heels and contact of hops with dips (time, depth, upward acceleration) in between.
 
     Take-off and landing are `ready_m` above the standing height: heels up, knees not quite straight, so that the
-    soles can pick up the pelvis's speed within some hundredths of a second.
+    soles can take up the pelvis's speed within hundredths of a second.
     """
     time_s, body = context.time_s, context.body
     stand = body.pelvis_height_m(STAND_STRETCH)
@@ -96,8 +96,8 @@ def hop_all(
 
 
 def jumping(context: StepContext) -> Controls:
-    """Jumps on the spot: crouch with the arms back, take off, fly freely, land softly, at once again or to rest."""
-    # Whoever jumps on and on mostly hops from the ankles, two a second, with quiet arms.
+    """Jumps on the spot: crouch with the arms back, take off, flight, soft landing, then the next jump or rest."""
+    # People who keep jumping mostly hop from the ankles, twice a second, with quiet arms.
     if not context.step.count and context.duration_s > 1.8 and context.rng.random() < 0.5:
         return hopping(context)
     return _jumps(context)[0]
@@ -113,7 +113,7 @@ def hopping(context: StepContext) -> Controls:
 
 
 def bounce(controls: Controls, context: StepContext, *, one_leg: bool) -> None:
-    """A row of hops at an even rate over the stage's time."""
+    """Hops at an even rate over the step's time."""
     rate = context.tempo(1.7, 2.05, 2.35)
     count = context.step.count or max(1, round((context.duration_s - 0.45) * rate))
     period = float(np.clip((context.duration_s - 0.45) / count, 0.4, 0.62)) if context.step.count else 1 / rate
@@ -125,13 +125,13 @@ def bounce(controls: Controls, context: StepContext, *, one_leg: bool) -> None:
     dips += [(hop.off_s - ground / 2, 0.075, 14.0 if hop is not hops[0] else 8.0) for hop in hops]
     dips += [(hops[-1].land_s + 0.18, 0.07, 6.0), (hops[-1].land_s + 0.5, 0.0, 0.0)]
     hop_all(controls, context, hops, dips, ready_m=-0.04, heels=0.8)
-    # nobody hops quite straight: the trunk swings to and fro with each
+    # Hops are never quite vertical: the trunk swings to and fro with each.
     turn = 2 * np.pi * (context.time_s - first) / period + context.rng.uniform(0, 2 * np.pi)
     shift_pelvis(controls, float(context.rng.uniform(0.0, 0.018)) * np.sin(turn), 0.0, 0.0)
 
 
 def leaping(context: StepContext) -> Controls:
-    """Jumps that lead somewhere: the way of the step is gone in the air, in equal parts."""
+    """Jumps from place to place: the step's distance is covered in flight, in equal parts."""
     time_s, path = context.time_s, context.path
     ends = np.array([context.start_s - 0.001, context.end_s])
     start, heading = path.position_m(ends)[0], float(path.facing_rad(ends)[0])
@@ -139,14 +139,14 @@ def leaping(context: StepContext) -> Controls:
     controls, hops = _jumps(replace(context, path=here))
     feet = sum(rise((time_s - hop.off_s) / hop.flight_s) for hop in hops) / len(hops)
     body = sum(_carried(time_s, hop) for hop in hops) / len(hops)
-    way = path.position_m(ends)[1] - start
-    controls.pelvis_m[:, :2] += np.asarray(body)[:, None] * way
-    controls.foot_m[:, :, :2] += np.asarray(feet)[:, None, None] * way
+    shift_m = path.position_m(ends)[1] - start
+    controls.pelvis_m[:, :2] += np.asarray(body)[:, None] * shift_m
+    controls.foot_m[:, :, :2] += np.asarray(feet)[:, None, None] * shift_m
     return controls
 
 
 def _carried(time_s: Float[Array, " n"], hop: Hop) -> Float[Array, " n"]:
-    """Share of the way that the pelvis has gone: speed is gained from the floor, kept in flight, lost on it."""
+    """Share (n,) of a leap that the pelvis has covered: accelerating on the floor, uniform in flight, then braking."""
     whole_s = LAUNCH_S + hop.flight_s + CATCH_S
     return travel(np.clip((time_s - hop.off_s + LAUNCH_S) / whole_s, 0, 1), LAUNCH_S / whole_s, CATCH_S / whole_s)
 
@@ -159,7 +159,7 @@ def _jumps(context: StepContext) -> tuple[Controls, list[Hop]]:
     edge_s, between_s = crouch_s + push_s + absorb_s + recover_s, flight_s + absorb_s + push_s + 0.04
     count = context.step.count or max(1, int((context.duration_s - edge_s - flight_s) / between_s + 1.25))
     spare = max(context.duration_s - edge_s - flight_s - (count - 1) * between_s, 0.0)
-    slower = min(0.5 * spare, 0.4)  # who has time goes down and comes up without haste
+    slower = min(0.5 * spare, 0.4)  # spare time slows down crouching and recovery
     crouch_s, recover_s, spare = crouch_s + slower, recover_s + slower, spare - 2 * slower
     period = between_s + (min(spare / (count - 1), 0.35) if count > 1 else 0.0)
     depth = float(rng.uniform(0.19, 0.25))
@@ -186,7 +186,7 @@ def _jumps(context: StepContext) -> tuple[Controls, list[Hop]]:
 
 
 def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> None:
-    """Hips go back and the trunk leans forward over them."""
+    """Hips move back and the trunk leans forward over them, scaled by `amount` (n,)."""
     heading = controls.heading_rad
     for axis, part in ((0, np.cos(heading)), (1, np.sin(heading))):
         controls.pelvis_m[:, axis] -= 0.34 * pitch_rad * amount * part
@@ -196,7 +196,7 @@ def _bend(controls: Controls, amount: Float[Array, " n"], pitch_rad: float) -> N
 
 
 def jumping_jacks(context: StepContext) -> Controls:
-    """Legs apart with the arms overhead, and back, a small hop for each."""
+    """Legs apart with the arms overhead, and back, each with a small hop."""
     controls, time_s, rng = upright(context), context.time_s, context.rng
     half_s = 0.5 / context.tempo(0.78, 0.92, 1.05)
     count = context.step.count
@@ -230,7 +230,7 @@ def jumping_jacks(context: StepContext) -> Controls:
 
 
 def _spread_feet(controls: Controls, context: StepContext, spread: Float[Array, " n"], half: float) -> None:
-    """Half the distance between the feet grows by `half` (a share of the height) as `spread` goes to 1."""
+    """Half the distance between the feet grows by `half` (of the height) as `spread` (n,) goes to 1."""
     position, heading = context.path.position_m(context.time_s), context.path.facing_rad(context.time_s)
     near = home_feet(context.body, position, heading)
     wide = home_feet(context.body, position, heading, 0.056 + half)
@@ -241,7 +241,7 @@ def _spread_feet(controls: Controls, context: StepContext, spread: Float[Array, 
 
 
 def squatting(context: StepContext) -> Controls:
-    """Down until the knees are bent about 100 degrees, the arms forward for balance, and up again."""
+    """Down until the knees are flexed by about 100 degrees, arms forward for balance, and up again."""
     controls, time_s, rng, body = upright(context), context.time_s, context.rng, context.body
     period = 1 / context.tempo(0.36, 0.5, 0.65)
     count = context.step.count or max(1, round(context.duration_s / period))
@@ -265,7 +265,7 @@ def squatting(context: StepContext) -> Controls:
     controls.spine_rad[:, 1] += 0.3 * lean * down
     controls.head_rad[:, 0] -= 0.45 * down
     controls.knee_out_rad[:] += (0.2 * down)[:, None]
-    lift_rad = float(rng.choice([rng.uniform(0.0, 0.5), rng.uniform(1.2, 1.9)]))  # arms left hanging, or for balance
+    lift_rad = float(rng.choice([rng.uniform(0.0, 0.5), rng.uniform(1.2, 1.9)]))  # arms hanging, or raised for balance
     controls.arm_rad[:, :, 0] += (lift_rad * down)[:, None]
     controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]
     return controls

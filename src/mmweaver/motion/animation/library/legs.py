@@ -1,4 +1,4 @@
-"""On the spot with the legs: kicks, stamps, lifted legs, standing and hopping on one, hopping, lunges, marching."""
+"""Leg activities on the spot: kicks, stamps, raised legs, standing and hopping on one leg, lunges, marching."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ from mmweaver.motion.animation.step_context import StepContext
 
 
 def kicking(context: StepContext) -> Controls:
-    """Weight onto one leg, the other swings back, shoots forward with the knee stretching, and comes back."""
+    """Weight on one leg; the other swings back, shoots forward with the knee extending, and comes back."""
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     side = leg_side(context)
     high = (
@@ -55,7 +55,7 @@ def kicking(context: StepContext) -> Controls:
 
 
 def stamping(context: StepContext) -> Controls:
-    """One knee goes up and the foot comes down hard, flat."""
+    """One knee goes up and the foot comes down hard and flat."""
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     side = leg_side(context)
     for begin, lasts in repeats(context, 0.95, 0.75, 1.4):
@@ -70,7 +70,7 @@ def stamping(context: StepContext) -> Controls:
 
 
 def raising_leg(context: StepContext) -> Controls:
-    """The knee comes up in front, thigh about level, and goes down again."""
+    """The knee comes up in front until the thigh is about level, and goes down again."""
     controls, time_s = upright(context), context.time_s
     side = leg_side(context)
     high = float(context.rng.uniform(0.16, 0.24))
@@ -137,7 +137,7 @@ def hopping_on_one_leg(context: StepContext) -> Controls:
 
 
 def lunging(context: StepContext) -> Controls:
-    """A long step ahead with one leg, down until its thigh is nearly level, and back."""
+    """A long step ahead with one leg, down until the thigh is nearly level, and back."""
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
     side = leg_side(context)
     long = vary(context, 0.38, 0.06)
@@ -168,7 +168,7 @@ def crouching(context: StepContext) -> Controls:
 
 
 def marching(context: StepContext) -> Controls:
-    """High knees on the spot, arms swinging with the other leg."""
+    """High knees on the spot, each arm swinging with the opposite leg."""
     style = gait.walking_style(context, 1.3)
     style = replace(
         style, steps_hz=context.tempo(1.5, 1.85, 2.2), double_support=0.12,

@@ -1,4 +1,4 @@
-"""What the movements of the library are put together from: moving a pelvis, a foot, a hand; repeating; smooth keys."""
+"""Building blocks of the library: moving pelvis, foot or hand, repetition, smooth keyframes."""
 
 from collections.abc import Sequence
 
@@ -18,7 +18,7 @@ OUTWARD = (1.0, -1.0)  # the sign of the body's y for what is outward on the lef
 
 
 def spline_through(time_s: PerTime, times: Sequence[float], values: Sequence[float]) -> PerTime:
-    """A curve through (times, values) that starts and ends at rest and stays there; C2 everywhere, smoother inside."""
+    """A quintic spline (n,) through keyframes (times, values), at rest at both ends and constant beyond; C2."""
     from scipy.interpolate import make_interp_spline
 
     rest = [(1, 0.0), (2, 0.0)]
@@ -27,24 +27,24 @@ def spline_through(time_s: PerTime, times: Sequence[float], values: Sequence[flo
 
 
 def sides(context: StepContext) -> tuple[int, ...]:
-    """Which arms act: as the sentence says, else as the seed has it (five of six people are right-handed)."""
+    """The arms that move: as the sentence says, else by the seed (five of six people are right-handed)."""
     chosen = context.step.hand or ("right" if context.rng.random() < 5 / 6 else "left")
     return {"left": (LEFT,), "right": (RIGHT,), "both": (LEFT, RIGHT)}[chosen]
 
 
 def one_side(context: StepContext) -> int:
-    """The one arm that acts; of both, the right."""
+    """The one arm that moves; of both, the right."""
     return sides(context)[-1]
 
 
 def leg_side(context: StepContext) -> int:
-    """The leg that acts: as said, else the right of five out of six."""
+    """The leg that moves: as the sentence says, else by the seed, the right one five times out of six."""
     chosen = context.step.foot or ("right" if context.rng.random() < 5 / 6 else "left")
     return LEFT if chosen == "left" else RIGHT
 
 
 def repeats(context: StepContext, natural_s: float, least_s: float, most_s: float) -> list[tuple[float, float]]:
-    """(start, seconds) of each repetition: as many as asked for, else one, in its natural time."""
+    """(start, duration) in seconds of each repetition: as many as the sentence asks for, else one."""
     count = max(context.step.count, 1)
     slower = (1.35, 1.0, 0.8)[context.step.speed + 1]
     wanted = natural_s * slower * float(np.exp(context.rng.normal(0, 0.07)))
@@ -55,7 +55,7 @@ def repeats(context: StepContext, natural_s: float, least_s: float, most_s: floa
 
 
 def cycles(context: StepContext, rate_hz: float, low_hz: float, high_hz: float) -> tuple[float, float]:
-    """Rate and end of a repeated movement: a count asked for fixes the rate as far as nature allows."""
+    """Rate in Hz and end in seconds of a periodic movement; a count in the sentence fixes the rate within limits."""
     if not context.step.count:
         return rate_hz, context.end_s
     rate = float(np.clip(context.step.count / max(context.duration_s - 0.2, 0.1), low_hz, high_hz))
@@ -63,12 +63,12 @@ def cycles(context: StepContext, rate_hz: float, low_hz: float, high_hz: float) 
 
 
 def vary(context: StepContext, value: float, spread: float = 0.12) -> float:
-    """A value with the natural variation between people and moments, never beyond twice the spread."""
+    """A value with log-normal variation, clipped at twice the spread."""
     return value * float(np.exp(np.clip(context.rng.normal(0, spread), -2 * spread, 2 * spread)))
 
 
 def shift_pelvis(controls: Controls, ahead: PerTime | float, left: PerTime | float, up: PerTime | float) -> None:
-    """Moves the pelvis in the direction the body faces, to its left, and up; metres."""
+    """Moves the pelvis ahead, to the body's left, and up; metres, (n,) or constant."""
     cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
     controls.pelvis_m[:, 0] += ahead * cos - left * sin
     controls.pelvis_m[:, 1] += ahead * sin + left * cos
@@ -78,7 +78,7 @@ def shift_pelvis(controls: Controls, ahead: PerTime | float, left: PerTime | flo
 def shift_foot(
     controls: Controls, side: int, ahead: PerTime | float, out: PerTime | float, up: PerTime | float
 ) -> None:
-    """Moves a foot ahead, outward and up; metres."""
+    """Moves a foot ahead, outward and up; metres, (n,) or constant."""
     cos, sin = np.cos(controls.heading_rad), np.sin(controls.heading_rad)
     left = OUTWARD[side] * out
     controls.foot_m[:, side, 0] += ahead * cos - left * sin
@@ -87,13 +87,13 @@ def shift_foot(
 
 
 def lift_weight(controls: Controls, side: int, air: PerTime) -> None:
-    """Takes weight from a foot as `air` goes to 1; both knees go soft."""
+    """Takes the weight off a foot as `air` (n,) goes to 1; both knees bend slightly."""
     controls.contact[:, side] -= air
     controls.knee_room[:] = np.maximum(controls.knee_room, 0.8 * air)
 
 
 def lean_over(controls: Controls, body: SkeletonProportions, side: int, share: PerTime) -> None:
-    """Brings the body over one foot as `share` goes to 1, the trunk staying upright."""
+    """Shifts the body over one foot as `share` (n,) goes to 1; the trunk stays upright."""
     left = OUTWARD[side] * 0.043 * body.height_m * share
     shift_pelvis(controls, 0.0, left, 0.0)
     controls.spine_rad[:, 0] += -OUTWARD[side] * 0.05 * share
@@ -102,14 +102,14 @@ def lean_over(controls: Controls, body: SkeletonProportions, side: int, share: P
 def set_ankle(
     controls: Controls, body: SkeletonProportions, side: int, ankle_m: Float[Array, "n 3"], yaw: PerTime, pitch: PerTime
 ) -> None:
-    """Puts an ankle at a place (z from the floor) with the foot's yaw and pitch, whatever touches the floor."""
+    """Puts an ankle at a position (n, 3) in metres (z from the floor) with the foot's yaw and pitch (n,)."""
     controls.foot_rad[:, side, 0] = yaw
     controls.foot_rad[:, side, 1] = pitch
     controls.foot_m[:, side] = ankle_m - ankle_from_foot(body, yaw, pitch)
 
 
 def mix_arm(controls: Controls, side: int, arm: Float[Array, "n 4"], weight: PerTime) -> None:
-    """Brings an arm from where it is to `arm` as weight goes to 1."""
+    """Blends an arm's angles to `arm` (n, 4) as `weight` (n,) goes to 1."""
     controls.arm_rad[:, side] += weight[:, None] * (arm - controls.arm_rad[:, side])
 
 
@@ -117,17 +117,17 @@ def hand_to(
     controls: Controls, body: SkeletonProportions, side: int, target: Float[Array, "n 3"], weight: PerTime,
     elbow: tuple[float, float, float] = (-0.3, 0.5, -1.0),
 ) -> None:  # fmt: skip
-    """Brings a wrist to a place: ahead, outward and up of spine3 in the chest's frame, in shares of the height."""
+    """Brings a wrist to a target (n, 3): ahead, outward and up of spine3 in the chest's frame, in body heights."""
     mix_arm(controls, side, reach(body, target * body.height_m, elbow=elbow), weight)
 
 
 def place(ahead: PerTime | float, out: PerTime | float, up: PerTime | float, n: int) -> Float[Array, "n 3"]:
-    """A target for `hand_to` from three curves or numbers."""
+    """A target (n, 3) for `hand_to` from three curves (n,) or constants."""
     return np.stack([np.broadcast_to(np.asarray(part, dtype=float), (n,)) for part in (ahead, out, up)], axis=1)
 
 
 def crouched(controls: Controls, body: SkeletonProportions, depth: PerTime, *, lean_rad: float) -> None:
-    """Sinks by a share of the deepest squat: hips back, trunk forward, knees over the feet."""
+    """Lowers the body by a share (n,) of the deepest squat: hips back, trunk forward, knees over the feet."""
     knee = np.radians(118.0)
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
     back = 0.12 * body.height_m

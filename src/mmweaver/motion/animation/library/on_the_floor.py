@@ -1,7 +1,7 @@
 """On the floor: kneeling, lying down on the back or the belly, falling, and getting up again.
 
-Who is on the floor is posed by the same controls: the pelvis's height and pitch, and where knees point.
-The root stays where the feet stood; somebody on the back lies behind it, on the belly ahead of it.
+The same controls pose a body on the floor: the pelvis's height and pitch, and where the knees point. The root stays
+where the feet stood; on the back the body lies behind it, on the belly ahead of it.
 """
 
 import numpy as np
@@ -15,10 +15,10 @@ from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
 PerTime = Float[Array, " n"]
-KNEELING_M = 0.316  # of the height: the pelvis over the floor, thighs upright
-LYING_M = 0.075  # of the height: the pelvis over the floor
-BACK_BEHIND_M = 0.36  # of the height: the pelvis of who lies on the back behind the root
-BELLY_AHEAD_M = 0.648  # of the height: the pelvis of who lies on the belly ahead of the root
+KNEELING_M = 0.316  # of the height: of the pelvis above the floor, thighs vertical
+LYING_M = 0.075  # of the height: of the pelvis above the floor
+BACK_BEHIND_M = 0.36  # of the height: from the root back to the pelvis, lying on the back
+BELLY_AHEAD_M = 0.648  # of the height: from the root ahead to the pelvis, lying on the belly
 
 
 def kneeling_down(context: StepContext) -> Controls:
@@ -36,7 +36,7 @@ def rising_from_knees(context: StepContext) -> Controls:
 
 
 def _kneeling(context: StepContext, u: PerTime) -> Controls:
-    """u = 0 standing, 1 on the knees: one foot goes back, its knee down, then the other's."""
+    """u (n,) = 0 standing, 1 on the knees: one foot moves back and its knee down, then the other's."""
     controls, body, h = upright(context), context.body, context.body.height_m
     first = LEFT if context.step.foot == "left" else RIGHT
     feet = ((first, 0.0),) if context.step.style == "knee" else ((first, 0.0), (1 - first, 0.45))
@@ -61,13 +61,13 @@ def lying_down(context: StepContext) -> Controls:
 
 
 def falling(context: StepContext) -> Controls:
-    """Out of balance and down within about a second."""
+    """Loss of balance, and down within about a second."""
     lasts = float(np.clip(0.9 * context.duration_s, 1.15, (1.7, 1.4, 1.2)[context.step.speed + 1]))
     return _down(context, (context.time_s - context.start_s) / lasts, falls=True)
 
 
 def lying(context: StepContext) -> Controls:
-    """Still but for breathing and a little of the arms."""
+    """Lying still, with breathing and slight movement of the arms."""
     return _down(context, np.ones_like(context.time_s), falls=False)
 
 
@@ -81,7 +81,7 @@ def _down(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
 
 
 def _on_back(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
-    """Down over the heels to sit on the floor, then the trunk goes back; the knees stay bent, the soles down."""
+    """Down over the heels to sit on the floor, then the trunk leans back; knees bent, soles on the floor."""
     controls, body, h = upright(context), context.body, context.body.height_m
     stand = body.pelvis_height_m(STAND_STRETCH)
     at = [0.0, 0.3, 0.55, 0.75, 1.0]
@@ -108,7 +108,7 @@ def _on_back(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
 
 
 def _on_belly(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
-    """Forward: the knees give, the trunk tips over the toes, the arms go ahead, and the body lies stretched out."""
+    """Forward: the knees give way, the trunk tips over the toes, the arms reach ahead, the body lies stretched out."""
     controls, body, h = upright(context), context.body, context.body.height_m
     stand = body.pelvis_height_m(STAND_STRETCH)
     at = [0.0, 0.3, 0.52, 0.78, 1.0]

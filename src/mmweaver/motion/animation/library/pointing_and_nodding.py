@@ -1,4 +1,4 @@
-"""What people say with head and arms: pointing, nodding, shaking the head, looking about, arms crossed or out."""
+"""Communication with head and arms: pointing, nodding, shaking the head, looking around, crossed or held-out arms."""
 
 import numpy as np
 
@@ -18,20 +18,20 @@ from mmweaver.motion.animation.step_context import StepContext
 
 
 def _held(context: StepContext, up_s: float = 0.6) -> np.ndarray:
-    """0, up within the step's beginning, down before its end where something follows; 1 all along if alone."""
+    """(n,) rises to 1 at the step's start and falls at its end, unless no step is before or after."""
     move = min(up_s, 0.4 * context.duration_s)
     begin = rise((context.time_s - context.start_s) / move) if not context.first else np.ones_like(context.time_s)
     return begin if context.last else begin * rise((context.end_s + 0.2 - context.time_s) / move)
 
 
 def pointing(context: StepContext, controls: Controls) -> Controls:
-    """An arm stretched towards where is said (the viewer's left or right), ahead if nothing is."""
+    """An arm stretched towards the given side (the viewer's left or right), ahead if none is given."""
     time_s, rng = context.time_s, context.rng
     side = one_side(context)
     goal = {"left": np.pi, "right": 0.0, "forwards": None, "": None}.get(context.step.facing or context.step.direction)
     if goal is None:
         aside = float(rng.uniform(-0.5, 0.1))
-    else:  # how far to the body's left it lies
+    else:  # the angle to the body's left
         left = (goal - float(np.median(controls.heading_rad)) + np.pi) % (2 * np.pi) - np.pi
         if not context.step.hand:
             side = LEFT if left > 0 else RIGHT
@@ -68,7 +68,7 @@ def shaking_head(context: StepContext, controls: Controls) -> Controls:
 
 
 def looking_around(context: StepContext, controls: Controls) -> Controls:
-    """To one side, to the other, the trunk following a little; to one side only where one is said."""
+    """To one side and the other, the trunk following slightly; to one side only where one is given."""
     time_s, first = context.time_s, float(context.rng.choice([-1.0, 1.0]))
     wide = float(context.rng.uniform(0.7, 1.0))
     facing = context.step.facing or context.step.direction
@@ -89,7 +89,7 @@ def looking_around(context: StepContext, controls: Controls) -> Controls:
 
 
 def crossing_arms(context: StepContext, controls: Controls) -> Controls:
-    """Forearms over each other before the chest."""
+    """Forearms crossed in front of the chest."""
     held, n = _held(context, 0.9), len(context.time_s)
     over = int(context.rng.integers(2))
     for side in (LEFT, RIGHT):
@@ -107,7 +107,7 @@ def hands_on_hips(context: StepContext, controls: Controls) -> Controls:
 
 
 def shrugging(context: StepContext, controls: Controls) -> Controls:
-    """Forearms turn out and up, the head goes to one side, and all drops again."""
+    """Forearms turn out and up, the head tilts to one side, and all drops again."""
     tilt = float(context.rng.choice([-1.0, 1.0]) * context.rng.uniform(0.05, 0.15))
     for begin, lasts in repeats(context, 1.2, 0.9, 1.8):
         up = plateau(context.time_s, begin, begin + lasts, 0.35 * lasts, 0.4 * lasts)
@@ -120,7 +120,7 @@ def shrugging(context: StepContext, controls: Controls) -> Controls:
 
 
 def arms_out(context: StepContext, controls: Controls) -> Controls:
-    """Straight arms held out: to the sides (as in a T), or ahead where that is said."""
+    """Straight arms held out: to the sides (as in a T), or ahead where the sentence says so."""
     held, n = _held(context, 0.9), len(context.time_s)
     ahead = context.step.direction == "forwards"
     tired = 0.03 * wander(context.time_s, context.rng, slow_hz=0.2, fast_hz=0.9)

@@ -11,11 +11,11 @@ from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
-PELVIS_OVER_SEAT = 0.068  # of the height: from the seat's surface to the pelvis joint
+PELVIS_OVER_SEAT = 0.068  # of the body height: from the seat's surface up to the pelvis joint
 
 
 def pelvis_behind_feet_m(body: SkeletonProportions, seat_height_m: float) -> float:
-    """How far the seated pelvis is behind the root: shins about upright, on a high seat stretched."""
+    """How far in metres the seated pelvis is behind the root: shins about vertical, on a high seat extended."""
     hip = seat_height_m + PELVIS_OVER_SEAT * body.height_m - body.hip_below_pelvis_m
     drop = hip - body.ankle_height_m - body.shank_m * 0.985  # hip over knee
     return float(np.sqrt(body.thigh_m**2 - min(drop, 0.7 * body.thigh_m) ** 2) + ANKLE_BEHIND * body.height_m - 0.03)
@@ -38,7 +38,7 @@ def standing_up(context: StepContext) -> Controls:
 
 
 def _seated(context: StepContext, u: Float[Array, " n"]) -> Controls:
-    """u = 0 standing, 1 seated; between, the way of the pelvis from one to the other."""
+    """u (n,) = 0 standing, 1 seated; in between the pelvis moves from one to the other."""
     controls, body = upright(context), context.body
     heading = controls.heading_rad
     back = rise(u / 0.85) * pelvis_behind_feet_m(body, context.seat_height_m)
@@ -61,7 +61,7 @@ def _seated(context: StepContext, u: Float[Array, " n"]) -> Controls:
 
 
 def _settled_s(context: StepContext) -> float:
-    """When the root has all but stopped turning, in seconds; a seat is taken only then."""
+    """Time in seconds when the root has almost stopped turning: sitting down begins only then."""
     late = context.start_s + np.linspace(0, max(context.duration_s, 0.1), 60)
     left = np.abs(context.path.facing_rad(late) - context.path.facing_rad(late[-1:])[0])
     turning = np.flatnonzero(left > 0.6)

@@ -1,4 +1,4 @@
-"""Standing: the pose that every other activity starts from and returns to, never quite still."""
+"""Standing: the pose that every other activity starts from and returns to, with sway and breathing."""
 
 import numpy as np
 from jaxtyping import Float
@@ -11,9 +11,9 @@ from mmweaver.motion.animation.step_context import StepContext
 Array = np.ndarray
 SIDE_SIGN = np.array([1.0, -1.0])  # left, right
 
-STAND_STRETCH = 0.9955
+STAND_STRETCH = 0.9955  # of the legs' length
 ANKLE_BEHIND = 0.022  # of the height: the pelvis is a little in front of the ankles
-HALF_STANCE = 0.056
+HALF_STANCE = 0.056  # of the height: from the middle to a foot
 TOES_OUT_RAD = 0.12
 ARM_HANGING = (-0.02, 0.13, 0.0, 0.22)  # flexion, abduction, twist, elbow
 
@@ -24,7 +24,7 @@ def home_feet(
     heading_rad: Float[Array, " n"],
     half_stance: float = HALF_STANCE,
 ) -> Float[Array, "n 2 3"]:
-    """Where the feet stand under a root, flat on the floor, (n, 2, 3)."""
+    """Positions (n, 2, 3) in metres of both feet, flat on the floor, for roots (n, 2) and headings (n,)."""
     aside = SIDE_SIGN * half_stance * body.height_m
     behind = -ANKLE_BEHIND * body.height_m
     cos, sin = np.cos(heading_rad)[:, None], np.sin(heading_rad)[:, None]
@@ -78,7 +78,7 @@ def _sway(controls: Controls, time_s: Float[Array, " n"], rng: np.random.Generat
 
 
 def standing(context: StepContext) -> Controls:
-    """Standing still; turning on the spot is stepping, not this."""
+    """Standing still. Turning on the spot takes steps; see `gait.turning`."""
     controls = upright(context)
     controls.head_rad[:, 1] += 0.1 * wander(context.time_s, context.rng, slow_hz=0.05, fast_hz=0.25)
     return controls

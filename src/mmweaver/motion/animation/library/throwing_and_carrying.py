@@ -1,4 +1,4 @@
-"""Arms with the whole trunk behind them: throwing, pushing, pulling, carrying, reaching, a golf swing."""
+"""Arm activities that involve the whole trunk: throwing, pushing, pulling, carrying, reaching, a golf swing."""
 
 import numpy as np
 from jaxtyping import Float
@@ -21,7 +21,7 @@ Array = np.ndarray
 PerTime = Float[Array, " n"]
 
 
-# Arm angles (flexion, abduction, twist, elbow) of a throw, and at which share of its time.
+# Keyframes of a throw, overarm and underarm: share of its time, then flexion, abduction, twist, elbow.
 _OVER = ((0.0, -0.02, 0.13, 0.0, 0.22), (0.4, -0.1, 1.35, 1.35, 1.6), (0.66, 1.45, 0.45, 0.4, 0.5),
          (0.8, 0.85, 0.1, 0.1, 0.5), (1.0, -0.02, 0.13, 0.0, 0.22))  # fmt: skip
 _UNDER = ((0.0, -0.02, 0.13, 0.0, 0.22), (0.4, -0.75, 0.25, 0.0, 0.2), (0.66, 1.05, 0.15, 0.0, 0.3),
@@ -29,13 +29,13 @@ _UNDER = ((0.0, -0.02, 0.13, 0.0, 0.22), (0.4, -0.75, 0.25, 0.0, 0.2), (0.66, 1.
 
 
 def keyed_arm(time_s: PerTime, begin_s: float, lasts_s: float, keys: tuple[tuple[float, ...], ...]) -> Array:
-    """Arm angles (n, 4) that flow through keys of (share of the time, flexion, abduction, twist, elbow)."""
+    """Arm angles (n, 4) interpolated through keyframes of (share of the time, flexion, abduction, twist, elbow)."""
     at = [begin_s + key[0] * lasts_s for key in keys]
     return np.stack([spline_through(time_s, at, [key[angle] for key in keys]) for angle in range(1, 5)], axis=1)
 
 
 def throwing(context: StepContext, controls: Controls) -> Controls:
-    """The hand goes back beside the ear, the trunk turns with it, then both shoot forward and follow through."""
+    """The hand goes back next to the ear and the trunk turns with it, then both move forward and follow through."""
     time_s, side = context.time_s, one_side(context)
     sign = 1.0 if side == LEFT else -1.0
     under = context.step.style == "under" or context.rng.random() < 0.2
@@ -52,7 +52,7 @@ def throwing(context: StepContext, controls: Controls) -> Controls:
 
 
 def pushing(context: StepContext, controls: Controls) -> Controls:
-    """Palms before the chest, then away with the trunk leaning in, and back."""
+    """Palms in front of the chest, then away with the trunk leaning in, and back."""
     time_s, n = context.time_s, len(context.time_s)
     hands = sides(context) if context.step.hand else (LEFT, RIGHT)
     for begin, lasts in repeats(context, 1.6, 1.1, 2.6):
@@ -66,7 +66,7 @@ def pushing(context: StepContext, controls: Controls) -> Controls:
 
 
 def pulling(context: StepContext, controls: Controls) -> Controls:
-    """Stretched hands close on something ahead and draw it to the body, the trunk leaning back, again and again."""
+    """Stretched arms pull something towards the body, the trunk leaning back, again and again."""
     time_s, n = context.time_s, len(context.time_s)
     hands = sides(context) if context.step.hand else (LEFT, RIGHT)
     each = context.tempo(1.8, 1.4, 1.1)
@@ -84,7 +84,7 @@ def pulling(context: StepContext, controls: Controls) -> Controls:
 
 
 def carrying(context: StepContext, controls: Controls) -> Controls:
-    """Something before the belly in both hands, which swing with nothing but the trunk; or hanging from one hand."""
+    """Something held in both hands in front of the belly, moving with the trunk; or hanging from one hand."""
     n = len(context.time_s)
     if context.step.hand in ("left", "right"):
         side = LEFT if context.step.hand == "left" else RIGHT
@@ -99,7 +99,7 @@ def carrying(context: StepContext, controls: Controls) -> Controls:
 
 
 def reaching(context: StepContext, controls: Controls) -> Controls:
-    """A hand goes to something ahead at table height, closes, and comes back with it."""
+    """A hand reaches for something ahead at table height and comes back with it."""
     time_s, n, hands = context.time_s, len(context.time_s), sides(context)
     up = float(context.rng.uniform(-0.08, 0.03))
     for begin, lasts in repeats(context, 1.7, 1.1, 2.6):
@@ -113,7 +113,7 @@ def reaching(context: StepContext, controls: Controls) -> Controls:
     return controls
 
 
-# The arm on the far side of the ball's way back, and the near one; the swing through mirrors them.
+# Keyframes of the arm far from the backswing, and of the near one; the follow-through mirrors them.
 _FAR = ((0.0, 0.45, -0.1, 0.0, 0.15), (0.18, 0.45, -0.1, 0.0, 0.1), (0.48, 1.35, -0.55, 0.0, 0.2),
         (0.66, 0.45, -0.12, 0.0, 0.1), (0.84, 1.1, 0.2, 0.0, 1.2), (1.0, 0.45, -0.1, 0.0, 0.15))  # fmt: skip
 _NEAR = ((0.0, 0.45, -0.1, 0.0, 0.15), (0.18, 0.45, -0.1, 0.0, 0.1), (0.48, 1.1, 0.2, 0.0, 1.2),
@@ -121,9 +121,11 @@ _NEAR = ((0.0, 0.45, -0.1, 0.0, 0.15), (0.18, 0.45, -0.1, 0.0, 0.1), (0.48, 1.1,
 
 
 def golf_swing(context: StepContext, controls: Controls) -> Controls:
-    """Both hands together before the trunk: back up over one shoulder, down through, and up over the other."""
+    """Both hands together in front of the trunk: up over one shoulder, down, and up over the other."""
     time_s = context.time_s
-    near, back = (LEFT, 1.0) if context.step.hand == "left" else (RIGHT, -1.0)  # to the right of a right-handed player
+    near, back = (
+        (LEFT, 1.0) if context.step.hand == "left" else (RIGHT, -1.0)
+    )  # backswing to the right of a right-handed player
     for begin, lasts in repeats(context, 2.1, 1.6, 3.0):
         at = [begin + share * lasts for share in (0.0, 0.18, 0.48, 0.66, 0.84, 1.0)]
         on = plateau(time_s, begin - 0.1, begin + lasts + 0.1, 0.2 * lasts, 0.2 * lasts)

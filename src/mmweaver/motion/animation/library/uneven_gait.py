@@ -1,4 +1,4 @@
-"""Going otherwise than straight and even: sideways, limping, staggering, and what a push makes of it."""
+"""Irregular gait: sidestepping, limping, staggering, and stumbling after a push."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from mmweaver.motion.animation.step_context import StepContext
 
 
 def sidestepping(context: StepContext) -> Controls:
-    """One foot goes wide, the other closes: feet never cross."""
+    """One foot steps out, the other closes; the feet never cross."""
     speed, h = cruise_mps(context), context.body.height_m
     steps_hz = context.tempo(1.5, 1.8, 2.3)
     style = walking_style(context, max(speed, 0.4))
@@ -55,7 +55,7 @@ def staggering(context: StepContext) -> Controls:
 
 
 def stumbling(context: StepContext) -> Controls:
-    """A jolt: the trunk is left behind, quick steps catch up with the way gone, the arms fly out for balance."""
+    """After a push the trunk lags behind, quick steps catch up, and the arms fly out for balance."""
     style = walking_style(context, 1.2)
     style = replace(
         style, steps_hz=context.tempo(2.3, 2.7, 3.0), double_support=0.05, arm_swing_rad=0.1, toe_off_rad=0.35,

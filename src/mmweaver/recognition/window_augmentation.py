@@ -1,7 +1,7 @@
-"""Copies of a generated window as a worse board in a worse room would report it: points lost, points of the room added.
+"""Augmentation of generated windows: points are dropped, clutter and false points added, time and sides reversed.
 
-What decides which weak points a real board reports (its threshold, its antennas, cables, furniture) cannot be known
-beforehand, so a recogniser should not depend on it. Copies cost hundredths of what a new window costs.
+Which weak points a real board reports (thresholds, antennas, cables, furniture) is unknown beforehand, so a recogniser
+should not depend on it. A copy costs a hundredth of a new window.
 """
 
 from dataclasses import dataclass, replace
@@ -14,14 +14,13 @@ from mmweaver.recognition.window_features import SPEED_EDGES_MPS, STILL_MPS
 
 
 @dataclass(frozen=True, kw_only=True)
-class Disturbance:
-    """How much is lost and added at most; each copy draws its own.
+class WindowAugmentation:
+    """Limits of the augmentation; each copy samples its own values.
 
-    Moving points and those at rest are kept with a chance between the lowest given and 1, frames as a whole are lost,
-    and some points of the slowest velocity are reported at rest. `most_things` things that rest add up to three
-    neighbouring cells of range each, full always or now and then; `false_points` is the highest mean number of moving
-    points that belong to nobody. Half of the copies run backwards in time (which turns velocities round),
-    half are mirrored.
+    Moving and static points are kept with a probability between the given minimum and 1, whole frames are dropped, and
+    some points of the slowest velocity are reported as static. Up to `most_things` static objects add up to three
+    neighbouring range cells each, detected always or intermittently; `false_points` is the largest mean number of
+    moving false alarms. Half of the copies are reversed in time (with the sign of velocity), half are reflected.
     """
 
     least_moving: float = 0.35
@@ -37,14 +36,16 @@ class Disturbance:
 Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
 
 
-def disturbed(window: PointRecording, rng: np.random.Generator, how: Disturbance | None = None) -> PointRecording:
-    """One copy. The levels of its points (`snr_db`) are not kept."""
-    how = how or Disturbance()
+def augmented(
+    window: PointRecording, rng: np.random.Generator, how: WindowAugmentation | None = None
+) -> PointRecording:
+    """One augmented copy of a window; `snr_db` becomes nan."""
+    how = how or WindowAugmentation()
     cloud, frames = window.cloud, window.num_frames
     columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
     body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
-    body = _turned_round(body, frames, rng)
-    parts = [body, *_things(frames, how, rng), _false_points(frames, how, rng)]
+    body = _reversed(body, frames, rng)
+    parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng)]
     frame, columns = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     order = np.argsort(frame, kind="stable")
     frame, (x, y, z, velocity) = frame[order], columns[order].T
@@ -58,8 +59,10 @@ def disturbed(window: PointRecording, rng: np.random.Generator, how: Disturbance
     )  # fmt: skip
 
 
-def _thinned(frame: np.ndarray, columns: np.ndarray, frames: int, how: Disturbance, rng: np.random.Generator) -> Points:
-    """Loses points, frames, and the velocity of slow points; three copies in ten lose no single points."""
+def _thinned(
+    frame: np.ndarray, columns: np.ndarray, frames: int, how: WindowAugmentation, rng: np.random.Generator
+) -> Points:
+    """Drops points, frames, and the velocity of slow points; three copies in ten drop no single points."""
     speed = np.abs(columns[:, 3])
     spared = rng.random() < 0.3
     moving, resting = (1.0 if spared else rng.uniform(least, 1.0) for least in (how.least_moving, how.least_resting))
@@ -71,16 +74,16 @@ def _thinned(frame: np.ndarray, columns: np.ndarray, frames: int, how: Disturban
     return frame[kept], columns[kept]
 
 
-def _turned_round(points: Points, frames: int, rng: np.random.Generator) -> Points:
-    """Backwards in time, and mirrored, each by a coin."""
+def _reversed(points: Points, frames: int, rng: np.random.Generator) -> Points:
+    """Reverses time and reflects left-right, each with probability 1/2."""
     frame, columns = points
-    backwards, mirrored = rng.random(2) < 0.5
-    columns = columns * np.array([-1.0 if mirrored else 1.0, 1.0, 1.0, -1.0 if backwards else 1.0])
+    backwards, reflected = rng.random(2) < 0.5
+    columns = columns * np.array([-1.0 if reflected else 1.0, 1.0, 1.0, -1.0 if backwards else 1.0])
     return (frames - 1 - frame if backwards else frame), columns
 
 
-def _things(frames: int, how: Disturbance, rng: np.random.Generator) -> list[Points]:
-    """Things that rest, at any distance, full always or now and then."""
+def _static_objects(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> list[Points]:
+    """Static objects at any range, detected always or intermittently."""
     found = []
     for _ in range(int(rng.integers(how.most_things + 1))):
         nearest_m, aside = rng.uniform(0.9, 5.5), rng.normal(0, 0.3)
@@ -93,8 +96,8 @@ def _things(frames: int, how: Disturbance, rng: np.random.Generator) -> list[Poi
     return found
 
 
-def _false_points(frames: int, how: Disturbance, rng: np.random.Generator) -> Points:
-    """Moving points that belong to nobody."""
+def _false_points(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> Points:
+    """Moving false alarms."""
     number = int(rng.poisson(float(rng.choice([0.0, 0.0, how.false_points / 4, how.false_points]))))
     range_m, aside = rng.uniform(1, 5, number), rng.normal(0, 0.4, number)
     velocity = rng.choice([-1.0, 1.0], number) * rng.choice([0.615, 1.23], number)

@@ -1,4 +1,4 @@
-"""Recordings of people on disk: RadHAR's published text files, and the same as .npz.
+"""Point-cloud recordings on disk: RadHAR's published text files, and .npz.
 
 Axes of these files: x ahead, y to the left, z up, velocity positive = receding. Reference: Singh et al., "RadHAR:
 Human Activity Recognition from Point Clouds Generated through a Millimeter-wave Radar", 2019; its public repository.
@@ -20,30 +20,30 @@ NUMBERS = ("point_id", "x", "y", "z", "velocity")
 LINE = re.compile(rb"^(point_id|x|y|z|velocity): *(\S+)", re.MULTILINE)
 
 
-def read_recordings(
+def read_point_recordings(
     folder: Path | str, labels: Iterable[str], *, frame_rate_hz: float = FRAME_RATE_HZ
 ) -> list[PointRecording]:
-    """Every .txt and .npz recording in a folder and its subfolders, by name.
+    """Reads every .txt and .npz recording in a folder and its subfolders, sorted by name.
 
-    The activity is the one whose name is a subfolder's, or is a word of the file's name ("Train_walk_3.npz"). Raises
-    InputError where there is none, where a file names no activity or several, or cannot be read.
+    The activity is the name of a subfolder, or a word of the file name ("Train_walk_3.npz"). Raises InputError for an
+    empty folder, and for a file that names no activity or several, or cannot be read.
     """
     folder, known = Path(folder), tuple(labels)
     if not folder.is_dir():
-        raise InputError(f"{folder} is no folder; name the one that holds the recordings (.txt or .npz)")
+        raise InputError(f"{folder} is not a folder; give the one that holds the recordings (.txt or .npz)")
     files = sorted(path for path in folder.rglob("*") if path.suffix in (".txt", ".npz") and path.is_file())
     if not files:
         raise InputError(f"{folder} holds no recordings; .txt as RadHAR publishes them or .npz are read")
-    return [read_recording(path, _label(path, folder, known), frame_rate_hz) for path in files]
+    return [read_point_recording(path, _label(path, folder, known), frame_rate_hz) for path in files]
 
 
-def read_recording(path: Path, label: str = "", frame_rate_hz: float = FRAME_RATE_HZ) -> PointRecording:
-    """One recording. Raises InputError where the file holds none."""
+def read_point_recording(path: Path, label: str = "", frame_rate_hz: float = FRAME_RATE_HZ) -> PointRecording:
+    """Reads one recording. Raises InputError for other files."""
     frame, columns = _from_npz(path) if path.suffix == ".npz" else _from_text(path)
     if len(frame) == 0:
         raise InputError(f"{path} holds no points; leave it out")
     if not np.isfinite(columns).all() or (np.diff(frame) < 0).any():
-        raise InputError(f"{path} holds numbers that are none, or frames out of order; leave it out")
+        raise InputError(f"{path} holds values that are not finite, or frames out of order; leave it out")
     ahead, left, up, velocity = columns.T.astype(float)
     cloud = PointCloud(
         frame=frame - frame[0], x_m=-left, y_m=ahead, z_m=up, radial_velocity_mps=velocity,
@@ -61,7 +61,7 @@ def _label(path: Path, folder: Path, known: tuple[str, ...]) -> str:
     found = by_folder or [name for name in known if name in words]
     if len(found) != 1:
         raise InputError(
-            f"{path} does not say what is done in it; put it into a folder named {', '.join(known[:-1])} or {known[-1]}"
+            f"{path} does not name its activity; put it into a folder named {', '.join(known[:-1])} or {known[-1]}"
         )
     return found[0]
 
@@ -79,7 +79,7 @@ def _from_npz(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _from_text(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """One message a point, as `rostopic echo` prints it; point 0 begins a frame."""
+    """One message per point, as `rostopic echo` prints it; point 0 starts a frame."""
     found: dict[bytes, list[bytes]] = {name.encode(): [] for name in NUMBERS}
     for name, value in LINE.findall(path.read_bytes()):
         found[name].append(value)
@@ -89,5 +89,5 @@ def _from_text(path: Path) -> tuple[np.ndarray, np.ndarray]:
     except ValueError:
         raise InputError(f"{path} is no RadHAR text file; each point needs point_id, x, y, z and velocity") from None
     if len(point) != len(table):
-        raise InputError(f"{path} ends in the middle of a point; mend or leave it out")
+        raise InputError(f"{path} ends in the middle of a point; repair or leave it out")
     return np.maximum(np.cumsum(point == 0) - 1, 0), table

@@ -3,8 +3,8 @@
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.disturbances import Disturbance, disturbed
 from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
 
 FRAMES = 60
 
@@ -20,7 +20,7 @@ def window() -> PointRecording:
     return PointRecording(name="one", cloud=cloud, num_frames=FRAMES, frame_rate_hz=30.0, label="walk")
 
 
-NOTHING = Disturbance(
+NOTHING = WindowAugmentation(
     least_moving=1.0, least_resting=1.0, frames_lost=0.0, slow_at_rest=0.0, most_things=0, false_points=0.0,
     tilt_rad=0.0,
 )  # fmt: skip
@@ -29,7 +29,7 @@ NOTHING = Disturbance(
 def test_with_nothing_to_disturb_only_time_and_sides_turn():
     seen = set()
     for seed in range(12):
-        cloud = disturbed(window(), np.random.default_rng(seed), NOTHING).cloud
+        cloud = augmented(window(), np.random.default_rng(seed), NOTHING).cloud
         backwards, mirrored = cloud.radial_velocity_mps.max() == 0, cloud.x_m.max() < 0
         seen.add((bool(backwards), bool(mirrored)))
         # what goes away, played backwards, comes nearer: range and velocity still agree
@@ -42,7 +42,7 @@ def test_with_nothing_to_disturb_only_time_and_sides_turn():
 def test_points_are_lost_and_added_within_bounds():
     counts = []
     for seed in range(40):
-        copy = disturbed(window(), np.random.default_rng(seed))
+        copy = augmented(window(), np.random.default_rng(seed))
         cloud = copy.cloud
         assert (np.diff(cloud.frame) >= 0).all()
         assert cloud.frame.min() >= 0
@@ -54,8 +54,8 @@ def test_points_are_lost_and_added_within_bounds():
 
 
 def test_things_rest_and_the_same_stream_gives_the_same_copy():
-    things = Disturbance(most_things=8, false_points=0.0, least_resting=1.0)
-    one, again = (disturbed(window(), np.random.default_rng(3), things).cloud for _ in range(2))
+    things = WindowAugmentation(most_things=8, false_points=0.0, least_resting=1.0)
+    one, again = (augmented(window(), np.random.default_rng(3), things).cloud for _ in range(2))
     assert np.array_equal(one.y_m, again.y_m)
     far = np.hypot(one.x_m, one.y_m) > 2.6
     assert far.any()
