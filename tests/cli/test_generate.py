@@ -58,7 +58,7 @@ def test_the_photo_of_a_capture_folder(tmp_path: Path, capsys: pytest.CaptureFix
     photo, _ = sample_photo()
     write_camera(tmp_path / "realsense", photo.intrinsics, [photo.depth_m] * 2, [photo.rgb] * 2)
     argv = ["generate", "--capture", str(tmp_path), "--photo", "1", "--text", WALK, "--out", str(tmp_path / "out")]
-    assert main([*argv, "--frames", "2"]) == 0
+    assert main([*argv, "--frames", "2", "--no-pictures"]) == 0
     capsys.readouterr()
     meta = json.loads((tmp_path / "out" / "meta.json").read_text())
     assert set(meta["inputs"]) == {"photo", "depth", "rgb"}
@@ -70,7 +70,7 @@ def test_the_photo_of_a_capture_folder(tmp_path: Path, capsys: pytest.CaptureFix
 
 
 def test_two_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    argv = ["generate", "--demo", "--text", WALK, "--text", "a man claps", "--frames", "3", "--out"]
+    argv = ["generate", "--demo", "--text", WALK, "--text", "a man claps", "--frames", "3", "--no-pictures", "--out"]
     assert main([*argv, str(tmp_path / "two"), "--at=-0.6,2.2", "--at", "0.5,2.0"]) == 0
     assert capsys.readouterr().out.count("person: ") == 2
     assert read_npz(tmp_path / "two" / "pose.npz")["joints_m"].shape == (2, 3, 22, 3)
@@ -84,7 +84,7 @@ def test_own_pictures(pictures: Path, depth: str, tmp_path: Path, capsys: pytest
     out = tmp_path / "walk"
     argv = ["generate", "--rgb", str(pictures / "rgb.png"), "--depth", str(pictures / depth)]
     argv += ["--camera", str(pictures / "camera.json"), "--text", WALK, "--out", str(out), "--frames", "3", "--json"]
-    assert main(argv) == 0
+    assert main([*argv, "--no-pictures"]) == 0
     summary = json.loads(capsys.readouterr().out)
     assert summary["out"] == str(out)
     meta = json.loads((out / "meta.json").read_text())
@@ -97,14 +97,14 @@ def test_without_a_camera_file_the_output_says_what_was_taken(
     pictures: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     argv = ["generate", "--rgb", str(pictures / "rgb.png"), "--depth", str(pictures / "depth.png"), "--text", WALK]
-    assert main([*argv, "--out", str(tmp_path / "walk"), "--frames", "2"]) == 0
+    assert main([*argv, "--out", str(tmp_path / "walk"), "--frames", "2", "--no-pictures"]) == 0
     assert "D455" in capsys.readouterr().out
 
 
 def test_a_bin_goes_back_through_process(tmp_path: Path):
     walk, again = tmp_path / "walk", tmp_path / "again"
     argv = ["generate", "--demo", "--out", str(walk), "--frames", "3", "--text", WALK, "--bin", "--quiet"]
-    assert main([*argv, "--iq-order", "qi", "--tx-order", "0,1,2"]) == 0
+    assert main([*argv, "--iq-order", "qi", "--tx-order", "0,1,2", "--no-pictures"]) == 0
     meta = json.loads((walk / "meta.json").read_text())["adc_data_bin"]
     assert (meta["iq_order"], meta["tx_order"]) == ("qi", [0, 1, 2])
     words = ["process", str(walk / "adc_data.bin"), "--radar", str(walk / "radar.json"), "--iq-order", "qi"]
@@ -134,7 +134,7 @@ def test_points_as_a_board_reports_them(tmp_path: Path):
     (tmp_path / "board.cfg").write_text(BOARD_CFG)
     out = tmp_path / "board"
     argv = ["generate", "--demo", "--radar", str(tmp_path / "board.cfg"), "--points", "firmware", "--frames", "10"]
-    assert main([*argv, "--text", WALK, "--out", str(out), "--quiet"]) == 0
+    assert main([*argv, "--text", WALK, "--out", str(out), "--quiet", "--no-pictures"]) == 0
     points = read_npz(out / "points.npz")
     assert len(points["frame"]) > 10
     assert np.mean(points["radial_velocity_mps"] == 0) < 0.4
@@ -208,7 +208,7 @@ PICTURES = ["--rgb", "rgb.png", "--depth", "depth.png", "--camera", "camera.json
         ([*PICTURES, "--radar", "nope"], "awr1843"),
         ([*PICTURES, "--radar", "lines.cfg"], "lines.cfg"),
         ([*PICTURES, "--radar", "missing.json"], "missing.json"),
-        ([*PICTURES, "--background", "nowhere"], "radar.npz"),
+        ([*PICTURES, "--background", "nowhere"], "does not exist"),
         ([*PICTURES, "--background", ".", "--bin"], "--background is for the network"),
         ([*PICTURES, "--method", "magic"], "physics"),
         ([*PICTURES, "--tx-order", "0,1"], "tx_order"),

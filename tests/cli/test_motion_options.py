@@ -33,7 +33,7 @@ def recorded(tmp_path: Path) -> Path:
 def test_a_recorded_motion_in_the_sample_room(recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "out"
     argv = ["generate", "--demo", "--motion", str(recorded), "--motion-fps", "30", "--frames", "5", "--out", str(out)]
-    argv += ["--at", "0.1,1.7", "--heading", "-20", "--height", "1.85"]
+    argv += ["--at", "0.1,1.7", "--heading", "-20", "--height", "1.85", "--no-pictures"]
     assert main(argv) == 0
     shown = capsys.readouterr().out
     assert "lengths of arm.npy are taken as cm" in shown
@@ -55,10 +55,10 @@ def test_a_recorded_motion_in_the_sample_room(recorded: Path, tmp_path: Path, ca
 def test_as_recorded(tmp_path: Path):
     """What mmweaver itself wrote goes back in at its own place."""
     first, again = tmp_path / "first", tmp_path / "again"
-    text = ["--text", "a person waves", "--frames", "6", "--quiet"]
+    text = ["--text", "a person waves", "--frames", "6", "--quiet", "--no-pictures"]
     assert main(["generate", "--demo", *text, "--out", str(first)]) == 0
     argv = ["generate", "--demo", "--motion", str(first / "pose.npz"), "--as-recorded", "--frames", "6", "--quiet"]
-    assert main([*argv, "--out", str(again)]) == 0
+    assert main([*argv, "--no-pictures", "--out", str(again)]) == 0
     one, other = (read_npz(folder / "pose.npz")["joints_m"] for folder in (first, again))
     np.testing.assert_allclose(other, one, atol=1e-4)
 
@@ -68,7 +68,7 @@ def test_as_recorded(tmp_path: Path):
     [
         (["--motion", "arm.npy"], "--motion-fps"),
         (["--motion", "none.bvh"], "there is no motion file"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "20"], r"lasts 1.00 s, 2.00 s were asked for"),
+        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "20"], r"lasts 1.00 s, 2.00 s are needed"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--motion-start", "4"], "cannot start at 4 s"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "5", "--at", "0.1,9"], "nearest free place"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--motion-unit", "ell"], "no unit of length"),

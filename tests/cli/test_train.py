@@ -25,7 +25,7 @@ def test_train_then_generate(tiny_signals: Path, tmp_path: Path, capsys: pytest.
     assert main(["train", "weaver", "--data", data, "--out", str(run), "--steps", "2", "--batch", "1", "--json"]) == 0
     weights = json.loads(capsys.readouterr().out)["weights"]
     words = ["generate", "--demo", "--method", "weaver", "--weights", weights, "--frames", "16", "--out", str(out)]
-    assert main([*words, "--quiet"]) == 0
+    assert main([*words, "--quiet", "--no-pictures"]) == 0
     with np.load(out / "radar.npz") as radar:
         assert radar["cube"].shape == (16, 64, 32, 12)
         assert np.isfinite(radar["cube"]).all()
@@ -109,7 +109,7 @@ def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.Ca
     text = "a person walks towards the radar"
     for name in ("one", "two"):
         words = ["generate", "--demo", "--text", text, "--frames", "6", "--out", str(tmp_path / name), "--quiet"]
-        assert main(words) == 0
+        assert main([*words, "--no-pictures"]) == 0
     capsys.readouterr()
     words = ["train", "weaver", "--from", str(start), "--captures", str(tmp_path / "one"), str(tmp_path / "two")]
     assert main([*words, "--out", str(tmp_path / "tuned"), "--steps", "3", "--batch", "1", "--json"]) == 0

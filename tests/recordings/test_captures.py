@@ -21,7 +21,9 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder of mmweaver generate."""
     out = tmp_path_factory.mktemp("capture") / "walk"
     weaver = Weaver("physics")
-    weaver.generate(weaver.sample_room(), "a person walks towards the radar", frames=8, seed=3).save(out)
+    weaver.generate(weaver.sample_room(), "a person walks towards the radar", frames=8, seed=3).save(
+        out, pictures=False
+    )
     return out
 
 
