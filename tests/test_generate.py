@@ -153,7 +153,7 @@ def test_every_method_takes_a_background_recording(method: str, room: Room, tmp_
     assert np.linalg.norm(again - made.cube.values) < 10 ** (-36 / 20) * np.linalg.norm(made.cube.values)
     with pytest.raises(InputError, match="other settings"):
         Weaver(method, radar="hupr").generate(known, TEXT, frames=2)
-    with pytest.raises(InputError, match=r"no radar\.npz"):
+    with pytest.raises(InputError, match="does not exist"):
         room.with_background(tmp_path / "nowhere")
 
 
