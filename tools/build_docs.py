@@ -42,6 +42,7 @@ def main() -> int:
     decisions = write_decision_index(source / "decisions")
     packages = write_references(source / "reference")
     write_gallery(source / "gallery")
+    (source / "reference" / "studies.md").write_text(list_of_studies(), encoding="utf-8")
     for page in source.rglob("*.md"):
         page.write_text(rewritten(page.read_text(encoding="utf-8"), page, source), encoding="utf-8")
     settings = (ROOT / "zensical.toml").read_text(encoding="utf-8")
@@ -114,6 +115,15 @@ def write_references(folder: Path) -> str:
         (folder / f"{package.name}.md").write_text(text, encoding="utf-8")
         entries.append(f'{{ "mmweaver.{package.name}" = "reference/{package.name}.md" }}')
     return ", ".join(entries)
+
+
+def list_of_studies() -> str:
+    """What `python -m studies list` prints."""
+    command = [sys.executable, "-m", "studies", "list"]
+    listed = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return (
+        f"# Studies\n\n`python -m studies run NAME` repeats one; `--help` lists its options.\n\n```text\n{listed}```\n"
+    )
 
 
 def command_line(parser: "Parser") -> str:

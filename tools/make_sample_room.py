@@ -14,7 +14,7 @@ from PIL import Image
 
 from mmweaver.core.records import CameraIntrinsics
 from mmweaver.core.seeding import stream
-from mmweaver.geometry.pinhole import unproject
+from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.geometry.ray_caster import RayCaster
 
 SAMPLE = Path(__file__).resolve().parents[1] / "src" / "mmweaver" / "sample"
@@ -460,7 +460,7 @@ def render(seed: int, lamp_samples: int, bounce_samples: int, oversampling: int)
     """The photo (height, width, 3) in 8 bits, and the exact depth along the optical axis in metres."""
     origin = np.array([0.0, 0.0, CAMERA_HEIGHT_M])
     renderer = Renderer(furnished_room(seed), seed, lamp_samples, bounce_samples)
-    pixels = unproject(np.ones((HEIGHT, WIDTH)), camera()).reshape(-1, 3)
+    pixels = viewing_rays(camera()).reshape(-1, 3)
     colour, light, glow = (np.zeros((HEIGHT * WIDTH, 3)) for _ in range(3))
     for turn in range(oversampling**2):
         shift = np.array([turn % oversampling, turn // oversampling]) / oversampling + (0.5 / oversampling - 0.5)

@@ -1,6 +1,7 @@
 """mmWeaver: a photo of a room and a sentence in, the I/Q signal of an FMCW MIMO radar out.
 
-Start at `Weaver`. Names are loaded when first used, so `import mmweaver` costs nothing.
+Start with `Weaver`. Names are imported when first used, so `import mmweaver` is cheap. `mmweaver.register` adds
+methods, radars, detectors, activities and encoders; `mmweaver.testing` checks them.
 """
 
 from importlib import import_module

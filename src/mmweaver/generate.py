@@ -51,7 +51,7 @@ class Weaver:
     samples, or a registered detector; `firmware` are the settings of TI's (default: what the radar's .cfg or preset
     says).
     `weights`: a file or folder of `mmweaver train`, or a Hub name, for the network, which then makes all signals;
-    `from_pretrained` is the short way. Raises InputError for what is not known.
+    `from_pretrained` is the short form. Raises InputError for unknown names.
     """
 
     def __init__(
@@ -88,9 +88,9 @@ class Weaver:
         cls, source: str | Path, radar: str | Path | RadarConfig | None = None, *, revision: str | None = None,
         **options: Any,
     ) -> "Weaver":  # fmt: skip
-        """A weaver whose signals a trained network writes.
+        """A weaver that uses a trained network.
 
-        `source`: a weight file, a folder of `mmweaver train`, or a name on the Hub (`revision`: which of its versions).
+        `source`: a weight file, a folder of `mmweaver train`, or a name on the Hub, at a `revision`.
         `radar` defaults to the one it was trained for; `options` as for the class. Raises InputError for files that are
         damaged, foreign or of another version.
         """
@@ -106,7 +106,7 @@ class Weaver:
         """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON.
 
         `seen`: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or `segmenter` and
-        `sam` (models) say what is what, so that materials follow from it. See `scene.read_photo.read_photo`.
+        `sam` (models) give the class of each pixel, from which materials follow. See `scene.read_photo.read_photo`.
         """
         stages = Stages(self._listener)
         with stages("read the photo"):
@@ -120,7 +120,7 @@ class Weaver:
     def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None, **seen: Any) -> Room:
         """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
 
-        `rgb`: a picture that takes the place of the frame of color.avi, where that cannot be decoded. `seen`:
+        `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `seen`:
         `classes`, `segmenter` and `sam` as in `read_room`.
         """
         stages = Stages(self._listener)
@@ -133,7 +133,7 @@ class Weaver:
         return self._reconstruct(whole, found.assumptions, inputs, stages)
 
     def sample_room(self) -> Room:
-        """The room that comes with the project."""
+        """The bundled sample room."""
         stages = Stages(self._listener)
         with stages("read the photo"):
             photo, assumptions = sample_photo()

@@ -1,4 +1,4 @@
-"""The folder of results: the same files and pictures whether a signal was made or recorded."""
+"""The folder of results: the same files and pictures for generated and recorded signals."""
 
 import dataclasses
 import hashlib
@@ -27,7 +27,7 @@ FILES = {
     "points.npz": "point cloud: frame, x, y, z in metres, radial velocity in m/s, SNR in dB",
     "adc_data.bin": "raw ADC samples as a DCA1000 writes them, int16",
     "radar.json": "the radar: chirp, array and frame; --radar reads it",
-    "meta.json": "all that is needed to make this again, and what was assumed",
+    "meta.json": "all that is needed to make this again, and the assumptions",
     "request.toml": "the options of this run; --config reads them",
     "preview.png": "one page of pictures",
     "preview.gif": "the same over time",
@@ -87,7 +87,7 @@ def save_results(
 
 
 def radar_meta(config: RadarConfig) -> dict[str, Any]:
-    """The radar and what follows from it, for meta.json."""
+    """The radar and its resolutions, for meta.json."""
     return {
         "radar": json.loads(config.to_json()),
         "resolution": {
@@ -100,7 +100,7 @@ def radar_meta(config: RadarConfig) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """Records, arrays and tuples as JSON knows them; nan and infinity, which JSON lacks, as None.
+    """Records, arrays and tuples as JSON types; nan and infinity, which JSON lacks, become None.
 
     >>> plain({"at": (1, np.float32(0.5)), "noise": float("nan")})
     {'at': [1, 0.5], 'noise': None}

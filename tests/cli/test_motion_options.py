@@ -68,7 +68,7 @@ def test_as_recorded(tmp_path: Path):
     [
         (["--motion", "arm.npy"], "--motion-fps"),
         (["--motion", "none.bvh"], "there is no motion file"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "20"], r"lasts 1.00 s, 2.00 s were asked for"),
+        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "20"], r"lasts 1.00 s, 2.00 s are needed"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--motion-start", "4"], "cannot start at 4 s"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "5", "--at", "0.1,9"], "nearest free place"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--motion-unit", "ell"], "no unit of length"),

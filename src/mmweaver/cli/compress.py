@@ -23,7 +23,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     """Declares the command and its options."""
     parser = commands.add_parser(
         "compress", help="store a recording in few bytes", epilog=EXAMPLES,
-        description="Stores a radar cube as moving scatterers, a static layer and what they leave, in a .mmw file.",
+        description="Stores a radar cube as moving scatterers, a static layer and their residual, in a .mmw file.",
     )  # fmt: skip
     parser.add_argument(
         "file",
@@ -32,24 +32,29 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         help="radar.npz or its folder, adc_data.bin of a DCA1000, raw ADC samples as .npy, a HuPR, mmMesh or RF-Genesis"
         " array, or a capture folder of mmwave-capture-std",
     )
-    parser.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the .mmw file to write")
-    rate = parser.add_mutually_exclusive_group(required=True)
-    rate.add_argument("--bytes", type=whole, metavar="N", help="size of the file at most")
-    rate.add_argument("--quality", type=number, metavar="DB", help="signal over error in the cells that hold signal")
-    parser.add_argument(
-        "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
+    source_options = parser.add_argument_group("input")
+    source_options.add_argument(
+        "--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: next to the .npz)"
     )
-    parser.add_argument(
-        "--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: that beside .npz)"
+    source_options.add_argument(
+        "--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample"
     )
-    parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
-    parser.add_argument(
+    source_options.add_argument(
         "--layout", metavar="NAME", help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis"
     )
-    add_layout_options(parser)
-    parser.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
-    parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    add_layout_options(source_options)
+    size = parser.add_argument_group("size and quality")
+    rate = size.add_mutually_exclusive_group(required=True)
+    rate.add_argument("--bytes", type=whole, metavar="N", help="size of the file at most")
+    rate.add_argument("--quality", type=number, metavar="DB", help="signal-to-error ratio in the cells with signal")
+    size.add_argument(
+        "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
+    )
+    output = parser.add_argument_group("output")
+    output.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the .mmw file to write")
+    output.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
+    output.add_argument("--json", action="store_true", help="print a machine-readable summary on stdout")
+    output.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
     return parser
 

@@ -1,4 +1,4 @@
-"""mmweaver dataset: rooms, people and motions made up, and the radar signal of each."""
+"""mmweaver dataset: procedural rooms, people and motions, and the radar signal of each."""
 
 import argparse
 from pathlib import Path
@@ -11,7 +11,7 @@ EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 120 --workers 4
   mmweaver dataset small/ --rooms "living_room,office" --layouts 2 --sequences 12
   mmweaver dataset light/ --geometry-only       # signals are made while training
-  mmweaver dataset data/ --workers 4            # after a kill: goes on where it stopped
+  mmweaver dataset data/ --workers 4            # after a kill: resumes where it stopped
   mmweaver dataset data/ --dry-run              # what it would hold and cost
   mmweaver dataset shared/data/ --ray-address auto --workers 64     # on a Ray cluster that sees the folder
 """
@@ -21,37 +21,40 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     """Declares the command and its options."""
     parser = commands.add_parser(
         "dataset",
-        help="make a data set of rooms, motions and radar signals",
+        help="generate a data set of rooms, motions and radar signals",
         epilog=EXAMPLES,
-        description="Makes furnished rooms, photographs them from the radar's place, lets people move in them and "
-        "writes the radar's signal, poses and photos as one Zarr group a room. The same settings give the same bits; "
-        "what is already there is kept, so it may be stopped and started again.",
+        description="Generates furnished rooms, renders them from the radar's position, lets people move in them and "
+        "writes radar signals, poses and photos as one Zarr group per room. The same settings give the same bits; "
+        "finished rooms are kept, so it may be stopped and started again.",
     )
     parser.add_argument("out", type=Path, metavar="OUT", help="folder of the data set")
-    parser.add_argument("--rooms", metavar="KIND,...", help="kinds of rooms (default: all)")
-    parser.add_argument("--layouts", type=whole, default=10, help="rearrangements of each kind (default 10)")
-    parser.add_argument("--sequences", type=whole, default=120, help="sequences in each room (default 120)")
-    parser.add_argument("--frames", type=whole, default=20, help="radar frames of each sequence (default 20)")
-    parser.add_argument(
+    content = parser.add_argument_group("content")
+    content.add_argument("--rooms", metavar="KIND,...", help="kinds of rooms (default: all)")
+    content.add_argument("--layouts", type=whole, default=10, help="furniture layouts of each kind (default 10)")
+    content.add_argument("--sequences", type=whole, default=120, help="sequences in each room (default 120)")
+    content.add_argument("--frames", type=whole, default=20, help="radar frames of each sequence (default 20)")
+    content.add_argument(
         "--radar", type=source, default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json"
     )
-    parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
-    parser.add_argument(
+    content.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
+    content.add_argument(
         "--geometry-only", action="store_true",
-        help="keep prepared rooms, motions and what hides what, but no signals: mmweaver train makes these as it goes,"
-        " with new micro-phases each time, without a ray caster, on a GPU if there is one",
+        help="store prepared rooms, motions and visibility, but no signals: mmweaver train makes these as it goes, with"
+        " new micro-motion each time, without a ray caster, on a GPU if there is one",
     )  # fmt: skip
-    parser.add_argument("--workers", type=whole, default=1, help="processes at once (default 1)")
-    parser.add_argument("--ray-address", metavar="ADDRESS", help="run on this Ray cluster; 'local' embeds one")
-    parser.add_argument("--dry-run", action="store_true", help="tell what is to be made and what it costs, and stop")
-    parser.add_argument("--json", action="store_true", help="print a summary for machines on stdout")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    running = parser.add_argument_group("running")
+    running.add_argument("--workers", type=whole, default=1, help="parallel processes (default 1)")
+    running.add_argument("--ray-address", metavar="ADDRESS", help="run on this Ray cluster; 'local' starts one")
+    running.add_argument("--dry-run", action="store_true", help="print what would be made and its cost, and stop")
+    output = parser.add_argument_group("output")
+    output.add_argument("--json", action="store_true", help="print a machine-readable summary on stdout")
+    output.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
     return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Makes what is missing. Raises InputError."""
+    """Generates what is missing. Raises InputError."""
     import json
     import sys
     from dataclasses import asdict

@@ -22,12 +22,17 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument("file", type=Path, metavar="FILE", help="a .mmw file")
     parser.add_argument(
-        "-o", "--out", type=Path, required=True, metavar="FILE", help="the .npz to write; radar.json goes beside it"
+        "-o",
+        "--out",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help="the .npz to write, with radar.json next to it",
     )
     parser.add_argument(
         "--frames", type=frames, default=slice(None), metavar="A:B", help="frames A to B-1 (default all)"
     )
-    parser.add_argument("--scatterers", action="store_true", help="leave the residual out: scatterers and static alone")
+    parser.add_argument("--scatterers", action="store_true", help="scatterers and static layer only, no residual")
     parser.add_argument("--overwrite", action="store_true", help="replace files that exist")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)

@@ -1,4 +1,4 @@
-"""mmweaver evaluate: how well a recogniser trained on generated data alone does on recordings of real people."""
+"""mmweaver evaluate: scores a recogniser, trained on generated data alone, on recordings of real people."""
 
 import argparse
 import json

@@ -17,12 +17,12 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     """Declares the command and its options."""
     parser = commands.add_parser(
         "motion", help="try a sentence: how it is read, and the moving skeleton on an empty floor", epilog=EXAMPLES,
-        description="Reads a sentence and acts it out on an empty floor, without a photo and without a radar.",
+        description="Reads a sentence and animates it on an empty floor, without a photo and without a radar.",
     )  # fmt: skip
     parser.add_argument("text", metavar="SENTENCE", help="what the person does")
     parser.add_argument("--seconds", type=number, help="how long (default: what the sentence needs)")
     parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same motion (default 0)")
-    parser.add_argument("--height", type=number, metavar="M", help="the person's height (default: drawn by the seed)")
+    parser.add_argument("--height", type=number, metavar="M", help="the person's height (default: by the seed)")
     parser.add_argument("--out", type=Path, metavar="NPZ", help="write 22 joints at 120 Hz, as pose.npz holds them")
     parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the skeleton at ten instants")
     parser.add_argument("--json", action="store_true", help="print the reading for machines")
@@ -31,7 +31,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Acts the sentence out; writes what was asked for. Raises InputError."""
+    """Animates the sentence and writes the requested files. Raises InputError."""
     from mmweaver.motion.empty_floor import act_out
 
     _check_files(arguments)

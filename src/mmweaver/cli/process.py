@@ -1,4 +1,4 @@
-"""mmweaver process: a real recording in, the same files and pictures out."""
+"""mmweaver process: a real recording through the same processing, into the same files and pictures."""
 
 import argparse
 from pathlib import Path
@@ -27,18 +27,20 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         help="adc_data.bin of a DCA1000, raw ADC samples as .npy, radar.npz, a HuPR, mmMesh or RF-Genesis array, or a"
         " capture folder of mmwave-capture-std (radar.cfg, dca.pcap)",
     )  # fmt: skip
-    parser.add_argument(
+    recording = parser.add_argument_group("input")
+    recording.add_argument(
         "--radar", type=source, metavar="NAME|FILE",
         help="preset, TI .cfg or radar.json (a capture folder brings its own)",
     )  # fmt: skip
-    parser.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
-    parser.add_argument(
+    recording.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
+    recording.add_argument(
         "--layout", metavar="NAME", help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis"
     )
-    add_points_option(parser)
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
-    add_layout_options(parser)
-    add_output_options(parser)
+    add_layout_options(recording)
+    output = parser.add_argument_group("output")
+    output.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
+    add_points_option(output)
+    add_output_options(output)
     parser.set_defaults(run=run)
     return parser
 

@@ -20,14 +20,14 @@ MOST_ROOMS = 10_000
 def add_command(commands: Any) -> argparse.ArgumentParser:
     """Declares the command and its options."""
     parser = commands.add_parser(
-        "rooms", help="make furnished rooms with photo, depth and truth", epilog=EXAMPLES,
-        description="Makes furnished rooms from a seed. Each is a folder: rgb.png, depth.png and camera.json, which"
+        "rooms", help="generate furnished rooms with photo, depth and ground truth", epilog=EXAMPLES,
+        description="Generates furnished rooms from a seed. Each is a folder: rgb.png, depth.png and camera.json, which"
         " generate reads; classes.png with its names in classes.json (COCO-Stuff); truth.json with the floor, seats,"
         " landmarks and every box of furniture.",
     )  # fmt: skip
     parser.add_argument("out", type=Path, metavar="OUT", help="folder for the rooms, one folder each")
     parser.add_argument("--kinds", metavar="KIND,...", help="kinds of rooms, with commas (default: all)")
-    parser.add_argument("--layouts", type=whole, default=1, metavar="N", help="rearrangements of each (default 1)")
+    parser.add_argument("--layouts", type=whole, default=1, metavar="N", help="furniture layouts of each (default 1)")
     parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     parser.add_argument(
         "--lighting", default="", metavar="NAME", help="day, lamps, evening or tubes (default: in turn)"

@@ -1,4 +1,4 @@
-"""Files that are whole or not there: written beside their place and renamed into it."""
+"""Files and folders that are written completely or not at all: under a temporary name, then renamed."""
 
 import os
 import shutil
@@ -12,7 +12,7 @@ from mmweaver.core.errors import InputError
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
-    """Gives a temporary path in the same folder; on success it becomes `path`, on any error nothing is left."""
+    """Yields a temporary path in the same folder; on success it is renamed to `path`, on any error it is removed."""
     path = Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -33,7 +33,7 @@ def atomic_file(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def staged_folder(out: Path, *, overwrite: bool = False) -> Iterator[Path]:
-    """Gives a temporary folder beside `out`; on success it takes the place of `out`, on any error nothing is left.
+    """Yields a temporary folder next to `out`; on success it is renamed to `out`, on any error it is removed.
 
     Raises InputError where `out` exists and is not an empty folder, unless `overwrite` allows its files to be
     replaced one by one (files of other names in it stay), or where nothing can be written.
@@ -56,7 +56,7 @@ def staged_folder(out: Path, *, overwrite: bool = False) -> Iterator[Path]:
 
 
 def check_output_folder(out: Path, *, overwrite: bool) -> None:
-    """Raises InputError where `staged_folder` would; cheap, so that it can be asked before long work."""
+    """Raises InputError where `staged_folder` would; cheap, so that it can be called before long work."""
     out = Path(out)
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is a file, not a folder; choose another --out")

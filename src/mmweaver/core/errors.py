@@ -1,8 +1,8 @@
-"""The one error that a person caused and a person can mend."""
+"""The error for bad input, which the user can correct."""
 
 
 class InputError(ValueError):
-    """Bad input: one line that says what was wrong and what to do.
+    """Bad input: one line on what was wrong and what to do about it.
 
     The command line prints it as it is and exits with status 2; anything else that is raised is a bug.
     """

@@ -1,4 +1,4 @@
-"""What the .cfg of a TI out-of-box demo says about its point cloud: CFAR, peak grouping, clutter, beamforming."""
+"""Point-cloud settings of a TI out-of-box demo's .cfg: CFAR, peak grouping, clutter removal, beamforming."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ MOST_OBJECTS, MOST_OBJECTS_3D = 100, 64  # the demo's lists; an elevated row lea
 class FirmwareCfar:
     """One `cfarCfg` line. Lengths in bins; the threshold in the counts of the device (see FirmwareSettings).
 
-    Raises InputError for what the demo would refuse.
+    Raises InputError for settings that the demo would reject.
     """
 
     average: str = "ca"

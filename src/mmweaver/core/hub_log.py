@@ -1,4 +1,4 @@
-"""The Hub's client logs each of its retries; a person gets one line from us instead."""
+"""Silences the log of the Hub's client, which reports every retry; the user gets one error line instead."""
 
 import logging
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ _LOGGERS = ("huggingface_hub", "httpx", "urllib3")
 
 @contextmanager
 def hub_log_off() -> Iterator[None]:
-    """Without the log lines of the Hub's client and of what it fetches with."""
+    """Suppresses the log of the Hub's client and of its HTTP libraries."""
     loggers = [logging.getLogger(name) for name in _LOGGERS]
     before = [logger.level for logger in loggers]
     children = [one for one in map(logging.getLogger, list(logging.root.manager.loggerDict)) if _is_below(one.name)]

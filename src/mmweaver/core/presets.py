@@ -1,4 +1,4 @@
-"""Radars by name. Chirps from the sources named; antenna places from the boards' data sheets."""
+"""Radar presets. Chirps from the sources named; antenna positions from the boards' data sheets."""
 
 from dataclasses import replace
 from typing import Any
@@ -13,7 +13,7 @@ XWR_RX_HALFWAVES = ((-6.0, 0.0), (-5.0, 0.0), (-4.0, 0.0), (-3.0, 0.0))
 
 
 def halfwave_positions(places: tuple[tuple[float, float], ...], centre_frequency_hz: float) -> tuple[Position, ...]:
-    """(x, z) in half wavelengths of the given frequency -> (x, y, z) in metres, y = 0."""
+    """(x, z) in half wavelengths at a frequency -> (x, y, z) in metres, y = 0."""
     half_m = SPEED_OF_LIGHT_MPS / centre_frequency_hz / 2
     return tuple((x * half_m, 0.0, z * half_m) for x, z in places)
 

@@ -21,8 +21,8 @@ Position = tuple[float, float, float]
 class RadarConfig:
     """One TDM-MIMO FMCW radar. All lengths in metres, times in seconds, frequencies in hertz.
 
-    Positions are those of the board seen as a person behind the radar would: x right, y away from the radar, z up.
-    The transmitters fire one after the other, `tx_order` saying which is first; a loop is one turn of all of them.
+    Positions are seen from behind the radar: x right, y away from the radar, z up. The transmitters fire in the order
+    of `tx_order` (TDM-MIMO); a loop is one chirp of each of them.
     Radial velocity is positive for a target that moves away. Raises InputError where the radar could not exist.
 
     Reference: docs/radar_primer.md, equations 1 to 9.
@@ -117,7 +117,7 @@ class RadarConfig:
 
     @property
     def num_antennas(self) -> int:
-        """Virtual antennas; antenna index = tx * num_rx + rx, with tx the physical transmitter, not its turn."""
+        """Number of virtual antennas; antenna index = tx * num_rx + rx, where tx is the physical transmitter."""
         return self.num_tx * self.num_rx
 
     @property
@@ -127,12 +127,12 @@ class RadarConfig:
     # frequency and range ----------------------------------------------------------------------------------------
     @property
     def bandwidth_hz(self) -> float:
-        """The part of the sweep that the ADC samples."""
+        """Bandwidth of the part of the sweep that the ADC samples."""
         return self.chirp_slope_hz_per_s * self.num_samples / self.sample_rate_hz
 
     @property
     def centre_frequency_hz(self) -> float:
-        """Frequency in the middle of the sampled part of the sweep."""
+        """Frequency at the middle of the sampled part of the sweep."""
         return self.start_frequency_hz + self.chirp_slope_hz_per_s * self.adc_start_time_s + self.bandwidth_hz / 2
 
     @property
@@ -145,12 +145,12 @@ class RadarConfig:
 
     @property
     def max_range_m(self) -> float:
-        """Where the range axis of the ADC ends (aliases beyond)."""
+        """End of the unambiguous range axis; beyond it range aliases."""
         return self.range_resolution_m * self.num_unambiguous_range_bins
 
     @cached_property
     def range_m(self) -> PerRange:
-        """Range of each kept bin, (range,)."""
+        """Range of each kept bin in metres, (range,)."""
         return (self.first_range_bin + np.arange(self.num_range_bins)) * self.range_resolution_m
 
     # time and velocity ------------------------------------------------------------------------------------------
@@ -164,7 +164,7 @@ class RadarConfig:
 
     @property
     def active_time_s(self) -> float:
-        """How long the chirps of one frame last."""
+        """Duration of all chirps of one frame."""
         return self.num_loops * self.loop_period_s
 
     @property
@@ -178,19 +178,20 @@ class RadarConfig:
 
     @cached_property
     def radial_velocity_mps(self) -> PerDoppler:
-        """Radial velocity of each Doppler bin, (doppler,), rising; bin num_loops // 2 is zero."""
+        """Radial velocity of each Doppler bin in m/s, (doppler,), ascending; bin num_loops // 2 is zero."""
         return (np.arange(self.num_loops) - self.num_loops // 2) * self.velocity_resolution_mps
 
     @cached_property
     def tx_delay_s(self) -> np.ndarray:
-        """When each physical transmitter fires within a loop, (tx,), the first at 0."""
-        turn = np.argsort(np.asarray(self.tx_order))
-        return turn * self.chirp_period_s
+        """Time within a loop at which each physical transmitter fires, (tx,), the first at 0."""
+        slot = np.argsort(np.asarray(self.tx_order))
+        return slot * self.chirp_period_s
 
     # array ------------------------------------------------------------------------------------------------------
     @cached_property
     def antenna_position_m(self) -> AntennaPositions:
-        """Virtual antennas, (antenna, 3): tx + rx. The phase of a far target is -2 pi / wavelength (u . p)."""
+        """Virtual antennas in metres, (antenna, 3): tx + rx. A far target in direction u has the phase
+        -2 pi / wavelength (u . p)."""
         tx, rx = np.asarray(self.tx_position_m), np.asarray(self.rx_position_m)
         return (tx[:, None, :] + rx[None, :, :]).reshape(-1, 3)
 
@@ -209,12 +210,12 @@ class RadarConfig:
 
     # files ------------------------------------------------------------------------------------------------------
     def to_json(self) -> str:
-        """Plain JSON in SI units; `from_json` gives the same RadarConfig back."""
+        """JSON in SI units; `from_json` restores the same RadarConfig."""
         return json.dumps({"schema_version": SCHEMA_VERSION, **dataclasses.asdict(self)}, indent=2) + "\n"
 
     @classmethod
     def from_json(cls, text: str) -> "RadarConfig":
-        """Reads what `to_json` wrote. Raises InputError for anything else; an unknown key is an error."""
+        """Reads the JSON of `to_json`. Raises InputError for anything else; an unknown key is an error."""
         try:
             values = json.loads(text)
         except json.JSONDecodeError as error:

@@ -34,7 +34,7 @@ from mmweaver.core.shapes import (
 # Radar --------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True)
 class CubeGrid:
-    """Where the cells of a RadarCube lie: one axis a dimension, in the cube's order."""
+    """The axes of a RadarCube, one per dimension, in its order."""
 
     frame_time_s: PerFrame  # start of each frame
     range_m: PerRange
@@ -44,7 +44,7 @@ class CubeGrid:
 
     @classmethod
     def of(cls, config: RadarConfig, num_frames: int) -> "CubeGrid":
-        """The grid that a radar's own FFTs give for so many frames."""
+        """The grid of a radar's range and Doppler FFTs for a number of frames."""
         return cls(
             frame_time_s=np.arange(num_frames) * config.frame_period_s,
             range_m=config.range_m,
@@ -62,10 +62,10 @@ class CubeGrid:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class AdcCube(ShownByFacts):
-    """What the receivers' converters wrote: complex64 (frame, loop, tx, rx, sample).
+    """ADC samples: complex64 (frame, loop, tx, rx, sample).
 
-    `tx` counts physical transmitters, not turns. `scale` says what 1.0 means: the amplitude at the receiver's port in
-    sqrt(mW), nan where it is unknown (a recording). A radar with real samples has zero imaginary parts.
+    `tx` is the physical transmitter, not its place in the firing order. `scale` is the amplitude at the receiver's
+    port, in sqrt(mW), of the value 1.0; nan where it is unknown (a recording). Real samples have zero imaginary parts.
     """
 
     samples: AdcValues
@@ -83,7 +83,7 @@ class AdcCube(ShownByFacts):
 class RadarCube(ShownByFacts):
     """Range-Doppler spectrum of every virtual antenna: complex64 (frame, range, doppler, antenna).
 
-    TDM phase is compensated, so antennas of one cell differ by their places alone. `scale` as in AdcCube.
+    The TDM phase is compensated, so antennas of a cell differ by their positions only. `scale` as in AdcCube.
     """
 
     values: CubeValues
@@ -115,7 +115,7 @@ class PointCloud(ShownByFacts):
     snr_db: PerPoint
 
     def facts(self) -> dict[str, str]:
-        """How many points, and where."""
+        """Number of points, and their bounds."""
         bounds = {"x": (self.x_m, "m"), "y": (self.y_m, "m"), "z": (self.z_m, "m")}
         bounds |= {"velocity": (self.radial_velocity_mps, "m/s"), "SNR": (self.snr_db, "dB")}
         return {
@@ -130,17 +130,17 @@ class PointCloud(ShownByFacts):
 class PoseSequence(ShownByFacts):
     """Joints of one person at given times, in the radar's frame; SMPL order, see core.skeleton.
 
-    A motion room gives it densely (100 Hz and more), so that slow time can be interpolated; `joints_m` at the radar's
-    frames is a resampled one.
+    Motions are sampled densely (100 Hz and more), so that slow time can be interpolated; results hold a sequence
+    resampled at the radar's frames.
     """
 
     time_s: PerFrame
     joints_m: Joints
     height_m: float
-    subject: int = 0  # names the body: its surface points and micro-phases
+    subject: int = 0  # identifies the body: its surface points and random phases
 
     def facts(self) -> dict[str, str]:
-        """Times, joints and the body."""
+        """Times, joints and body."""
         return {
             "frames": span(self.time_s, "s"),
             "joints": str(self.joints_m.shape[1]),
@@ -152,7 +152,7 @@ class PoseSequence(ShownByFacts):
 # Scene --------------------------------------------------------------------------------------------------------------
 @dataclass(frozen=True, kw_only=True)
 class CameraIntrinsics:
-    """Pinhole camera, in pixels of the picture it belongs to; pixel centres at whole numbers."""
+    """A pinhole camera, in pixels of its picture; pixel centres are at whole numbers."""
 
     fx: float
     fy: float
@@ -164,9 +164,9 @@ class CameraIntrinsics:
 
 @dataclass(frozen=True, kw_only=True)
 class ClassMask:
-    """What each pixel shows: an index into `names`, COCO-Stuff names ("couch", "wall-concrete"); 0 = not known."""
+    """The class of each pixel, with names of COCO-Stuff ("couch", "wall-concrete")."""
 
-    index: ClassPixels
+    index: ClassPixels  # into `names`; 0 = unknown
     names: tuple[str, ...]  # names[0] is "unlabeled"
 
 
@@ -177,10 +177,10 @@ class RgbdPhoto(ShownByFacts):
     rgb: RgbPixels
     depth_m: DepthPixels
     intrinsics: CameraIntrinsics
-    classes: ClassMask | None = None  # where somebody said what is what
+    classes: ClassMask | None = None  # given by the user or by a segmenter
 
     def facts(self) -> dict[str, str]:
-        """Size, and how much of it has a depth."""
+        """Size, share of pixels with a depth, number of classes."""
         height, width = self.depth_m.shape
         return {
             "size": f"{width} x {height} pixels",
@@ -191,7 +191,7 @@ class RgbdPhoto(ShownByFacts):
 
 @dataclass(frozen=True, kw_only=True)
 class Plane:
-    """A flat rectangle of the room. axis_u, axis_v and normal are a right-handed orthonormal triple."""
+    """A planar rectangle of the room. axis_u, axis_v and normal are a right-handed orthonormal triple."""
 
     kind: str  # floor | ceiling | wall | top | panel
     centre_m: Vec3
@@ -204,36 +204,36 @@ class Plane:
 
 @dataclass(frozen=True, kw_only=True)
 class FreeSpace:
-    """Which places of the floor a body may stand on, on a square grid of cells."""
+    """The places of the floor where a body may stand, on a square grid."""
 
     x_m: np.ndarray  # (x,) centres of the columns
     y_m: np.ndarray  # (y,) centres of the rows
-    is_free: GridMask  # nothing stands there between floor and head height
-    is_seen: GridMask  # known from depth; a free cell that is not seen is assumed free
+    is_free: GridMask  # free from the floor to head height
+    is_seen: GridMask  # measured; a free cell that is not seen is assumed to be free
 
 
 @dataclass(frozen=True, kw_only=True)
 class Seat:
-    """A flat surface at sitting height."""
+    """A horizontal surface at seat height."""
 
-    position_m: Vec3  # middle of where a person sits, on the surface
-    facing_rad: float  # direction the sitter looks, from +x (right) towards +y (away from the radar)
-    size_m: tuple[float, float]  # width across, depth along the facing
+    position_m: Vec3  # middle of the seat, on the surface
+    facing_rad: float  # of the sitter, from +x (right) towards +y (away from the radar)
+    size_m: tuple[float, float]  # across and along the facing
 
 
 @dataclass(frozen=True, kw_only=True)
 class Landmark:
-    """Something that a sentence may name as a place to go to: a door, a table, a window, a bed."""
+    """An object that a sentence may name as a place to go to."""
 
-    kind: str  # the word for it: door | table | window | ...
+    kind: str  # door | window | table | counter | bed
     position_m: Vec3  # its middle
-    approach_m: tuple[float, float]  # (x, y) of the floor where one stands to use it
-    facing_rad: float  # direction one looks there, from +x (right) towards +y (away from the radar)
+    approach_m: tuple[float, float]  # (x, y) where one stands to use it
+    facing_rad: float  # of a person there, from +x (right) towards +y (away from the radar)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Scene(ShownByFacts):
-    """The room of one photo, as ray caster and motion planner need it."""
+    """A room, reconstructed from a photo or procedural, for ray casting and motion planning; in the radar's frame."""
 
     photo: RgbdPhoto
     radar_from_camera: Rotation  # camera x right, y down, z forward -> radar frame (same origin)
@@ -241,7 +241,7 @@ class Scene(ShownByFacts):
     faces: Faces
     face_material: PerFace  # index into material_names
     material_names: tuple[str, ...]
-    planes: tuple[Plane, ...]  # the floor is always among them
+    planes: tuple[Plane, ...]  # including the floor
     floor_z_m: float  # below the radar, so negative
     free_space: FreeSpace
     seats: tuple[Seat, ...]
@@ -250,7 +250,7 @@ class Scene(ShownByFacts):
     empty_recording: RadarCube | None = None  # the same radar in the same place, with nobody there
 
     def facts(self) -> dict[str, str]:
-        """Sizes, and what a sentence can refer to."""
+        """Sizes, planes, seats and landmarks."""
         return {
             "vertices": str(len(self.vertices_m)),
             "planes": _counted([plane.kind for plane in self.planes]),
@@ -265,7 +265,7 @@ class Scene(ShownByFacts):
 
 
 def _counted(kinds: list[str]) -> str:
-    """'floor, 3 wall' of ["wall", "floor", "wall", "wall"]."""
+    """The counts of kinds as a string: "floor, 3 wall" for ["wall", "floor", "wall", "wall"]."""
     counts = {kind: kinds.count(kind) for kind in sorted(set(kinds))}
     return ", ".join(kind if count == 1 else f"{count} {kind}" for kind, count in counts.items()) or "none"
 

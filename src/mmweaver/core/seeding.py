@@ -6,9 +6,9 @@ import numpy as np
 
 
 def stream(seed: int, *purpose: str | int) -> np.random.Generator:
-    """A generator that depends on the seed and on what it is for, and on nothing else.
+    """A random generator that depends only on the seed and the purpose.
 
-    Two purposes never share numbers, so drawing more for one leaves the other as it was.
+    Purposes never share random numbers, so sampling more for one leaves the others unchanged.
 
     >>> bool(stream(0, "noise").random() == stream(0, "noise").random())
     True

@@ -1,4 +1,4 @@
-"""Shape aliases, checked in every test run (jaxtyping + beartype)."""
+"""Aliases of array shapes, checked in every test run (jaxtyping + beartype)."""
 
 import numpy as np
 from jaxtyping import Bool, Complex, Float, Int, UInt8

@@ -1,4 +1,4 @@
-"""What is being done, and how long each part of it took."""
+"""Names and durations of the stages of a long job."""
 
 import logging
 from collections.abc import Callable, Iterator
@@ -9,7 +9,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class Stages:
-    """Times named stages of a long job and tells a listener, at the start of each, which it is.
+    """Times the named stages of a long job and calls a listener with the name of each as it begins.
 
     A stage runs on one BLAS thread: the matrices here are small, and several threads took 4 to 15 times the CPU time.
 
@@ -27,7 +27,7 @@ class Stages:
 
     @contextmanager
     def __call__(self, name: str) -> Iterator[None]:
-        """Times one stage; a stage entered again adds to its time."""
+        """Times one stage; the time of a repeated stage is added up."""
         if self._listener is not None:
             self._listener(name)
         from threadpoolctl import threadpool_limits

@@ -1,4 +1,4 @@
-"""Which virtual antennas tell azimuth and which tell elevation."""
+"""Virtual antennas for azimuth and for elevation."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ SAME_PLACE_WAVELENGTHS = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class RowPair:
-    """Antennas of two rows that stand above one another, column by column."""
+    """Antennas of two rows above one another, column by column."""
 
     lower: PerIndex
     upper: PerIndex
@@ -40,7 +40,7 @@ def elevation_rows(position_m: AntennaPositions, wavelength_m: float) -> RowPair
 
 
 def has_elevation(config: RadarConfig) -> bool:
-    """Whether this radar's array can tell up from down."""
+    """Whether this radar's array resolves elevation."""
     return elevation_rows(config.antenna_position_m, config.wavelength_m) is not None
 
 

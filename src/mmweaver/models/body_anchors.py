@@ -11,6 +11,7 @@ from torch import Tensor
 
 from mmweaver.core.skeleton import NUM_JOINTS, joint
 from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
 
@@ -162,8 +163,7 @@ def _clearance(place: Tensor, distance: Tensor, room: SceneTensors) -> tuple[Ten
     for x, z in ((0.0, 0.0), (0.0, 0.1), (0.12, 0.0), (-0.12, 0.0)):
         camera = (place + place.new_tensor([x, 0.0, z])) @ room.camera_from_radar[:, None].transpose(-1, -2)
         depth = camera[..., 2].clamp(min=0.1)
-        column = room.camera[:, None, None, 0] * camera[..., 0] / depth + room.camera[:, None, None, 2]
-        row = room.camera[:, None, None, 1] * camera[..., 1] / depth + room.camera[:, None, None, 3]
+        column, row = pixel_coordinates(camera[..., 0], camera[..., 1], depth, *room.camera[:, None, None].unbind(-1))
         rows, columns = room.depth_m.shape[-2:]
         grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1)
         surface = torch.nn.functional.grid_sample(room.depth_m[:, None], grid, mode="nearest", align_corners=False)[

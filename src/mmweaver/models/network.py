@@ -18,6 +18,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.ablations import flat_body, joints_alone, level_alone, uniform_surfaces
 from mmweaver.models.body_anchors import (
     BODY_FEATURES,
@@ -156,8 +157,7 @@ def _looked_up(places: Tensor, point_m: Tensor, view: SceneTensors) -> Tensor:
     """The map's values (room, point, channel) where points appear in the picture; zeros beyond its edges."""
     camera = point_m @ view.camera_from_radar.transpose(-1, -2)
     depth = camera[..., 2].clamp(min=0.05)
-    column = view.camera[:, None, 0] * camera[..., 0] / depth + view.camera[:, None, 2]
-    row = view.camera[:, None, 1] * camera[..., 1] / depth + view.camera[:, None, 3]
+    column, row = pixel_coordinates(camera[..., 0], camera[..., 1], depth, *view.camera[:, None].unbind(-1))
     rows, columns = view.depth_m.shape[-2:]
     grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1)
     found = nn.functional.grid_sample(places, grid[:, None].clamp(-3, 3), align_corners=False)

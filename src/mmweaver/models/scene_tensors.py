@@ -10,6 +10,7 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import ClassMask, Plane, Scene
 from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.geometry.pinhole import resized
 from mmweaver.paths.antenna import scatterer_gain
 from mmweaver.paths.apparent_paths import apparent_direction
 from mmweaver.paths.image_method import SpecularReflector
@@ -53,8 +54,7 @@ class SceneTensors(TensorRecord):
         grid = make_grid(scene.photo)
         rows = _nearest(IMAGE_ROWS, grid.depth_m.shape[0])
         columns = _nearest(IMAGE_COLUMNS, grid.depth_m.shape[1])
-        camera = grid.intrinsics
-        scale_x, scale_y = IMAGE_COLUMNS / camera.width, IMAGE_ROWS / camera.height
+        camera = resized(grid.intrinsics, IMAGE_COLUMNS, IMAGE_ROWS)
         view = np.ix_(rows, columns)
         points = _points(room or RayTracedRoom(scene, config), scene)
         planes = _planes(scene, config)
@@ -63,14 +63,7 @@ class SceneTensors(TensorRecord):
             depth_m=_tensor(np.nan_to_num(grid.depth_m[view])),
             **points,
             camera_from_radar=_tensor(scene.radar_from_camera.T),
-            camera=_tensor(
-                np.array(
-                    [
-                        camera.fx * scale_x, camera.fy * scale_y,
-                        (camera.cx + 0.5) * scale_x - 0.5, (camera.cy + 0.5) * scale_y - 0.5,
-                    ]
-                )
-            ),
+            camera=_tensor(np.array([camera.fx, camera.fy, camera.cx, camera.cy])),
             **planes,
         )  # fmt: skip
 

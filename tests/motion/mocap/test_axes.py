@@ -1,4 +1,4 @@
-"""Units and axes: what was put in is read off the body; what cannot be told is asked for."""
+"""Units and axes: estimated from the body where they are not given; an error asks for what cannot be estimated."""
 
 import numpy as np
 import pytest

@@ -35,9 +35,9 @@ def test_a_case_worked_by_hand(tmp_path: Path):
     raw = read_bvh(tmp_path / "arm.bvh")
     assert raw.names == ("Bip01 Hips", "arm", "arm_end")
     assert raw.fps == pytest.approx(40.0)
-    np.testing.assert_allclose(raw.places[0], [(1, 2, 3), (2, 2, 3), (3, 2, 3)], atol=1e-12)
+    np.testing.assert_allclose(raw.positions[0], [(1, 2, 3), (2, 2, 3), (3, 2, 3)], atol=1e-12)
     # arm's x axis: Rx(90) Ry(90) sends x to -z and then to +y; the root's Rz(90) sends +y to -x
-    np.testing.assert_allclose(raw.places[1], [(11, 2, 3), (11, 3, 3), (10, 3, 3)], atol=1e-12)
+    np.testing.assert_allclose(raw.positions[1], [(11, 2, 3), (11, 3, 3), (10, 3, 3)], atol=1e-12)
 
 
 @pytest.mark.parametrize("order", ["ZXY", "XYZ", "YZX"])
@@ -47,7 +47,7 @@ def test_the_places_of_a_walk_come_back(tmp_path: Path, order: str, end: str, la
     write_bvh(tmp_path / "walk.bvh", joints, order=order, end=end, last_end=last_end)
     raw = read_bvh(tmp_path / "walk.bvh")
     ours = [k for k, name in enumerate(raw.names) if not name.endswith("_end")]
-    by_name = {raw.names[k]: raw.places[:, k] for k in ours}
+    by_name = {raw.names[k]: raw.positions[:, k] for k in ours}
     assert len(by_name) == 22
     for k, name in enumerate(("pelvis", "left_hip", "right_hip")):
         np.testing.assert_allclose(by_name[name], joints[:, k], atol=1e-6)

@@ -57,7 +57,7 @@ def test_a_t_pose_in_front_is_cut_off_where_the_motion_jumps():
     assert not is_t_pose(walk()).any()
     joints, notes = without_t_pose(np.concatenate([t_pose(4), walk()]), FPS, "walk")
     np.testing.assert_array_equal(joints, walk())
-    assert notes == ("4 frames of T-pose in front of walk cut off",)
+    assert notes == ("4 frames of T-pose at the start of walk cut off",)
 
 
 def test_a_t_pose_that_is_left_by_moving_stays_and_is_said():

@@ -77,11 +77,13 @@ def test_nothing_goes_through_furniture_and_the_motion_is_only_turned_and_moved(
 
 def test_no_room_is_said_with_what_there_is():
     far = MotionClip(joints_m=walk(60.0, 2.0) * np.array([4.0, 4.0, 1.0]), fps=60.0, label="leaps")
-    with pytest.raises(InputError, match=r"no room for leaps: its way is \d\.\d m across, \d+\.\d m2 .*--as-recorded"):
+    with pytest.raises(
+        InputError, match=r"no room for leaps: its track is \d\.\d m across, \d+\.\d m2 .*--as-recorded"
+    ):
         placed(room(), far)
     with pytest.raises(InputError, match=r"the start 0\.3,9 is not free, .* nearest free place is"):
         placed(room(), start_m=(0.3, 9.0))
-    with pytest.raises(InputError, match=r"from 0,1\.2 in the heading asked for"):
+    with pytest.raises(InputError, match=r"from 0,1\.2 in the given heading"):
         placed(room(), start_m=(0.0, 1.2), heading_rad=-math.pi / 2)
     with pytest.raises(InputError, match="no free floor"):
         placed(room(boxes=((-9.0, 9.0, 0.0, 9.0),)))
@@ -94,11 +96,11 @@ def test_as_recorded_moves_nothing():
     motion = place_clip(recorded, room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M, as_recorded=True)
     k = int(np.argmin(np.abs(motion.pose.time_s)))
     np.testing.assert_allclose(motion.pose.joints_m[k], recorded.joints_m[0], atol=1e-9)
-    assert "as they are" in motion.assumptions[-1]
+    assert "used unchanged" in motion.assumptions[-1]
 
 
 def test_who_sits_in_the_recording_is_said():
     seated = MotionClip(joints_m=walk(60.0, 2.0, "a person sits"), fps=60.0, label="sits")
     motion = place_clip(seated, room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M)
-    assert "no furniture is put under it" in motion.assumptions[-1]
+    assert "no furniture is placed under it" in motion.assumptions[-1]
     assert not place_clip(clip(), room(), duration_s=1.0, seed=0, range_window_m=WINDOW_M).assumptions

@@ -23,7 +23,7 @@ def test_joints(tmp_path: Path, shape: str):
     }
     np.save(tmp_path / "walk.npy", saved[shape].astype(np.float64))
     raw = read_npy(tmp_path / "walk.npy")
-    np.testing.assert_array_equal(raw.places, joints)
+    np.testing.assert_array_equal(raw.positions, joints)
     assert (raw.fps, raw.unit_m, raw.up) == (None, None, None)
 
 
@@ -31,7 +31,7 @@ def test_features(tmp_path: Path):
     features = features_from_joints(y_up(walk(20.0)))
     np.save(tmp_path / "walk.npy", features)
     raw = read_npy(tmp_path / "walk.npy")
-    assert (raw.fps, raw.up, raw.places.shape) == (20.0, "y", (39, 22, 3))
+    assert (raw.fps, raw.up, raw.positions.shape) == (20.0, "y", (39, 22, 3))
     np.save(tmp_path / "normal.npy", (features - features.mean(0)) / (features.std(0) + 0.1))
     with pytest.raises(InputError, match="normalised"):
         read_npy(tmp_path / "normal.npy")
@@ -50,11 +50,11 @@ def test_own_pose_file_and_named_joints(tmp_path: Path):
 
 
 def cmu(path: Path) -> None:
-    places = np.zeros((70, 38, 3), np.float16)
+    positions = np.zeros((70, 38, 3), np.float16)
     index = {name: k for k, name in CMU_NAMES.items()}
-    places[30:70, index["left_hand"]] = y_up(walk())[:40, joint("left_wrist")]
+    positions[30:70, index["left_hand"]] = y_up(walk())[:40, joint("left_wrist")]
     np.savez(
-        path, names=np.array(["a/walk/walk_1.txt", "a/run/run_1.txt"]), lengths=np.array([30, 40]), pos=places,
+        path, names=np.array(["a/walk/walk_1.txt", "a/run/run_1.txt"]), lengths=np.array([30, 40]), pos=positions,
         parents=np.zeros(38, int),
     )  # fmt: skip
 
@@ -64,8 +64,8 @@ def test_a_collection_of_clips(tmp_path: Path):
     assert clips_of(tmp_path / "cmu.npz") == ("a/walk/walk_1.txt", "a/run/run_1.txt")
     for said in ("a/run/run_1.txt", "run_1"):
         raw = read_npz(tmp_path / "cmu.npz", said)
-        assert (len(raw.places), raw.fps, raw.up) == (40, 120.0, "y")
-        hand = raw.places[:, raw.names.index("left_hand")]
+        assert (len(raw.positions), raw.fps, raw.up) == (40, 120.0, "y")
+        hand = raw.positions[:, raw.names.index("left_hand")]
         np.testing.assert_allclose(hand, y_up(walk())[:40, joint("left_wrist")], atol=2e-3)
     with pytest.raises(InputError, match="--clip a/walk"):
         read_npz(tmp_path / "cmu.npz")

@@ -74,8 +74,8 @@ def renamed(convention: dict[str, str]) -> RawMotion:
     joints = walk()
     ours = [name for name in JOINT_NAMES if name in convention]
     extra = joints[:, :1] + 5.0  # a joint that means nothing
-    places = np.concatenate([joints[:, [joint(name) for name in ours]], extra], axis=1)
-    return RawMotion(names=(*(convention[name] for name in ours), "LeftHandThumb1"), places=places, kind="test")
+    positions = np.concatenate([joints[:, [joint(name) for name in ours]], extra], axis=1)
+    return RawMotion(names=(*(convention[name] for name in ours), "LeftHandThumb1"), positions=positions, kind="test")
 
 
 @pytest.mark.parametrize("name", CONVENTIONS)
@@ -95,7 +95,7 @@ def test_limbs_are_found_exactly_and_the_rest_nearby(name: str):
 
 def test_our_own_names_in_any_order():
     order = np.random.default_rng(0).permutation(22)
-    raw = RawMotion(names=tuple(JOINT_NAMES[k].upper() for k in order), places=walk()[:, order], kind="test")
+    raw = RawMotion(names=tuple(JOINT_NAMES[k].upper() for k in order), positions=walk()[:, order], kind="test")
     np.testing.assert_array_equal(to_22(raw, "walk"), walk())
 
 
@@ -110,6 +110,6 @@ def test_what_is_missing_is_named():
     convention = {ours: theirs for ours, theirs in CONVENTIONS["cmu"].items() if "knee" not in ours}
     with pytest.raises(InputError, match=r"left_knee, right_knee; the file's joints are Hips"):
         to_22(renamed(convention), "walk.bvh")
-    tags = RawMotion(names=tuple(f"marker{k}" for k in range(40)), places=np.zeros((3, 40, 3)), kind="test")
+    tags = RawMotion(names=tuple(f"marker{k}" for k in range(40)), positions=np.zeros((3, 40, 3)), kind="test")
     with pytest.raises(InputError, match="and more"):
         to_22(tags, "markers.npz")

@@ -35,7 +35,7 @@ def test_units_axes_and_kinds(tmp_path: Path, kind: str, up: str, unit: float):
     np.testing.assert_allclose(heights, walk()[..., 2] - walk()[0, 0, 2], atol=1e-5)
     assert clip.file == path
     assert any("taken as" in note for note in clip.notes)
-    assert any("points up" in note for note in clip.notes)
+    assert any("upward axis" in note for note in clip.notes)
 
 
 def test_what_is_said_wins(tmp_path: Path):

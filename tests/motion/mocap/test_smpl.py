@@ -21,18 +21,18 @@ def poses(frames: int = 5, numbers: int = 156) -> dict[str, np.ndarray]:
 def test_at_rest_it_is_the_mean_body_in_a_t_pose():
     raw = read_smpl(poses(), HERE)
     assert raw.fps == 100.0
-    at = raw.places[0]
+    at = raw.positions[0]
     assert at[joint("left_wrist"), 0] - at[joint("right_wrist"), 0] == pytest.approx(1.40, abs=0.05)
     assert at[joint("head"), 1] - at[joint("left_ankle"), 1] == pytest.approx(1.45, abs=0.05)
-    assert body_height(raw.places) == pytest.approx(1.71, abs=0.03)
-    assert not is_reflected(with_z_up(raw.places, "y"))
+    assert body_height(raw.positions) == pytest.approx(1.71, abs=0.03)
+    assert not is_reflected(with_z_up(raw.positions, "y"))
 
 
 def test_rotations_turn_what_is_below_them():
     """A left elbow bent by 90 degrees about the body's up axis brings the forearm forward; nothing else moves."""
     given = poses()
     given["poses"][:, 3 * joint("left_elbow") + 1] = -np.pi / 2
-    bent, rest = read_smpl(given, HERE).places[0], read_smpl(poses(), HERE).places[0]
+    bent, rest = read_smpl(given, HERE).positions[0], read_smpl(poses(), HERE).positions[0]
     moved = np.linalg.norm(bent - rest, axis=-1) > 1e-9
     assert moved.tolist() == [k == joint("left_wrist") for k in range(22)]
     forearm = bent[joint("left_wrist")] - bent[joint("left_elbow")]
@@ -45,7 +45,7 @@ def test_against_products_of_matrices():
 
     rng = np.random.default_rng(1)
     angles, trans = rng.normal(0, 0.7, (3, 22, 3)), rng.normal(0, 1, (3, 3))
-    places = forward(angles, trans, MEAN_OFFSET_M)
+    positions = forward(angles, trans, MEAN_OFFSET_M)
     for frame in range(3):
         for k in range(22):
             chain, at = [k], trans[frame] + MEAN_OFFSET_M[0]
@@ -56,7 +56,7 @@ def test_against_products_of_matrices():
                 matrix = matrix @ Rotation.from_rotvec(angles[frame, one]).as_matrix()
                 if after is not None:
                     at = at + matrix @ MEAN_OFFSET_M[after]
-            np.testing.assert_allclose(places[frame, k], at, atol=1e-12)
+            np.testing.assert_allclose(positions[frame, k], at, atol=1e-12)
 
 
 @pytest.mark.parametrize("keys", ["poses", "pose", "smplx"])
@@ -70,7 +70,7 @@ def test_spellings(keys: str):
         "smplx": {"root_orient": body[:, :3], "pose_body": body[:, 3:], "trans": trans},
     }[keys]
     truth = forward(body.reshape(4, 22, 3), trans, MEAN_OFFSET_M)
-    np.testing.assert_allclose(read_smpl(spelt, HERE).places, truth)
+    np.testing.assert_allclose(read_smpl(spelt, HERE).positions, truth)
 
 
 def test_a_body_model_of_ones_own_gives_its_bones(tmp_path: Path):
@@ -80,7 +80,7 @@ def test_a_body_model_of_ones_own_gives_its_bones(tmp_path: Path):
     shapes[:, :, 0] = points  # betas[0] = 0.1 makes everything 10 % larger
     np.savez(tmp_path / "model.npz", v_template=points, shapedirs=shapes, J_regressor=np.eye(24, 30))
     given = poses() | {"betas": np.array([0.1])}
-    at = read_smpl(given, HERE, tmp_path / "model.npz").places[0]
+    at = read_smpl(given, HERE, tmp_path / "model.npz").positions[0]
     np.testing.assert_allclose(at, 1.1 * points[:22], atol=1e-12)
     with pytest.raises(InputError, match="pickles are not opened"):
         read_smpl(given, HERE, tmp_path / "SMPL_NEUTRAL.pkl")

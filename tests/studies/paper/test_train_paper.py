@@ -48,7 +48,7 @@ def test_weights_are_read_again_and_their_page_gives_the_baseline(
     assert "| all zeros |" in page
     assert "python -m studies run paper_scores" in page
     count = sum(name == "train" for room in read_rooms(tiny_geometry) for name in room.split)
-    assert f"{count} sequences of 1 rooms, {4 / count:.1f} passes" in page  # two steps of two
+    assert f"{count} sequences in 1 rooms, {4 / count:.1f} epochs" in page  # two steps of two
     assert list((tmp_path / "pictures").glob("*.png"))
 
 

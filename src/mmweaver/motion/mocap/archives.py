@@ -1,4 +1,4 @@
-"""Opening .npy and .npz of other people: numbers and strings alone, never a pickle."""
+"""Safe reading of .npy and .npz files: numbers and strings only, never a pickle."""
 
 import zipfile
 from pathlib import Path
@@ -11,7 +11,7 @@ Array = np.ndarray
 
 
 def open_npy(path: Path) -> Array:
-    """The numbers of a .npy file as float64. Raises InputError for anything else."""
+    """The array of a .npy file as float64. Raises InputError for anything else."""
     try:
         values = np.load(path, allow_pickle=False)
     except OSError as error:
@@ -26,7 +26,7 @@ def open_npy(path: Path) -> Array:
 
 
 def open_npz(path: Path, only: tuple[str, ...] | None = None) -> dict[str, Array]:
-    """The arrays of a .npz; pickled ones (dtype object) are left out. Raises InputError for what is no archive."""
+    """The arrays of a .npz; pickled ones (dtype object) are skipped. Raises InputError for what is no archive."""
     found: dict[str, Array] = {}
     try:
         with np.load(path, allow_pickle=False) as archive:
@@ -37,7 +37,7 @@ def open_npz(path: Path, only: tuple[str, ...] | None = None) -> dict[str, Array
                     try:
                         found[name] = archive[name]
                     except ValueError:
-                        continue  # pickled: a gender kept as an object, a note
+                        continue  # pickled, such as a gender stored as an object
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, EOFError, zipfile.BadZipFile, SyntaxError) as error:
@@ -46,6 +46,6 @@ def open_npz(path: Path, only: tuple[str, ...] | None = None) -> dict[str, Array
 
 
 def _reason(error: Exception) -> str:
-    """numpy's own words advise to open pickles."""
+    """A reason in our words: numpy's own message advises to allow pickles."""
     text = str(error).splitlines()[0]
     return "it holds pickled objects, which could run code and are not opened" if "pickle" in text else text

@@ -1,4 +1,4 @@
-"""Unit, upward axis and handedness of a motion: as said, else read off the body, else asked for."""
+"""Unit, upward axis and handedness of a motion: given by the user, else estimated from the body."""
 
 import numpy as np
 from jaxtyping import Float
@@ -11,11 +11,11 @@ from mmweaver.motion.mocap.clip import body_height
 Array = np.ndarray
 UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 UPS = ("y", "z", "-y", "-z", "x", "-x")
-CLEAR = 0.8  # of the body's length must stand along one axis
+CLEAR = 0.8  # share of the body's length that must lie along one axis
 
 
 def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, source: str) -> tuple[float, str]:
-    """Metres in one unit of the file, and a note ("" where it was said).
+    """Metres in one unit of the file, and a note ("" where the unit was given).
 
     `said` is a name in UNITS_M or a number of metres. Guessed only where exactly one unit makes a body of 1.2 to 2.2 m.
     """
@@ -53,7 +53,7 @@ def metres_of(given: str | float) -> float:
 
 
 def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) -> tuple[str, str]:
-    """The upward axis, and a note where it was read off the body."""
+    """The upward axis, and a note where it was estimated from the body."""
     if given is not None:
         if given not in UPS:
             raise InputError(f"the upward axis is one of {', '.join(UPS)}, not {given!r}")
@@ -64,14 +64,14 @@ def up_of(joints: Float[Array, "frame 22 3"], given: str | None, source: str) ->
     axis = int(np.abs(stands).argmax())
     if abs(stands[axis]) < CLEAR:
         raise InputError(
-            f"{source}: which axis points up cannot be told, for the body does not stand; give --motion-up y or z"
+            f"{source}: the upward axis cannot be estimated, because the body does not stand; give --motion-up y or z"
         )
     up = ("-" if stands[axis] < 0 else "") + "xyz"[axis]
-    return up, f"{up} points up in {source}, for there the head is"
+    return up, f"{up} is taken as the upward axis of {source}, because the head is there"
 
 
 def with_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "frame 22 3"]:
-    """The same with z up, by a rotation (never a mirror); y up becomes (x, -z, y)."""
+    """The joints rotated (never mirrored) so that z is up; y up becomes (x, -z, y)."""
     x, y, z = (joints[..., axis] for axis in range(3))
     rotated = {
         "z": (x, y, z), "-z": (x, -y, -z), "y": (x, -z, y), "-y": (x, z, -y), "x": (-z, y, x), "-x": (z, y, -x)
@@ -80,7 +80,7 @@ def with_z_up(joints: Float[Array, "frame 22 3"], up: str) -> Float[Array, "fram
 
 
 def is_reflected(joints: Float[Array, "frame 22 3"]) -> bool:
-    """Whether left and right are exchanged (left-handed axes): the toes then point out of the back. z up."""
+    """Whether left and right are exchanged (left-handed axes), so that the toes point backwards. z up."""
     across = joints[:, joint("left_hip")] - joints[:, joint("right_hip")]
     across = across + joints[:, joint("left_shoulder")] - joints[:, joint("right_shoulder")]
     ahead = np.stack([across[:, 1], -across[:, 0]], axis=-1)

@@ -1,7 +1,7 @@
-"""BVH files: a hierarchy of offsets and, for every frame, the angles of its joints -> places of the joints.
+"""BVH files: from a hierarchy of offsets and the joint angles of every frame to joint positions.
 
-The grammar is small and files differ in what parsers trip over: names with spaces, channels in any order, position
-channels on every joint, Windows line ends, a last line without an end (docs/decisions/0060).
+Files differ in ways that parsers trip over: names with spaces, channels in any order, position channels on every joint,
+Windows line ends, no newline at the end (docs/decisions/0060).
 """
 
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ ROTATIONS = {"Xrotation": "X", "Yrotation": "Y", "Zrotation": "Z"}
 
 @dataclass
 class Node:
-    """One joint: its parent's index, its offset and where its channels lie in a frame."""
+    """One joint: its parent's index, its offset, and its channels within a frame."""
 
     name: str
     parent: int
@@ -30,7 +30,7 @@ class Node:
 
 
 def read_bvh(path: Path) -> RawMotion:
-    """Joints of all frames in the file's unit, by forward kinematics. Raises InputError for what is no BVH."""
+    """Joints of all frames (frame, joint, 3) in the file's unit, by forward kinematics. Raises InputError."""
     text = path.read_text(encoding="utf-8", errors="replace").replace("{", "\n{\n").replace("}", "\n}\n")
     lines = [line.strip() for line in text.lstrip("\ufeff").splitlines() if line.strip()]
     if not lines or lines[0].upper() != "HIERARCHY":
@@ -41,7 +41,7 @@ def read_bvh(path: Path) -> RawMotion:
     nodes = _hierarchy(lines[1:motion], path)
     fps, values = _frames(lines[motion + 1 :], sum(len(node.channels) for node in nodes), path)
     return RawMotion(
-        names=tuple(node.name for node in nodes), places=_places(nodes, values), kind="BVH", fps=fps, up=None
+        names=tuple(node.name for node in nodes), positions=_positions(nodes, values), kind="BVH", fps=fps, up=None
     )
 
 
@@ -86,7 +86,7 @@ def _channels(words: list[str], path: Path, line: str) -> tuple[str, ...]:
 
 
 def _frames(lines: list[str], num_channels: int, path: Path) -> tuple[float | None, Float[Array, "frame channel"]]:
-    """Frame rate (None where the file has none) and the numbers of all frames."""
+    """Frame rate (None where the file has none) and channel values (frame, channel)."""
     head = {line.partition(":")[0].strip().lower(): line.partition(":")[2].strip() for line in lines[:2]}
     try:
         count, step_s = int(head["frames"]), float(head["frame time"])
@@ -110,12 +110,12 @@ def _numbers(words: list[str], path: Path, where: str) -> Float[Array, " n"]:
         raise InputError(f"{path}: {where[:60]} has something that is no number; the file is damaged") from None
 
 
-def _places(nodes: list[Node], values: Float[Array, "frame channel"]) -> Float[Array, "frame joint 3"]:
-    """Forward kinematics; rotations apply in the order in which the channels stand (intrinsic)."""
+def _positions(nodes: list[Node], values: Float[Array, "frame channel"]) -> Float[Array, "frame joint 3"]:
+    """Forward kinematics; rotations are intrinsic, in the order of the channels."""
     from scipy.spatial.transform import Rotation
 
     count = len(values)
-    places = np.zeros((count, len(nodes), 3))
+    positions = np.zeros((count, len(nodes), 3))
     turned: list[Float[Array, "frame 3 3"]] = []
     for k, node in enumerate(nodes):
         own = values[:, node.first_channel : node.first_channel + len(node.channels)]
@@ -129,17 +129,17 @@ def _places(nodes: list[Node], values: Float[Array, "frame channel"]) -> Float[A
             matrix[missing] = np.nan
         shift = _shift(node, own)
         if node.parent < 0:
-            places[:, k], _ = shift, turned.append(matrix)
+            positions[:, k], _ = shift, turned.append(matrix)
             continue
         above = turned[node.parent]
-        places[:, k] = places[:, node.parent] + np.einsum("fij,fj->fi", above, shift)
+        positions[:, k] = positions[:, node.parent] + np.einsum("fij,fj->fi", above, shift)
         turned.append(np.einsum("fij,fjk->fik", above, matrix))
-    return places
+    return positions
 
 
 def _shift(node: Node, own: Float[Array, "frame channel"]) -> Float[Array, "frame 3"]:
-    """A joint from its parent. Position channels of a root add to its offset; of another joint they mostly replace it
-    (exporters that write six channels everywhere), and add where they are short beside it."""
+    """Offset of a joint from its parent. Position channels of a root add to its offset; of another joint they
+    replace it (exporters that write six channels everywhere) unless they are short compared with it."""
     shift = np.tile(node.offset, (len(own), 1))
     moved = {POSITIONS[name]: own[:, i] for i, name in enumerate(node.channels) if name in POSITIONS}
     if not moved:

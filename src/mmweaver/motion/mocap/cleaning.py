@@ -1,4 +1,4 @@
-"""What recordings have besides motion: gaps, frames of zeros, a T-pose in front, joints that are mixed up."""
+"""Cleaning of recordings: gaps, frames of zeros, a T-pose at the start, joints in a wrong order."""
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -8,7 +8,7 @@ from mmweaver.core.skeleton import JOINT_NAMES, joint
 
 Array = np.ndarray
 LONGEST_GAP_S = 0.25
-JUMP_MPS = 6.0  # of the wrists' mean from one frame to the next: no person leaves a T-pose so fast
+JUMP_MPS = 6.0  # mean wrist speed between two frames: no person leaves a T-pose so fast
 LONGEST_T_POSE_S = 1.0
 BONE_SPREAD = 0.3  # 5th to 95th percentile of a limb's length, as a share of its median
 LIMBS = (("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "wrist"))
@@ -17,9 +17,9 @@ LIMBS = (("hip", "knee"), ("knee", "ankle"), ("shoulder", "elbow"), ("elbow", "w
 def without_gaps(
     joints: Float[Array, "frame 22 3"], fps: float, source: str
 ) -> tuple[Float[Array, "frame 22 3"], tuple[str, ...]]:
-    """Gaps (nan, infinities, frames of zeros) of up to 0.25 s bridged by cubics through what is around them.
+    """Fills gaps (nan, infinities, frames of zeros) of up to 0.25 s by cubic splines; returns joints and notes.
 
-    Raises InputError for longer ones, for gaps at either end, and where there is no motion at all.
+    Raises InputError for longer gaps, for gaps at either end, and where there is no motion at all.
     """
     joints = np.array(joints, float)
     joints[~np.isfinite(joints)] = np.nan
@@ -49,7 +49,7 @@ def _count(frames: int) -> str:
 
 
 def _longest_gap(missing: Bool[Array, "frame 22"]) -> tuple[int, str, int]:
-    """Frames, joint and start of the longest run of missing places."""
+    """Length in frames, joint and first frame of the longest gap."""
     best = (0, "", 0)
     for k, name in enumerate(JOINT_NAMES):
         edges = np.flatnonzero(np.diff(np.pad(missing[:, k].astype(int), 1)))
@@ -70,7 +70,7 @@ def _bridge(joints: Float[Array, "frame 22 3"], missing: Bool[Array, "frame 22"]
 def without_t_pose(
     joints_m: Float[Array, "frame 22 3"], fps: float, source: str
 ) -> tuple[Float[Array, "left 22 3"], tuple[str, ...]]:
-    """A T-pose of up to a second in front is cut off where the motion then jumps; else only noted."""
+    """Cuts off a T-pose of up to a second at the start if the motion jumps after it; else only notes it."""
     spread = is_t_pose(joints_m[: max(int(LONGEST_T_POSE_S * fps), 1) + 1])
     if not spread[0]:
         return joints_m, ()
@@ -80,12 +80,12 @@ def without_t_pose(
     jumps = np.flatnonzero(speed > JUMP_MPS)
     if len(jumps) and len(joints_m) - jumps[-1] > 2:
         first = int(jumps[-1]) + 1
-        return joints_m[first:], (f"{_count(first)} of T-pose in front of {source} cut off",)
+        return joints_m[first:], (f"{_count(first)} of T-pose at the start of {source} cut off",)
     return joints_m, (f"{source} begins in a T-pose, which is shown; --motion-start leaves it out",)
 
 
 def is_t_pose(joints_m: Float[Array, "frame 22 3"]) -> Bool[Array, " frame"]:
-    """Both arms straight, level and aside, both legs straight down; z up."""
+    """Whether each frame has both arms straight and level to the sides and both legs straight down; z up."""
     result = np.ones(len(joints_m), bool)
     for side in ("left", "right"):
         shoulder, elbow, wrist, hip, ankle = (
@@ -102,7 +102,7 @@ def is_t_pose(joints_m: Float[Array, "frame 22 3"]) -> Bool[Array, " frame"]:
 
 
 def check_bones(joints: Float[Array, "frame 22 3"], source: str) -> None:
-    """Raises InputError where limbs change their length or differ from side to side, as joints that are mixed up do."""
+    """Raises InputError where limbs change length or differ between sides: the joints are in a wrong order."""
     for one, other in LIMBS:
         middles = []
         for side in ("left", "right"):

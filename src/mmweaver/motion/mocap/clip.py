@@ -1,4 +1,4 @@
-"""What a motion file holds: as it was read (RawMotion), and made clear (MotionClip)."""
+"""A recorded motion: as it was read (RawMotion), and in our joints, metres and axes (MotionClip)."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,20 +13,19 @@ from mmweaver.motion.animation.skeleton_proportions import ALLOWED_M
 
 Array = np.ndarray
 
-# Legs and trunk (hips to shoulders) are this share of the height in the library's own body
-# (motion/animation/skeleton_proportions.py); the SMPL
-# mean body has 0.776. Spine and head joints would say more, but every skeleton puts them elsewhere.
+# Legs and trunk (hips to shoulders) as a share of the height, as in motion/animation/skeleton_proportions.py; the SMPL
+# mean body has 0.776. Spine and head joints would add precision, but every skeleton places them elsewhere.
 BONES_OF_HEIGHT = 0.474 + 0.295
 LEGS = (("hip", "knee"), ("knee", "ankle"))
 
 
 @dataclass(frozen=True, kw_only=True)
 class RawMotion:
-    """Joints of a file under its own names, in its own unit and axes; None where the file does not say."""
+    """Joints of a file under its own names, in its own unit and axes; None where the file does not state it."""
 
     names: tuple[str, ...]
-    places: Float[Array, "frame joint 3"]
-    kind: str  # what the file is: BVH, SMPL, ...
+    positions: Float[Array, "frame joint 3"]
+    kind: str  # of file: BVH, SMPL, ...
     fps: float | None = None
     unit_m: float | None = None  # metres in one unit
     up: str | None = None  # y | z | -y | -z | x | -x
@@ -35,28 +34,28 @@ class RawMotion:
 
 @dataclass(frozen=True, kw_only=True)
 class MotionClip:
-    """A recorded motion of 22 joints: metres, z up, right-handed, evenly spaced in time; anywhere on its floor."""
+    """A recorded motion of 22 joints: metres, z up, right-handed, evenly sampled; anywhere on its floor."""
 
     joints_m: Joints
     fps: float
-    label: str  # what it is called in titles and meta.json
+    label: str  # its name in titles and meta.json
     notes: tuple[str, ...] = ()  # sentences on what was assumed
-    has_jitter: bool = True  # take marker jitter out (see dense.py)
+    has_jitter: bool = True  # marker jitter is filtered out (see clip_resampling)
     file: Path | None = None  # where it was read from
-    first_frame: int = 0  # of the file, as it begins here
+    first_frame: int = 0  # index in the file
 
     @property
     def duration_s(self) -> float:
-        """Every frame lasts 1/fps, the last one too."""
+        """Duration in seconds; every frame lasts 1/fps, the last one too."""
         return len(self.joints_m) / self.fps
 
     @property
     def height_m(self) -> float:
-        """The body's height, estimated from the bones of legs and trunk."""
+        """The body's height in metres, estimated from the bones of legs and trunk."""
         return body_height(self.joints_m)
 
     def after(self, start_s: float) -> "MotionClip":
-        """The same from a later second on. Raises InputError where nothing is left."""
+        """The clip from `start_s` on. Raises InputError where nothing is left."""
         first = round(start_s * self.fps)
         if not 0 <= first <= len(self.joints_m) - 2:
             raise InputError(
@@ -66,19 +65,19 @@ class MotionClip:
         return replace(self, joints_m=self.joints_m[first:], first_frame=self.first_frame + first) if first else self
 
     def scaled_to(self, height_m: float) -> "MotionClip":
-        """The same motion of a body of another height; ways grow and shrink with the legs."""
+        """The motion of a body of another height; its paths scale with the legs."""
         low, high = ALLOWED_M
         if not low <= height_m <= high:
             raise InputError(f"a body height of {height_m:g} m is outside {low:g} to {high:g} m; choose another")
         was = self.height_m
-        note = f"the recorded body of about {was:.2f} m was scaled to {height_m:.2f} m, its steps with it"
+        note = f"the recorded body of about {was:.2f} m was scaled to {height_m:.2f} m, and its steps with it"
         return replace(self, joints_m=self.joints_m * (height_m / was), notes=(*self.notes, note))
 
 
 def body_height(joints: Joints) -> float:
     """Height of the body in the unit of `joints` (frame, 22, 3), from the median lengths of its legs and trunk.
 
-    Within some 8 % of the truth: people, and the skeletons of recordings, differ in their proportions.
+    Accurate to about 8 %: people, and the skeletons of recordings, differ in their proportions.
     """
 
     def length(one: str, other: str) -> float:

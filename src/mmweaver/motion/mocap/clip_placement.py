@@ -1,4 +1,4 @@
-"""A recorded motion in a scene: feet on its floor, the whole way free and in view, start and heading as asked."""
+"""Placement of a recorded motion in a scene: feet on the floor, the whole track free and in view."""
 
 import itertools
 import math
@@ -19,21 +19,21 @@ from mmweaver.motion.mocap.clip_resampling import resampled_clip
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
-SOLE_UNDER_BALL = ANKLE_HEIGHT - 0.034  # of the height: the ball of a foot that stands is so high over the floor
-HEADINGS = 24
+SOLE_UNDER_BALL = ANKLE_HEIGHT - 0.034  # of the height: from the floor to the foot joint of a standing body
+HEADINGS = 24  # tried, evenly spaced
 MOST_STARTS = 400
-WAY_POINTS = 48
-LOW_PELVIS = 0.75  # of its height when the legs are straight
+TRACK_POINTS = 48
+LOW_PELVIS = 0.75  # of the height of the pelvis on straight legs: lower is sitting, crouching or lying
 TO_RADAR_RAD = -math.pi / 2
 
 
 @dataclass(frozen=True)
 class _Track:
-    """The pelvis over the floor from where it starts, and which way the body faces there."""
+    """Displacement of the pelvis over the floor from its start, and the heading there."""
 
     shift_m: Float[Array, "point 2"]
     facing_rad: float
-    reach_m: float  # how far hands and feet go from the pelvis
+    reach_m: float  # how far hands and feet reach from the pelvis
 
 
 def place_clip(
@@ -47,18 +47,18 @@ def place_clip(
     heading_rad: float | None = None,
     as_recorded: bool = False,
 ) -> Motion:
-    """The first `duration_s` of a clip in a scene.
+    """Places the first `duration_s` of a clip in a scene.
 
-    `start_m` (x, y) is where the pelvis starts, `heading_rad` where the body faces then (from +x towards +y); what is
-    not given is searched for: a start and a heading, towards the radar if that is possible, from which the whole way is
-    free and in view. With `as_recorded` the clip's places are the radar's own (x right, y away, z up, metres) and
-    nothing is moved or checked. Raises InputError where there is no room, saying what there is.
+    `start_m` (x, y) is where the pelvis starts, `heading_rad` the heading there (from +x towards +y). What is not given
+    is searched for: a start and a heading, towards the radar if possible, from which the whole track is free and in
+    view. With `as_recorded` the clip's positions are in the radar's frame (x right, y away, z up, metres), and nothing
+    is moved or checked. Raises InputError where there is no room, saying how much there is.
     """
     time_s, joints_m = resampled_clip(clip, duration_s)
     height_m = clip.height_m
     notes = list(clip.notes)
     if as_recorded:
-        notes.append("the places of the motion file are taken as they are; nothing of the room was checked")
+        notes.append("the positions of the motion file are used unchanged; nothing was checked against the room")
     else:
         joints_m = joints_m - np.array([0.0, 0.0, floor_under(clip.joints_m, height_m)])
         floor = FloorMap(scene, range_window_m, height_m)
@@ -72,16 +72,16 @@ def place_clip(
 
 
 def floor_under(joints_m: Float[Array, "frame 22 3"], height_m: float) -> float:
-    """Height of the floor that the recording stood on: as far under its lowest joints as a sole is under the ball.
+    """Height in metres of the recording's floor: the lowest joints less the height of a standing foot's joint; z up.
 
-    The second percentile of the lowest joint over time, so that one bad frame does not count; z up.
+    Uses the second percentile of the lowest joint over time, so that a single bad frame does not count.
     """
     lowest = joints_m[..., 2].min(axis=1)
     return float(np.percentile(lowest, 2)) - SOLE_UNDER_BALL * height_m
 
 
 def facing_of(joints_m: Float[Array, "22 3"]) -> float:
-    """Where a body faces, from +x towards +y, by its hips and shoulders; z up."""
+    """Heading of a body from +x towards +y, by its hips and shoulders; z up."""
     across = joints_m[joint("left_hip")] - joints_m[joint("right_hip")]
     across = across + joints_m[joint("left_shoulder")] - joints_m[joint("right_shoulder")]
     return float(np.arctan2(-across[0], across[1]))
@@ -91,7 +91,7 @@ def _track_of(joints_m: Float[Array, "frame 22 3"], time_s: Float[Array, " frame
     inside = (time_s >= -1e-9) & (time_s <= duration_s + 1e-9)
     shown = joints_m[inside]
     pelvis = shown[:, 0, :2]
-    points = pelvis[np.unique(np.linspace(0, len(pelvis) - 1, WAY_POINTS).astype(int))]
+    points = pelvis[np.unique(np.linspace(0, len(pelvis) - 1, TRACK_POINTS).astype(int))]
     reach = np.linalg.norm(shown[..., :2] - pelvis[:, None], axis=-1).max(axis=1)
     return _Track(shift_m=points - pelvis[0], facing_rad=facing_of(shown[0]), reach_m=float(np.percentile(reach, 95)))
 
@@ -105,7 +105,7 @@ def _found(
     start_m: tuple[float, float] | None,
     heading_rad: float | None,
 ) -> tuple[Float[Array, "2"], float]:
-    """The start and heading with the least against them."""
+    """The start (x, y) and heading of least cost."""
     if not floor.walkable.any():
         raise InputError(
             "there is no free floor in the picture and the radar's window; take a radar with a longer window (--radar),"
@@ -141,7 +141,7 @@ def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
     near = floor.nearest_walkable_m(spot)
     hint = "" if near is None else f"; the nearest free place is {near[0]:.2f},{near[1]:.2f}"
     raise InputError(
-        f"the start {spot[0]:g},{spot[1]:g} is not free, or out of the picture or the radar's window{hint}"
+        f"the start {spot[0]:g},{spot[1]:g} is not free, or is outside the picture or the radar's range window{hint}"
     )
 
 
@@ -155,7 +155,7 @@ def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"
 def _cost(
     tracks: Float[Array, "start point 2"], floor: FloorMap, reach_m: float, heading: float | None
 ) -> Float[Array, " start"]:
-    """Dislike of the places, limbs that would reach into things, and a back towards the radar."""
+    """Cost (start,) of positions, of limbs that reach beyond the clearance, and of facing away from the radar."""
     tight = np.clip(reach_m - floor.clearance_at(tracks), 0.0, None).max(axis=1)
     cost = floor.cost_at(tracks).mean(axis=1) + 2.0 * tight
     if heading is not None:
@@ -183,14 +183,14 @@ def _moved(
 
 
 def _posture_note(clip: MotionClip, height_over_floor: Float[Array, "frame 22"]) -> list[str]:
-    """Who sits or lies in a recording has nothing of this room underneath."""
+    """Notes a recorded body that sits or lies: no furniture of this room is under it."""
     names = ("hip", "knee", "ankle")
-    places = [clip.joints_m[:, joint(f"left_{name}")] for name in names]
-    leg = float(np.median(sum(np.linalg.norm(a - b, axis=-1) for a, b in itertools.pairwise(places))))
+    positions = [clip.joints_m[:, joint(f"left_{name}")] for name in names]
+    leg = float(np.median(sum(np.linalg.norm(a - b, axis=-1) for a, b in itertools.pairwise(positions))))
     low = height_over_floor[:, 0] < LOW_PELVIS * leg
     if low.mean() < 0.3:
         return []
-    return ["the recorded body is low for a while (it sits, crouches or lies); no furniture is put under it"]
+    return ["the recorded body is low for a while (it sits, crouches or lies); no furniture is placed under it"]
 
 
 def _no_room(
@@ -204,9 +204,9 @@ def _no_room(
     longest = float(np.linalg.norm(spread, axis=-1).max())
     free: Bool[Array, "y x"] = floor.walkable
     asked = "" if start_m is None else f" from {start_m[0]:g},{start_m[1]:g}"
-    asked += "" if heading_rad is None else " in the heading asked for"
+    asked += "" if heading_rad is None else " in the given heading"
     size = f"{free.sum() * floor.cell_m**2:.1f} m2 of floor are free in the picture and the radar's window"
     return (
-        f"there is no room for {clip.label}{asked}: its way is {longest:.1f} m across, {size}; try fewer --frames,"
+        f"there is no room for {clip.label}{asked}: its track is {longest:.1f} m across, {size}; try fewer --frames,"
         " another --motion-start, --at or --heading, a smaller --height, or --as-recorded"
     )

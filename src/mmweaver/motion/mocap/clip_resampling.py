@@ -1,8 +1,8 @@
-"""A clip of any frame rate -> 120 Hz, smooth, for the slow time of the radar.
+"""Resampling of a clip of any frame rate to 120 Hz, smooth enough for the radar's slow time.
 
-Between two frames the joints follow a cubic spline: velocity and acceleration are continuous, and no frame is held. A
-recording of 50 frames a second or more carries jitter of its markers, tenths of a millimetre at rates where no limb
-moves; the radar would see it (1 mm is half a turn of its phase), so it is taken out above 12 Hz.
+Between frames the joints follow cubic splines with continuous velocity and acceleration. Recordings of 50 frames a
+second or more contain marker jitter, tenths of a millimetre at frequencies at which no limb moves. The radar would see
+it (1 mm is half a cycle of its phase), so it is low-pass filtered at 12 Hz.
 
 Reference: Winter, Biomechanics and Motor Control of Human Movement, 2009, 3.4.4 (cut-off of recorded motion).
 """
@@ -20,16 +20,16 @@ JITTERS_FROM_FPS = 50.0
 
 
 def check_lasts(clip: MotionClip, duration_s: float) -> None:
-    """Raises InputError where a clip is shorter than what is asked for."""
+    """Raises InputError where a clip is shorter than `duration_s`."""
     if clip.duration_s < duration_s - 1e-6:
         raise InputError(
-            f"{clip.label} lasts {clip.duration_s:.2f} s, {duration_s:.2f} s were asked for; ask for fewer --frames or"
+            f"{clip.label} lasts {clip.duration_s:.2f} s, {duration_s:.2f} s are needed; use fewer --frames or"
             " give a longer motion"
         )
 
 
 def resampled_clip(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joints]:
-    """Times from just before 0 to just after `duration_s` at 120 Hz, and the joints there."""
+    """Times (n,) from just before 0 to just after `duration_s` at 120 Hz, and joints (n, 22, 3) in metres."""
     from scipy.interpolate import CubicSpline
 
     check_lasts(clip, duration_s)
@@ -42,18 +42,18 @@ def resampled_clip(clip: MotionClip, duration_s: float) -> tuple[PerFrame, Joint
 
 
 def low_passed(clip: MotionClip) -> Joints:
-    """The joints without jitter above 12 Hz (a Butterworth filter run both ways, so nothing is late)."""
+    """Joints (frame, 22, 3) without jitter above 12 Hz: a Butterworth filter, run both ways for zero phase."""
     from scipy.signal import butter, sosfiltfilt
 
     if not clip.has_jitter or clip.fps < JITTERS_FROM_FPS:
         return clip.joints_m
-    sections = butter(2, CUT_OFF_HZ / 0.802, fs=clip.fps, output="sos")  # twice run, it is down 3 dB at 12 Hz
+    sections = butter(2, CUT_OFF_HZ / 0.802, fs=clip.fps, output="sos")  # run twice, it attenuates by 3 dB at 12 Hz
     pad = min(len(clip.joints_m) - 1, int(clip.fps / 2))
     return np.asarray(sosfiltfilt(sections, clip.joints_m, axis=0, padtype="odd", padlen=pad))
 
 
 def _continued(joints: Float[np.ndarray, "frame 22 3"], frames: int) -> Float[np.ndarray, "more 22 3"]:
-    """A few frames more at both ends, mirrored through the end point: place and velocity go on."""
+    """Extrapolates both ends by point reflection, which continues position and velocity."""
     frames = min(frames, len(joints) - 1)
     before = 2 * joints[0] - joints[frames:0:-1]
     after = 2 * joints[-1] - joints[-2 : -frames - 2 : -1]

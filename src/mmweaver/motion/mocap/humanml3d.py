@@ -1,16 +1,17 @@
-"""HumanML3D's 263 features a frame <-> 22 joints (y up, metres, 20 frames a second).
+"""Conversion between HumanML3D's 263 features per frame and 22 joints (y up, metres, 20 frames a second).
 
 | columns | what |
 |---|---|
-| 0 | turn of the root to the next frame, half the angle in radians |
-| 1:3 | way of the root to the next frame over the floor (x, z), in the root's own directions |
+| 0 | rotation of the root to the next frame, half the angle in radians |
+| 1:3 | displacement of the root to the next frame on the floor (x, z), in the root's frame |
 | 3 | height of the root |
-| 4:67 | joints 1 to 21 from the ground point under the root, in the root's own directions |
+| 4:67 | joints 1 to 21 relative to the ground point under the root, in the root's frame |
 | 67:193 | rotations of joints 1 to 21, the first two columns of their matrices |
-| 193:259 | way of the 22 joints to the next frame, in the root's own directions |
-| 259:263 | left ankle, left foot, right ankle, right foot: 1 where it rests |
+| 193:259 | displacement of the 22 joints to the next frame, in the root's frame |
+| 259:263 | foot contact of left ankle, left foot, right ankle, right foot |
 
-Joints come back from features exactly; features need the next frame, so `n` frames of joints give `n - 1` of features.
+Joints are recovered from features exactly; features need the next frame, so `n` frames of joints give
+`n - 1` of features.
 
 Reference: Guo et al., Generating Diverse and Natural 3D Human Motions from Text, CVPR 2022 (its data format).
 """
@@ -28,19 +29,19 @@ FPS = 20.0
 NUM_FEATURES = 263
 ROTATIONS, VELOCITIES, CONTACTS = slice(67, 193), slice(193, 259), slice(259, 263)
 CHAINS = ((0, 2, 5, 8, 11), (0, 1, 4, 7, 10), (0, 3, 6, 9, 12, 15), (9, 14, 17, 19, 21), (9, 13, 16, 18, 20))
-# Direction of each joint from its parent when nothing is rotated: x to the left, y up, z ahead.
+# Direction of each joint from its parent in the rest pose: x to the left, y up, z ahead.
 REST = np.array([
     (0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, -1, 0), (0, 1, 0), (0, -1, 0), (0, -1, 0), (0, 1, 0),
     (0, 0, 1), (0, 0, 1), (0, 1, 0), (1, 0, 0), (-1, 0, 0), (0, 0, 1), (0, -1, 0), (0, -1, 0), (0, -1, 0), (0, -1, 0),
     (0, -1, 0), (0, -1, 0),
 ], float)  # fmt: skip
-SMOOTHED_FRAMES = 20.0  # the heading of the root is smoothed by so wide a Gaussian
-RESTING_M2 = 0.002  # a foot that moves less than the root of this to the next frame rests
+SMOOTHED_FRAMES = 20.0  # standard deviation of the Gaussian that smooths the root's heading
+CONTACT_M2 = 0.002  # squared displacement to the next frame below which a foot is in contact
 FEET = ("left_ankle", "left_foot", "right_ankle", "right_foot")
 
 
 def joints_from_features(features: Float[Array, "frame 263"]) -> Float[Array, "frame 22 3"]:
-    """The joints that features stand for; the root starts at (0, y, 0) and looks along +z."""
+    """Joints in metres, y up, of features; the root starts at (0, y, 0) and faces +z."""
     features = np.asarray(features, float)
     half = np.concatenate([[0.0], np.cumsum(features[:-1, 0])])
     shift = np.zeros((len(features), 3))
@@ -57,7 +58,7 @@ def joints_from_features(features: Float[Array, "frame 263"]) -> Float[Array, "f
 
 
 def features_from_joints(joints: Float[Array, "frame 22 3"]) -> Float[Array, "frame_less_one 263"]:
-    """Features of joints in metres, y up, at 20 frames a second; put on the floor, to the origin and facing +z first.
+    """Features of joints in metres, y up, at 20 frames a second; first moved to the floor, the origin and facing +z.
 
     The body is kept as it is; HumanML3D itself first moves every recording onto one skeleton.
     """
@@ -65,7 +66,7 @@ def features_from_joints(joints: Float[Array, "frame 22 3"]) -> Float[Array, "fr
         raise InputError("features need at least two frames of joints")
     joints = _facing_z(np.asarray(joints, float))
     half = -0.5 * np.unwrap(_heading_rad(joints))
-    half[0] = 0.0  # the format's own rule: nothing is turned in the first frame
+    half[0] = 0.0  # by definition of the format, the first frame is not rotated
     steps = np.diff(joints, axis=0)
     local = joints - joints[:, :1] * np.array([1.0, 0.0, 1.0])
     local = _rotated_about_y(local, half[:, None])
@@ -77,24 +78,24 @@ def features_from_joints(joints: Float[Array, "frame 22 3"]) -> Float[Array, "fr
     features[:, ROTATIONS] = _rotations(joints, half)[:-1].reshape(len(steps), -1)
     features[:, VELOCITIES] = _rotated_about_y(steps, half[:-1, None]).reshape(len(steps), -1)
     feet = steps[:, [joint(name) for name in FEET]]
-    features[:, CONTACTS] = np.sum(feet**2, axis=-1) < RESTING_M2
+    features[:, CONTACTS] = np.sum(feet**2, axis=-1) < CONTACT_M2
     return features
 
 
 def y_up(joints_m: Float[Array, "frame 22 3"]) -> Float[Array, "frame 22 3"]:
-    """Our z-up joints as HumanML3D has them: x stays, height is y."""
+    """Our z-up joints in HumanML3D's axes: x stays, height is y."""
     return np.stack([joints_m[..., 0], joints_m[..., 2], -joints_m[..., 1]], axis=-1)
 
 
 def _rotated_about_y(vectors: Float[Array, "*shape 3"], half_rad: Float[Array, "..."]) -> Float[Array, "*shape 3"]:
-    """Turned about y by twice `half_rad`."""
+    """Vectors rotated about y by twice `half_rad`."""
     cos, sin = np.cos(2 * half_rad), np.sin(2 * half_rad)
     x, y, z = (vectors[..., axis] for axis in range(3))
     return np.stack([cos * x + sin * z, y, cos * z - sin * x], axis=-1)
 
 
 def _facing_z(joints: Float[Array, "frame 22 3"]) -> Float[Array, "frame 22 3"]:
-    """On the floor (its lowest joint ever at 0), the first root over the origin, the first frame facing +z."""
+    """Moves the lowest joint of all frames to 0 and the first root over the origin, the first frame facing +z."""
     joints = joints - np.array([joints[0, 0, 0], joints[..., 1].min(), joints[0, 0, 2]])
     across = joints[0, 2] - joints[0, 1] + joints[0, 17] - joints[0, 16]  # to the right
     ahead = np.cross([0.0, 1.0, 0.0], across)
@@ -102,8 +103,8 @@ def _facing_z(joints: Float[Array, "frame 22 3"]) -> Float[Array, "frame 22 3"]:
 
 
 def _heading_rad(joints: Float[Array, "frame 22 3"]) -> Float[Array, " frame"]:
-    """Where the body faces, from z towards x, smoothed. The hips count backwards here, as they do in the published
-    features: they were exchanged when those were made, and the sample only comes out so."""
+    """Smoothed heading from z towards x. The hips enter with exchanged sides, as in the published features, which are
+    reproduced only so."""
     from scipy.ndimage import gaussian_filter1d
 
     across = joints[:, 1] - joints[:, 2] + joints[:, 17] - joints[:, 16]
@@ -114,8 +115,8 @@ def _heading_rad(joints: Float[Array, "frame 22 3"]) -> Float[Array, " frame"]:
 
 
 def _rotations(joints: Float[Array, "frame 22 3"], half: Float[Array, " frame"]) -> Float[Array, "frame 21 6"]:
-    """The shortest turns that bring the resting bones into place, each relative to the bone before it; the arms start
-    anew from the root."""
+    """Shortest rotations (first two matrix columns) from the rest pose, each relative to its parent bone; the chains of
+    the arms start again from the root."""
     zero = np.zeros_like(half)
     root = np.stack([np.cos(half), zero, np.sin(half), zero], axis=-1)
     result = np.zeros((len(joints), NUM_JOINTS - 1, 6))
@@ -131,12 +132,13 @@ def _rotations(joints: Float[Array, "frame 22 3"], half: Float[Array, " frame"])
 
 
 def _between(start: Float[Array, "3"], ends: Float[Array, "frame 3"]) -> Float[Array, "frame 4"]:
-    """Quaternions (w, x, y, z) of the shortest turn from one unit vector to others."""
+    """Quaternions (w, x, y, z) of the shortest rotations from one unit vector to others."""
     turn = np.concatenate([(1.0 + ends @ start)[:, None], np.cross(start, ends)], axis=-1)
     return turn / np.maximum(np.linalg.norm(turn, axis=-1, keepdims=True), 1e-12)
 
 
 def _times(one: Float[Array, "frame 4"], other: Float[Array, "frame 4"]) -> Float[Array, "frame 4"]:
+    """Quaternion product."""
     w = one[:, :1] * other[:, :1] - np.sum(one[:, 1:] * other[:, 1:], axis=-1, keepdims=True)
     v = one[:, :1] * other[:, 1:] + other[:, :1] * one[:, 1:] + np.cross(one[:, 1:], other[:, 1:])
     return np.concatenate([w, v], axis=-1)

@@ -16,13 +16,13 @@ Array = np.ndarray
 JOINT_KEYS = ("joints_m", "joints", "positions", "keypoints3d", "pos")
 NAME_KEYS = ("joint_names", "names")
 CMU_FPS = 120.0
-# The 38 joints of CMU's skeleton; joints that lie upon another, fingers and the clavicles' inner ends have no name.
+# Of the 38 joints of CMU's skeleton; duplicates, fingers and the inner ends of the clavicles are left out.
 CMU_NAMES = {
     0: "hips", 2: "left_upleg", 3: "left_leg", 4: "left_foot", 5: "left_toebase", 8: "right_upleg", 9: "right_leg",
     10: "right_foot", 11: "right_toebase", 14: "spine1", 15: "spine2", 17: "neck", 18: "head", 21: "left_arm",
     22: "left_forearm", 23: "left_hand", 30: "right_arm", 31: "right_forearm", 32: "right_hand",
 }  # fmt: skip
-NORMALISED_BELOW_M = 0.25  # a root that low on the mean: the features have no mean any more
+NORMALISED_BELOW_M = 0.25  # mean height of the root below which features must be normalised ones
 
 
 def read_npy(path: Path) -> RawMotion:
@@ -32,7 +32,7 @@ def read_npy(path: Path) -> RawMotion:
         values = values[0]  # a batch of one
     if values.ndim == 2 and values.shape[1] == NUM_FEATURES:
         return _of_features(values, path)
-    return RawMotion(names=JOINT_NAMES, places=_of_22(values, path), kind="joints")
+    return RawMotion(names=JOINT_NAMES, positions=_of_22(values, path), kind="joints")
 
 
 def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None) -> RawMotion:
@@ -51,22 +51,22 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
             f" ({', '.join(JOINT_KEYS)}) are among them"
         )
     names = next((tuple(map(str, arrays[name])) for name in NAME_KEYS if name in arrays), None)
-    places = np.asarray(arrays[key], float)
+    positions = np.asarray(arrays[key], float)
     if names is None:
-        places, names = _of_22(places, path), JOINT_NAMES
-    elif places.ndim != 3 or places.shape[1:] != (len(names), 3):
+        positions, names = _of_22(positions, path), JOINT_NAMES
+    elif positions.ndim != 3 or positions.shape[1:] != (len(names), 3):
         raise InputError(
-            f"{path}: {key} has shape {places.shape}, {len(names)} joint names need (frame, {len(names)}, 3)"
+            f"{path}: {key} has shape {positions.shape}, {len(names)} joint names need (frame, {len(names)}, 3)"
         )
     ours = key == "joints_m"
     return RawMotion(
-        names=names, places=places, kind="joints", fps=rate_of(arrays) or _rate_of_times(arrays),
+        names=names, positions=positions, kind="joints", fps=rate_of(arrays) or _rate_of_times(arrays),
         unit_m=1.0 if ours else None, up="z" if ours else None,
     )  # fmt: skip
 
 
 def clips_of(path: Path) -> tuple[str, ...]:
-    """Names of the motions that a file holds, where it holds several."""
+    """Names of the motions of a file, where it holds several; else ()."""
     arrays = open_npz(path, only=("names", "lengths")) if path.suffix.lower() == ".npz" else {}
     return tuple(map(str, arrays["names"])) if {"names", "lengths"} <= set(arrays) else ()
 
@@ -76,11 +76,11 @@ def _of_features(values: Float[Array, "frame 263"], path: Path) -> RawMotion:
         raise InputError(f"{path} has {len(values)} frames; a motion has at least 2")
     if np.isfinite(values[:, 3]).all() and abs(float(values[:, 3].mean())) < NORMALISED_BELOW_M:
         raise InputError(
-            f"{path}: the features seem normalised (their root is {values[:, 3].mean():.2f} high); multiply by Std.npy"
-            " and add Mean.npy first"
+            f"{path}: the features seem to be normalised (their root is {values[:, 3].mean():.2f} high); multiply by"
+            " Std.npy and add Mean.npy first"
         )
     return RawMotion(
-        names=JOINT_NAMES, places=joints_from_features(values), kind="HumanML3D", fps=FPS, unit_m=1.0, up="y"
+        names=JOINT_NAMES, positions=joints_from_features(values), kind="HumanML3D", fps=FPS, unit_m=1.0, up="y"
     )
 
 
@@ -99,8 +99,13 @@ def _of_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
 
 def _of_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion:
     names, lengths = [str(name) for name in arrays["names"]], arrays["lengths"].astype(int)
-    places = arrays["pos"]
-    if places.ndim != 3 or places.shape[1:] != (38, 3) or lengths.sum() != len(places) or len(names) != len(lengths):
+    positions = arrays["pos"]
+    if (
+        positions.ndim != 3
+        or positions.shape[1:] != (38, 3)
+        or lengths.sum() != len(positions)
+        or len(names) != len(lengths)
+    ):
         raise InputError(f"{path}: names, lengths and pos do not fit each other or the 38 joints of CMU's skeleton")
     if clip is None and len(names) > 1:
         raise InputError(f"{path} holds {len(names)} motions; choose one with --clip, for example --clip {names[0]}")
@@ -110,9 +115,14 @@ def _of_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion
         few = ", ".join(names[k] for k in hits[:4]) or ", ".join(names[:4])
         raise InputError(f"{path}: {clip!r} names {len(hits)} of its {len(names)} motions; write one out, as {few}")
     start = int(lengths[: hits[0]].sum())
-    chosen = np.asarray(places[start : start + lengths[hits[0]]], float)
+    chosen = np.asarray(positions[start : start + lengths[hits[0]]], float)
     return RawMotion(
-        names=tuple(CMU_NAMES.values()), places=chosen[:, list(CMU_NAMES)], kind="CMU", fps=CMU_FPS, unit_m=1.0, up="y"
+        names=tuple(CMU_NAMES.values()),
+        positions=chosen[:, list(CMU_NAMES)],
+        kind="CMU",
+        fps=CMU_FPS,
+        unit_m=1.0,
+        up="y",
     )
 
 

@@ -1,8 +1,8 @@
-"""Names of other people's skeletons -> our 22 joints.
+"""Mapping of joint names of other skeletons to our 22 joints.
 
-Names are taken apart into a side and a part ("LeftForeArm", "lowerarm_l", "Bip01 L Forearm", "mixamorig:LeftForeArm"
-are all left + forearm), and each part has a meaning. Two words mean different joints in different files: a "shoulder"
-is the collar where there is an arm beside it, a "foot" is the ankle unless there is an ankle.
+Names are split into a side and a part ("LeftForeArm", "lowerarm_l", "Bip01 L Forearm" and "mixamorig:LeftForeArm" are
+all left + forearm). Two words mean different joints in different files: a "shoulder" is the collar if the file also has
+an arm, a "foot" is the ankle unless the file has an ankle.
 """
 
 import re
@@ -31,7 +31,7 @@ SIDED: dict[str, tuple[str, ...]] = {
 SPINE = {"spine", "chest", "upperchest", "torso", "abdomen", "lowerback", "upperback", "waist", "thorax", "lowertorso"}
 VERTEBRAE = re.compile(r"^[lt]\d+$", re.I)  # L5, L3, T12, T8
 PELVIS = ("pelvis", "hips", "hip", "root")
-# Along the way from pelvis to neck, where the three spine joints of the mean SMPL body lie.
+# Where the three spine joints of the mean SMPL body lie between pelvis and neck.
 SPINE_SHARES = (0.21, 0.47, 0.58)
 FINGERS = re.compile(r"thumb|index|middle|ring|pinky|finger|twist|ik|pole|metacarp|hold|prop", re.I)
 
@@ -56,15 +56,15 @@ def parts_of(name: str) -> tuple[str, str, int]:
 
 
 def to_22(raw: RawMotion, source: str) -> Float[Array, "frame 22 3"]:
-    """The 22 joints of a motion under other names; what a skeleton lacks between others is put in between.
+    """The 22 joints (frame, 22, 3) of a motion under other names; missing spine, neck, collars, feet are interpolated.
 
-    Raises InputError, naming them, where joints are missing that cannot be put in.
+    Raises InputError, naming them, where other joints are missing.
     """
     lowered = [name.lower() for name in raw.names]
     if set(JOINT_NAMES) <= set(lowered):
-        return np.asarray(raw.places[:, [lowered.index(name) for name in JOINT_NAMES]])
+        return np.asarray(raw.positions[:, [lowered.index(name) for name in JOINT_NAMES]])
     found = _limbs(raw.names)
-    known = {name: raw.places[:, index] for name, index in found.items()}
+    known = {name: raw.positions[:, index] for name, index in found.items()}
     neck = _first(raw.names, ("neck",))
     head = _first(raw.names, ("head",))
     pelvis = next((index for word in PELVIS if (index := _first(raw.names, (word,))) is not None), None)
@@ -80,24 +80,24 @@ def to_22(raw: RawMotion, source: str) -> Float[Array, "frame 22 3"]:
             f"{source}: no joint is known as {', '.join(missing[:6])}{' and more' if len(missing) > 6 else ''}; the"
             f" file's joints are {theirs}; rename them as core/skeleton.py does"
         )
-    joints = np.full((len(raw.places), NUM_JOINTS, 3), np.nan)
+    joints = np.full((len(raw.positions), NUM_JOINTS, 3), np.nan)
     for name, place in known.items():
         joints[:, joint(name)] = place
     hips = 0.5 * (known["left_hip"] + known["right_hip"])
     shoulders = 0.5 * (known["left_shoulder"] + known["right_shoulder"])
-    joints[:, 0] = hips if pelvis is None else raw.places[:, pelvis]
-    joints[:, joint("head")] = raw.places[:, head]
+    joints[:, 0] = hips if pelvis is None else raw.positions[:, pelvis]
+    joints[:, joint("head")] = raw.positions[:, head]
     joints[:, joint("neck")] = (
-        raw.places[:, neck] if neck is not None else shoulders + 0.3 * (joints[:, joint("head")] - shoulders)
+        raw.positions[:, neck] if neck is not None else shoulders + 0.3 * (joints[:, joint("head")] - shoulders)
     )
-    chain = [raw.places[:, k] for k in _spine(raw.names)]
+    chain = [raw.positions[:, k] for k in _spine(raw.names)]
     _fill_spine(joints, chain)
     _fill_ends(joints, known)
     return joints
 
 
 def _limbs(names: tuple[str, ...]) -> dict[str, int]:
-    """Index of each sided joint that a name stands for."""
+    """Index of each left or right joint in the file's names."""
     parts: dict[tuple[str, str], int] = {}
     for index, name in enumerate(names):
         side, part, _ = parts_of(name)
@@ -123,7 +123,7 @@ def _limbs(names: tuple[str, ...]) -> dict[str, int]:
 
 
 def _first(names: tuple[str, ...], words: tuple[str, ...]) -> int | None:
-    """The middle joint of a name, with the lowest number."""
+    """Index of the unsided joint with one of these names and the lowest number; None if there is none."""
     hits = [(parts_of(name)[2], k) for k, name in enumerate(names) if parts_of(name)[:2] in {("", w) for w in words}]
     return min(hits)[1] if hits else None
 
@@ -133,7 +133,7 @@ def _spine(names: tuple[str, ...]) -> list[int]:
 
 
 def _fill_spine(joints: Float[Array, "frame 22 3"], chain: list[Float[Array, "frame 3"]]) -> None:
-    """Three joints at the body's shares of the way from the pelvis over the file's own spine to the neck."""
+    """Interpolates the three spine joints along the file's own spine, from pelvis to neck."""
     knots = np.stack([joints[:, 0], *chain, joints[:, joint("neck")]], axis=1)  # (frame, knot, 3)
     lengths = np.nanmedian(np.linalg.norm(np.diff(knots, axis=1), axis=-1), axis=0)
     distances = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -145,7 +145,7 @@ def _fill_spine(joints: Float[Array, "frame 22 3"], chain: list[Float[Array, "fr
 
 
 def _fill_ends(joints: Float[Array, "frame 22 3"], known: dict[str, Array]) -> None:
-    """Collars halfway to the shoulders, balls of the feet ahead of the ankles, where the file has none."""
+    """Puts collars halfway to the shoulders, and balls of the feet ahead of the ankles, where the file has none."""
     spine3 = joints[:, joint("spine3")]
     for side in ("left", "right"):
         if f"{side}_collar" not in known:

@@ -1,4 +1,4 @@
-"""The door: a motion file of any kind that is known -> MotionClip. Read this file first.
+"""From a motion file of any known kind to a MotionClip. Read this file first.
 
 BVH, .npy, .npz --bvh, arrays, smpl--> RawMotion (own names, unit, axes)
     --joint_names--> 22 joints --cleaning--> no gaps --axes--> metres, z up --cleaning--> MotionClip
@@ -35,10 +35,10 @@ def read_motion(
 ) -> MotionClip:
     """Reads a recorded motion.
 
-    `fps` is needed where the file names none, and wins where it does. `unit` (m, cm, mm, inch or the metres in one
-    unit) and `up` (y, z, ...) are read off the body where they are not said, and the notes say so. `clip` names one
-    motion of a file of several; `body_model` is an SMPL model (.npz) of the user's own. Raises InputError, one line,
-    for whatever is no human motion.
+    `fps` is needed where the file states none, and overrides what it states. `unit` (m, cm, mm, inch or the metres in
+    one unit) and `up` (y, z, ...) are estimated from the body where they are not given, which the notes report. `clip`
+    names one motion of a file of several; `body_model` is the user's own SMPL model (.npz). Raises InputError for
+    whatever is no human motion.
     """
     path = Path(path)
     if not path.is_file():
@@ -55,10 +55,10 @@ def read_motion(
     else:
         raise InputError(f"{path}: motion is read from {KINDS}, not from {kind or 'a file without an ending'}")
     label = path.name if clip is None else f"{path.name} {clip}"
-    return replace(clear(raw, label, fps=fps, unit=unit, up=up), file=path)
+    return replace(to_clip(raw, label, fps=fps, unit=unit, up=up), file=path)
 
 
-def clear(
+def to_clip(
     raw: RawMotion,
     label: str,
     *,
@@ -66,9 +66,9 @@ def clear(
     unit: str | float | None = None,
     up: str | None = None,
 ) -> MotionClip:
-    """A RawMotion in our joints, metres and axes, without gaps; see `read_motion`."""
-    if not 2 <= len(raw.places) <= MOST_FRAMES:
-        raise InputError(f"{label} has {len(raw.places)} frames; a motion has 2 to {MOST_FRAMES}")
+    """Converts a RawMotion to our joints, metres and axes, without gaps; see `read_motion`."""
+    if not 2 <= len(raw.positions) <= MOST_FRAMES:
+        raise InputError(f"{label} has {len(raw.positions)} frames; a motion has 2 to {MOST_FRAMES}")
     rate = _rate(fps if fps is not None else raw.fps, label)
     notes = [*raw.notes]
     joints = to_22(raw, label)
@@ -91,9 +91,7 @@ def clear(
 def _rate(fps: float | None, label: str) -> float:
     low, high = FPS_LIMITS
     if fps is None:
-        raise InputError(
-            f"{label} does not say how many frames a second it has; give --motion-fps (HumanML3D and MotionGPT: 20)"
-        )
+        raise InputError(f"{label} states no frame rate; give --motion-fps (HumanML3D and MotionGPT: 20)")
     if not (math.isfinite(fps) and low <= fps <= high):
         raise InputError(f"a motion has {low:g} to {high:g} frames a second, not {fps:g}; give --motion-fps")
     return float(fps)
@@ -104,5 +102,5 @@ def _as_right_handed(
 ) -> tuple[Float[np.ndarray, "frame 22 3"], tuple[str, ...]]:
     if not is_reflected(joints_m):
         return joints_m, ()
-    note = f"left and right are exchanged in {label} (left-handed axes): it was mirrored, so that the feet point ahead"
+    note = f"left and right are exchanged in {label} (left-handed axes): it was mirrored"
     return joints_m * np.array([-1.0, 1.0, 1.0]), (note,)

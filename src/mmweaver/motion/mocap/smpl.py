@@ -1,7 +1,7 @@
-"""SMPL poses (AMASS and its kin): axis-angle rotations of a body -> its 22 joints.
+"""SMPL poses (AMASS and similar): from axis-angle rotations of a body to its 22 joints.
 
-Without a body model the joints hang on the public mean skeleton; shape coefficients (betas) then count for nothing.
-With a model file of the user's own (SMPL, SMPL-H or SMPL-X as .npz) the joints are those of that body.
+Without a body model the public mean skeleton is used, and shape coefficients (betas) are ignored. With the user's own
+model file (SMPL, SMPL-H or SMPL-X as .npz) the joints are those of that body.
 
 Reference: Loper et al., SMPL, 2015; Mahmood et al., AMASS, 2019.
 """
@@ -17,7 +17,7 @@ from mmweaver.motion.mocap.archives import open_npz
 from mmweaver.motion.mocap.clip import RawMotion
 
 Array = np.ndarray
-# Each joint from its parent in the mean neutral body, metres; x to its left, y up, z forward. Public figures, as in
+# Offset of each joint from its parent in the mean neutral body, metres; x left, y up, z forward. Public values, as in
 # the humanoid models of physics simulators.
 MEAN_OFFSET_M = np.array([
     (0.0, 0.0, 0.0), (0.0695, -0.0914, -0.0068), (-0.0677, -0.0905, -0.0043), (-0.0025, 0.1090, -0.0267),
@@ -38,7 +38,7 @@ def is_smpl(arrays: dict[str, Array]) -> bool:
 
 
 def read_smpl(arrays: dict[str, Array], path: Path, body_model: Path | None = None) -> RawMotion:
-    """Joints (frame, 22, 3) of an AMASS or SMPL .npz. Raises InputError for shapes that are no such poses."""
+    """Joints (frame, 22, 3) in metres of an AMASS or SMPL .npz. Raises InputError for shapes that are no such poses."""
     poses = _poses(arrays, path)
     trans = next(arrays[name] for name in TRANSLATIONS if name in arrays)
     if trans.shape != (len(poses), 3):
@@ -47,9 +47,11 @@ def read_smpl(arrays: dict[str, Array], path: Path, body_model: Path | None = No
     if body_model is not None:
         offsets, note = _own_offsets(body_model, betas), f"bones of the body model {body_model.name}"
     else:
-        offsets, note = MEAN_OFFSET_M, "the mean SMPL skeleton stands for the recorded body (no body model was given)"
-    places = forward(poses[:, :NUM_JOINTS], np.asarray(trans, float), offsets)
-    return RawMotion(names=JOINT_NAMES, places=places, kind="SMPL", fps=rate_of(arrays), unit_m=1.0, notes=(note,))
+        offsets, note = MEAN_OFFSET_M, "the mean SMPL skeleton is used for the recorded body (no body model was given)"
+    positions = forward(poses[:, :NUM_JOINTS], np.asarray(trans, float), offsets)
+    return RawMotion(
+        names=JOINT_NAMES, positions=positions, kind="SMPL", fps=rate_of(arrays), unit_m=1.0, notes=(note,)
+    )
 
 
 def rate_of(arrays: dict[str, Array]) -> float | None:
@@ -64,20 +66,20 @@ def rate_of(arrays: dict[str, Array]) -> float | None:
 def forward(
     rotations: Float[Array, "frame 22 3"], trans: Float[Array, "frame 3"], offsets_m: Float[Array, "22 3"]
 ) -> Float[Array, "frame 22 3"]:
-    """Forward kinematics of axis-angle rotations, each in its parent's frame."""
+    """Forward kinematics of axis-angle rotations in radians, each in its parent's frame; metres."""
     from scipy.spatial.transform import Rotation
 
     missing = np.asarray(~np.isfinite(rotations).all(axis=(1, 2)))
     local = Rotation.from_rotvec(np.where(missing[:, None, None], 0.0, rotations).reshape(-1, 3)).as_matrix()
     local = np.asarray(local).reshape(len(rotations), NUM_JOINTS, 3, 3)
-    turned, places = local.copy(), np.zeros((len(rotations), NUM_JOINTS, 3))
-    places[:, 0] = trans + offsets_m[0]
+    turned, positions = local.copy(), np.zeros((len(rotations), NUM_JOINTS, 3))
+    positions[:, 0] = trans + offsets_m[0]
     for k, parent in enumerate(PARENTS):
         if parent >= 0:
-            places[:, k] = places[:, parent] + turned[:, parent] @ offsets_m[k]
+            positions[:, k] = positions[:, parent] + turned[:, parent] @ offsets_m[k]
             turned[:, k] = turned[:, parent] @ local[:, k]
-    places[missing] = np.nan
-    return places
+    positions[missing] = np.nan
+    return positions
 
 
 def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"]:
@@ -101,7 +103,7 @@ def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"
 
 
 def _own_offsets(body_model: Path, betas: Array | None) -> Float[Array, "22 3"]:
-    """Joint offsets of a body model's .npz in the shape of the recording."""
+    """Joint offsets (22, 3) in metres of a body model's .npz with the recording's shape coefficients."""
     if body_model.suffix != ".npz":
         raise InputError(f"{body_model}: the body model must be an .npz (pickles are not opened); SMPL-H has model.npz")
     model = open_npz(body_model, only=("v_template", "shapedirs", "J_regressor"))

@@ -1,4 +1,4 @@
-"""MotionGPT: a sentence becomes motion by a language model whose words are also pieces of motion. Start at `model.py`.
+"""MotionGPT: text to motion by a language model whose vocabulary includes motion tokens. Start at `motiongpt.py`.
 
 Needs the extra `motiongpt` (transformers).
 """

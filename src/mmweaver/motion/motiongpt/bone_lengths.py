@@ -1,6 +1,6 @@
-"""Bones of one length: a decoder gives every joint by itself, so that bones stretch by per cents between frames.
+"""Constant bone lengths: the decoder predicts joints independently, so that bones stretch by per cents between frames.
 
-A radar would see the stretching as movement.
+A radar would see the stretching as motion.
 """
 
 import numpy as np
@@ -10,8 +10,10 @@ from mmweaver.core.skeleton import PARENTS
 
 
 def with_constant_bone_lengths(joints: Float[np.ndarray, "frame 22 3"]) -> Float[np.ndarray, "frame 22 3"]:
-    """The same directions of all bones, each of its median length; the pelvis stays where it is, and so does the height
-    of the lower foot over the floor."""
+    """Joints (frame, 22, 3) with the same bone directions, each bone of its median length.
+
+    The pelvis keeps its position on the floor, the lower foot its height.
+    """
     steady = joints.copy()
     for child, parent in enumerate(PARENTS):
         if parent >= 0:

@@ -1,4 +1,4 @@
-"""A MotionGPT checkpoint: read without running anything from it, checked name by name, and its sizes read off.
+"""Reading a MotionGPT checkpoint: nothing in it is executed, tensors are checked by name, sizes inferred from them.
 
 Reference: MotionGPT's checkpoint `motiongpt_s3_h3d.tar`: a torch archive whose `state_dict` holds `vae.*` and
 `lm.language_model.*` (docs/motiongpt.md).
@@ -19,7 +19,7 @@ State = dict[str, Tensor]
 
 
 def read_checkpoint(path: Path) -> tuple[State, dict[str, str]]:
-    """All tensors of a checkpoint, and the notes of a safetensors file. Raises InputError for anything else."""
+    """All tensors of a checkpoint, and the metadata of a safetensors file. Raises InputError for anything else."""
     if not path.is_file():
         raise InputError(f"there is no checkpoint {path}; give the file of MotionGPT, or a folder that holds it")
     if path.suffix == ".safetensors":
@@ -27,7 +27,7 @@ def read_checkpoint(path: Path) -> tuple[State, dict[str, str]]:
     try:
         # The published file was written by torch's own saving; weights_only runs nothing that it might hold.
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # torch tells of odd pickles that are refused anyway
+            warnings.simplefilter("ignore")  # about pickles that are refused anyway
             content = torch.load(path, map_location="cpu", weights_only=True)
     except Exception as error:
         raise InputError(_why_unread(path, error)) from None
@@ -52,14 +52,14 @@ def _why_unread(path: Path, error: Exception) -> str:
     if "GLOBAL" in text or "Unsupported" in text or "weights_only" in text.lower():
         what = text.split("GLOBAL ")[-1].split(" ")[0] if "GLOBAL " in text else "something"
         return (
-            f"{path} holds {what} besides tensors, which is not opened (it could run code); where you trust it, save"
-            " its state_dict alone with torch.save and give that file"
+            f"{path} holds {what} in addition to tensors, which is not opened (it could run code); if you trust it,"
+            " save its state_dict alone with torch.save and give that file"
         )
     return f"{path} cannot be read: cut short, damaged, or no torch checkpoint ({text[:80]})"
 
 
 def parts_of(state: State, path: Path) -> tuple[State, State]:
-    """The tensors of the tokenizer and of the language model; metrics and losses are left out."""
+    """The tensors of the tokenizer and of the language model, without those of metrics and losses."""
     vae = {name.removeprefix(VAE): value for name, value in state.items() if name.startswith(VAE)}
     language = {name.removeprefix(LANGUAGE): value for name, value in state.items() if name.startswith(LANGUAGE)}
     if not vae or not language:
@@ -70,7 +70,7 @@ def parts_of(state: State, path: Path) -> tuple[State, State]:
 
 
 def tokenizer_config(vae: State, path: Path) -> TokenizerConfig:
-    """Sizes of the tokenizer, read off its tensors."""
+    """Sizes of the tokenizer, inferred from its tensors."""
     first, book = _need(vae, path, VAE, "encoder.model.0.weight", "quantizer.codebook")
     blocks = {int(name.split(".")[2]) for name in vae if name.startswith("encoder.model.") and ".model." in name[14:]}
     depth = {int(name.split(".")[5]) for name in vae if name.startswith("encoder.model.2.1.model.")}
@@ -90,7 +90,7 @@ def _need(state: State, path: Path, prefix: str, *names: str) -> list[Tensor]:
 
 
 def t5_sizes(language: State, path: Path) -> dict[str, int | str | bool]:
-    """Sizes of the T5, read off its tensors, as `transformers.T5Config` calls them."""
+    """Sizes of the T5, inferred from its tensors, under the names of `transformers.T5Config`."""
     block = "encoder.block.0.layer.0.SelfAttention."
     shared, bias, query = _need(
         language, path, LANGUAGE, "shared.weight", f"{block}relative_attention_bias.weight", f"{block}q.weight"

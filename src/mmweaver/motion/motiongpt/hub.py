@@ -12,7 +12,7 @@ CHECKPOINT, SMALL = "motiongpt_s3_h3d.tar", "motiongpt_small.safetensors"
 
 
 def looks_like_hub(name: str) -> bool:
-    """Whether a name is owner/name and no path that exists.
+    """Whether a name has the form owner/name and is no existing path.
 
     >>> looks_like_hub("OpenMotionLab/MotionGPT-base"), looks_like_hub("weights/motiongpt.tar")
     (True, False)

@@ -1,6 +1,6 @@
 """The language model of MotionGPT: a T5 whose vocabulary has 515 motion tokens after the words.
 
-`<motion_id_0>` ... `<motion_id_511>` are the codes, 512 begins a motion, 513 ends it, 514 masks one.
+`<motion_id_0>` ... `<motion_id_511>` are the codes; 512 begins a motion, 513 ends it, 514 is a mask.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,7 @@ LONGEST_TEXT_TOKENS = 256
 
 
 def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
-    """A T5 of these sizes, without weights from anywhere.
+    """A T5 of the given sizes with random weights.
 
     `tie_word_embeddings` False gives the output words a matrix of their own, as flan-t5 has it; transformers 5 would
     share one with the input words whatever the configuration says.
@@ -45,7 +45,7 @@ def build_t5(sizes: dict[str, Any]) -> "T5ForConditionalGeneration":
 
 
 def add_motion_tokens(words: "PreTrainedTokenizerBase", codes: int) -> int:
-    """Adds the motion tokens behind the words; gives the id of the first."""
+    """Appends the motion tokens to the vocabulary; returns the id of the first."""
     names = [f"<motion_id_{k}>" for k in range(codes + 3)]
     words.add_tokens(names)
     first, last = words.convert_tokens_to_ids(names[0]), words.convert_tokens_to_ids(names[-1])
@@ -66,11 +66,11 @@ def sample_codes(
     temperature: float = 1.0,
     top_k: int = 50,
 ) -> list[int]:
-    """Codes that the model says after a text.
+    """Samples motion codes for a text.
 
-    With `tokens`, exactly so many: other words, and the end before its time, are forbidden. Without, as many as the
-    model likes, up to `most_tokens`, as the published demo does; what is no code is left out. The same seed gives the
-    same codes.
+    With `tokens`, exactly that many: all other tokens, and an early end, are masked. Without, as many as the model
+    generates, up to `most_tokens`, as in the published demo; other tokens are dropped. The same seed gives the same
+    codes.
     """
     from transformers import LogitsProcessorList
 
@@ -80,7 +80,7 @@ def sample_codes(
     model: Any = t5
     with torch.random.fork_rng(devices=[]), torch.inference_mode():
         torch.manual_seed(seed)
-        said = model.generate(
+        generated = model.generate(
             input_ids=text_ids,
             attention_mask=torch.ones_like(text_ids),
             max_new_tokens=(tokens if tokens is not None else most_tokens) + 3,
@@ -90,24 +90,24 @@ def sample_codes(
             top_k=top_k,
             logits_processor=rules,
         )
-    ids = [int(k) - first_motion_id for k in said[0]]
+    ids = [int(k) - first_motion_id for k in generated[0]]
     begin = ids.index(codes) + 1 if codes in ids else 0
     end = ids.index(codes + 1) if codes + 1 in ids else len(ids)
     return [k for k in ids[begin:end] if 0 <= k < codes]
 
 
 def _exactly(tokens: int, first: int, codes: int) -> Callable[[Tensor, Tensor], Tensor]:
-    """A rule for generation: begin, so many codes, end, stop."""
+    """A logits processor that enforces begin, `tokens` codes, end, stop."""
 
     def rule(ids: Tensor, scores: Float[Tensor, "batch vocabulary"]) -> Float[Tensor, "batch vocabulary"]:
-        said = ids.shape[1] - 1  # the decoder begins with padding
+        generated = ids.shape[1] - 1  # the decoder begins with padding
         allowed = torch.zeros(scores.shape[1], dtype=torch.bool)
-        if said == 0:
+        if generated == 0:
             allowed[first + codes] = True
-        elif said <= tokens:
+        elif generated <= tokens:
             allowed[first : first + codes] = True
         else:
-            allowed[first + codes + 1 if said == tokens + 1 else 1] = True
+            allowed[first + codes + 1 if generated == tokens + 1 else 1] = True
         return scores.masked_fill(~allowed, -torch.inf)
 
     return rule

@@ -1,4 +1,4 @@
-"""The room's door: a MotionGPT checkpoint and a sentence -> MotionClip. Read this file first.
+"""From a MotionGPT checkpoint and a sentence to a MotionClip. Read this file first.
 
 text --words--> ids --T5--> motion codes --decoder--> features --mean, std--> joints
 """
@@ -40,12 +40,12 @@ SMALL_NAME = "small"
 SMALL_FILE = Path(__file__).resolve().parents[4] / "weights" / SMALL  # of a clone; the wheel does not hold it
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
 FEWEST_FRAMES, MOST_FRAMES = 40, 196  # what MotionGPT was trained on
-RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's is some 25 times off
+RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's differs by a factor of about 25
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionGPT:
-    """A motion tokenizer, a language model, its words and the mean and spread of its features."""
+    """A motion tokenizer, a language model with its text tokenizer, and the mean and standard deviation of features."""
 
     tokenizer: MotionTokenizer
     language: "T5ForConditionalGeneration"
@@ -67,8 +67,8 @@ class MotionGPT:
         """From a checkpoint file, a folder that holds one, a name on the Hub (owner/name), or "small", that of a clone.
 
         The published checkpoint needs MotionGPT's own `mean.npy` and `std.npy` (its assets/meta), not HumanML3D's, and
-        the words of flan-t5-base; all are looked for beside it. A file of this project (.safetensors) holds everything.
-        Raises InputError, one line, for whatever is no such model.
+        the text tokenizer of flan-t5-base; all are looked for next to it. A file of this project
+        (.safetensors) holds everything. Raises InputError for whatever is no such model.
         """
         place = _place_of(path)
         state, notes = read_checkpoint(place)
@@ -111,7 +111,7 @@ class MotionGPT:
         frames = None if seconds is None else int(np.ceil(seconds * FPS - 1e-9))
         if frames is not None and not 1 <= frames <= MOST_FRAMES:
             raise InputError(
-                f"the motion model makes up to {MOST_FRAMES / FPS:g} s at a time, {seconds:g} s were asked for; ask for"
+                f"the motion model makes up to {MOST_FRAMES / FPS:g} s at a time, {seconds:g} s are needed; use"
                 " fewer --frames"
             )
         tokens = None if frames is None else -(-max(frames, FEWEST_FRAMES) // per_token)
@@ -121,19 +121,21 @@ class MotionGPT:
             temperature=temperature, top_k=top_k,
         )  # fmt: skip
         if not codes:
-            raise InputError(f"the motion model {self.name} says nothing to {text!r}; try another text or --seed")
+            raise InputError(
+                f"the motion model {self.name} generates no motion for {text!r}; try another text or --seed"
+            )
         joints = joints_from_features(self.features_of(codes)[:frames])
-        notes = [f"the motion was made by {self.name} and is one of many (seed {seed})"]
+        notes = [f"the motion was made by {self.name} and is one random sample (seed {seed})"]
         odd = unknown_words(self.words, text)
         if odd:
-            notes.append(f"the motion model has never seen: {', '.join(odd)}")
+            notes.append(f"the motion model does not know these words: {', '.join(odd)}")
         z_up = np.stack([joints[..., 0], -joints[..., 2], joints[..., 1]], axis=-1)
         return MotionClip(
             joints_m=with_constant_bone_lengths(z_up), fps=FPS, label=f"{self.name}: {text}", notes=tuple(notes)
         )
 
     def features_of(self, codes: list[int]) -> Float[Array, "frame 263"]:
-        """HumanML3D features of motion codes, four frames each."""
+        """HumanML3D features (frame, 263) of motion codes, four frames each."""
         with torch.inference_mode():
             made = self.tokenizer.decode(torch.tensor([codes]))[0].double().numpy()
         return made * self.std + self.mean
@@ -148,7 +150,7 @@ class MotionGPT:
         ids: Any = self.words(text.strip()).input_ids
         if len(ids) > LONGEST_TEXT_TOKENS:
             raise InputError(
-                f"the text has {len(ids)} pieces, the motion model reads {LONGEST_TEXT_TOKENS}; say it shorter"
+                f"the text has {len(ids)} tokens, the motion model takes {LONGEST_TEXT_TOKENS}; use a shorter text"
             )
         return list(ids)
 
@@ -158,9 +160,9 @@ def check_std(std: Float[Array, " feature"], place: Path) -> None:
     low, high = RAW_CONTACT_STD
     if low < float(np.mean(std[CONTACTS])) < high:
         raise InputError(
-            f"the std beside {place.name} is HumanML3D's own (foot contacts vary by {np.mean(std[CONTACTS]):.2f});"
-            " MotionGPT needs the std.npy of its own assets/meta, which differs some 25 times in channels 0:4 and"
-            " 259:263"
+            f"the std next to {place.name} is HumanML3D's own (foot contacts vary by {np.mean(std[CONTACTS]):.2f});"
+            " MotionGPT needs the std.npy of its own assets/meta, which differs by a factor of about 25 in channels 0:4"
+            " and 259:263"
         )
 
 
@@ -205,14 +207,14 @@ def _language(spoken: dict[str, torch.Tensor], place: Path) -> "T5ForConditional
 
 
 def _statistic(given: str | Path | None, place: Path, name: str, features: int) -> Array:
-    """mean.npy or std.npy, as given or beside the checkpoint."""
+    """mean.npy or std.npy, as given or next to the checkpoint; (feature,)."""
     path = Path(given) if given is not None else place.with_name(f"{name}.npy")
     try:
         values = np.load(path, allow_pickle=False)
     except OSError:
         raise InputError(
-            f"{path} is missing: the checkpoint needs MotionGPT's own {name}.npy (assets/meta of its repository) beside"
-            " it"
+            f"{path} is missing: the checkpoint needs MotionGPT's own {name}.npy (assets/meta of its repository) next"
+            " to it"
         ) from None
     except ValueError:
         raise InputError(f"{path} is no .npy array of numbers") from None

@@ -1,4 +1,4 @@
-"""Writing a MotionGPT: as a safetensors file of this project, whole in itself, or in the published format."""
+"""Saving a MotionGPT: as a self-contained safetensors file of this project, or in the published format."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,7 +34,7 @@ def save_weights(
     vocabulary: str,
     half: bool = False,
 ) -> None:
-    """One safetensors file with weights, mean, std and words; with `half` the weights as float16."""
+    """One safetensors file with weights, mean, std and vocabulary; with `half` the weights as float16."""
     from safetensors.torch import save_file
 
     state = {name: value for name, value in state_of(tokenizer, language).items() if not name.endswith(SAME)}
@@ -45,6 +45,6 @@ def save_weights(
 
 
 def save_published(path: Path, tokenizer: MotionTokenizer, language: "T5ForConditionalGeneration") -> None:
-    """A torch archive as MotionGPT's: everything under `state_dict`."""
+    """A torch archive in MotionGPT's layout: everything under `state_dict`."""
     with atomic_file(path) as temporary:
         torch.save({"state_dict": state_of(tokenizer, language)}, temporary)

@@ -1,4 +1,4 @@
-"""How a text becomes the word ids of the language model."""
+"""The text tokenizer of the language model."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,8 +14,8 @@ WORD_FILES = ("tokenizer.json", "spiece.model")
 
 
 def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
-    """The text tokenizer of flan-t5-base: from a folder with tokenizer.json or spiece.model, else from the Hub's cache
-    or the Hub. Raises InputError where it is in neither."""
+    """The text tokenizer of flan-t5-base: from a folder with tokenizer.json or spiece.model, else from the Hub or its
+    cache. Raises InputError where it is in neither."""
     try:
         from transformers import AutoTokenizer
     except ImportError:
@@ -25,7 +25,7 @@ def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
     except Exception:
         where = folder if folder is not None else f"the Hub ({HUB_WORDS})"
         raise InputError(
-            f"the text tokenizer cannot be read from {where}; put the tokenizer.json of {HUB_WORDS} beside the"
+            f"the text tokenizer cannot be read from {where}; put the tokenizer.json of {HUB_WORDS} next to the"
             " checkpoint"
         ) from None
 
@@ -44,7 +44,7 @@ def train_words(sentences: list[str]) -> "PreTrainedTokenizerBase":
 
 
 def wrapped(description: str) -> "PreTrainedTokenizerBase":
-    """A tokenizer from its JSON; a text ends with </s>, as T5's do."""
+    """A tokenizer from its JSON; texts end with </s>, as for T5."""
     from tokenizers import Tokenizer, processors
     from transformers import PreTrainedTokenizerFast
 
@@ -54,13 +54,13 @@ def wrapped(description: str) -> "PreTrainedTokenizerBase":
 
 
 def plain_words(words: "PreTrainedTokenizerBase") -> str:
-    """The tokenizer as JSON, for keeping beside the weights."""
+    """The tokenizer as JSON, to be stored with the weights."""
     backend: Any = words
     return backend.backend_tokenizer.to_str()
 
 
 def unknown_words(words: "PreTrainedTokenizerBase", text: str) -> tuple[str, ...]:
-    """Words of a text that the model has never seen (a word tokenizer's; one of pieces knows all)."""
+    """Words of a text that are not in the vocabulary; a subword tokenizer has none."""
     if words.unk_token_id is None:
         return ()
     found = [word for word in text.split() if words.unk_token_id in words(word).input_ids]

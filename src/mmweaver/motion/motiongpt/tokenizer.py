@@ -1,4 +1,4 @@
-"""The motion tokenizer: a VQ-VAE that turns HumanML3D features into codes, 4 frames each, and back.
+"""The motion tokenizer: a VQ-VAE that encodes HumanML3D features as codes, 4 frames each, and decodes them.
 
     features (batch, frame, 263)
         | encoder: conv, then `halvings` times (conv of stride 2, residual convs), conv
@@ -63,7 +63,7 @@ class ResidualStack(nn.Module):
 
 
 class Coder(nn.Module):
-    """Either half of the tokenizer; its layers under one name, as published."""
+    """Encoder or decoder; all layers under one name, as published."""
 
     def __init__(self, layers: list[nn.Module]):
         super().__init__()
@@ -75,7 +75,7 @@ class Coder(nn.Module):
 
 
 class Codebook(nn.Module):
-    """The codes' vectors; a buffer, for they are moved by running means and not by gradients."""
+    """The code vectors; a buffer, because they are updated by running means and not by gradients."""
 
     codebook: Tensor
 
@@ -112,7 +112,7 @@ class MotionTokenizer(nn.Module):
         self.quantizer = Codebook(config)
 
     def encode(self, features: Float[Tensor, "batch frame feature"]) -> Int[Tensor, "batch token"]:
-        """Codes of normalised features; frames that fill no token are left out."""
+        """Codes of normalised features; frames that do not fill a token are dropped."""
         latent = self.encoder(features.transpose(1, 2)).transpose(1, 2)
         return self.quantizer.nearest(latent.reshape(-1, latent.shape[-1])).reshape(latent.shape[:2])
 
