@@ -1,1 +1,1 @@
-"""Codecs that ours is measured against, behind one interface; they need the extra `codecs`."""
+"""Baseline codecs behind one interface; they need the extra `codecs`."""

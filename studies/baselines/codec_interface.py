@@ -1,4 +1,4 @@
-"""What every codec is, ours and the rivals': a cube and a number of bytes in, at most so many bytes out, and back."""
+"""The interface of every codec, ours and the baselines: a cube becomes at most so many bytes, and a cube again."""
 
 import importlib
 import struct
@@ -26,7 +26,7 @@ def library(name: str) -> Any:
 
 class Codec(ABC):
     """A codec is scored by shared code, never by itself. What it writes is all that it may read back, but for the
-    shape and the radar of the cube, which `decoded` is told by an empty cube (`like`)."""
+    shape and the radar of the cube, which `decoded` gets as an empty cube (`like`)."""
 
     name: str
 

@@ -26,7 +26,7 @@ class Wavelets(KnobCodec):
         parts = np.stack([np.real(flat), np.imag(flat)])
         levels = np.sign(parts) * np.floor(np.abs(parts) / knob + 0.35)
         words = np.clip(levels, -32768, 32767).astype("<i2")
-        # high and low bytes apart: most high ones are alike
+        # high and low bytes apart: most high ones are equal
         return np.float32(knob).tobytes() + zlib.compress(words.view(np.uint8).reshape(-1, 2).T.tobytes(), 9)
 
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:

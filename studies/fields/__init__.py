@@ -1,1 +1,1 @@
-"""How well continuous fields and codecs hold radar cubes."""
+"""How accurately continuous fields and codecs represent radar cubes."""

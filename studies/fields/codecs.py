@@ -1,4 +1,4 @@
-"""What codecs keep of a radar cube in 2.5 to 40 KB: ours, the classical ones, tensors and the paper's INR.
+"""Error of radar cubes coded into 2.5 to 40 KB: .mmw, classical codecs, tensor factorizations and the paper's INR.
 
 python -m studies run codecs --data <recordings>        (needs the extra `codecs`)
 """
@@ -27,7 +27,7 @@ from studies.baselines.mmweaver_codec import Mmw
 from studies.baselines.network_codecs import InrInBytes
 from studies.baselines.picture_codecs import Jpeg2000, JpegXl
 from studies.baselines.tensor_codecs import Cp, TensorTrain, TruncatedSvd, Tucker
-from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
+from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.study import Reads
@@ -49,7 +49,7 @@ CODECS: Registry[Callable[[], Codec]] = Registry(
 )  # fmt: skip
 
 
-def codec_row(codec: Codec, signal: ExperimentSignal, num_bytes: int) -> dict[str, Any]:
+def codec_row(codec: Codec, signal: StudySignal, num_bytes: int) -> dict[str, Any]:
     """One codec at one size on one cube; scores are None where it cannot be so small."""
     cube = signal.cube
     start, start_cpu = time.perf_counter(), time.process_time()
@@ -113,7 +113,7 @@ def measure(
 ) -> None:
     """Every codec on every signal at every size; one file a codec, written when the codec is done.
 
-    With `keep`, rows of other signals stay as they are in files of an earlier run, each with its own commit.
+    With `keep`, rows of other signals are copied from the results of an earlier run, each with its own commit.
     """
     signals = [SIGNALS[name](data) for name in signal_names]
     for name in codec_names:

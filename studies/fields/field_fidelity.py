@@ -1,4 +1,4 @@
-"""How well fields hold a radar sequence, recipe by recipe, every row beside its floors.
+"""How accurately fields represent a radar sequence, with baselines and oracles for every score.
 
 python -m studies run field_fidelity --data <recordings>
 """
@@ -15,7 +15,7 @@ from mmweaver.fields.field import SignalField
 from mmweaver.fields.scatterers.fitting import FitRecipe as ScattererRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.metrics.scorecard import scorecard
-from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
+from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
 from studies.paper.single_signal import RECIPES, fit
 from studies.result_rows import complete_rows
@@ -28,10 +28,10 @@ PAPER_VALUES = 10_018  # of the paper's INR over 20 frames
 Fitter = Callable[[RadarCube], tuple[SignalField, float]]
 
 
-def fidelity_row(signal: ExperimentSignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
+def fidelity_row(signal: StudySignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
     """Fits a field to one signal and scores it: what it stores, in which type, against the same frames in theirs."""
     field, seconds = make(signal.cube)
-    metrics = scorecard(field.cube(), signal.cube, oracle=signal.twin).as_json()
+    metrics = scorecard(field.cube(), signal.cube, oracle=signal.realization).as_json()
     if signal.noise_free is not None:
         for name, entry in scorecard(signal.noise_free, signal.cube).as_json().items():
             metrics[name].setdefault("oracle", {})["noise_free"] = entry["value"]

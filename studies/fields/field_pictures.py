@@ -1,4 +1,4 @@
-"""What fields keep of a signal, to look at: range-Doppler maps of the original, of each field and of its error.
+"""Pictures of field fidelity: range-Doppler maps of the original, of each field and of its error.
 
 python -m studies run field_pictures --signal two_people --out docs/images/fields.png --data <recordings>
 python -m studies run field_pictures --signal walking --out docs/images/fields_simulated.png
@@ -91,8 +91,8 @@ def draw_fields(
 
 def draw_super_resolution(path: Path, factor: float, recipe: str, frame: int) -> None:
     """The same picture of a radar of `factor` times the bandwidth, and of what coarse methods make of it."""
-    coarse, truths = finer_truths((factor,), ("more_bandwidth",))
-    cube, truth = radar_cube(coarse), truths["more_bandwidth", factor]
+    coarse, finer_cubes = finer_truths((factor,), ("more_bandwidth",))
+    cube, truth = radar_cube(coarse), finer_cubes["more_bandwidth", factor]
     turn = centring_phasor(truth.config, truth.grid).conj() * centring_phasor(cube.config, truth.grid)
     shown = {}
     for method in methods((recipe,)):

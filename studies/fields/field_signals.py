@@ -1,4 +1,4 @@
-"""The radar sequences that experiments are run on: simulated people in the sample room, and real recordings."""
+"""The radar sequences of the field and codec studies: simulated people in the sample room, and real recordings."""
 
 import hashlib
 from collections.abc import Callable
@@ -37,14 +37,14 @@ OTHER_SKIN = 1_000  # added to the subject: the same pose, other skin points and
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExperimentSignal:
-    """A cube to work on; where they can be made its twin (same pose and room, other micro-phases of the skin) and the
-    same without noise, which no field that leaves the noise alone can be nearer to."""
+class StudySignal:
+    """A cube to study, and where they can be simulated two oracles: another realization (same pose and room, other
+    micro-phases of the skin) and the same cube without noise, the best that a field without noise can be."""
 
     name: str
     origin: str  # simulated | recorded | recorded, with a simulated person
     cube: RadarCube
-    twin: RadarCube | None
+    realization: RadarCube | None
     noise_free: RadarCube | None = None
 
     @property
@@ -85,7 +85,7 @@ def simulated(
     num_frames: int = NUM_FRAMES,
     impairments: Impairments | None = None,
     seed: int = 0,
-) -> ExperimentSignal:
+) -> StudySignal:
     """A person simulated in the sample room, or in nothing, before the awr1843."""
     pose = pose_of(activity, seconds=num_frames * AWR1843.frame_period_s, seed=seed)
     impairments = impairments or Impairments()
@@ -94,12 +94,12 @@ def simulated(
         scene, impairments = without_room(scene), replace(impairments, leakage_db=None)
     quiet = replace(NOISE_FREE, leakage_db=impairments.leakage_db)
     other = replace(pose, subject=pose.subject + OTHER_SKIN)
-    cube, twin, noise_free = (
+    cube, realization, noise_free = (
         radar_cube(Simulator(scene, AWR1843, receiver).run(skin, num_frames=num_frames, seed=seed).adc)
         for skin, receiver in ((pose, impairments), (other, impairments), (pose, quiet))
     )
     name = activity + (ALONE if is_alone else "")
-    return ExperimentSignal(name=name, origin="simulated", cube=cube, twin=twin, noise_free=noise_free)
+    return StudySignal(name=name, origin="simulated", cube=cube, realization=realization, noise_free=noise_free)
 
 
 def two_people_radar(num_loops: int = 32) -> RadarConfig:
@@ -117,10 +117,10 @@ def two_people_radar(num_loops: int = 32) -> RadarConfig:
     )  # fmt: skip
 
 
-def two_people(data: Path) -> ExperimentSignal:
+def two_people(data: Path) -> StudySignal:
     """20 windows of 32 loops, 5 loops apart, of one long frame of two moving people.
 
-    Windows overlap, which flatters whatever exploits likeness between frames.
+    Windows overlap, which favours whatever exploits similarity between frames.
     """
     hop, length = 5, 32
     whole = _two_people_frame(data).samples[0]
@@ -129,16 +129,16 @@ def two_people(data: Path) -> ExperimentSignal:
     cube = radar_cube(AdcCube(samples=windows, config=config, scale=float("nan")))
     times_s = np.arange(NUM_FRAMES) * hop * config.loop_period_s
     cube = replace(cube, grid=replace(cube.grid, frame_time_s=times_s))
-    return ExperimentSignal(name="two_people", origin="recorded", cube=cube, twin=None)
+    return StudySignal(name="two_people", origin="recorded", cube=cube, realization=None)
 
 
 def _two_people_frame(data: Path) -> AdcCube:
-    """The recording as it is: one frame of 128 loops."""
+    """The recording unchanged: one frame of 128 loops."""
     path = data / "radar" / "openradar_two_people" / "adc_frame_loops_vrx_samples_c64.npy"
     return read_adc_npy(path, two_people_radar(num_loops=128), "loop,vrx,sample")
 
 
-def walking_in_recording(data: Path, seed: int = 0) -> ExperimentSignal:
+def walking_in_recording(data: Path, seed: int = 0) -> StudySignal:
     """What stood still before the radar of the two people, and a simulated walker before the same radar.
 
     Clutter: the recording's mean over its 128 loops, gains and phases of the real array in it. Walker: as strong as
@@ -155,7 +155,7 @@ def walking_in_recording(data: Path, seed: int = 0) -> ExperimentSignal:
     noise = stream(seed, "walking_in_recording noise").standard_normal(shape, dtype=np.float32).view(np.complex64)
     hiss = noise[..., 0] * np.sqrt(_sample_noise_power(frame) / 2)
     still = frame.samples.mean(axis=1, keepdims=True)
-    cube, twin, noise_free = (
+    cube, realization, noise_free = (
         radar_cube(AdcCube(samples=samples.astype(np.complex64), config=config, scale=float("nan")))
         for samples in (
             still + gain * walkers[0].samples + hiss,
@@ -163,8 +163,8 @@ def walking_in_recording(data: Path, seed: int = 0) -> ExperimentSignal:
             still + gain * walkers[0].samples,
         )
     )
-    return ExperimentSignal(
-        name="walking_in_recording", origin="recorded, with a simulated person", cube=cube, twin=twin,
+    return StudySignal(
+        name="walking_in_recording", origin="recorded, with a simulated person", cube=cube, realization=realization,
         noise_free=noise_free,
     )  # fmt: skip
 
@@ -182,17 +182,17 @@ def _sample_noise_power(adc: AdcCube) -> float:
     return cell / float(np.prod([np.sum(window**2) / np.sum(window) ** 2 for window in windows]))
 
 
-def breathing(data: Path) -> ExperimentSignal:
+def breathing(data: Path) -> StudySignal:
     """Every third of the first 60 frames of a person who breathes before a BGT60: 20 frames, 4.6 s."""
     path = data / "radar" / "bgt60_breathing" / "breathing_radar_uint16_256x3x8x64.npy"
     adc = read_adc_npy(path, BGT60, "frame,rx,loop,sample")
     config = replace(BGT60, frame_period_s=3 * BGT60.frame_period_s)
     cube = radar_cube(AdcCube(samples=adc.samples[: 3 * NUM_FRAMES : 3], config=config, scale=float("nan")))
-    return ExperimentSignal(name="breathing", origin="recorded", cube=cube, twin=None)
+    return StudySignal(name="breathing", origin="recorded", cube=cube, realization=None)
 
 
-def _recorded(read: Callable[[Path], ExperimentSignal]) -> Callable[[Path | None], ExperimentSignal]:
-    def make(data: Path | None) -> ExperimentSignal:
+def _recorded(read: Callable[[Path], StudySignal]) -> Callable[[Path | None], StudySignal]:
+    def make(data: Path | None) -> StudySignal:
         if data is None:
             raise InputError("this signal is a recording; say where the recordings lie with --data")
         return read(data)
@@ -200,11 +200,11 @@ def _recorded(read: Callable[[Path], ExperimentSignal]) -> Callable[[Path | None
     return make
 
 
-def _simulated(activity: str, is_alone: bool) -> Callable[[Path | None], ExperimentSignal]:
+def _simulated(activity: str, is_alone: bool) -> Callable[[Path | None], StudySignal]:
     return lambda data: simulated(activity, is_alone=is_alone)
 
 
-SIGNALS: Registry[Callable[[Path | None], ExperimentSignal]] = Registry(
+SIGNALS: Registry[Callable[[Path | None], StudySignal]] = Registry(
     "signal",
     [
         ("walking_alone", _simulated("walking", True)),

@@ -1,5 +1,6 @@
-"""Radars that are physically finer than another one, and the rivals that a coarse radar has: its own spectrum between
-the bins (zero padding), and straight lines."""
+"""Radars with finer physical resolution than a given one, and the baselines of a coarse radar: its own spectrum between
+the bins (zero padding) and linear interpolation.
+"""
 
 from dataclasses import replace
 

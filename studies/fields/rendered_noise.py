@@ -1,8 +1,8 @@
-"""Does a rendered cube with noise look like the capture? Level and distribution of the noise, and its point cloud.
+"""Does a rendered cube with noise look like the capture? Level and distribution of the noise, and the point cloud.
 
 python -m studies run rendered_noise --data <recordings>
 
-The scatterer field holds no noise, one number says how strong it was; `ScattererField.with_noise` renders it.
+The scatterer field stores the strength of the noise as one number; `ScattererField.with_noise` renders it.
 """
 
 import argparse
@@ -17,7 +17,7 @@ from mmweaver.dsp.points import point_cloud
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.metrics.cells import cells_of, noise_floor
 from studies.fields.field_fidelity import fit_scatterers, scatterer_recipe
-from studies.fields.field_signals import RECORDED, SIGNALS, ExperimentSignal
+from studies.fields.field_signals import RECORDED, SIGNALS, StudySignal
 from studies.manifest import StudyRun
 from studies.study import Reads
 
@@ -39,7 +39,7 @@ DEFINITIONS: dict[str, tuple[str, str]] = {
 
 
 def noise_scores(cube: RadarCube, capture: RadarCube) -> dict[str, float]:
-    """The numbers of DEFINITIONS for one cube beside the capture."""
+    """The metrics of DEFINITIONS of one cube compared with the capture."""
     empty = ~cells_of(capture).is_active
     floors = [noise_floor(range_doppler_power(one)) for one in (cube, capture)]
     clouds = [point_cloud(one) for one in (cube, capture)]
@@ -80,8 +80,8 @@ def _neighbour_correlation(cube: RadarCube, empty: np.ndarray) -> float:
     return float(np.abs(np.vdot(left, right)) / size) if size else 0.0
 
 
-def noise_row(signal: ExperimentSignal) -> dict[str, Any]:
-    """Scores of the rendered cube with noise, beside those without and the capture's own."""
+def noise_row(signal: StudySignal) -> dict[str, Any]:
+    """Scores of the rendered cube with noise; the baseline is rendered without, the oracle is the capture itself."""
     field, seconds = fit_scatterers(signal.cube)
     rendered = field.cube()
     scores = {

@@ -1,10 +1,11 @@
-"""Would scatterers that live on from frame to frame say more in as many numbers? A track against free points.
+"""Do scatterers that persist over frames represent a signal better, for the same number of parameters?
 
 python -m studies run scatterer_tracks
 
-A track over L frames: range a polynomial of time (its slope is the Doppler), direction cosines too, an amplitude a
-frame. It starts at a scatterer of the middle frame; then all tracks are fitted together (Levenberg-Marquardt with the
-whole Jacobian). Beside it as many numbers in free points, and the free points that the tracks start from.
+A track over L frames has a polynomial of time for its range (the slope is the Doppler) and its direction cosines, and
+an amplitude per frame. It starts at a scatterer of the middle frame; then all tracks are fitted jointly
+(Levenberg-Marquardt with the full Jacobian). Baselines: as many parameters in free points of each frame, and the free
+points that the tracks start from.
 """
 
 import argparse
@@ -93,7 +94,7 @@ class _Tracks:
 
 
 def fit_tracks(target: Tensor, fit_window: FitWindow, shape: TrackShape, frame_s: float, start: Points) -> float:
-    """Energy that the tracks leave of the target (frame, range, doppler, antenna), over its own."""
+    """Energy of the residual of the target (frame, range, doppler, antenna) over that of the target."""
     axes = fit_window.axes
     tracks = _Tracks(shape, fit_window.response, frame_s, start)
 

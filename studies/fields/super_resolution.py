@@ -1,15 +1,16 @@
-"""Is a field sampled more finely any finer? Evaluation against the radar's own spectrum, and against finer radars.
+"""Is a field that is sampled more finely any finer? Compared with the radar's own spectrum, and with finer radars.
 
 Questions that "super-resolution" mixes:
 
-- between_bins: does the field give what the same radar's spectrum shows between its bins? Truth: the transform of the
-  noise-free samples at the finer places; scored on the new places alone.
-- sampled_places: the same for places drawn from [j, j + radius / 8] in range and Doppler (the paper's augmentation).
-- more_bandwidth, more_loops, more_antennas: does it give what a physically finer radar would record? Truth: the
+- between_bins: does the field give what the same radar's spectrum shows between its bins? Ground truth: the transform
+  of the noise-free samples at the finer positions; only the new positions are scored.
+- sampled_places: the same for positions sampled from [j, j + radius / 8] in range and Doppler (the paper's
+  augmentation).
+- more_bandwidth, more_loops, more_antennas: does it give what a physically finer radar would record? Ground truth: the
   simulator with that radar, frames about the same instant, both cubes phase-centred (they then agree in phase).
 
-Rivals: zero padding (the coarse radar's own spectrum) and straight lines between cells. Scatterers answer twice:
-sampled more finely, as every field, and rendered as the finer radar would see them (scatterers_rendered).
+Baselines: zero padding (the coarse radar's own spectrum) and linear interpolation. Scatterers have two rows: sampled
+more finely, as every field, and rendered as the finer radar would see them (scatterers_rendered).
 
     python -m studies run super_resolution
 """
@@ -72,7 +73,7 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class UpsamplingMethod:
-    """A way to sample a cube anywhere, made from the cube alone; `settings` go into the result's config.
+    """A method to sample a cube anywhere, made from the cube alone; `settings` go into the result's config.
 
     One with `make_renderer` answers as a finer radar itself would, and only that is asked of it.
     """
@@ -97,19 +98,19 @@ def field_method(name: str, settings: dict[str, Any], make: Callable[[RadarCube]
 
 
 def methods(recipe_names: tuple[str, ...]) -> list[UpsamplingMethod]:
-    """The rivals, and the paper's INR under the recipes named."""
-    rivals = [
+    """The baselines, and the paper's INR under the recipes named."""
+    baselines = [
         UpsamplingMethod(name="zero_padding", make=_zero_padding, settings={}),
         UpsamplingMethod(name="linear_raw", make=partial(_lines, is_centred=False), settings={}),
         UpsamplingMethod(name="linear_centred", make=partial(_lines, is_centred=True), settings={}),
     ]
     fits = [RECIPES[name] for name in recipe_names]
     settings = asdict(_scatterer_recipe(NUM_FRAMES))
-    rivals += [
+    baselines += [
         field_method("scatterers", settings, _scatterers),
         UpsamplingMethod(name="scatterers_rendered", make_renderer=_scatterer_renderer, settings=settings),
     ]
-    return rivals + [
+    return baselines + [
         field_method(f"inr_{recipe.name}", asdict(recipe), lambda cube, recipe=recipe: fit(cube, recipe).field)
         for recipe in fits
     ]
@@ -147,15 +148,17 @@ def between_bins(sampler: Sampler, cube: RadarCube, adc: AdcCube, factor: float)
         "nmse_active_db": ~is_old & cells.is_active,
         "nmse_moving_db": ~is_old & cells.is_moving,
     }
-    scores = {name: _entry(name, prediction, truth, "new places only", mask) for name, mask in masks.items()}
+    scores = {name: _entry(name, prediction, truth, "new positions only", mask) for name, mask in masks.items()}
     return _row("between_bins", factor, scores)
 
 
 def sampled_places(sampler: Sampler, cube: RadarCube, adc: AdcCube, radius: int) -> Row:
-    """Errors at ranges and velocities drawn within the paper's sampling radius, against the spectrum there."""
+    """Errors at ranges and velocities sampled within the paper's sampling radius, against the spectrum there."""
     grid = replace(sampled_grid(cube.grid, radius, seed=0), antenna_position_m=cube.grid.antenna_position_m)
     truth = replace(cube, values=spectrum_on(adc, grid), grid=grid)
-    return _row("sampled_places", float(radius), {"nmse_db": _entry("nmse_db", sampler(grid), truth, "drawn places")})
+    return _row(
+        "sampled_places", float(radius), {"nmse_db": _entry("nmse_db", sampler(grid), truth, "sampled positions")}
+    )
 
 
 def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig) -> dict[str, Any]:
@@ -167,8 +170,8 @@ def against_finer_radar(sampler: Sampler, truth: RadarCube, coarse: RadarConfig)
 
 def measure(run: StudyRun, recipe_names: tuple[str, ...], factors: tuple[float, ...] = FACTORS) -> list[Path]:
     """Scores every method on every question and writes one file each."""
-    coarse, truths = finer_truths(factors)
-    return [_run_method(method, coarse, truths, factors, run) for method in methods(recipe_names)]
+    coarse, finer_cubes = finer_truths(factors)
+    return [_run_method(method, coarse, finer_cubes, factors, run) for method in methods(recipe_names)]
 
 
 def finer_truths(
@@ -179,17 +182,17 @@ def finer_truths(
     delay_s = max(middle_delay_s(AWR1843, config) for config in finer.values())
     pose = pose_of("walking", seconds=NUM_FRAMES * AWR1843.frame_period_s + delay_s + 0.1)
     coarse = _record(AWR1843, starting_later(pose, delay_s))
-    truths = {
+    finer_cubes = {
         key: radar_cube(_record(config, starting_later(pose, delay_s - middle_delay_s(AWR1843, config))))
         for key, config in finer.items()
     }
-    return coarse, truths
+    return coarse, finer_cubes
 
 
 def _run_method(
     method: UpsamplingMethod,
     coarse: AdcCube,
-    truths: dict[tuple[str, float], RadarCube],
+    finer_cubes: dict[tuple[str, float], RadarCube],
     factors: tuple[float, ...],
     run: StudyRun,
 ) -> Path:
@@ -203,13 +206,13 @@ def _run_method(
         rows.append(_row("own_cells", 1.0, {"nmse_db": at_cells}))
         rows += [between_bins(sampler, cube, coarse, factor) for factor in factors]
         rows += [sampled_places(sampler, cube, coarse, radius) for radius in RADII]
-        for (kind, factor), truth in truths.items():
+        for (kind, factor), truth in finer_cubes.items():
             rows.append(_row(kind, factor, against_finer_radar(sampler, truth, coarse.config)))
     else:
         assert method.make_renderer is not None
         renderer = method.make_renderer(cube)
         seconds = time.perf_counter() - start
-        for (kind, factor), truth in truths.items():
+        for (kind, factor), truth in finer_cubes.items():
             prediction = renderer(truth.config, -middle_delay_s(coarse.config, truth.config))
             prediction = replace(prediction, grid=truth.grid)
             rows.append(_row(kind, factor, scorecard(prediction, truth).as_json()))

@@ -1,1 +1,1 @@
-"""Sentences and motions against text corpora and motion capture."""
+"""Sentences and motions compared with text corpora and motion capture."""

@@ -1,14 +1,14 @@
-"""How many real sentences are understood, and how many of those rightly? 6,082 sentences of KIT-ML.
+"""How many sentences written by other people are understood, and how many correctly? 6,082 sentences of KIT-ML.
 
 python -m studies run kitml --sentences <folder of kitml_text>
-python -m studies run kitml --sentences <folder> --list        # the sentences to judge, with their readings
+python -m studies run kitml --sentences <folder> --list        # the sentences to annotate, with their readings
 
-The sentences are split by motion into a half that the lexicon was made on and a half for checking. 200 understood
-sentences of the checking half, drawn by a fixed seed, were judged by hand: right if every movement that the sentence
-names is shown in its order, with its side, direction, hand or foot where one is said. The verdicts are kept beside the
-result (results/kitml/judgements.json) with the reading they were given for; a reading that has changed since makes its
-verdict void, and the result says how many are. Three earlier draws (judgements_first.json and so on) are
-kept as they were judged: their faults were mended, so they are no longer a check.
+The sentences are split by motion into a half on which the lexicon was developed and a half for checking. 200 understood
+sentences of the checking half, sampled with a fixed seed, were annotated by hand: correct if every movement that the
+sentence names is shown in its order, with its side, direction, hand or foot where one is given. The verdicts are in
+results/kitml/judgements.json with the reading they were given for; a reading that has changed since makes its verdict
+void, and the result counts those. Three earlier samples (judgements_first.json and so on) are unchanged: their faults
+were fixed, so they no longer check anything.
 """
 
 import argparse
@@ -89,8 +89,8 @@ def understood(sentences: list[Sentence]) -> dict[str, str]:
     return found
 
 
-def drawn(readings: dict[str, str], checking: list[Sentence], before: Collection[str]) -> list[str]:
-    """The names to judge: the first 200 understood ones of a fixed order of the checking half, none judged before."""
+def sampled(readings: dict[str, str], checking: list[Sentence], before: Collection[str]) -> list[str]:
+    """The names to annotate: the first 200 understood of the checking half in a fixed order, without earlier ones."""
     order = stream(SEED, "kitml", "judged").permutation(len(checking))
     return [checking[k].name for k in order if checking[k].name in readings and checking[k].name not in before][:JUDGED]
 
@@ -102,7 +102,7 @@ def result_row(
     readings = understood(sentences)
     checking = [sentence for sentence in sentences if sentence.is_for_checking]
     developed = [sentence for sentence in sentences if not sentence.is_for_checking]
-    names = drawn(readings, checking, {name for earlier in before.values() for name in earlier})
+    names = sampled(readings, checking, {name for earlier in before.values() for name in earlier})
     valid = [name for name in names if judgements.get(name, {}).get("reading") == readings[name]]
     wrong = sum(judgements[name]["verdict"] == "wrong" for name in valid)
     seen = {_plain(sentence.text) for sentence in developed}
@@ -120,11 +120,11 @@ def result_row(
             f"wrong_{name}_sample": _share(
                 sum(verdict["verdict"] == "wrong" for verdict in earlier.values()),
                 len(earlier),
-                "an earlier 200 of the checking half, judged before the faults found in them were mended",
+                "an earlier 200 of the checking half, annotated before the faults found in them were fixed",
             )
             for name, earlier in before.items()
         },
-        "wrong": _share(wrong, len(valid), "judged wrong by hand, of understood sentences of the checking half"),
+        "wrong": _share(wrong, len(valid), "wrong by hand annotation, of understood sentences of the checking half"),
     }
     activities = Counter(part.split()[0] for reading in readings.values() for part in reading.split(" | "))
     return {
@@ -178,7 +178,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sentences", type=Path, action=Reads, required=True, help="folder with kitml_annotations.json"
     )
-    parser.add_argument("--list", action="store_true", help="only list the sentences to judge, as JSON")
+    parser.add_argument("--list", action="store_true", help="only list the sentences to annotate, as JSON")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
@@ -186,7 +186,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         sentences = sentences_of(options.sentences / "kitml_annotations.json")
         readings, texts = understood(sentences), {s.name: s.text for s in sentences}
         before = {name for earlier in _before(run.out).values() for name in earlier}
-        names = drawn(readings, [s for s in sentences if s.is_for_checking], before)
+        names = sampled(readings, [s for s in sentences if s.is_for_checking], before)
         json.dump([{"name": n, "text": texts[n], "reading": readings[n]} for n in names], sys.stdout, indent=1)
         return
     measure(run, options.sentences)

@@ -1,4 +1,4 @@
-"""Which of the library's twelve activities a motion shows: a small network on statistics of its HumanML3D features."""
+"""Classifies a motion as one of the library's twelve activities: a small network on statistics of its features."""
 
 from dataclasses import dataclass
 
@@ -35,7 +35,7 @@ def statistics_of(features: Float[Array, "frame 263"]) -> Float[Array, " statist
 
 
 def train_classifier(examples: list[SentenceExample]) -> MotionClassifier:
-    """Trained on library motions; half of what it sees is left out at random in each step, so that it does not hang on
+    """Trained on library motions; half of its input is dropped at random in each step, so that it does not depend on
     a few features."""
     seen = np.stack([statistics_of(example.features) for example in examples])
     mean, std = seen.mean(axis=0), seen.std(axis=0) + 1e-3

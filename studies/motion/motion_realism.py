@@ -1,11 +1,11 @@
-"""Does the library move as people do? Its walking, running and jumping beside motion capture (CMU).
+"""Does the library move as people do? Its walking, running and jumping compared with motion capture (CMU).
 
 python -m studies run motion_realism --mocap <folder with cmu_joints_m_120fps.npz>
 
-Each figure is taken of every recorded clip and of as many generated ones: walks and runs at the clips' own speeds. Both
-pass the same smoothing, as the recordings are kept in half precision. A figure is inside where the median of ours lies
-between the 5th and the 95th percentile of theirs; the share of our clips that do is given too. With six clips (running,
-jumping) those percentiles are little more than the lowest and the highest.
+Each figure is measured on every recorded clip and on as many generated ones: walks and runs at the speeds of the clips.
+Both pass the same smoothing, as the recordings are stored in half precision. A figure is inside where the median of the
+generated clips lies between the 5th and the 95th percentile of the recorded ones; the share of generated clips that do
+is given too. With six clips (running, jumping) those percentiles are little more than the minimum and the maximum.
 """
 
 import argparse
@@ -69,7 +69,7 @@ def _smooth(place: Float[Array, "frame 3"]) -> Float[Array, "n 3"]:
 
 
 def is_steady(pelvis: Float[Array, "frame 3"], speeds: tuple[float, float]) -> bool:
-    """A straight way of more than 2 m at a usual speed."""
+    """Whether the path is straight, longer than 2 m and of a usual speed."""
     gone = np.linalg.norm(np.diff(pelvis[:, :2], axis=0), axis=1).sum()
     straight = float(np.linalg.norm(pelvis[-1, :2] - pelvis[0, :2]))
     speed_mps = straight / len(pelvis) * RATE_HZ
@@ -104,10 +104,10 @@ def gait_figures(joints: Places) -> Figures:
 
 
 def cadence_hz(joints: Places) -> float:
-    """Steps a second, from how far the ankles are apart along the way."""
+    """Steps a second, from the distance of the ankles along the path."""
     pelvis = joints["pelvis"]
-    way = (pelvis[-1, :2] - pelvis[0, :2]) / np.linalg.norm(pelvis[-1, :2] - pelvis[0, :2])
-    scissors = (joints["left_ankle"] - joints["right_ankle"])[:, :2] @ way
+    direction = (pelvis[-1, :2] - pelvis[0, :2]) / np.linalg.norm(pelvis[-1, :2] - pelvis[0, :2])
+    scissors = (joints["left_ankle"] - joints["right_ankle"])[:, :2] @ direction
     scissors = scissors - scissors.mean()
     spectrum = np.abs(np.fft.rfft(scissors * np.hanning(len(scissors)), 16 * len(scissors)))
     return 2 * float(np.fft.rfftfreq(16 * len(scissors), 1 / RATE_HZ)[spectrum.argmax()])
@@ -163,7 +163,7 @@ def _knee_deg(joints: Places, side: str) -> Float[Array, " frame"]:
 
 
 def ours(lower: str, seed: int, *, seconds: float, speed_mps: float = 0.0, count: int = 0) -> Places:
-    """One generated clip, the body's height drawn as everywhere, smoothed as the recordings are."""
+    """One generated clip with a body of random height, smoothed as recordings are; {joint: (frame, 3)} in metres."""
     height = float(stream(seed, "realism", "height").uniform(1.63, 1.9))
     moves = ()
     if speed_mps:
@@ -182,7 +182,7 @@ def ours(lower: str, seed: int, *, seconds: float, speed_mps: float = 0.0, count
 
 
 def compare(theirs: list[Figures], generated: list[Figures]) -> dict[str, dict[str, Any]]:
-    """Each figure: our median beside the 5th, 50th and 95th percentile of theirs."""
+    """Each figure: the median of the generated clips, and the 5th, 50th and 95th percentile of the recorded ones."""
     rows = {}
     for name in theirs[0]:
         real, made = np.array([f[name] for f in theirs]), np.array([f[name] for f in generated])

@@ -84,7 +84,7 @@ def library_examples(seeds: range, *, held_out_words: bool = False) -> Iterator[
 
 
 def sentence_of(activity: str, seed: int, *, held_out: bool) -> str:
-    """A sentence of an activity, drawn by the seed."""
+    """A sentence of an activity, sampled by the seed."""
     rng = stream(seed, "motiongpt", "sentence", activity)
     phrases = SENTENCES[activity]
     phrase = phrases[-1] if held_out else phrases[int(rng.integers(len(phrases) - 1))]

@@ -1,4 +1,4 @@
-"""Skeleton strips of what a MotionGPT makes of twelve sentences.
+"""Skeleton strips of the motions that a MotionGPT generates for twelve sentences.
 
 python -m studies run motiongpt_pictures --model weights/motiongpt_small.safetensors --out strips.png
 """
@@ -22,7 +22,7 @@ COLOURS = {"left": "#1f77b4", "right": "#d62728", "middle": "#444444"}
 
 
 def draw_strips(clips: dict[str, Float[np.ndarray, "frame 22 3"]], path: Path) -> None:
-    """One row a clip (metres, z up), poses evenly in time from left to right, seen from ahead and aside."""
+    """One row a clip (metres, z up), poses evenly in time from left to right, seen from the front and the side."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure

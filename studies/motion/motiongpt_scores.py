@@ -1,10 +1,10 @@
-"""Does a MotionGPT do what the sentence says? Its motions judged by a classifier that saw the library's alone.
+"""Does a MotionGPT do what the sentence says? Evaluated by a classifier that was trained on the library alone.
 
 python -m studies run motiongpt_scores --model weights/motiongpt_small.safetensors --data shared/data
 
-R-precision here: among the twelve activities, is the one that was asked for the classifier's first (or one of its first
-three)? Floor: chance, and random codes through the same decoder. Ceiling: motions of the library with seeds that
-nothing was trained on, and the same after the tokenizer's own rounding.
+R-precision: among the twelve activities, is the requested one the classifier's first (or one of its first three)?
+Baselines: chance, and random codes through the same decoder. Oracles: motions of the library with seeds that nothing
+was trained on, and the same after the quantization of the tokenizer.
 """
 
 import argparse
@@ -58,7 +58,7 @@ def through_tokenizer(model: MotionGPT, examples: list[SentenceExample]) -> Moti
 
 
 def random_codes(model: MotionGPT, seeds: range) -> Motions:
-    """Codes drawn evenly, through the decoder: what the decoder alone brings."""
+    """Uniformly random codes through the decoder: what the decoder alone contributes."""
     made: Motions = []
     for seed in seeds:
         rng = stream(seed, "motiongpt", "random codes")
@@ -72,15 +72,15 @@ def _again(features: Float[Array, "frame 263"]) -> Float[Array, "frame_less_one 
     return features_from_joints(joints_from_features(features))
 
 
-def hits(judge: MotionClassifier, motions: Motions, first: int) -> Bool[Array, " motion"]:
-    """Whether the activity asked for is among the judge's first."""
-    ranks = judge.ranks([features for _, features in motions])
+def hits(classifier: MotionClassifier, motions: Motions, first: int) -> Bool[Array, " motion"]:
+    """Whether the activity asked for is among the classifier's first."""
+    ranks = classifier.ranks([features for _, features in motions])
     asked = np.array([ACTIVITIES.index(activity) for activity, _ in motions])
     return (ranks[:, :first] == asked[:, None]).any(axis=1)
 
 
 def interval(right: Bool[Array, " motion"], per_seed: int) -> list[float]:
-    """95 % interval of a share, drawn over seeds (all motions of one together)."""
+    """95 % bootstrap interval of a share over seeds (all motions of one together)."""
     groups = right[: len(right) // per_seed * per_seed].reshape(-1, per_seed).mean(axis=1)
     rng = stream(0, "motiongpt", "interval")
     means = groups[rng.integers(len(groups), size=(RESAMPLES, len(groups)))].mean(axis=1)
@@ -100,9 +100,9 @@ def bone_spread(motions: Motions) -> float:
     return float(np.mean(spreads))
 
 
-def row(name: str, judge: MotionClassifier, motions: Motions, seconds: float) -> dict[str, Any]:
+def row(name: str, classifier: MotionClassifier, motions: Motions, seconds: float) -> dict[str, Any]:
     """One line of the result. Where not every seed has every activity, intervals are over single motions."""
-    top1, top3 = hits(judge, motions, 1), hits(judge, motions, 3)
+    top1, top3 = hits(classifier, motions, 1), hits(classifier, motions, 3)
     together = len(ACTIVITIES) if len(motions) % len(ACTIVITIES) == 0 else 1
     asked = np.array([activity for activity, _ in motions])
     return {
@@ -133,7 +133,7 @@ def score(model_path: Path, data: Path, run: StudyRun) -> Path:
     """Scores a model and writes results/motiongpt/<file>.json."""
     torch.set_num_threads(1)
     model = MotionGPT.load(model_path)
-    judge = train_classifier(list(library_examples(CLASSIFIER_SEEDS)))
+    classifier = train_classifier(list(library_examples(CLASSIFIER_SEEDS)))
     library = list(library_examples(TEST_SEEDS))
     rows: list[dict[str, Any]] = []
 
@@ -141,7 +141,7 @@ def score(model_path: Path, data: Path, run: StudyRun) -> Path:
         began = time.process_time()
         motions = made()
         if motions:
-            rows.append(row(name, judge, motions, time.process_time() - began))
+            rows.append(row(name, classifier, motions, time.process_time() - began))
 
     add("library, unseen seeds (oracle)", lambda: [(e.activity, e.features) for e in library])
     add("library through the tokenizer (its oracle)", lambda: through_tokenizer(model, library))
@@ -153,7 +153,7 @@ def score(model_path: Path, data: Path, run: StudyRun) -> Path:
         add("CMU recordings, test clips (walk, run, jump)", lambda: [(e.activity, e.features) for e in real])
     config = {
         "model": model_path.name, "sha256": file_digest(model_path)["sha256"], "activities": ACTIVITIES,
-        "frames": FRAMES, "fps": FPS, "judge": "MLP on mean, spread, least, most of 263 features; library alone",
+        "frames": FRAMES, "fps": FPS, "classifier": "MLP on mean, spread, least, most of 263 features; library alone",
         "judge_seeds": [CLASSIFIER_SEEDS.start, CLASSIFIER_SEEDS.stop],
     }  # fmt: skip
     unknown = {"dataset.sha256": "generated anew in every run; recordings are hashed in the manifest"}

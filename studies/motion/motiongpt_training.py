@@ -1,9 +1,8 @@
-"""A small MotionGPT, trained from nothing on one CPU core: the same architecture with smaller numbers.
+"""Trains a small MotionGPT from scratch on one CPU core: the same architecture with smaller sizes.
 
 python -m studies run motiongpt_training --data shared/data --weights weights/motiongpt_small.safetensors
 
-An interrupted training goes on where it stopped. Scores of the result: study
-`motiongpt_scores`.
+An interrupted training continues where it stopped. The study `motiongpt_scores` evaluates the result.
 """
 
 import argparse
@@ -29,7 +28,7 @@ from studies.study import Reads
 
 Array = np.ndarray
 TRAIN_SEEDS = range(1000, 1080)
-CMU_COPIES = 3  # each piece of CMU's counts so often: 68 pieces beside 960 of the library
+CMU_COPIES = 3  # each piece of CMU's counts so often: 68 pieces, 960 of the library
 SMALL = TokenizerConfig(codes=512, code_width=128, width=160)
 SMALL_T5: dict[str, Any] = {
     "d_model": 192, "d_kv": 48, "d_ff": 448, "num_layers": 3, "num_decoder_layers": 3, "num_heads": 4,
@@ -104,7 +103,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--data", type=Path, action=Reads, default=Path("shared/data"), help="folder of real data (CMU's motions)"
     )
     parser.add_argument(
-        "--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training goes on"
+        "--work", type=Path, default=Path("build/motiongpt"), help="where an interrupted training continues"
     )
     parser.add_argument(
         "--weights", type=Path, default=Path("weights/motiongpt_small.safetensors"), help="file to write"

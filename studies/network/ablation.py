@@ -1,13 +1,13 @@
-"""What each part of the network, of its loss and of its training is worth, in rooms of the validation kind.
+"""What each part of the network, of its loss and of its training contributes, in rooms of the validation kind.
 
     python -m studies run ablation --data DATASET --runs RUNS --steps 300 --rooms 48 --most 16
 
-Every variant (`ablation_variants`) is trained for the same short while, from the same seed, in the same rooms, and goes
-on where it was stopped; each writes a file of its own. Test splits are not looked at: this table is for choosing.
+Every variant (`ablation_variants`) is trained for the same short time, from the same seed, in the same rooms, and
+continues where it was stopped; each writes a file of its own. Test splits are not used: this table is for choosing.
 
-Scores on drawn signals, as in the deciding table, and differences of mean power maps, which no phases blur, of all that
-is there and of the person alone: ghosts lie 15 to 20 dB below the person and below most rooms, and show there only.
-`physics_in_photographed_room` and `realization` stand beside them.
+Scores are those of signals with random phases, as in `learned_scores`, and differences of expected power maps, which do
+not depend on phases, of everything and of the person alone: ghosts lie 15 to 20 dB below the person and below most
+rooms, and show only there. `physics_in_photographed_room` and `realization` are given for comparison.
 """
 
 import argparse
@@ -49,14 +49,14 @@ UNKNOWN = {
     "metrics.*.baseline": "each variant has a file of its own; rows of this study are compared with the whole network",
 }
 FRAMES = 6  # of a sequence, whose mean maps are compared
-BESIDE: dict[str, Method] = {
+REFERENCES: dict[str, Method] = {
     "physics_in_photographed_room": simulated(lambda case: reconstruct(case.room.photo), skin=OTHER, micro_seed=1),
     "realization": simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1),
 }
 
 
 class SampledExamples(RoomExamples):
-    """A room whose targets are the maps of one drawn signal, though its geometry would give the mean of all."""
+    """A room whose targets are the maps of one sampled signal, though its geometry would give the expected maps."""
 
     @cached_property
     def _expected(self) -> ExpectedMaps | None:
@@ -66,18 +66,18 @@ class SampledExamples(RoomExamples):
 class _PartOfLoss(NetworkLearner):
     """A learner that leaves terms of the loss out."""
 
-    def __init__(self, *arguments: Any, left_out: tuple[str, ...]):
+    def __init__(self, *arguments: Any, excluded: tuple[str, ...]):
         super().__init__(*arguments)
-        self.left_out = left_out
+        self.excluded = excluded
 
     def terms(self, batch: NetworkBatch) -> dict[str, torch.Tensor]:
         terms = super().terms(batch)
-        return {name: term for name, term in terms.items() if not any(word in name for word in self.left_out)}
+        return {name: term for name, term in terms.items() if not any(word in name for word in self.excluded)}
 
 
 @dataclass(frozen=True)
 class AblationMaterial:
-    """Rooms to train in, rooms to choose the best weights by, and what is judged."""
+    """Rooms to train in, rooms to choose the best weights by, and the cases that are evaluated."""
 
     train: tuple[StoredRoom, ...]
     unseen: tuple[StoredRoom, ...]
@@ -86,7 +86,7 @@ class AblationMaterial:
 
     @classmethod
     def of(cls, data: Path, rooms: int, most: int | None) -> "AblationMaterial":
-        """Of a data set: so many rooms to train in, at most so many to be judged in."""
+        """Of a data set: so many rooms to train in, at most so many to be evaluated in."""
         stored, plan = read_rooms(data), read_plan(data)
         train = [room for room in stored if "train" in room.split]
         unseen = tuple(room for room in stored if "validation" in room.split)
@@ -101,7 +101,7 @@ class AblationMaterial:
         return self._examples(RoomExamples)
 
     @cached_property
-    def drawn(self) -> tuple[list[RoomExamples], list[RoomExamples]]:
+    def sampled(self) -> tuple[list[RoomExamples], list[RoomExamples]]:
         return self._examples(SampledExamples)
 
     def _examples(self, kind: type[RoomExamples]) -> tuple[list[RoomExamples], list[RoomExamples]]:
@@ -111,10 +111,10 @@ class AblationMaterial:
 def trained(variant: AblationVariant, material: AblationMaterial, out: Path, recipe: TrainingRecipe) -> NetworkLearner:
     """The variant, best on validation by its own loss."""
     recipe = replace(recipe, **dict(variant.recipe))
-    rooms, unseen = material.drawn if variant.is_drawn else material.mean
+    rooms, unseen = material.sampled if variant.is_sampled else material.mean
     torch.manual_seed(recipe.seed)
     network = WeaverNetwork(without=variant.without)
-    learner = _PartOfLoss(network, rooms[0].room.config, left_out=variant.terms_without)
+    learner = _PartOfLoss(network, rooms[0].room.config, excluded=variant.terms_without)
     if recipe.steps > 0:
         trainer = Trainer(
             learner, recipe, out, train=batch_sampler(rooms, recipe, recipe.seed, recipe.mirror),
@@ -132,12 +132,12 @@ def photo_of(case: Case, variant: AblationVariant, generic: StoredRoom) -> Store
 
 def scores(learner: NetworkLearner, photo: Callable[[Case], StoredRoom], case: Case) -> dict[str, float]:
     """{column: value of one case}."""
-    drawn = drawn_scores(learned(learner.network, photo), case)
-    return drawn if case.room.geometry is None else {**drawn, **mean_scores(learner, photo(case), case)}
+    sampled = sampled_scores(learned(learner.network, photo), case)
+    return sampled if case.room.geometry is None else {**sampled, **mean_scores(learner, photo(case), case)}
 
 
-def drawn_scores(method: Method, case: Case) -> dict[str, float]:
-    """Of a signal with its own draw of phases against the truth's."""
+def sampled_scores(method: Method, case: Case) -> dict[str, float]:
+    """Scores of a signal with random phases against the ground truth."""
     truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))
     return {name: METRICS[name].score(prediction, truth) for name in COLUMNS}
 
@@ -194,14 +194,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--runs", type=Path, required=True, help="folder for the variants' checkpoints")
     parser.add_argument("--steps", type=int, default=300)
     parser.add_argument("--rooms", type=int, default=48, help="to train in")
-    parser.add_argument("--most", type=int, default=16, help="rooms to be judged in")
-    parser.add_argument("--only", nargs="*", default=[*VARIANTS, *BESIDE], help="rows")
+    parser.add_argument("--most", type=int, default=16, help="rooms to be evaluated in")
+    parser.add_argument("--only", nargs="*", default=[*VARIANTS, *REFERENCES], help="rows")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    unknown = [name for name in options.only if name not in VARIANTS and name not in BESIDE]
+    unknown = [name for name in options.only if name not in VARIANTS and name not in REFERENCES]
     if unknown:
-        raise InputError(f"unknown rows {', '.join(unknown)}; known: {', '.join([*VARIANTS, *BESIDE])}")
+        raise InputError(f"unknown rows {', '.join(unknown)}; known: {', '.join([*VARIANTS, *REFERENCES])}")
     torch.set_num_threads(1)
     recipe = TrainingRecipe(
         steps=options.steps, warm_up_steps=options.steps // 10, validate_every=max(options.steps // 3, 1)
@@ -210,9 +210,11 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     about = {"data_plan": read_plan(options.data), "recipe": asdict(recipe), "train_rooms": len(material.train)}
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in material.cases]
     for name in options.only:
-        kept = RoomCache(options.runs / "scores", {**about, "row": name, "plan": plan_text(options.data)})
-        judge = _judge(name, material, options.runs, recipe)
-        each = [kept.figures(f"{case.room.folder.name}_{case.index}", partial(judge, case)) for case in material.cases]
+        cache = RoomCache(options.runs / "scores", {**about, "row": name, "plan": plan_text(options.data)})
+        recogniser = _evaluator(name, material, options.runs, recipe)
+        each = [
+            cache.figures(f"{case.room.folder.name}_{case.index}", partial(recogniser, case)) for case in material.cases
+        ]
         row = row_of(name, each, rooms)
         rows = complete_rows([row], dataset=dataset_of(options.data), seeds=[0], unknown=UNKNOWN)
         run.write("ablation", slug(name), config=about, rows=rows)
@@ -220,18 +222,18 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         print(f"{name:32}", *figures, flush=True)
 
 
-def _judge(
+def _evaluator(
     name: str, material: AblationMaterial, runs: Path, recipe: TrainingRecipe
 ) -> Callable[[Case], dict[str, float]]:
     """What gives a row's figures of one case; a variant is trained when the first is asked for."""
-    if name in BESIDE:
-        return partial(drawn_scores, BESIDE[name])
+    if name in REFERENCES:
+        return partial(sampled_scores, REFERENCES[name])
     variant, made = VARIANTS[name], []
 
-    def judge(case: Case) -> dict[str, float]:
+    def recogniser(case: Case) -> dict[str, float]:
         if not made:
             folder = runs / slug(WHOLE if variant.is_trained_as_whole else name)
             made.append(trained(variant, material, folder, recipe))
         return scores(made[0], lambda one: photo_of(one, variant, material.generic), case)
 
-    return judge
+    return recogniser

@@ -1,4 +1,4 @@
-"""What the ablation leaves out of the network, of its loss, of its training and of what it is shown."""
+"""Variants of the ablation: what is removed from the network, its loss, its training and its input."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -6,18 +6,25 @@ from typing import Any
 
 @dataclass(frozen=True)
 class AblationVariant:
-    """Parts of the network that are left out, words in the names of terms that are, changes of the recipe, whether
-    targets are single drawn signals, and whose photo is shown when it is judged."""
+    """One variant.
+
+    Attributes:
+        without: parts of the network that are removed.
+        terms_without: words in the names of loss terms that are removed.
+        recipe: changes of the training recipe.
+        is_sampled: whether targets are maps of single sampled signals rather than expected maps.
+        photo: whose photo is the input when it is evaluated: "own", "generic" or "shuffled".
+    """
 
     without: tuple[str, ...] = ("correction",)
     terms_without: tuple[str, ...] = ()
     recipe: tuple[tuple[str, Any], ...] = ()
-    is_drawn: bool = False
+    is_sampled: bool = False
     photo: str = "own"  # or "generic", "shuffled"
 
     @property
     def is_trained_as_whole(self) -> bool:
-        """Whether it is the whole network, looked at otherwise."""
+        """Whether it is the whole network, evaluated with another photo."""
         return self == AblationVariant(photo=self.photo)
 
 
@@ -25,7 +32,7 @@ WHOLE = "whole"
 VARIANTS = {
     WHOLE: AblationVariant(),
     "before training": AblationVariant(recipe=(("steps", 0),)),
-    # of the whole, when it is judged
+    # of the whole, when it is evaluated
     "generic photo": AblationVariant(photo="generic"),
     "shuffled photo": AblationVariant(photo="shuffled"),
     # anchors and what physics says
@@ -47,6 +54,6 @@ VARIANTS = {
     "no target of the person alone": AblationVariant(terms_without=("_person",)),
     "no target of the background": AblationVariant(terms_without=("_empty",)),
     "no pooled maps": AblationVariant(terms_without=("_4x2", "_8x8")),
-    "sampled signals, no expected maps": AblationVariant(is_drawn=True),
+    "sampled signals, no expected maps": AblationVariant(is_sampled=True),
     "no reflected rooms": AblationVariant(recipe=(("mirror", False),)),
 }

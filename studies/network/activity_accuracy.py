@@ -1,8 +1,8 @@
-"""How well the activity network recognises in rooms, layouts and people it has not seen.
+"""How accurately the activity network recognises in rooms, layouts and people it has not seen.
 
     python -m studies run activity_accuracy --data DATASET --weights ACTIVITY
 
-Twelve classes; intervals are over rooms. Floors: chance, and always saying the commonest activity of the split.
+Twelve classes; intervals are over rooms. Baselines: chance, and always the most frequent activity of the split.
 """
 
 import argparse
@@ -27,7 +27,7 @@ SPLITS = ("test_room", "test_layout", "test_person")
 
 
 def row_of(network: ActivityNetwork, examples: ActivityExamples, split: str) -> dict[str, Any]:
-    """Accuracy in a split, its floors, and which activity is taken for which how often."""
+    """Accuracy in a split, its floors, and the confusion matrix."""
     answers, label = scores_of(network, examples).argmax(dim=1).numpy(), examples.label.numpy()
     mean, low, high = interval((answers == label).astype(np.float64), list(examples.room))
     counts = np.bincount(label, minlength=len(ACTIVITY_NAMES))

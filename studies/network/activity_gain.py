@@ -1,18 +1,17 @@
-"""What generated data is worth: a recogniser of activities in a room that nobody has recorded.
+"""What generated data is worth to a recogniser of activities in a room that nobody has recorded.
 
-    python -m studies run activity_gain --data DATASET --weights WEAVER --judge JUDGE/weights.safetensors \\
-        --rooms 40 --runs RUNS --out results
+    python -m studies run activity_gain --data DATASET --weights WEAVER --recogniser ACTIVITY/weights.safetensors \\
+        --rooms 40 --runs RUNS
 
-The recogniser (`mmweaver train activity`) has seen other rooms. For each room of an unseen kind its head is trained on,
-once with the other rooms' recordings alone and once with generated ones of this room beside them, and judged on the
-room's true (simulated) signals. All methods generate the same motions, placed in the room as its photo shows it; they
-differ in what surrounds the radar. `true_room` is the simulator in the true room: the ceiling. Convolutions stay as
-they are, and every head is trained on for the same number of steps, from the same seed in a room and another in the
-next.
+The recogniser (`mmweaver train activity`) was trained in other rooms. For each room of an unseen kind its head is
+fine-tuned, once on recordings of the other rooms alone and once with generated ones of this room added, and evaluated
+on the simulated ground truth of the room. All methods generate the same motions, placed in the room as its photo shows
+it; they differ in the surroundings. `true_room`, the simulator in the true room, is the oracle. Convolutions are
+frozen, and every head is trained for the same number of steps, with one seed per room.
 
-With `--recordings N` the head begins anew and has N recordings of other rooms, as somebody has who recorded a few.
-Every room that is done is kept in `--runs`, and the same command goes on. Maps of the other rooms are taken from the
-judge's folder, where training left them.
+With `--recordings N` the head is initialised anew and has N recordings of other rooms, as somebody has who recorded
+few. Finished rooms are cached in `--runs`, and the same command continues. Maps of the other rooms are read from the
+folder of the recogniser, where its training left them.
 """
 
 import argparse
@@ -80,7 +79,7 @@ class UnseenRoom:
 
 @dataclass(frozen=True, kw_only=True)
 class Labelled:
-    """What the network sees of each frame of sequences, and what they show."""
+    """Features of each frame of sequences (sequence, frame, feature), and the label of each sequence."""
 
     frames: Tensor  # (sequence, frame, feature)
     label: Tensor
@@ -91,7 +90,7 @@ Method = Callable[[UnseenRoom], Maker]
 
 
 def motions_in(room: UnseenRoom, each: int, seed: int) -> list[tuple[str, PoseSequence]]:
-    """`each` motions of every activity, placed in the room as its photo shows it; what has no place is left out."""
+    """`each` motions of every activity, placed in the room of the photo; motions without a place are omitted."""
     rng, motions = stream(seed, "activity gain", room.name), []
     withheld = set(read_plan(room.room.folder.parent)["withheld"]["test_people"])
     people = [person for person in range(len(PEOPLE_HEIGHT_M)) if person not in withheld]
@@ -203,7 +202,7 @@ class GainStudy:
         return head
 
 
-def judged(study: GainStudy, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
+def evaluated(study: GainStudy, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
     """Accuracy and log loss on test sequences once the head has been trained on; a quarter of a batch is the room's."""
     torch.manual_seed(seed)
     head, rng = study.head(), stream(seed, "activity gain head")
@@ -211,7 +210,7 @@ def judged(study: GainStudy, own: Labelled | None, test: Labelled, seed: int) ->
     adam = torch.optim.AdamW(head.parameters(), lr=rate, weight_decay=1e-2)
     head.train()
     for _ in range(STEPS):
-        parts = [_drawn(study.base, OTHERS, rng), _drawn(study.base if own is None else own, OWN, rng)]
+        parts = [_sampled(study.base, OTHERS, rng), _sampled(study.base if own is None else own, OWN, rng)]
         frames, label = (torch.cat(each) for each in zip(*parts, strict=True))
         loss = torch.nn.functional.cross_entropy(head(frames), label, label_smoothing=0.1)
         adam.zero_grad()
@@ -224,7 +223,7 @@ def judged(study: GainStudy, own: Labelled | None, test: Labelled, seed: int) ->
     return float(hits), float(torch.nn.functional.cross_entropy(scores, test.label))
 
 
-def _drawn(examples: Labelled, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
+def _sampled(examples: Labelled, count: int, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
     chosen = torch.from_numpy(rng.integers(len(examples.label), size=count))
     return examples.frames[chosen], examples.label[chosen]
 
@@ -241,12 +240,12 @@ def gained(
     names = [room.room.activity[index] for index in indices]
     test = labelled(network, (room.room.cube(index) for index in indices), names)
     motions = motions_in(room, each, seed=0)
-    found = {ALONE: list(judged(study, None, test, seed))}
+    found = {ALONE: list(evaluated(study, None, test, seed))}
     for name, method in methods.items():
         make = method(room)
         cubes = (make(pose, number) for number, (_, pose) in enumerate(motions))
         own = labelled(network, cubes, [activity for activity, _ in motions])
-        found[name] = list(judged(study, own, test, seed))
+        found[name] = list(evaluated(study, own, test, seed))
     return found
 
 
@@ -256,14 +255,14 @@ def gains(
     methods: dict[str, Method],
     *,
     each: int,
-    kept: RoomCache,
+    cache: RoomCache,
     split: str = "test_room",
     after: Callable[[dict[str, np.ndarray]], object] = lambda found: None,
 ) -> dict[str, np.ndarray]:
     """{method: accuracy and log loss in each room, (room, 2)}; `after` is given what is there after each room."""
     found: dict[str, list[list[float]]] = {}
     for seed, room in enumerate(rooms):
-        one: Found = kept.figures(room.name, partial(gained, study, room, methods, each=each, seed=seed, split=split))
+        one: Found = cache.figures(room.name, partial(gained, study, room, methods, each=each, seed=seed, split=split))
         for name, values in one.items():
             found.setdefault(name, []).append(values)
         after({name: np.array(values) for name, values in found.items()})
@@ -288,15 +287,15 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[
     return rows
 
 
-def studied(judge_file: Path, data: Path, recordings: int | None) -> GainStudy:
+def gain_study(recogniser_file: Path, data: Path, recordings: int | None) -> GainStudy:
     """The recogniser and what it has seen elsewhere: all that it was trained on, or so many recordings of it."""
     if recordings is None:
-        examples = activity_examples(data, TRAIN_SPLITS, judge_file.parent / TRAIN_MAPS, keep=False)
+        examples = activity_examples(data, TRAIN_SPLITS, recogniser_file.parent / TRAIN_MAPS, keep=False)
     else:
         examples = activity_examples(data, TRAIN_SPLITS, pick=partial(few_of, count=recordings))
-    judge = load_activity(judge_file, examples.config)
-    base = Labelled(frames=seen(judge, examples.doppler, examples.angle), label=examples.label)
-    return GainStudy(judge, base, begins_anew=recordings is not None)
+    recogniser = load_activity(recogniser_file, examples.config)
+    base = Labelled(frames=seen(recogniser, examples.doppler, examples.angle), label=examples.label)
+    return GainStudy(recogniser, base, begins_anew=recordings is not None)
 
 
 def few_of(label: np.ndarray, count: int) -> np.ndarray:
@@ -326,7 +325,7 @@ def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
-    parser.add_argument("--judge", type=Path, action=Reads, required=True, help="of recipe activity")
+    parser.add_argument("--recogniser", type=Path, action=Reads, required=True, help="of recipe activity")
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper")
     parser.add_argument("--rooms", type=int, default=40)
     parser.add_argument("--each", type=int, default=2, help="generated motions of each activity")
@@ -340,15 +339,15 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     plan, weights = read_plan(options.data), options.weights or shipped_weights()
     rooms = unseen_rooms(read_rooms(options.data), plan, options.rooms)
     weaver, card = load_weights(weights)
-    study = studied(options.judge, options.data, options.recordings)
+    study = gain_study(options.recogniser, options.data, options.recordings)
     methods = methods_of(weaver, options.paper)
     methods = {name: methods[name] for name in options.only or methods}
     about = {
         "weights": asdict(card), "data_plan": plan, "each": options.each, "steps": STEPS,
         "recordings": options.recordings,
     }  # fmt: skip
-    files = [digest(file) for file in (weights, options.judge, options.paper) if file is not None]
-    kept = RoomCache(options.runs, {**about, "files": files, "methods": list(methods)})
+    files = [digest(file) for file in (weights, options.recogniser, options.paper) if file is not None]
+    cache = RoomCache(options.runs, {**about, "files": files, "methods": list(methods)})
     name = "test_room" if options.recordings is None else f"recordings_{options.recordings}"
 
     def write(found: dict[str, np.ndarray]) -> None:
@@ -361,6 +360,6 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         room = rooms[len(found[ALONE]) - 1].name
         print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)
 
-    for row in rows_of(gains(study, rooms, methods, each=options.each, kept=kept, after=write), rooms):
+    for row in rows_of(gains(study, rooms, methods, each=options.each, cache=cache, after=write), rooms):
         values = (f"{name} {m['value']:.3f} {m['interval_95']}" for name, m in row["metrics"].items())
         print(f"{row['method']:30}", *values)

@@ -1,9 +1,10 @@
-"""What a recording of the empty room is worth, to look at: truth, the network from the photo alone, and with it.
+"""What a background recording is worth: pictures of ground truth, the network from the photo alone, and with it.
 
     python -m studies run background_rooms --out docs/images/weaver_empty_room.png
 
-Made-up rooms of kinds that the network never saw. The simulator in the true room is the truth and, with nobody there,
-the recording; motion and person are the same in all three, skin is not. Scores: `weaver_table`.
+Procedural rooms of kinds that the network never saw. The simulator in the true room is the ground truth and, with
+nobody there, the recording; motion and person are the same in all three, the phases of the skin are not. Scores:
+`learned_scores`.
 """
 
 import argparse

@@ -3,10 +3,10 @@
     python -m studies run capture_tuning --data DATASET --weights FILE --work DIR
 
 Rooms are of kinds that the weights never saw. Of each, a few sequences are written as capture folders, as a user would
-have them, and what `mmweaver train weaver --captures` runs is run on them; scored are other sequences of the room.
-`captures_as_background` takes the same captures, with people in them, for `--background`, and tunes nothing.
-`captures_mean` repeats the mean of the captures: it knows the room with its phases, and nobody in it. `realization`,
-where the data set is of this version's motion library, is the simulator in the true room with other phases (an oracle).
+have them, and fine-tuned on as by `mmweaver train weaver --captures`; other sequences of the room are scored.
+`captures_as_background` uses the same captures, with people in them, as `--background`, and tunes nothing.
+`captures_mean` repeats the mean of the captures: the room with its phases, and nobody in it. `realization`, where the
+data set is of this version's motion library, is the simulator in the true room with other phases (an oracle).
 Intervals: bootstrap over rooms. A stopped run continues where it was.
 """
 
@@ -190,7 +190,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--weights", type=Path, action=Reads, required=True)
     parser.add_argument("--work", type=Path, required=True, help="an empty folder for captures and runs")
     parser.add_argument("--rooms", type=int, default=6)
-    parser.add_argument("--captures", type=int, default=4, help="of each room; the last is kept aside")
+    parser.add_argument("--captures", type=int, default=4, help="of each room; the last is held out")
     parser.add_argument("--each", type=int, default=4, help="other sequences that are scored")
     parser.add_argument("--steps", type=int)
 

@@ -1,4 +1,4 @@
-"""What a cube is like, in some hundred numbers: loudness, profiles, textures, changes, antennas, activity features."""
+"""A cube summarised in some hundred numbers: power, profiles, textures, changes, antennas, activity features."""
 
 import numpy as np
 import torch
@@ -35,7 +35,7 @@ def _of_map(maps: Tensor) -> Tensor:
 
 
 def _of_antennas(cube: RadarCube) -> Tensor:
-    """Shares of the covariance's eigenvalues of the horizontal row, and how alike the antennas are in loudness."""
+    """Shares of the covariance's eigenvalues of the horizontal row, and how similar the antennas are in power."""
     row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     signal = cube.values[..., row].reshape(-1, len(row)).astype(np.complex128)
     covariance = signal.T @ signal.conj()

@@ -1,9 +1,9 @@
-"""An activity that training withheld, after tuning on a few sequences of it.
+"""An activity that was withheld from training, after tuning on a few sequences of it.
 
     python -m studies run few_shot --data DATASET --weights FILE --runs RUNS
 
-Jumping is withheld. The network is tuned on 0, 5 and 20 jumps in half of the rooms and judged on jumps in the other
-half. `realization`: the simulator in the true room with other micro-phases.
+Jumping is withheld. The network is tuned on 0, 5 and 20 jumps in half of the rooms and evaluated on jumps in the other
+half. `realization` (an oracle): the simulator in the true room with other micro-phases.
 """
 
 import argparse
@@ -35,7 +35,7 @@ RECIPE = TrainingRecipe(
 
 
 def halves(rooms: list[StoredRoom], seed: int) -> tuple[list[StoredRoom], list[StoredRoom]]:
-    """Rooms in which somebody jumps: those to tune in and those to be judged in."""
+    """Rooms with jumps: those to tune in and those to evaluate in."""
     there = [room for room in rooms if _jumps(room)]
     if len(there) < 2:
         raise InputError(f"the data set shows {ACTIVITY} in fewer than two rooms; make more with: mmweaver dataset")
@@ -68,7 +68,7 @@ def _jumps(room: StoredRoom) -> list[int]:
     return [index for index, (activity, split) in enumerate(pairs) if activity == ACTIVITY and split == SPLIT]
 
 
-def judged(method: Method, cases: list[Case]) -> dict[str, dict[str, float | str]]:
+def evaluated(method: Method, cases: list[Case]) -> dict[str, dict[str, float | str]]:
     """{column: mean and interval over rooms}."""
     values: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for case in cases:
@@ -87,7 +87,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, required=True)
     parser.add_argument("--runs", type=Path, required=True, help="folder for the checkpoints")
-    parser.add_argument("--most", type=int, default=30, help="rooms to be judged in")
+    parser.add_argument("--most", type=int, default=30, help="rooms to be evaluated in")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
@@ -99,10 +99,10 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     rows = []
     for shots in SHOTS:
         network = tuned(options.weights, own, shots, options.runs / f"shots_{shots}", 0)
-        metrics = judged(learned(network, lambda case: case.room), cases)
+        metrics = evaluated(learned(network, lambda case: case.room), cases)
         rows.append({"method": f"{shots} jumps", "split": SPLIT, "n": len(cases), "metrics": metrics})
-    twin = simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1)
-    rows.append({"method": "realization", "split": SPLIT, "n": len(cases), "metrics": judged(twin, cases)})
+    realization = simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1)
+    rows.append({"method": "realization", "split": SPLIT, "n": len(cases), "metrics": evaluated(realization, cases)})
     for row in rows:
         print(row["method"], *(f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items()), flush=True)
     rows = complete_rows(

@@ -1,8 +1,8 @@
-"""Real rooms through both methods, side by side: what physics and the network make of the same photo and sentence.
+"""Pictures of real rooms by both methods: physics and the network, of the same photo and sentence.
 
     python -m studies run learned_rooms_picture --rooms /path/to/rooms --out docs/images/weaver_rooms.png
 
-Nobody knows what a radar in these rooms would have recorded; the picture is for looking, not for scores.
+There is no ground truth for these rooms; the picture is for inspection, not for scores.
 """
 
 import argparse
@@ -37,7 +37,7 @@ def views_of(folder: Path, text: str = TEXT, *, frames: int = FRAMES, seed: int 
 
 
 def draw_rooms(path: Path, rooms: Sequence[dict[str, FigureData]]) -> None:
-    """A row a room: the photo, then Doppler over time and the resting room's range-azimuth by each method."""
+    """A row a room: the photo, then Doppler over time and range-azimuth of the static room by each method."""
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -105,10 +105,10 @@ def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, re
         empty = None
         if recorded:
             empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER)
-        woven_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, empty=empty)
+        learned_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, empty=empty)
         joints, velocity = case.joints
         motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=OTHER + case.spec.person)
-        return woven_room.cube([motion], seed=case.index)
+        return learned_room.cube([motion], seed=case.index)
 
     return method
 
@@ -231,7 +231,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
-    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
     parser.add_argument("--only", nargs="*", help="rows (default: all)")
     parser.add_argument("--other-radar", metavar="NAME", help="data of another radar or length: a result of this name")
 

@@ -1,11 +1,11 @@
-"""How much of a room's own echoes can be told from its photo, and which parts of them cannot.
+"""How much of the static echoes of a room can be predicted from its photo, and which parts cannot?
 
     python -m studies run photographed_room
 
-Empty rooms of the nine kinds that training may see, in layouts that no data set holds. Truth is the simulator in the
-true room; judged are the range-azimuth pictures of one frame without noise. `realization` is the true room with other
-micro-phases of its rough surfaces: the best that anyone can do. The rows between give the photographed room one kind
-of the true room's echoes, those of mirrors with random phases. Intervals: bootstrap over rooms.
+Empty rooms of the nine kinds that training may see, in layouts of no data set. Ground truth is the simulator in the
+true room; range-azimuth pictures of one frame without noise are compared. `realization`, the oracle, is the true room
+with other micro-phases of its rough surfaces. The rows between replace one kind of the photographed room's echoes by
+those of the true room, specular ones with random phases. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -45,22 +45,22 @@ METRICS = {
 Scores = dict[str, dict[str, float]]
 
 
-def judged(kind: str, layout: int, seed: int = 0) -> Scores:
+def evaluated(kind: str, layout: int, seed: int = 0) -> Scores:
     """Scores of one room by method."""
     config = PRESETS["awr1843"]
     made = make_room(kind, layout, seed)
     photo = made.photo("day", noise=True)
-    truth, twin = RayTracedRoom(made.scene("day"), config), RayTracedRoom(made.scene("day"), config, 1)
-    own, true = _parts(RayTracedRoom(reconstruct(photo), config, 1)), _parts(twin)
-    mirrors = _parts(twin, turned=stream(layout, kind, "mirrors"))[Interaction.SPECULAR]
+    truth, realization = RayTracedRoom(made.scene("day"), config), RayTracedRoom(made.scene("day"), config, 1)
+    own, true = _parts(RayTracedRoom(reconstruct(photo), config, 1)), _parts(realization)
+    specular = _parts(realization, turned=stream(layout, kind, "mirrors"))[Interaction.SPECULAR]
     cubes = {
         "zeros": 0 * _adc(truth),
         "photo without mask": _adc(RayTracedRoom(reconstruct(_without_mask(photo)), config, 1)),
         "photo": sum(own.values()),
-        "photo, true specular reflectors": sum((own | {Interaction.SPECULAR: mirrors}).values()),
+        "photo, true specular reflectors": sum((own | {Interaction.SPECULAR: specular}).values()),
         "photo, true edges": sum((own | {Interaction.EDGE: true[Interaction.EDGE]}).values()),
         "photo, true surfaces": sum((own | {Interaction.DIFFUSE: true[Interaction.DIFFUSE]}).values()),
-        REALIZATION: _adc(twin),
+        REALIZATION: _adc(realization),
     }
     azimuth = azimuth_axis_rad()
 
@@ -104,7 +104,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     rooms = [(kind, layout) for kind in KINDS if kind not in HeldOut().test_kinds for layout in options.layouts]
-    scores = [judged(kind, layout) for kind, layout in rooms]
+    scores = [evaluated(kind, layout) for kind, layout in rooms]
     names = [f"{kind}_{layout}" for kind, layout in rooms]
     rows = [_row(method, scores, names) for method in scores[0]]
     settings = {"layouts": options.layouts, "kinds": sorted({kind for kind, _ in rooms}), "radar": "awr1843"}

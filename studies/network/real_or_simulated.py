@@ -1,6 +1,6 @@
 """Can a classifier distinguish generated cubes from simulated ground truth? Accuracy in unseen rooms; 0.5 is chance.
 
-    python -m studies run real_or_simulated --data DATASET --weights WEAVER --judge ACTIVITY
+    python -m studies run real_or_simulated --data DATASET --weights WEAVER --recogniser ACTIVITY
 
 Ground truth and generated cubes share rooms and joints (cases of `learned_scores`, unseen kinds of rooms). For each
 method, trees learn the difference from `cube_statistics` of four fifths of the rooms and are evaluated in the last
@@ -47,15 +47,15 @@ def folds_of(rooms: list[str], seed: int = 0) -> list[set[str]]:
 def real_or_simulated_scores(true: np.ndarray, made: np.ndarray, rooms: list[str]) -> np.ndarray:
     """Share of right answers for each case, its true and its generated cube: 0, 0.5 or 1.
 
-    Statistics (case, number), both in the same order, and each case's room; no room is both learned from and judged.
+    Statistics (case, number), both in the same order, and each case's room; no room is both learned from and evaluated.
     """
     right = np.zeros(len(rooms))
     for held in folds_of(rooms):
         is_held = np.array([room in held for room in rooms])
         learned = np.concatenate([true[~is_held], made[~is_held]])
         labels = np.repeat([TRUE, GENERATED], int((~is_held).sum()))
-        judge = ActivityClassifier(SETTINGS).fit(learned, labels)
-        hits = [judge.predict(true[is_held]) == TRUE, judge.predict(made[is_held]) == GENERATED]
+        recogniser = ActivityClassifier(SETTINGS).fit(learned, labels)
+        hits = [recogniser.predict(true[is_held]) == TRUE, recogniser.predict(made[is_held]) == GENERATED]
         right[is_held] = np.mean(hits, axis=0)
     return right
 
@@ -64,8 +64,8 @@ def rows_of(
     cases: list[Case],
     methods: dict[str, Method],
     statistics: Callable[..., np.ndarray],
-    kept: RoomCache,
-    tell: Callable[[str], object] = lambda line: None,
+    cache: RoomCache,
+    report: Callable[[str], object] = lambda line: None,
 ) -> list[dict[str, Any]]:
     """One row a method: accuracy over rooms with its interval."""
     rooms = [f"{case.room.kind}_{case.room.layout}" for case in cases]
@@ -74,25 +74,25 @@ def rows_of(
         made = {name: statistics(method(case)).tolist() for name, method in methods.items()}
         return {TRUE: statistics(case.room.cube(case.index)).tolist(), **made}
 
-    each = [kept.figures(f"{case.room.folder.name}_{case.index}", partial(measured, case)) for case in cases]
+    each = [cache.figures(f"{case.room.folder.name}_{case.index}", partial(measured, case)) for case in cases]
     true, rows = np.array([one[TRUE] for one in each]), []
     for name in methods:
         made = np.array([one[name] for one in each])
         mean, low, high = interval(real_or_simulated_scores(true, made, rooms), rooms)
         metric = {"value": mean, "interval_95": [low, high], "unit": "1", "oracle": {"indistinguishable": 0.5}}
         rows.append({"method": name, "n": len(cases), "num_rooms": len(set(rooms)), "metrics": {"accuracy": metric}})
-        tell(f"{name:30} {mean:.3f} ({low:.3f} to {high:.3f})")
+        report(f"{name:30} {mean:.3f} ({low:.3f} to {high:.3f})")
     return rows
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
-    parser.add_argument("--judge", type=Path, action=Reads, required=True, help="of recipe activity")
+    parser.add_argument("--recogniser", type=Path, action=Reads, required=True, help="of recipe activity")
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=4, help="sequences of each room")
-    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
 
 
@@ -101,7 +101,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     rooms, plan = read_rooms(options.data), read_plan(options.data)
     weights = options.weights or shipped_weights()
     network, card = load_weights(weights)
-    judge = load_activity(options.judge, rooms[0].config)
+    recogniser = load_activity(options.recogniser, rooms[0].config)
     cases = cases_of(rooms, options.split, options.each, plan, 0, options.most)
     generic = next(room for room in rooms if "train" in room.split)
     generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
@@ -114,9 +114,9 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     }
     if options.paper is not None:
         methods["paper"] = paper_method(options.paper)
-    files = [digest(file) for file in (weights, options.judge, options.paper) if file is not None]
-    kept = RoomCache(options.runs, {"data_plan": plan, "files": files, "methods": list(methods)})
-    rows = rows_of(cases, methods, lambda cube: cube_statistics(cube, judge), kept, _tell)
+    files = [digest(file) for file in (weights, options.recogniser, options.paper) if file is not None]
+    cache = RoomCache(options.runs, {"data_plan": plan, "files": files, "methods": list(methods)})
+    rows = rows_of(cases, methods, lambda cube: cube_statistics(cube, recogniser), cache, _print_row)
     rows = complete_rows(
         rows, dataset={**dataset_of(options.data), "split": options.split}, seeds=[0],
         baselines=("generic_room_physics",), unknown={"seconds": "see the manifest: all rows together"},
@@ -127,7 +127,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     )  # fmt: skip
 
 
-def _tell(line: str) -> None:
+def _print_row(line: str) -> None:
     print(line, flush=True)
 
 

@@ -1,4 +1,4 @@
-"""Figures of single rooms of a long experiment, kept beside each other, so that it goes on where it was stopped."""
+"""Scores of single rooms of a long study, cached one file a room, so that a stopped run continues."""
 
 import hashlib
 import json
@@ -13,7 +13,7 @@ class RoomCache:
     """A folder of JSON files, one a room, for one setting of an experiment.
 
     `about` is everything the figures depend on: with other settings, weights or data nothing is found again. Without a
-    folder nothing is kept.
+    folder nothing is cache.
     """
 
     def __init__(self, folder: Path | None, about: dict[str, Any]):
@@ -21,7 +21,7 @@ class RoomCache:
         self.folder = None if folder is None else folder / mark
 
     def figures(self, name: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-        """What is kept of a room, or what `make` gives, which is kept then."""
+        """What is cache of a room, or what `make` gives, which is cache then."""
         if self.folder is None:
             return make()
         file = self.folder / f"{name}.json"

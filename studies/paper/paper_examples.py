@@ -1,7 +1,7 @@
 """Batches for the recipe `paper`: photos, motions, and patches of cubes that favour ranges with human activity.
 
-The paper draws 16,384 of the coordinates a step. Its complex SSIM and its perceptual loss compare neighbours, so what
-is drawn here are whole patches: 2 frames of 21 ranges, all 32 Doppler bins and all 12 antennas, 16,128 coordinates of a
+The paper samples 16,384 of the coordinates a step. Its complex SSIM and its perceptual loss compare neighbours, so
+whole patches are sampled here: 2 frames of 21 ranges, all 32 Doppler bins and all 12 antennas, 16,128 coordinates of a
 sequence. Half of them lie around a range in which something moves, half anywhere.
 """
 

@@ -21,14 +21,14 @@ def paper_loss(
     Complex patches (sequence, frame, range, doppler, antenna) in the network's unit; `span` (sequence,) is the data
     range of each sequence, as the metric cSSIM has it; `unit_sqrt_mw` what 1.0 is.
     """
-    likeness = torch.stack([_ssim(part(made), part(truth), span).mean() for part in (torch.real, torch.imag)]).mean()
+    similarity = torch.stack([_ssim(part(made), part(truth), span).mean() for part in (torch.real, torch.imag)]).mean()
     squared = (made - truth).abs().square().mean() / 2
     with torch.no_grad():
         wanted = perceiver.perceived(truth.flatten(0, 1) * unit_sqrt_mw)
     found = perceiver.perceived(made.flatten(0, 1) * unit_sqrt_mw)
     features = torch.stack([(one - two).abs().mean() for one, two in zip(found, wanted, strict=True)]).mean()
     return {
-        "cssim": SHARE_CSSIM * (1 - likeness),
+        "cssim": SHARE_CSSIM * (1 - similarity),
         "mse": SHARE_MSE * squared,
         "perceptual": SHARE_PERCEPTUAL * features,
     }

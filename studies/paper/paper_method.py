@@ -1,4 +1,4 @@
-"""Photo and motion -> signal by the paper's network: recipe `paper`, a row of the table that decides."""
+"""From photo and motion to the signal by the paper's network: recipe `paper`, a row of `learned_scores`."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,9 +1,9 @@
-"""What the recipe `paper` reaches in rooms it has never seen, beside all zeros and the static mean.
+"""Scores of the recipe `paper` in rooms it has never seen; baselines are all zeros and the static mean.
 
     python -m studies run paper_scores --data DATASET --weights PAPER
 
-Exact joints, simulated truth. cSSIM and PSNR, which the paper reports, are shown with what all zeros score. A learning
-curve that stands beside the weights (`log.jsonl`) is kept with the result.
+Exact joints, simulated ground truth. cSSIM and PSNR, which the paper reports, are given with what all zeros score. A
+learning curve that lies in the folder of the weights (`log.jsonl`) becomes part of the result.
 """
 
 import argparse
@@ -35,11 +35,13 @@ Scores = dict[str, dict[str, float]]  # {row: {column: value}} of one case
 
 
 def scores_of(
-    cases: list[Case], method: Callable[[Case], RadarCube], kept: RoomCache
+    cases: list[Case], method: Callable[[Case], RadarCube], cache: RoomCache
 ) -> dict[str, dict[str, np.ndarray]]:
-    """{row: {column: value of each case}}: zeros, static_mean and the method; `energy_db` is the cube's over the
-    truth's, which tells a collapse."""
-    each: list[Scores] = [kept.figures(_name(case), partial(_scores, case, method)) for case in cases]
+    """{row: {column: value of each case}}: zeros, static_mean and the method.
+
+    `energy_db` is the energy of the cube over that of the ground truth, which reveals a collapse.
+    """
+    each: list[Scores] = [cache.figures(_name(case), partial(_scores, case, method)) for case in cases]
     return {row: {name: np.array([one[row][name] for one in each]) for name in each[0][row]} for row in each[0]}
 
 
@@ -76,8 +78,8 @@ def learning_curve(folder: Path) -> list[dict[str, Any]]:
     if not file.is_file():
         return []
     lines = (json.loads(line) for line in file.read_text(encoding="utf-8").splitlines())
-    told = (line for line in lines if line["validation"] is not None)
-    return [{"step": line["step"], "loss": line["validation"], **line["figures"]} for line in told]
+    reported = (line for line in lines if line["validation"] is not None)
+    return [{"step": line["step"], "loss": line["validation"], **line["figures"]} for line in reported]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -85,7 +87,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--weights", type=Path, action=Reads, required=True, help="of recipe paper")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=3, help="sequences of each room")
-    parser.add_argument("--most", type=int, help="rooms, drawn at random (default: all that have the split)")
+    parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
     parser.add_argument("--called", help="the result's name (default: the split)")
 
@@ -96,8 +98,8 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     torch.set_num_threads(1)
     plan = read_plan(options.data)
     cases = cases_of(read_rooms(options.data), options.split, options.each, plan, 0, options.most)
-    kept = RoomCache(options.runs, {"data_plan": plan, "weights": digest(options.weights)})
-    rows = rows_of(scores_of(cases, paper_method(options.weights), kept), cases)
+    cache = RoomCache(options.runs, {"data_plan": plan, "weights": digest(options.weights)})
+    rows = rows_of(scores_of(cases, paper_method(options.weights), cache), cases)
     card = load_into(PaperNetwork(), options.weights, recipe=RECIPE)
     complete = complete_rows(
         rows, dataset={**dataset_of(options.data), "split": options.split}, seeds=[0],

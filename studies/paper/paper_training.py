@@ -1,4 +1,4 @@
-"""Training the paper's network as the paper says: recipe `paper`."""
+"""Training of the paper's network as the paper describes it: recipe `paper`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -65,7 +65,7 @@ class PaperLearner(Learner):
         return self._cost(patches(self.network, batch), batch)
 
     def figures(self, batch: PaperBatch) -> dict[str, Tensor]:
-        """The loss of all zeros, and error and energy over the truth's energy: they tell a collapse."""
+        """The loss of all zeros, and error and energy over the energy of the ground truth: they reveal a collapse."""
         made, energy = patches(self.network, batch), batch.truth.abs().square().sum()
         nothing = torch.stack(list(self._cost(torch.zeros_like(made), batch).values())).sum()
         return {
@@ -103,7 +103,7 @@ def train_paper(
     compute: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer:
-    """Trains on split `train`, or goes on from `out`/checkpoint.pt; `features`: weights of recipe `activity`.
+    """Trains on split `train`, or continues from `out`/checkpoint.pt; `features`: weights of recipe `activity`.
 
     Keeps what is best on split `validation`. `start`: weights to fine-tune. `options` go to `Trainer`. Raises
     InputError for folders without data and foreign weights.
@@ -131,8 +131,8 @@ def _drawing(rooms: list[PaperRoom], recipe: PaperRecipe, seed: int) -> BatchSam
 
 
 def patches(network: PaperNetwork, batch: PaperBatch) -> Tensor:
-    """What the network writes at a batch's coordinates, shaped as its truth; its weights in mixed precision, the
-    field's values in float32."""
+    """The signal that the network writes at the coordinates of a batch, shaped as its ground truth (sequence, 2, range,
+    doppler, antenna); weights in mixed precision, values of the field in float32."""
     theta, gamma, beta = network(batch.image, batch.motion)
     with exactly(theta):
         theta, gamma, beta = theta.float(), gamma.float(), beta.float()

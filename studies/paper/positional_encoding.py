@@ -16,7 +16,7 @@ OCTAVES: Frequencies = tuple(2.0**i for i in range(NUM_FREQUENCIES))  # the pape
 
 
 def harmonics(num_cells: int, highest: float = 1.0) -> Frequencies:
-    """As many evenly spaced frequencies, the last at `highest` of what an axis of so many cells can tell apart.
+    """As many evenly spaced frequencies, the last at `highest` of what an axis of so many cells can resolve.
 
     The octaves go to 128 radians whatever the axis: 12 antennas hold 17, 32 Doppler bins 49, 64 range bins 99. What
     lies above fits the cells as well, but rings between them.

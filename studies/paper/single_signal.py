@@ -1,4 +1,4 @@
-"""Fitting the paper's INR to one radar sequence: the paper's recipe, and a better one beside it.
+"""Fitting the paper's INR to one radar sequence: the paper's recipe, and a better one.
 
 Reference: paper, "Model Training" (single signal: 500 epochs, Adam, 1e-4; 16,384 points an epoch).
 """
@@ -31,9 +31,9 @@ from studies.paper.positional_encoding import OCTAVES, harmonics, normalised
 class InrFitRecipe:
     """How one sequence is fitted.
 
-    `favour` names what half of the draws are taken from: "active_ranges" (frames' ranges with something that moves,
+    `favour` names what half of the samples are taken from: "active_ranges" (frames' ranges with something that moves,
     as the paper says; the loss is left biased towards them) or "active_cells" (the loss is weighted back to that of
-    even draws). `peak_is_one`: the network's 1.0 is the largest |I| or |Q|; else its rms is 1/3.
+    even samples). `peak_is_one`: the network's 1.0 is the largest |I| or |Q|; else its rms is 1/3.
     """
 
     name: str
@@ -66,7 +66,7 @@ TUNED = InrFitRecipe(
     peak_is_one=False,
 )
 TUNED_SHORT = replace(TUNED, name="tuned_short", steps=2_000)
-# Encoding no faster than 0.3 of what cells tell apart: as good at the cells, and 7 dB better between them.
+# Encoding no faster than 0.3 of what cells resolve: as good at the cells, and 7 dB better between them.
 SMOOTH_SHORT = replace(TUNED_SHORT, name="smooth_short", highest_harmonic=0.3)
 # The raw coordinates and sines instead of an encoding, as SIREN has it.
 SIREN_SHORT = replace(TUNED_SHORT, name="siren_short", activation="sine", highest_harmonic=0.0, learning_rate=2e-3)
@@ -141,7 +141,7 @@ class _Draw:
         cells = cells_of(cube)
         favoured = cells.is_active if recipe.favour == "active_cells" else _active_ranges(cells)
         self.favoured = np.flatnonzero(favoured)  # (frame, range, doppler) flattened
-        # half of the draws are even over all cells, half over those favoured
+        # half of the samples are even over all cells, half over those favoured
         inside, outside = (2 / (1 + 1 / favoured.mean()), 2.0) if len(self.favoured) else (1.0, 1.0)
         weighted = recipe.favour == "active_cells"
         self.weight = np.where(favoured.reshape(-1), inside, outside) if weighted else np.ones(favoured.size)
@@ -151,14 +151,14 @@ class _Draw:
         chosen = self.favoured[self.rng.integers(0, len(self.favoured), half)] if half else self.favoured
         antenna = self.rng.integers(0, self.num_antennas, half)
         anywhere = self.rng.integers(0, self.num_cells, self.num_points - half)
-        drawn = np.sort(np.concatenate([chosen * self.num_antennas + antenna, anywhere]))
-        frame, cell = np.divmod(drawn, self.num_cells // self.num_frames)
+        sampled = np.sort(np.concatenate([chosen * self.num_antennas + antenna, anywhere]))
+        frame, cell = np.divmod(sampled, self.num_cells // self.num_frames)
         count = np.bincount(frame, minlength=self.num_frames)
-        slot = np.arange(len(drawn)) - np.repeat(np.cumsum(count) - count, count)
+        slot = np.arange(len(sampled)) - np.repeat(np.cumsum(count) - count, count)
         shape = (self.num_frames, int(count.max()))
         padded, weight = np.zeros(shape, np.int64), np.zeros(shape, np.float32)
         padded[frame, slot] = cell
-        weight[frame, slot] = self.weight[drawn // self.num_antennas] / self.num_points
+        weight[frame, slot] = self.weight[sampled // self.num_antennas] / self.num_points
         return _Batch(cell=padded, weight=weight)
 
 

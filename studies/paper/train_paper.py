@@ -2,8 +2,9 @@
 
 python -m studies run train_paper --data data/ --out paper/ --features activity/weights.safetensors
 
-The weights of `mmweaver train activity` are the features of its perceptual loss. The same command goes on from the last
-checkpoint of a run that was stopped. torchrun --nproc-per-node 2 -m studies run train_paper ... uses several processes.
+The weights of `mmweaver train activity` are the features of its perceptual loss. The same command continues from the
+last checkpoint of a run that was stopped. `torchrun --nproc-per-node 2 -m studies run train_paper ...` uses two
+processes.
 """
 
 import argparse

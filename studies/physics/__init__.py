@@ -1,1 +1,1 @@
-"""The simulator against recordings."""
+"""The simulator compared with recordings."""

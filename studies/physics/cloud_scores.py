@@ -1,4 +1,4 @@
-"""How alike two sets of point clouds are, frame by frame and as a whole."""
+"""How similar two sets of point clouds are, frame by frame and as a whole."""
 
 from dataclasses import dataclass, fields
 from itertools import pairwise
@@ -68,15 +68,15 @@ def part_of(cloud: PointCloud, frame: int) -> PointCloud:
 def score(ours: list[tuple[PointCloud, ...]], real: list[tuple[PointCloud, ...]]) -> CloudScores:
     """Scores of our clouds against the real ones, the same pieces and frames of both.
 
-    Intervals: the pieces drawn again and again with replacement.
+    Intervals: bootstrap over the pieces.
     """
     frames = [[_frame(a, b) for a, b in zip(one, other, strict=True)] for one, other in zip(ours, real, strict=True)]
     values = _values(frames)
     rng = stream(0, "bootstrap")
-    drawn = [_values([frames[at] for at in rng.integers(len(frames), size=len(frames))]) for _ in range(RESAMPLES)]
+    resampled = [_values([frames[at] for at in rng.integers(len(frames), size=len(frames))]) for _ in range(RESAMPLES)]
     intervals = {}
     for name in values:
-        known = [sample[name] for sample in drawn if name in sample]
+        known = [sample[name] for sample in resampled if name in sample]
         intervals[name] = (float(np.quantile(known, 0.025)), float(np.quantile(known, 0.975)))
     return CloudScores(num_frames=sum(map(len, frames)), values=values, intervals=intervals)
 

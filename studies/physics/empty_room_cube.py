@@ -1,4 +1,4 @@
-"""A room with nothing in it: a floor, perhaps a wall, for recordings of which the room is not known."""
+"""An empty room: a floor, perhaps a wall, for recordings whose room is not known."""
 
 import numpy as np
 

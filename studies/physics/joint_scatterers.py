@@ -1,4 +1,4 @@
-"""The plainest body there is, equal points at the joints without skin or shadow: what a body model is worth."""
+"""The simplest body model: equal point scatterers at the joints, without skin or occlusion. A baseline for the body."""
 
 import numpy as np
 import torch

@@ -1,9 +1,9 @@
-"""Same pose, real radar against ours: the MARS recordings beside simulated point clouds, frame by frame.
+"""Recorded and simulated point clouds of the same poses, frame by frame: the MARS recordings.
 
-The simulator as it stands is driven by the Kinect's joints and seen through the firmware's chain. Six global numbers
-are not known and are estimated on `validate`: the radar's place in the Kinect's frame (3), the receiver's gain, the
-CFAR's threshold and the person's height. That clutter removal was on and peak grouping off is what the recordings show
-by themselves. `test` is only scored.
+The simulator is driven by the joints of the Kinect and its samples pass through the firmware's detection chain. Six
+global parameters are unknown and are estimated on `validate`: the position of the radar in the Kinect's frame (3), the
+receiver's gain, the CFAR threshold and the person's height. That clutter removal was on and peak grouping off follows
+from the recordings. `test` is only scored.
 
     python -m studies run mars --data shared/data/pointclouds/mars/subject1
 """
@@ -226,8 +226,8 @@ def _median_db(clouds: Clouds) -> float:
     return float(20 * np.log10(np.median(np.concatenate(levels))))
 
 
-# floors and ceiling -------------------------------------------------------------------------------------------------
-def centroid_floor(pieces: list[MarsStretch], setup: Setup) -> Clouds:
+# baselines and oracle -------------------------------------------------------------------------------------------------
+def centroid_baseline(pieces: list[MarsStretch], setup: Setup) -> Clouds:
     """One point at the middle of the joints."""
     return [
         tuple(_points(joints.mean(axis=0)[None] + np.asarray(setup.shift_m)) for joints in piece.joints_m)
@@ -235,7 +235,7 @@ def centroid_floor(pieces: list[MarsStretch], setup: Setup) -> Clouds:
     ]
 
 
-def surface_floor(pieces: list[MarsStretch], setup: Setup, num: int) -> Clouds:
+def surface_baseline(pieces: list[MarsStretch], setup: Setup, num: int) -> Clouds:
     """As many points as an average frame has, anywhere on the body's skin."""
     body = ScatteringBody(0, setup.height_m)
     clouds: Clouds = []
@@ -246,14 +246,14 @@ def surface_floor(pieces: list[MarsStretch], setup: Setup, num: int) -> Clouds:
     return clouds
 
 
-def random_frame_floor(pieces: list[MarsStretch], pool: list[MarsStretch]) -> Clouds:
+def random_frame_baseline(pieces: list[MarsStretch], pool: list[MarsStretch]) -> Clouds:
     """Any real frame of the other split."""
     every = [cloud for stretch in pool for cloud in stretch.clouds]
     rng = stream(0, "random frame floor")
     return [tuple(every[rng.integers(len(every))] for _ in piece.clouds) for piece in pieces]
 
 
-def neighbour_ceiling(pieces: list[MarsStretch]) -> Clouds:
+def neighbour_oracle(pieces: list[MarsStretch]) -> Clouds:
     """The real frame before, for the first the one after."""
     return [(piece.clouds[1], *piece.clouds[:-1]) for piece in pieces]
 
@@ -275,18 +275,18 @@ def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) 
     pieces = cut(test, PIECE_FRAMES, PIECES)
     real: Clouds = [piece.clouds for piece in pieces]
     mean = round(np.mean([len(cloud.x_m) for stretch in validate for cloud in stretch.clouds]))
-    ways: dict[str, Callable[[], Clouds]] = {
-        "baseline_centroid": partial(centroid_floor, pieces, setup),
-        "baseline_random_on_body": partial(surface_floor, pieces, setup, mean),
-        "baseline_random_real_frame": partial(random_frame_floor, pieces, validate),
-        "oracle_neighbouring_frame": partial(neighbour_ceiling, pieces),
+    methods: dict[str, Callable[[], Clouds]] = {
+        "baseline_centroid": partial(centroid_baseline, pieces, setup),
+        "baseline_random_on_body": partial(surface_baseline, pieces, setup, mean),
+        "baseline_random_real_frame": partial(random_frame_baseline, pieces, validate),
+        "oracle_neighbouring_frame": partial(neighbour_oracle, pieces),
     }
     for name, variant in VARIANTS.items():
-        ways[name] = partial(_simulated, pieces, setup, variant)
+        methods[name] = partial(_simulated, pieces, setup, variant)
     scores: dict[str, CloudScores] = {}
-    for name, way in ways.items():
+    for name, method in methods.items():
         started = time.perf_counter() if name != "simulator" else began
-        scores[name] = score(way(), real)
+        scores[name] = score(method(), real)
         report(f"{name:28s} {scores[name].line()}")
         _write(run, name, setup, data, scores, seconds=time.perf_counter() - started)
     return scores

@@ -1,8 +1,8 @@
-"""Real beside simulated: point clouds of MARS from the front, of `validate`, with the joints that drove ours.
+"""Recorded and simulated point clouds of MARS from the front, of `validate`, with the joints that drive the simulator.
 
 python -m studies run mars_pictures --data shared/data/pointclouds/mars/subject1 --out docs/images
 
-The settings are those that results/mars/simulator.json holds.
+The settings are those of results/mars/simulator.json.
 """
 
 import argparse

@@ -1,11 +1,11 @@
-"""Micro-Doppler of recorded people (CMU motion capture) beside that of the library's motions, through one simulator.
+"""Micro-Doppler of recorded people (CMU motion capture) and of the library's motions, through one simulator.
 
 python -m studies run micro_doppler --mocap <folder with cmu_joints_m_120fps.npz> \\
     --picture docs/images/micro_doppler.png
 
-Every recorded clip has library motions of its gait, length, speed, leg length and skin; both pass the same smoothing,
-and are simulated towards the radar and, turned about the middle of their way, away from it. So only the motion differs.
-As a floor the recorded body moves along its way frozen in one pose: what is then seen is no micro-motion.
+Every recorded clip is paired with library motions of its gait, length, speed, leg length and skin; both pass the same
+smoothing, and are simulated towards the radar and, rotated about the middle of their path, away from it. So only the
+motion differs. The baseline is the recorded body moving along its path frozen in one pose: it has no micro-motion.
 The radar is the awr1843 with one transmitter and one receiver, 256 chirps in 18.4 ms: 13.5 m/s unambiguous, steps of
 0.105 m/s, 50 spectra a second.
 """
@@ -146,13 +146,13 @@ def body_of(like: RecordedMotion) -> SkeletonProportions:
 
 
 def frozen(motion: RecordedMotion) -> RecordedMotion:
-    """The body in its middle pose, drawn along its way at constant speed."""
+    """The body in its middle pose, moved along its path at constant speed; joints (shown, 22, 3) in metres."""
     joints, pelvis = motion.joints_m, motion.joints_m[:, 0]
     part = np.linspace(0, 1, len(joints))[:, None]
-    way = pelvis[0] + part * (pelvis[-1] - pelvis[0])
-    way[:, 2] = pelvis[len(joints) // 2, 2]
+    path_m = pelvis[0] + part * (pelvis[-1] - pelvis[0])
+    path_m[:, 2] = pelvis[len(joints) // 2, 2]
     pose = joints[len(joints) // 2] - pelvis[len(joints) // 2]
-    return replace(motion, joints_m=way[:, None] + pose, label=f"{motion.label}, frozen")
+    return replace(motion, joints_m=path_m[:, None] + pose, label=f"{motion.label}, frozen")
 
 
 def _middle(joints_m: Joints) -> Float[Array, "shown 22 3"]:
@@ -171,15 +171,15 @@ def about_the_top(joints_m: Joints) -> Float[Array, "shown 22 3"]:
 
 # Simulation ----------------------------------------------------------------------------------------------------------
 def placed(joints_m: Joints, *, is_away: bool) -> Joints:
-    """The motion on the radar's line of sight: towards it, or turned by half a turn about the middle of its way.
+    """The motion on the radar's line of sight: towards it, or rotated by half a turn about the middle of its path.
 
     Ahead is where the pelvis goes, or where the hips face if it goes less than 1 m.
     """
-    way = joints_m[-1, 0, :2] - joints_m[0, 0, :2]
-    if np.linalg.norm(way) < 1.0:
+    path_m = joints_m[-1, 0, :2] - joints_m[0, 0, :2]
+    if np.linalg.norm(path_m) < 1.0:
         across = (joints_m[:, joint("left_hip")] - joints_m[:, joint("right_hip")]).mean(axis=0)
-        way = np.array([across[1], -across[0]])
-    turn = (np.pi / 2 if is_away else -np.pi / 2) - np.arctan2(way[1], way[0])
+        path_m = np.array([across[1], -across[0]])
+    turn = (np.pi / 2 if is_away else -np.pi / 2) - np.arctan2(path_m[1], path_m[0])
     about = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     result = joints_m.copy()
     result[..., :2] = result[..., :2] @ about.T
@@ -193,7 +193,7 @@ def placed(joints_m: Joints, *, is_away: bool) -> Joints:
 def spectrogram(motion: RecordedMotion, simulator: Simulator, seed: int, *, is_away: bool) -> Spectrogram:
     """The person's power over time and velocity, from the cube: static removed, range bins about the pelvis, no noise.
 
-    Velocities are signed along the person's way (ahead positive) and each frame's sum is one.
+    Velocities are signed along the person's path (ahead positive) and each frame's sum is one.
     """
     clip = MotionClip(joints_m=placed(motion.joints_m, is_away=is_away), fps=RATE_HZ, label=motion.label)
     frames = int(np.floor((clip.duration_s - RADAR.active_time_s) / RADAR.frame_period_s))

@@ -1,4 +1,4 @@
-"""Figures of a micro-Doppler spectrogram: cadence, torso, spread, limbs, symmetry."""
+"""Measures of a micro-Doppler spectrogram: cadence, torso, spread, limbs, symmetry."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ DEFINITIONS: dict[str, tuple[str, str]] = {
     "ahead_share": ("", "energy that is faster than the pelvis by more than 0.4 m/s, of all limb energy"),
     "away_towards_overlap": ("", "common part of the energy profiles towards and away, 1 = the same"),
     "away_minus_towards": ("", "limb share away from the radar less that towards it"),
-    "pelvis_surge_mps": ("m/s", "of the joints, not the radar: 5 to 95 % width of the pelvis's speed along the way"),
+    "pelvis_surge_mps": ("m/s", "of the joints, not the radar: 5 to 95 % width of the pelvis's speed along the path"),
     "knee_ahead_mps": ("m/s", "of the joints, not the radar: knees ahead about the pelvis, 95th percentile over time"),
     "ankle_ahead_mps": (
         "m/s",
@@ -116,13 +116,13 @@ def step_lag(envelope: PerFrame, period_s: float, lags_s: tuple[float, float]) -
     left = envelope - np.polyval(np.polyfit(time, envelope, 1), time)
     last = min(int(lags_s[1] / period_s), len(left) * 2 // 3)
     lags = np.arange(max(int(lags_s[0] / period_s), 1), last + 1)
-    likeness = np.array([_correlation(left[lag:], left[:-lag]) for lag in lags])
-    best = int(likeness.argmax())
+    similarity = np.array([_correlation(left[lag:], left[:-lag]) for lag in lags])
+    best = int(similarity.argmax())
     shift = 0.0
     if 0 < best < len(lags) - 1:  # the top of a parabola through three lags
-        before, at, after = likeness[best - 1 : best + 2]
+        before, at, after = similarity[best - 1 : best + 2]
         shift = 0.5 * (before - after) / min(before - 2 * at + after, -1e-12)
-    return float((lags[best] + shift) * period_s), float(likeness[best])
+    return float((lags[best] + shift) * period_s), float(similarity[best])
 
 
 def _correlation(one: Array, other: Array) -> float:
@@ -131,7 +131,7 @@ def _correlation(one: Array, other: Array) -> float:
 
 
 def step_difference(envelope: PerFrame, lag: float) -> float:
-    """Peaks of successive steps, of `lag` frames each: |odd - even| over their mean; 0 = alike."""
+    """Peaks of successive steps, of `lag` frames each: |odd - even| over their mean; 0 = equal."""
     first = int(np.argmax(envelope[: max(int(2 * lag), 1)]) - lag / 2)
     starts = np.arange(first % lag, len(envelope) - lag + 1, lag)
     peaks = [float(envelope[int(start) : int(start + lag)].max()) for start in starts]
@@ -142,19 +142,19 @@ def step_difference(envelope: PerFrame, lag: float) -> float:
 
 
 def kinematic_figures(joints_m: Joints, rate_hz: float) -> Figures:
-    """How fast limbs go ahead of the pelvis along the way; ahead is where it goes."""
+    """How fast limbs go ahead of the pelvis along the path; ahead is where it goes."""
     pelvis = joints_m[:, 0, :2]
-    way = (pelvis[-1] - pelvis[0]) / np.linalg.norm(pelvis[-1] - pelvis[0])
-    low, high = np.percentile(np.gradient(pelvis @ way, 1 / rate_hz), (5, 95))
+    direction = (pelvis[-1] - pelvis[0]) / np.linalg.norm(pelvis[-1] - pelvis[0])
+    low, high = np.percentile(np.gradient(pelvis @ direction, 1 / rate_hz), (5, 95))
     found = {"pelvis_surge_mps": float(high - low)}
     for part in ("knee", "ankle", "elbow", "wrist"):
         limbs = joints_m[:, [joint(f"left_{part}"), joint(f"right_{part}")], :2] - pelvis[:, None]
-        found[f"{part}_ahead_mps"] = float(np.percentile(np.gradient(limbs @ way, 1 / rate_hz, axis=0), 95))
+        found[f"{part}_ahead_mps"] = float(np.percentile(np.gradient(limbs @ direction, 1 / rate_hz, axis=0), 95))
     return found
 
 
 def both_ways(towards: Spectrogram, away: Spectrogram, of_one: Callable[[Spectrogram], Figures]) -> Figures:
-    """The mean of both directions, and how alike they are."""
+    """The mean of both directions, and how similar they are."""
     there, back = of_one(towards), of_one(away)
     profiles = [seen.about_pelvis().mean(axis=0) for seen in (towards, away)]
     return {

@@ -1,10 +1,10 @@
-"""Mutual shadowing against plain superposition: what is lost by adding up people who were made one by one.
+"""Mutual occlusion compared with plain superposition: what is lost by adding signals of people simulated one by one.
 
 python -m studies run multi_person_scores --picture docs/images/several_people.png
 
-Two people in the sample room, at given places; the truth is the simulator with mutual shadows, the prediction the sum
-of the two made alone, with the same receiver noise. Beside it the floor (the second person left out) and two
-ceilings: the truth with other receiver noise, and its twin (the same poses, other skins).
+Two people in the sample room, at given places; the ground truth is the simulator with mutual occlusion, the prediction
+the sum of both simulated alone, with the same receiver noise. The baseline leaves the second person out; oracles are
+the ground truth with other receiver noise, and another realization of it (the same poses, other skins).
 """
 
 import argparse
@@ -55,7 +55,7 @@ RESAMPLES = 2000
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """Two people's signal, made in every way that is compared."""
+    """The signal of two people, made by every method that is compared."""
 
     poses: tuple[PoseSequence, PoseSequence]
     mutual: RadarCube
@@ -213,7 +213,7 @@ def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
             image = line[2].imshow(
                 fan.lay(clipped[1] - clipped[0]), origin="lower", cmap="coolwarm", vmin=-15, vmax=15, extent=fan.extent
             )
-            line[2].set_title("plain sum over mutual shadowing, dB")
+            line[2].set_title("plain sum over mutual occlusion, dB")
             figure.colorbar(image, ax=line[2], shrink=0.8)
             for axes in line:
                 for index, pose in enumerate(pair.poses):

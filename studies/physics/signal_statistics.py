@@ -1,10 +1,10 @@
-"""Recorded frames beside simulated ones of the same kind and radar: where the energy is, how deep the noise lies.
+"""Statistics of recorded frames and of simulated ones of the same kind and radar: energy and noise.
 
 python -m studies run signal_statistics --data <recordings>
 
-The person who moves is simulated where one of the recorded ones is; the resting room is the sample room, so there
-only the kind of number can agree; the breathing person stands with the chest where the recorded one is. How far real
-frames differ among themselves is measured on quarters of each recording, and on the same quarters of simulated ones.
+The moving person is simulated at the place of a recorded one; the static room is the sample room, so only the order of
+magnitude can agree; the breathing person stands with the chest where the recorded one is. The spread among real frames
+is measured on quarters of each recording, and on the same quarters of simulated ones.
 """
 
 import argparse
@@ -146,7 +146,7 @@ def sample_room(config: RadarConfig, seed: int) -> AdcCube:
 
 
 def walker(config: RadarConfig, seed: int) -> AdcCube:
-    """One frame of somebody who walks where one of the two recorded people is, with a wall where theirs is."""
+    """One frame of a person walking at the place of a recorded one, with a wall where the recording has it."""
     pose = pose_of("walking", seconds=2.0, seed=seed)
     middle_s = float(np.mean(pose.time_s))
     pelvis = pose.joints_m[len(pose.time_s) // 2, 0]

@@ -1,9 +1,9 @@
-"""What generated data saves: accuracy against the number of real recordings of each activity, with and without it.
+"""Accuracy against the number of real recordings of each activity, with and without generated data.
 
     python -m studies run zero_shot_curve --recordings shared/data/pointclouds/radhar
 
-Recordings are drawn anew for each seed; all others are the test. Real windows together weigh as much as generated ones.
-Trees are grown once each, not as often as in what is frozen.
+Training recordings are sampled anew for each seed; all others are the test set. Real windows together have the weight
+of the generated ones. Trees are trained once, not as often as in the frozen recogniser.
 """
 
 import argparse
@@ -87,7 +87,7 @@ def _row(scores: list[float], each: int, generated: bool, folder: Path, seeds: t
         "metrics": {
             "window": {
                 "value": round(float(np.mean(scores)), 4), "unit": "share", "version": 1, "baseline": {"chance": 0.2},
-                "definition": "balanced accuracy of windows of 2 s, mean over draws of the recordings that train",
+                "definition": "balanced accuracy of windows of 2 s, mean over samples of the recordings that train",
                 "lowest": round(min(scores), 4), "highest": round(max(scores), 4),
             }
         },

@@ -1,9 +1,9 @@
-"""How bright arms and legs should be, asked of RadHAR: trained on windows of faint, middling and bright limbs.
+"""How strongly should arms and legs scatter? Trained on windows of weak, medium and strong limbs, tested on RadHAR.
 
 python -m studies run zero_shot_limbs --cache windows/ --each 200 --seed 8 --recordings RADHAR
 
-The simulator's arms and legs were read off another data set, MARS: this says whether they are wrong in another room.
-Each third of the windows, by how bright a limb was drawn, trains alone and is scored on all recordings.
+The strengths of the simulator's limbs were estimated on another data set, MARS: this tests them in another room. Each
+third of the windows, by the sampled strength of a limb, is trained on alone and scored on all recordings.
 """
 
 import argparse
@@ -36,13 +36,13 @@ def thirds(value: np.ndarray) -> np.ndarray:
     return np.argsort(np.argsort(value)) * 3 // len(value)
 
 
-def drawn(
-    windows: list[PointRecording], draws: list[VariationSample], labels: tuple[str, ...], limb: str
+def limb_strengths(
+    windows: list[PointRecording], samples: list[VariationSample], labels: tuple[str, ...], limb: str
 ) -> np.ndarray:
-    """How bright each window's limb was drawn; `draws` in the order of `first_draws` for these labels."""
+    """The sampled strength of a limb in each window, dB; `samples` in the order of `first_draws` for these labels."""
     kinds = {label: place for place, label in enumerate(labels)}
     index = [int(window.name.rsplit("_", 1)[1]) * len(kinds) + kinds[window.label or ""] for window in windows]
-    return np.array([getattr(draws[at], limb) for at in index])
+    return np.array([getattr(samples[at], limb) for at in index])
 
 
 def measure(cache: Path, each: int, seed: int, recordings: Path, run: StudyRun) -> Path:
@@ -50,10 +50,10 @@ def measure(cache: Path, each: int, seed: int, recordings: Path, run: StudyRun) 
     recipe = radhar_recipe()
     windows, source = read_cache(cache)
     people = read_point_recordings(recordings, recipe.activities)
-    draws, labels = first_draws(recipe, each, seed), tuple(recipe.activities)
+    samples, labels = first_draws(recipe, each, seed), tuple(recipe.activities)
     rows: list[dict[str, Any]] = []
     for limb in LIMBS:
-        value = drawn(windows, draws, labels, limb)
+        value = limb_strengths(windows, samples, labels, limb)
         for third, word in enumerate(THIRDS):
             began = time.process_time()
             own = thirds(value) == third

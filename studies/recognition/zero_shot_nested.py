@@ -1,9 +1,9 @@
-"""What choosing settings by scores on real recordings is worth: chosen on one half of them, scored on the other.
+"""What choosing settings by scores on real recordings is worth: chosen on one half, scored on the other.
 
     python -m studies run zero_shot_nested --caches windows/ --recordings RADHAR
 
-RadHAR's two groups of names are the halves. Each candidate (which features, how many disturbed copies, which trees)
-trains on the same generated windows. The recipe itself was developed on both halves: what that is worth is not in here.
+RadHAR's two groups of names are the halves. Each candidate (features, number of augmented copies, trees) is trained on
+the same generated windows. The recipe itself was developed on both halves: that effect is not measured here.
 """
 
 import argparse
@@ -34,7 +34,7 @@ TREES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Candidate:
-    """One way to make a recogniser of the windows."""
+    """Settings of one recogniser of the windows."""
 
     features: str
     copies: int
@@ -43,18 +43,18 @@ class Candidate:
 
 def feature_sets(window: PointRecording) -> dict[str, tuple[str, ...]]:
     """Names of the features in each set."""
-    moving, resting = tuple(window_features(window)), tuple(body_features(window, STILL_MPS))
+    moving, static = tuple(window_features(window)), tuple(body_features(window, STILL_MPS))
     known = feature_matrix([window])[1]
     return {
         "moving points": tuple(name for name in known if name in moving),
         "moving points, heights": moving,
         "all": known,
-        "all, heights": (*moving, *resting),
+        "all, heights": (*moving, *static),
     }
 
 
 def guesses(windows: list[PointRecording], real: list[PointRecording]) -> dict[Candidate, np.ndarray]:
-    """What each candidate takes the real windows for."""
+    """The labels that each candidate predicts for the real windows."""
     sets = feature_sets(real[0])
     everything = sets["all, heights"]
     made = featurize(windows, names=everything)

@@ -1,4 +1,4 @@
-"""Real beside generated: the moving points of one window of each activity, range over time, coloured by velocity.
+"""Recorded and generated moving points of one window of each activity: range over time, coloured by velocity.
 
 python -m studies run zero_shot_pictures --recordings shared/data/pointclouds/radhar --out docs/images
 """

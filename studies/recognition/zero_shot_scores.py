@@ -1,4 +1,4 @@
-"""Trained on generated data alone, tested on real people: RadHAR's five activities.
+"""Activity recognition trained on generated data alone, tested on recordings of people: RadHAR's five activities.
 
 python -m studies run zero_shot_scores generate --cache FOLDER --each 300 --seed 1      # resumable
 python -m studies run zero_shot_scores validate --cache FOLDER --each 300 --seed 1      # generated data alone
@@ -39,13 +39,13 @@ METRICS = {
 }
 
 
-def validate(made: TrainingSet, draws: list[VariationSample]) -> dict[str, float]:
-    """Balanced accuracy on generated windows whose circumstances were left out of training: what a feature is worth.
+def validate(made: TrainingSet, samples: list[VariationSample]) -> dict[str, float]:
+    """Balanced accuracy on generated windows whose circumstances were held out of training: what a feature is worth.
 
     Each split trains on one side of a span and tests on the other; `every_third` is a plain split.
     """
-    number = np.arange(len(draws))
-    of = {key: np.array([getattr(one, key) or 9.0 for one in draws], float) for key in VARIED}
+    number = np.arange(len(samples))
+    of = {key: np.array([getattr(one, key) or 9.0 for one in samples], float) for key in VARIED}
     tests = {"every_third": number // len(set(made.labels)) % 3 == 0}
     for key, value in of.items():
         tests[f"{key}_low"], tests[f"{key}_high"] = value <= np.quantile(value, 0.3), value >= np.quantile(value, 0.7)
@@ -81,16 +81,16 @@ def score(name: str, recordings: Path, run: StudyRun) -> Path:
     """
     began = time.process_time()
     frozen = load_frozen(name)
-    judged = evaluate_recogniser(frozen.train(), read_point_recordings(recordings, frozen.labels), frozen.window_s)
+    evaluated = evaluate_recogniser(frozen.train(), read_point_recordings(recordings, frozen.labels), frozen.window_s)
     seconds = time.process_time() - began
-    first = np.array([in_first_half(one) for one in judged.names])[judged.recording]
+    first = np.array([in_first_half(one) for one in evaluated.names])[evaluated.recording]
     parts = {
         "all recordings": np.ones_like(first),
         "first half of the names": first,
         "second half of the names": ~first,
     }
     rows = [
-        result_row(judged.part(which), recordings, words, seconds=seconds)
+        result_row(evaluated.part(which), recordings, words, seconds=seconds)
         for words, which in parts.items()
         if which.any()
     ]
@@ -107,9 +107,9 @@ def in_first_half(name: str) -> bool:
     return re.search(r"[a-z]_20_\d+$", name) is not None
 
 
-def result_row(judged: Evaluation, recordings: Path, which: str, *, seconds: float) -> dict[str, Any]:
+def result_row(evaluated: Evaluation, recordings: Path, which: str, *, seconds: float) -> dict[str, Any]:
     """Scores in the schema of results."""
-    found = report(judged)
+    found = report(evaluated)
     return {
         "dataset": {"name": f"RadHAR, {which}", "recordings": found["recordings"], "sha256": digest(recordings)},
         "n": found["window"]["n"],

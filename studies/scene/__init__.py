@@ -1,1 +1,1 @@
-"""What is found in photographed rooms."""
+"""What is recognised in photographed rooms."""

@@ -2,9 +2,9 @@
 
 python -m studies run affordances --rooms /path/to/rooms
 
-200 procedural rooms with noisy depth whose truth is known, of kinds that no threshold was chosen on (develop: the other
-kinds, fewer rooms), from depth alone and with the true class mask; and the real rooms, whose truth was written down
-from their photos (real_rooms_truth.json).
+200 procedural rooms with noisy depth and known ground truth, of kinds on which no threshold was chosen (develop: the
+other kinds, fewer rooms), from depth alone and with the true class mask; and the real rooms, whose ground truth was
+annotated in their photos (real_rooms_truth.json).
 """
 
 import argparse
@@ -49,7 +49,7 @@ SENTENCES = (
 )
 RANGE_WINDOW_M, SECONDS = (0.70, 3.48), 3.0
 METHODS = ("depth", "mask")
-FIRST_SEED = 30000  # rooms looked at while placements were mended lie between 5000 and 25000
+FIRST_SEED = 30000  # rooms used while placements were developed lie between 5000 and 25000
 SEAT_M, SEAT_HEIGHT_M, MARK_M, FLOOR_M = 0.35, 0.08, 0.6, 0.03
 _SEEN_SHARE = 0.3  # of a seat, for it to be findable
 _ALIKE = {"counter": "table"}
@@ -85,7 +85,7 @@ def measure_room(room: ProceduralRoom, tally: Tally, *, lighting: str, with_mask
 
 
 def measure_scene(room: ProceduralRoom, scene: Scene, tally: Tally) -> None:
-    """What was found of a room against its truth."""
+    """What was found in a room compared with its ground truth."""
     tally.floor_error_m.append(abs(scene.floor_z_m - room.floor_z_m))
     for seat in room.seats:
         if not _is_findable(room, seat):
@@ -124,8 +124,8 @@ def _is_findable(room: ProceduralRoom, seat: Seat) -> bool:
         return False
     offset = np.array([(a, b) for a in (-0.3, 0.0, 0.3) for b in (-0.3, 0.0, 0.3)])
     ahead = np.array([np.cos(seat.facing_rad), np.sin(seat.facing_rad)])
-    aside = np.array([-ahead[1], ahead[0]])
-    places = seat.position_m[:2] + seat.size_m[1] * offset[:, :1] * ahead + seat.size_m[0] * offset[:, 1:] * aside
+    sideways = np.array([-ahead[1], ahead[0]])
+    places = seat.position_m[:2] + seat.size_m[1] * offset[:, :1] * ahead + seat.size_m[0] * offset[:, 1:] * sideways
     points = np.column_stack([places, np.full(9, seat.position_m[2] + 0.03)])
     return float(_is_seen(room, points).mean()) >= _SEEN_SHARE
 
@@ -248,7 +248,7 @@ def real_row(folder: Path) -> dict[str, Any]:
         for kind, x, y in truth["landmarks"]
     )
     _measure_marks(tally, scene.landmarks, marks, lambda mark: True)
-    return _row(folder.name, "judged by eye from the photo", 1, tally)
+    return _row(folder.name, "annotated by eye in the photo", 1, tally)
 
 
 UNKNOWN = {"dataset.sha256": "rendered anew in every run; photos are hashed in the manifest"}

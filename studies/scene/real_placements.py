@@ -1,11 +1,11 @@
-"""The four real rooms: is the floor at its height, and does nobody get into what the photo measured?
+"""The four real rooms: is the floor at its height, and does nobody intersect what the depth camera measured?
 
 python -m studies run real_placements --rooms /path/to/rooms
 
-The floor against places in the photo that a person marked as floor (real_rooms_classes.json). Bodies against the
-measured points themselves, for what stands in a real room is known from them alone: no limb may be within its own
-thickness of a point, less 3 cm. A body wholly behind a surface would not be seen to be inside; the procedural rooms of
-`affordances`, whose boxes are known, tell that.
+The floor is compared with places in the photo that were annotated as floor (real_rooms_classes.json), bodies with the
+measured points, the only ground truth for what stands in a real room: no limb may be within its own thickness of a
+point, less 3 cm. A body wholly behind a surface would not be found; the procedural rooms of `affordances`, whose boxes
+are known, cover that.
 """
 
 import argparse
@@ -116,7 +116,7 @@ def room_row(folder: Path) -> dict[str, Any]:
              "definition": "found floor against the median height of places marked as floor by hand"}  # fmt: skip
     clearness = "no measured point 3 cm inside trunk, legs or head"
     return {
-        "dataset": {"name": folder.name, "split": "all four rooms were looked at while placements were made"},
+        "dataset": {"name": folder.name, "split": "all four rooms were used while placements were developed"},
         "n": len(clear), "seeds": list(SEEDS), "refused": refused,
         "metrics": {
             "floor_error_m": floor_error,

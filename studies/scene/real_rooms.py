@@ -2,8 +2,8 @@
 
 python -m studies run real_rooms --rooms <folder of rooms>
 
-A frame has motion where some joint moves faster than one Doppler bin towards or from the radar. It counts as right if
-the strongest moving range bin lies within the body's extent. Floor: a bin drawn at random from the window.
+A frame has motion where some joint moves faster than one Doppler bin towards or from the radar. It is correct if the
+strongest moving range bin lies within the extent of the body. Baseline: a random bin of the range window.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""How deep a moving body gets into the furniture and walls of a room whose boxes are known."""
+"""How deep a moving body intersects the furniture and walls of a room whose boxes are known."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Rooms to look at: a sheet of all kinds, and what is found in rooms beside what is there.
+"""Pictures of rooms: a sheet of all kinds, and what is recognised in rooms compared with the ground truth.
 
 python -m studies run room_pictures --rooms /path/to/rooms --out docs/images
 """

@@ -1,4 +1,4 @@
-"""Six sentences in each photographed room, to look at: skeleton in the photo, top view, spectrograms.
+"""Pictures of six sentences in each photographed room: skeleton in the photo, top view, spectrograms.
 
 python -m studies run room_sentences --rooms /path/to/rooms --out docs/images
 """

@@ -1,9 +1,9 @@
-"""How good the built-in segmenter is: rooms of kinds it never saw, real photographs, and what its mask does for seats.
+"""How accurate the built-in segmenter is: unseen kinds of rooms, real photographs, and its effect on affordances.
 
 python -m studies run segmenter_study --rooms /path/to/rooms --picture docs/images/segmenter.png
 
-In the real rooms places were marked in the photos by hand before any prediction was looked at
-(real_rooms_classes.json). Floors: heights and slopes alone; depth without any mask. Ceiling: the true mask.
+In the real rooms places were annotated by hand before any prediction was looked at (real_rooms_classes.json).
+Baselines: heights and slopes alone; depth without a mask. Oracle: the true mask.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""A room from above: free floor, what stands there, seats and landmarks, the radar's window, a way."""
+"""A room from above: free floor, obstacles, seats and landmarks, the range window of the radar, a path."""
 
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 RANGE_WINDOW_M = (0.70, 3.48)
-SEAT, MARK, TRUTH, WAY = "#d1495b", "#2e6f95", "#3a7d44", "#7b2cbf"
+SEAT, MARK, TRUTH, PATH_COLOUR = "#d1495b", "#2e6f95", "#3a7d44", "#7b2cbf"
 MARK_SIGNS = {"door": "D", "window": "W", "table": "T", "counter": "C", "bed": "B"}
 
 
@@ -21,7 +21,7 @@ def draw_top(
 ) -> None:
     """Free floor white (assumed pale), the rest grey by height; seats red with an arrow, landmarks blue with a letter.
 
-    `truth` adds the true seats and landmarks in green rings; `pose` the way of the pelvis.
+    `truth` adds the true seats and landmarks as green rings; `pose` the path of the pelvis.
     """
     free = scene.free_space
     shade = np.full((*free.is_free.shape, 3), 0.80)
@@ -54,10 +54,10 @@ def draw_top(
         axes.text(x, y, sign, color=MARK, fontsize=9, fontweight="bold", ha="center", va="center")
         axes.plot(*mark.approach_m, "x", color=MARK, markersize=4)
     if pose is not None:
-        way = pose.joints_m[:, joint("pelvis"), :2]
-        axes.plot(way[:, 0], way[:, 1], color=WAY, linewidth=1.6)
-        axes.plot(*way[0], "o", color=WAY, markersize=4)
-        axes.plot(*way[-1], "s", color=WAY, markersize=4)
+        path_m = pose.joints_m[:, joint("pelvis"), :2]
+        axes.plot(path_m[:, 0], path_m[:, 1], color=PATH_COLOUR, linewidth=1.6)
+        axes.plot(*path_m[0], "o", color=PATH_COLOUR, markersize=4)
+        axes.plot(*path_m[-1], "s", color=PATH_COLOUR, markersize=4)
     axes.plot(0, 0, "^", color="black", markersize=6)
     axes.set(xlim=(-2.9, 2.9), ylim=(-0.25, far_m), xticks=range(-2, 3), yticks=range(0, int(far_m) + 1))
     axes.set_aspect("equal")
@@ -70,11 +70,11 @@ def _draw_points(axes: "Axes", scene: Scene) -> None:
     points = AlignedPhoto.of(scene).points_m[::step, ::step]
     points = points[np.isfinite(points[..., 2])]
     height = points[:, 2] - scene.floor_z_m
-    kept = (height > 0.1) & (height < 1.9)
+    shown = (height > 0.1) & (height < 1.9)
     axes.scatter(
-        points[kept, 0],
-        points[kept, 1],
-        c=height[kept],
+        points[shown, 0],
+        points[shown, 1],
+        c=height[shown],
         s=0.4,
         cmap="YlOrBr",
         vmin=0,

@@ -1,14 +1,10 @@
 """Trains the built-in segmenter on procedural rooms, and evaluates it on unseen kinds of rooms.
 
-python -m mmweaver.training.segmenter_training --out segmenter.safetensors --log segmenter.json --work work/
-
 Recipe: 8 kinds of rooms for training, 4 others for the test; depth with the errors of a stereo camera, estimated
 gravity; crops, flips, other colours, light, holes (`segmenter_data`); AdamW with one-cycle schedule, weighted
-cross-entropy. One thread, one seed. `--work` stores rooms and state: an interrupted run resumes from there.
+cross-entropy. One thread, one seed. From a clone: `python -m studies run train_segmenter`.
 """
 
-import argparse
-import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
@@ -124,21 +120,3 @@ def run(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[st
         "unseen_kinds": {name: scores(confusion(held_out, guess)) for name, guess in guesses.items()},
         "seen_kinds": {"network": scores(confusion(examples[:: max(len(examples) // 100, 1)], guesses["network"]))},
     }  # fmt: skip
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--log", type=Path, required=True)
-    parser.add_argument(
-        "--work", type=Path, default=None, help="folder for rooms and state, to resume an interrupted run"
-    )
-    parser.add_argument("--rooms", type=int, default=SegmenterRecipe().rooms_per_kind)
-    parser.add_argument("--epochs", type=int, default=SegmenterRecipe().epochs)
-    arguments = parser.parse_args()
-    log = run(arguments.out, SegmenterRecipe(rooms_per_kind=arguments.rooms, epochs=arguments.epochs), arguments.work)
-    arguments.log.write_text(json.dumps(log, indent=1) + "\n", encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

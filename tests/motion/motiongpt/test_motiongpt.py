@@ -66,7 +66,7 @@ def test_lengths(tmp_path: Path):
         model.generate("a person walks", seconds=9.9)
     with pytest.raises(InputError, match="empty"):
         model.generate("  ", seconds=2.0)
-    with pytest.raises(InputError, match="pieces"):
+    with pytest.raises(InputError, match="tokens"):
         model.generate("walks " * 300, seconds=2.0)
 
 

@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from studies.fields.codecs import CODECS, SCORES, codec_row, errors_db, in_order, kept_rows
-from studies.fields.field_signals import ExperimentSignal
+from studies.fields.field_signals import StudySignal
 from tests.fields.echoes import crowd
 
 
 def test_a_row_has_its_bytes_scores_and_floors():
-    signal = ExperimentSignal(name="crowd", origin="simulated", cube=crowd(), twin=None)
+    signal = StudySignal(name="crowd", origin="simulated", cube=crowd(), realization=None)
     row = codec_row(CODECS["top_cells"](), signal, 4000)
     assert row["size"]["bytes"] <= 4000
     assert row["seconds"]["decode"] is not None
@@ -21,7 +21,7 @@ def test_a_row_has_its_bytes_scores_and_floors():
 
 
 def test_impossible_sizes_have_no_score():
-    signal = ExperimentSignal(name="crowd", origin="simulated", cube=crowd(), twin=None)
+    signal = StudySignal(name="crowd", origin="simulated", cube=crowd(), realization=None)
     row = codec_row(CODECS["mmw"](), signal, 30)
     assert row["size"]["bytes"] is None
     assert row["metrics"]["nmse_db"]["value"] is None
@@ -35,7 +35,7 @@ def test_errors_are_those_of_the_cells():
 
 def test_rows_of_other_signals_are_kept_with_their_commit(tmp_path: Path):
     rows = [{"dataset": {"name": "walking"}}, {"dataset": {"name": "waving"}, "commit": "old"}]
-    (tmp_path / "a.json").write_text(json.dumps({"commit": "first", "rows": rows}))
+    (tmp_path / "a.json").write_text(json.dumps({"provenance": {"commit": "first"}, "rows": rows}))
     kept = kept_rows(tmp_path / "a.json", ["sitting"])
     assert [row["commit"] for row in kept] == ["first", "old"]
     assert kept_rows(tmp_path / "a.json", ["walking", "waving"]) == []

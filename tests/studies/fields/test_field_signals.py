@@ -15,15 +15,15 @@ def test_the_walking_person_moves_and_the_twin_is_a_twin():
     assert signal.cube.grid.shape == (4, 64, 32, 12)
     power = range_doppler_power(signal.cube)
     assert power[cells_of(signal.cube).is_moving].sum() > 0.5 * power.sum()
-    assert signal.twin is not None
-    scores = scorecard(signal.twin, signal.cube)
+    assert signal.realization is not None
+    scores = scorecard(signal.realization, signal.cube)
     assert scores.prediction["nmse_db"] > 1  # another phase: worse than zeros
     assert scores.prediction["rd_ssim"] > scores.baselines["static_mean"]["rd_ssim"]
     assert signal.noise_free is not None
     assert scorecard(signal.noise_free, signal.cube).prediction["nmse_active_db"] < -30
     again = simulated("walking", is_alone=True, num_frames=4)
     assert again.digest == signal.digest
-    assert replace(signal, cube=signal.twin).digest != signal.digest
+    assert replace(signal, cube=signal.realization).digest != signal.digest
 
 
 def test_without_room_nothing_stands_still():
@@ -73,5 +73,5 @@ def test_a_walker_in_a_recording_has_its_clutter_its_noise_and_the_peoples_stren
     still = [cube.values[:, 40:, 16].mean(axis=0).ravel() for cube in (signal.cube, people.cube)]  # behind the people
     likeness = abs(np.vdot(still[0], still[1])) / np.linalg.norm(still[0]) / np.linalg.norm(still[1])
     assert likeness > 0.9
-    assert signal.twin is not None
-    assert scorecard(signal.twin, signal.cube).prediction["nmse_moving_db"] > 0.5
+    assert signal.realization is not None
+    assert scorecard(signal.realization, signal.cube).prediction["nmse_moving_db"] > 0.5

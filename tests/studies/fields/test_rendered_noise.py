@@ -8,13 +8,13 @@ from mmweaver.dsp.points import point_cloud
 from mmweaver.fields.sampling import finer_grid
 from mmweaver.fields.scatterers.fitting import FitRecipe
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from studies.fields.field_signals import ExperimentSignal
+from studies.fields.field_signals import StudySignal
 from studies.fields.rendered_noise import DEFINITIONS, far_points, noise_row, noise_scores
 from tests.fields.echoes import crowd
 
 
 def test_rendered_noise_is_nearer_to_the_capture_than_none():
-    signal = ExperimentSignal(name="crowd", origin="simulated", cube=crowd(noise=2e-3), twin=None)
+    signal = StudySignal(name="crowd", origin="simulated", cube=crowd(noise=2e-3), realization=None)
     metrics = noise_row(signal)["metrics"]
     assert set(metrics) == set(DEFINITIONS)
     assert abs(metrics["noise_floor_db"]["value"]) < 1.0
@@ -39,5 +39,5 @@ def test_noise_between_the_cells_is_refused():
     cube = crowd()
     field = ScattererField.fit(cube, FitRecipe(num_points=5, stages=2))
     finer = field.cube(finer_grid(cube.grid, n_r=2.0))
-    with pytest.raises(InputError, match="own cells"):
+    with pytest.raises(InputError, match="native cells"):
         field.with_noise(finer, seed=0)

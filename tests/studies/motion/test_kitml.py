@@ -2,7 +2,7 @@ import json
 from pathlib import Path
 
 from mmweaver.motion.language.sentence import parse
-from studies.motion.kitml import Sentence, drawn, reading_of, result_row, sentences_of, understood
+from studies.motion.kitml import Sentence, reading_of, result_row, sampled, sentences_of, understood
 
 
 def sentences(count: int) -> list[Sentence]:
@@ -20,9 +20,9 @@ def test_shares_and_judgements(tmp_path: Path):
     readings = understood(some)
     assert len(readings) == 200
     checking = [sentence for sentence in some if sentence.is_for_checking]
-    names = drawn(readings, checking, ())
+    names = sampled(readings, checking, ())
     assert set(names) <= set(readings)
-    assert not set(drawn(readings, checking, names[:5])) & set(names[:5])
+    assert not set(sampled(readings, checking, names[:5])) & set(names[:5])
     verdicts = {
         name: {"reading": "walk forwards", "verdict": "wrong" if k < 3 else "right"} for k, name in enumerate(names)
     }

@@ -41,11 +41,11 @@ def test_a_variant_is_trained_and_goes_on_as_it_was(material: AblationMaterial, 
     assert row["metrics"]["ra_ssim"]["value"] == figures["ra_ssim"]
 
 
-def test_single_draws_are_other_targets(material: AblationMaterial):
-    (mean,), (drawn,) = material.mean[0], material.drawn[0]
+def test_targets_of_sampled_signals_differ(material: AblationMaterial):
+    (mean,), (sampled,) = material.mean[0], material.sampled[0]
     frames = np.array([1, 2])
     expected, alone = mean.maps(0, frames)
-    draw, none = drawn.maps(0, frames)
+    draw, none = sampled.maps(0, frames)
     assert alone is not None
     assert none is None
     ratio = torch.log10(draw.range_doppler / expected.range_doppler)

@@ -16,9 +16,9 @@ from studies.network.activity_gain import (
     ALONE,
     GainStudy,
     Labelled,
+    evaluated,
     few_of,
     gains,
-    judged,
     motions_in,
     rows_of,
     simulated_in,
@@ -55,12 +55,12 @@ def test_rows_of_a_room(data: Path, tmp_path: Path):
     torch.manual_seed(0)
     network = ActivityNetwork(AWR1843).eval()
     methods = {"true_room": simulated_in(lambda one: one.true_scene(one.room), micro_seed=0)}
-    told: list[int] = []
+    reported: list[int] = []
     study = GainStudy(network, _base(2, network.head.first.in_features))
-    kept = RoomCache(tmp_path, {})
-    found = gains(study, [room], methods, each=1, kept=kept, after=lambda one: told.append(len(one[ALONE])))
-    assert told == [1]
-    again = gains(study, [room], {}, each=1, kept=kept)  # of what was kept
+    cache = RoomCache(tmp_path, {})
+    found = gains(study, [room], methods, each=1, cache=cache, after=lambda one: reported.append(len(one[ALONE])))
+    assert reported == [1]
+    again = gains(study, [room], {}, each=1, cache=cache)  # of what was cache
     assert np.array_equal(again["true_room"], found["true_room"])
     rows = rows_of(found, [room])
     assert [row["method"] for row in rows] == [ALONE, "true_room"]
@@ -70,7 +70,7 @@ def test_rows_of_a_room(data: Path, tmp_path: Path):
 
 
 def test_data_of_the_room_helps_where_the_room_differs():
-    """In the room every activity looks like nothing elsewhere: only its own data can tell."""
+    """In the room every activity looks like nothing elsewhere: only its own data can report."""
     torch.manual_seed(0)
     network = ActivityNetwork(AWR1843)
     width = network.head.first.in_features
@@ -83,12 +83,12 @@ def test_data_of_the_room_helps_where_the_room_differs():
     elsewhere, here = centres, 3 * torch.randn(12, width)
     base, test = drawn(elsewhere, 4), drawn(here, 2)
     study = GainStudy(network, base)
-    alone, loss = judged(study, None, test, 0)
-    helped, lower = judged(study, drawn(here, 4), test, 0)
+    alone, loss = evaluated(study, None, test, 0)
+    helped, lower = evaluated(study, drawn(here, 4), test, 0)
     assert alone < 0.5
     assert helped > alone + 0.2
     assert lower < loss
-    assert judged(study, None, test, 0) == (alone, loss)
+    assert evaluated(study, None, test, 0) == (alone, loss)
 
 
 def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_knows_nothing():
@@ -113,6 +113,6 @@ def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
     rest = AWR1843.num_loops // 2
     cubes = [make(pose, seed) for seed in (1, 2)]
     still = [cube.values[:, :, rest].mean(axis=0) for cube in cubes]
-    truth = room.room.empty
+    truth = room.room.static
     for one in still:
         assert np.abs(np.vdot(one, truth)) > 0.5 * np.linalg.norm(one) * np.linalg.norm(truth)

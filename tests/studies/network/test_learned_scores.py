@@ -22,10 +22,10 @@ def test_energy_over_the_truths():
 
 
 def test_a_row_whose_energy_is_gone_says_so():
-    for energy, told in ((-35.0, "paper, collapsed: 35 dB too little energy"), (-1.0, "paper")):
+    for energy, reported in ((-35.0, "paper, collapsed: 35 dB too little energy"), (-1.0, "paper")):
         values = {"ra_ssim": np.array([0.1, 0.3]), "energy_db": np.array([energy, energy])}
         row = _row("paper", values, ["office_0", "office_1"], "test_room")
-        assert cell("{method}{metrics.energy_db:collapse}", row) == told
+        assert cell("{method}{metrics.energy_db:collapse}", row) == reported
 
 
 def test_the_mean_of_training_rooms_is_theirs_alone_and_does_not_move(tiny_signals: Path):

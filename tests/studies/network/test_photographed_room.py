@@ -1,13 +1,13 @@
 """Photographed rooms compared with true ones."""
 
-from studies.network.photographed_room import judged
+from studies.network.photographed_room import evaluated
 
 
-def test_a_photo_is_worth_something_and_the_twin_more():
-    scores = judged("lab", 30)
+def test_a_photo_is_better_than_nothing_and_another_realization_better_still():
+    scores = evaluated("lab", 30)
     ssim = {name: value["ra_ssim"] for name, value in scores.items()}
     assert ssim["zeros"] < 0.05 < ssim["photo"] < ssim["realization"] < 1.0
-    assert ssim["photo"] <= ssim["photo, true mirrors"] + 0.02
+    assert ssim["photo"] <= ssim["photo, true specular reflectors"] + 0.02
     assert (
         scores["zeros"]["ra_difference_db"]
         > scores["photo"]["ra_difference_db"]

@@ -1,4 +1,4 @@
-"""What is alike cannot be told apart, what differs can; statistics see the differences that matter."""
+"""What is alike cannot be reported apart, what differs can; statistics see the differences that matter."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ from tests.cubes import point_cube
 ROOMS = [f"room_{index // 3}" for index in range(60)]
 
 
-def _drawn(seed: int, middle: float) -> np.ndarray:
+def _sampled(seed: int, middle: float) -> np.ndarray:
     return stream(seed, "test statistics").normal(middle, 1.0, (len(ROOMS), 12))
 
 
@@ -25,14 +25,14 @@ def test_no_room_is_learned_from_and_judged():
 
 
 def test_alike_is_half_and_different_is_told():
-    assert abs(real_or_simulated_scores(_drawn(0, 0.0), _drawn(1, 0.0), ROOMS).mean() - 0.5) < 0.15
-    assert real_or_simulated_scores(_drawn(0, 0.0), _drawn(1, 2.0), ROOMS).mean() > 0.9
+    assert abs(real_or_simulated_scores(_sampled(0, 0.0), _sampled(1, 0.0), ROOMS).mean() - 0.5) < 0.15
+    assert real_or_simulated_scores(_sampled(0, 0.0), _sampled(1, 2.0), ROOMS).mean() > 0.9
 
 
 def test_what_is_learned_of_a_room_does_not_help_in_another():
     """Each room's true and generated cubes lie far apart, but nowhere in the same way."""
     rng = stream(0, "test offsets")
-    true, made = (_drawn(seed, 0.0) / 5 + np.repeat(rng.normal(0, 3, (20, 12)), 3, axis=0) for seed in (0, 1))
+    true, made = (_sampled(seed, 0.0) / 5 + np.repeat(rng.normal(0, 3, (20, 12)), 3, axis=0) for seed in (0, 1))
     assert real_or_simulated_scores(true, made, ROOMS).mean() < 0.75
 
 

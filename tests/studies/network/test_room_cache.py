@@ -16,12 +16,12 @@ def test_a_room_is_measured_once_for_a_setting(tmp_path: Path):
         return made
 
     for _ in range(2):
-        kept = RoomCache(tmp_path, {"weights": "a"})  # as after a kill
-        assert kept.figures("office_0", make("office_0")) == {"accuracy": 0.1}
+        cache = RoomCache(tmp_path, {"weights": "a"})  # as after a kill
+        assert cache.figures("office_0", make("office_0")) == {"accuracy": 0.1}
     assert asked == ["office_0"]
     RoomCache(tmp_path, {"weights": "b"}).figures("office_0", make("other weights"))
-    RoomCache(None, {}).figures("office_0", make("nothing kept"))
-    assert asked == ["office_0", "other weights", "nothing kept"]
+    RoomCache(None, {}).figures("office_0", make("nothing cache"))
+    assert asked == ["office_0", "other weights", "nothing cache"]
 
 
 def test_files_that_differ_have_other_digests(tmp_path: Path):

@@ -48,7 +48,7 @@ def test_weights_are_read_again_and_their_page_gives_the_baseline(
     assert "| all zeros |" in page
     assert "python -m studies run paper_scores" in page
     count = sum(name == "train" for room in read_rooms(tiny_geometry) for name in room.split)
-    assert f"{count} sequences of 1 rooms, {4 / count:.1f} passes" in page  # two steps of two
+    assert f"{count} sequences in 1 rooms, {4 / count:.1f} epochs" in page  # two steps of two
     assert list((tmp_path / "pictures").glob("*.png"))
 
 
@@ -61,7 +61,9 @@ def test_weights_of_another_recipe_are_refused(
     assert "recipe 'activity'" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_two_processes_train_it(tiny_geometry: Path, features: Path, tmp_path: Path):
+    """tests/cli/test_train_recipes.py holds two processes of the same loop."""
     pytest.importorskip("accelerate")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

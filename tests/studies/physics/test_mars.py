@@ -9,7 +9,15 @@ import pytest
 from studies.manifest import StudyRun
 from studies.physics import mars
 from studies.physics.cloud_scores import score
-from studies.physics.mars import MarsVariant, Setup, centroid_floor, detect, neighbour_ceiling, simulate, surface_floor
+from studies.physics.mars import (
+    MarsVariant,
+    Setup,
+    centroid_baseline,
+    detect,
+    neighbour_oracle,
+    simulate,
+    surface_baseline,
+)
 from studies.physics.mars_data import MarsStretch, cut, read_mars
 from tests.studies.physics.test_mars_data import write_split
 
@@ -58,14 +66,14 @@ def test_the_chains_and_variants_differ(pieces: list[MarsStretch]):
 
 def test_floors_and_ceiling(pieces: list[MarsStretch]):
     real = [piece.clouds for piece in pieces]
-    centre = centroid_floor(pieces, HERE)
+    centre = centroid_baseline(pieces, HERE)
     assert all(len(cloud.x_m) == 1 for piece in centre for cloud in piece)
     assert centre[0][0].z_m[0] == pytest.approx(pieces[0].joints_m[0, :, 2].mean() + 0.2)
-    skin = surface_floor(pieces, HERE, 25)
+    skin = surface_baseline(pieces, HERE, 25)
     height = np.concatenate([cloud.z_m for piece in skin for cloud in piece])
     assert 1.2 < np.ptp(height) < 2.0
     assert score(skin, real).value("points") == 25
-    neighbour = neighbour_ceiling(pieces)
+    neighbour = neighbour_oracle(pieces)
     assert neighbour[0][1] is real[0][0]
     assert neighbour[0][0] is real[0][1]
 
@@ -81,8 +89,8 @@ def test_the_whole_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyP
     scores = mars.measure(folder, StudyRun("mars", tmp_path), lines.append)
     written = {path.stem for path in (tmp_path / "mars").iterdir()}
     assert written == set(scores) == {
-        "floor_centroid", "floor_random_on_body", "floor_random_real_frame", "ceiling_neighbouring_frame", "simulator",
-        "grouped",
+        "baseline_centroid", "baseline_random_on_body", "baseline_random_real_frame", "oracle_neighbouring_frame",
+        "simulator", "grouped",
     }  # fmt: skip
     record = json.loads((tmp_path / "mars" / "simulator.json").read_text())
     assert set(record["config"]["estimated_on_validate"]) == set(Setup.__dataclass_fields__)

@@ -8,7 +8,7 @@ pytest.importorskip("sklearn")
 from mmweaver.core.records import PointCloud
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.radhar import radhar_recipe
-from studies.recognition.zero_shot_limbs import drawn, thirds
+from studies.recognition.zero_shot_limbs import limb_strengths, thirds
 from studies.recognition.zero_shot_scores import first_draws
 
 
@@ -32,4 +32,4 @@ def test_each_window_has_its_own_draw():
     wanted = [
         draws[index * len(labels) + labels.index(label)].legs_db for index in (1, 0) for label in reversed(labels)
     ]
-    assert drawn(windows, draws, labels, "legs_db").tolist() == wanted
+    assert limb_strengths(windows, draws, labels, "legs_db").tolist() == wanted
