@@ -35,7 +35,7 @@ OTHER_SKIN = 1000
 
 
 def views_of(kind: str, *, frames: int = 20) -> list[FigureData]:
-    """Truth, photo alone, with the recording."""
+    """Ground truth, the network from the photo alone, and with the recording."""
     made_room = make_room(kind, 0, SEED)
     true_room = Simulator(made_room.scene(), AWR1843)
     recording = radar_cube(true_room.run((), num_frames=frames, seed=1).adc)

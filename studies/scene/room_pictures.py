@@ -87,7 +87,7 @@ def _mark(axes: "Axes", scene: Scene, place_m: np.ndarray, word: str, colour: st
 
 
 def small(rgb: np.ndarray) -> np.ndarray:
-    """A picture thinned to what a page can show."""
+    """A picture subsampled to the size of a page."""
     from PIL import Image
 
     image = Image.fromarray(rgb)
@@ -96,7 +96,7 @@ def small(rgb: np.ndarray) -> np.ndarray:
 
 
 def save_small(figure: "Figure", path: Path, most_bytes: int = 300_000) -> None:
-    """As a PNG of at most 256 colours, of fewer until it fits."""
+    """Writes a PNG of at most 256 colours, with fewer until it fits."""
     import io
 
     from PIL import Image

@@ -47,7 +47,7 @@ _POSES = ((0.0, 0.35), (0.5, 0.6), (1.0, 1.0))
 
 
 def draw_room(path: Path, name: str, weaver: Weaver, room: Room, sentences: tuple[str, ...]) -> list[str]:
-    """Writes one page, a row a sentence; gives the sentences that the room refused."""
+    """Writes one page, a row a sentence; returns the sentences that the room refused."""
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

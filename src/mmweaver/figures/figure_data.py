@@ -1,6 +1,6 @@
 """FigureData: everything the pictures show, with power maps computed once."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -59,9 +59,7 @@ class FigureData:
     @cached_property
     def shown_points(self) -> PointCloud:
         """The points of the frames that are shown."""
-        kept = np.isin(self.points.frame, self.frames)
-        columns = {field.name: getattr(self.points, field.name)[kept] for field in fields(PointCloud)}
-        return PointCloud(**columns)
+        return self.points.select(np.isin(self.points.frame, self.frames))
 
     @cached_property
     def shown_poses(self) -> tuple[PoseSequence, ...]:
