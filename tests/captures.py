@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import av
 import numpy as np
 import zstandard
-from PIL import Image
 
 from mmweaver.core.records import AdcCube, CameraIntrinsics
 from mmweaver.formats.dca1000 import write_bin
@@ -80,27 +80,18 @@ def pcap_of(packets: list[Packet], *, port: int = 4098, magic: bytes = b"\xd4\xc
     return b"".join(parts)
 
 
-def avi_of(pictures: list[np.ndarray], *, codec: bytes = b"MJPG") -> bytes:
-    """An .avi of motion JPEG, or uncompressed."""
-    height, width = pictures[0].shape[:2]
-
-    def chunk(name: bytes, content: bytes) -> bytes:
-        return name + struct.pack("<I", len(content)) + content + b"\0" * (len(content) % 2)
-
-    frames = []
-    for picture in pictures:
-        if codec == b"MJPG":
-            stream = io.BytesIO()
-            Image.fromarray(picture).save(stream, "JPEG", quality=95)
-            frames.append(chunk(b"00dc", stream.getvalue()))
-        else:
-            rows = np.zeros((height, -(-3 * width // 4) * 4), np.uint8)
-            rows[:, : 3 * width] = picture[::-1, :, ::-1].reshape(height, -1)
-            frames.append(chunk(b"00db", rows.tobytes()))
-    strh = chunk(b"strh", b"vids" + codec + bytes(48))
-    strf = chunk(b"strf", struct.pack("<IiiHH4sIiiII", 40, width, height, 1, 24, codec, 0, 0, 0, 0, 0))
-    header = chunk(b"LIST", b"hdrl" + chunk(b"avih", bytes(56)) + chunk(b"LIST", b"strl" + strh + strf))
-    return chunk(b"RIFF", b"AVI " + header + chunk(b"LIST", b"movi" + b"".join(frames)))
+def avi_of(pictures: list[np.ndarray], *, codec: str = "png") -> bytes:
+    """An .avi of RGB pictures; lossless by default."""
+    stream = io.BytesIO()
+    with av.open(stream, "w", format="avi") as container:
+        video = container.add_stream(codec, rate=15)
+        video.height, video.width = pictures[0].shape[:2]
+        video.pix_fmt = {"png": "rgb24", "mjpeg": "yuvj444p", "mpeg4": "yuv420p"}[codec]
+        video.options = {} if codec == "png" else {"qscale": "1", "flags": "+qscale"}
+        for picture in pictures:
+            container.mux(video.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
+        container.mux(video.encode())
+    return stream.getvalue()
 
 
 def write_camera(folder: Path, lens: CameraIntrinsics, depths_m: list[np.ndarray], pictures: list[np.ndarray]) -> None:

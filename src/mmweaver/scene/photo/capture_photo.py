@@ -19,8 +19,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
 from mmweaver.core.shapes import Array, DepthPixels, PerFrame, RgbPixels
 from mmweaver.geometry.pinhole import project, rotated_clockwise, unproject
-from mmweaver.scene.photo.avi_frames import avi_frame
 from mmweaver.scene.photo.picture_files import read_rgb
+from mmweaver.scene.photo.video_frame import read_video_frame
 
 DEPTH, COLOUR = "depth.zst", "color.avi"
 D455_BASELINE_M = 0.059  # a point at x in the depth camera is at x - baseline in the colour camera
@@ -91,7 +91,7 @@ def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None
         )
     rotated = _is_rotated(folder)
     raw = _depth_frame(folder / DEPTH, index, intrinsics)
-    pixels = avi_frame(folder / COLOUR, index) if rgb is None else read_rgb(rgb)[0]
+    pixels = read_video_frame(folder / COLOUR, index) if rgb is None else read_rgb(rgb)[0]
     if rotated:  # both pictures were rotated by 90 degrees clockwise when saved, their intrinsics were not
         raw = np.rot90(raw.reshape(intrinsics.width, intrinsics.height))
         pixels = np.rot90(pixels)
