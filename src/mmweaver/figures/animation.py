@@ -114,7 +114,7 @@ class Mover:
 
 
 def _lay_out(figure: "Figure", view: FigureData) -> list[Mover]:
-    if view.photo is None:
+    if view.aligned is None:
         places = figure.add_gridspec(1, 2, left=0.07, right=0.975, bottom=0.13, top=0.83, wspace=0.22)
         doppler, azimuth = (figure.add_subplot(place) for place in places)
         photo_movers = []
@@ -135,15 +135,14 @@ def _lay_out(figure: "Figure", view: FigureData) -> list[Mover]:
 
 
 def _photo_mover(axes: "Axes", view: FigureData) -> Mover:
-    assert view.photo is not None
-    assert view.radar_from_camera is not None
+    assert view.aligned is not None
     from matplotlib.colors import to_rgb
 
-    height, width = view.photo.rgb.shape[:2]
-    axes.imshow(view.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
+    height, width = view.aligned.photo.rgb.shape[:2]
+    axes.imshow(view.aligned.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
     people = view.shown_poses
-    skeletons = [SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=2.2) for _ in people]
+    skeletons = [SkeletonInPhoto(axes, view.aligned, width=2.2) for _ in people]
     count = len(people)
     colours = [SKELETON_COLOUR] if count == 1 else [to_rgb(person_colour(index, count)) for index in range(count)]
     artists: list[Artist] = [artist for skeleton in skeletons for artist in skeleton.artists]
