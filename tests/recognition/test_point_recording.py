@@ -3,7 +3,7 @@
 import numpy as np
 
 from mmweaver.core.records import PointCloud
-from mmweaver.recognition.point_recording import PointRecording, select
+from mmweaver.recognition.point_recording import PointRecording
 
 
 def recording(frames: list[int], num_frames: int = 10) -> PointRecording:
@@ -32,4 +32,4 @@ def test_a_short_recording_has_no_window():
 
 def test_points_are_chosen_by_mask():
     cloud = recording([0, 1, 2]).cloud
-    assert select(cloud, cloud.frame > 0).y_m.tolist() == [1.0, 2.0]
+    assert cloud.select(cloud.frame > 0).y_m.tolist() == [1.0, 2.0]

@@ -4,7 +4,7 @@ Frame of reference for every position: the radar's. x right, y away from the rad
 origin at the radar. Radial velocity positive = moving away.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -113,6 +113,10 @@ class PointCloud(ShownByFacts):
     z_m: PerPoint
     radial_velocity_mps: PerPoint
     snr_db: PerPoint
+
+    def select(self, which: np.ndarray) -> "PointCloud":
+        """The points selected by mask or index (point,)."""
+        return PointCloud(**{field.name: getattr(self, field.name)[which] for field in fields(PointCloud)})
 
     def facts(self) -> dict[str, str]:
         """Number of points, and their bounds."""

@@ -1,8 +1,6 @@
 """A recording of a point-cloud radar, generated or real, with its activity."""
 
-from dataclasses import dataclass, fields, replace
-
-import numpy as np
+from dataclasses import dataclass, replace
 
 from mmweaver.core.records import PointCloud
 
@@ -30,10 +28,5 @@ class PointRecording:
     def part(self, first: int, num_frames: int) -> "PointRecording":
         """`num_frames` frames starting at `first`, renumbered from 0."""
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
-        cloud = select(self.cloud, inside)
+        cloud = self.cloud.select(inside)
         return replace(self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames)
-
-
-def select(cloud: PointCloud, which: np.ndarray) -> PointCloud:
-    """The points of a cloud selected by mask or index (point,)."""
-    return PointCloud(**{field.name: getattr(cloud, field.name)[which] for field in fields(PointCloud)})

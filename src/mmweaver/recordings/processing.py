@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.shapes import Array, PerFrame, PerIndex
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
-from mmweaver.dsp.detection import check_points, detect
+from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.formats.dca_packets import PacketCapture
 from mmweaver.formats.radar_file import load_firmware
@@ -70,6 +71,8 @@ def process_recording(
             path, radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order
         )  # fmt: skip
         check_points(points, recording.config)
+        if recording.adc is None and points != "firmware" and needs_adc(points):
+            raise InputError(f"{path} holds a cube, but --points {points} needs raw samples; give the raw recording")
         firmware = _firmware(points, recording.radar_source)
         inputs = {name: _digest(file) for name, file in recording.files.items()}
         of_packets = {} if recording.packets is None else _packets_meta(recording.path, recording.packets)

@@ -1,4 +1,4 @@
-"""Labelled log maps of a data set, for training and judging the activity network."""
+"""Labelled log maps of a data set, for training and evaluating the activity network."""
 
 import hashlib
 from collections.abc import Callable, Iterable
@@ -17,12 +17,12 @@ from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.log_maps import LogMaps
 
-GAIN_SPREAD_DB, SHIFT_BINS, SHIFT_FRAMES = 2.0, 6, 3  # how examples are varied
+GAIN_SPREAD_DB, SHIFT_BINS, SHIFT_FRAMES = 2.0, 6, 3  # strength of the augmentation
 
 
 @dataclass(frozen=True, kw_only=True)
 class ActivityExamples:
-    """Sequences as log maps in half precision, about 0.25 MB each, with what each shows and where it was."""
+    """Sequences as log maps in half precision, about 0.25 MB each, with activity, room and person."""
 
     doppler: Tensor  # (sequence, frame, 1, range, doppler)
     angle: Tensor  # (sequence, frame, 2, range, azimuth)
@@ -36,7 +36,7 @@ class ActivityExamples:
 
 
 def compute_log_maps(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[Tensor, Tensor]:
-    """Log maps of cubes in sqrt(mW), in half precision."""
+    """Log maps of cubes in sqrt(mW), in half precision: range-Doppler and range-angle, (sequence, frame, ...)."""
     maps, doppler, angle = LogMaps(config), [], []
     with torch.no_grad():
         for cube in cubes:
@@ -49,16 +49,16 @@ def compute_log_maps(cubes: Iterable[RadarCube], config: RadarConfig) -> tuple[T
 def activity_examples(
     folder: Path,
     splits: tuple[str, ...],
-    kept: Path | None = None,
+    cache: Path | None = None,
     *,
     keep: bool = True,
     device: str = "cpu",
     pick: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> ActivityExamples:
-    """The sequences of a data set that belong to some splits; of them those that `pick` chooses by their labels.
+    """The sequences of a data set in the given splits, optionally selected by `pick` from their labels.
 
-    Their maps are read from the file `kept`, if it is of the same sequences, else made and, with `keep`, left there;
-    signals that are not stored are made on `device`. Raises InputError where there are no sequences.
+    Their maps are read from the file `cache` if it has the same sequences, else computed and, with `keep`, saved there;
+    signals that are not stored are synthesised on `device`. Raises InputError where there are no sequences.
     """
     rooms = read_rooms(folder, device=device)
     chosen = [(room, index) for room in rooms for index, split in enumerate(room.split) if split in splits]
@@ -66,17 +66,17 @@ def activity_examples(
         raise InputError(f"{folder} has no sequences of {' or '.join(splits)}; make more with: mmweaver dataset")
     unknown = {room.activity[index] for room, index in chosen} - set(ACTIVITY_NAMES)
     if unknown:
-        raise InputError(f"{folder} shows activities that this version does not know: {', '.join(sorted(unknown))}")
+        raise InputError(f"{folder} has activities that this version does not know: {', '.join(sorted(unknown))}")
     if pick is not None:
         labels = np.array([ACTIVITY_NAMES.index(room.activity[index]) for room, index in chosen])
         chosen = [chosen[int(number)] for number in pick(labels)]
     config = rooms[0].config
     mark = _mark(folder, chosen)
-    maps = None if kept is None else _read(kept, mark)
+    maps = None if cache is None else _read(cache, mark)
     if maps is None:
         maps = compute_log_maps((room.cube(index) for room, index in chosen), config)
-        if kept is not None and keep:
-            _write(kept, maps, mark)
+        if cache is not None and keep:
+            _write(cache, maps, mark)
     doppler, angle = maps
     return ActivityExamples(
         doppler=doppler,
@@ -89,7 +89,7 @@ def activity_examples(
 
 
 def _mark(folder: Path, chosen: list[tuple[StoredRoom, int]]) -> str:
-    """Names a data set and some of its sequences."""
+    """Hash of a data set's plan and the chosen sequences."""
     words = [plan_text(folder), *(f"{room.folder.name} {index} {int(room.seed[index])}" for room, index in chosen)]
     return hashlib.sha256("\n".join(words).encode()).hexdigest()
 
@@ -116,7 +116,7 @@ def _write(file: Path, maps: tuple[Tensor, Tensor], mark: str) -> None:
 
 
 def augmented(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
-    """The same scenes a little louder or fainter, nearer or farther, earlier or later; what leaves comes in again."""
+    """Augments maps by random gain and by cyclic shifts in time and range."""
     from mmweaver.models.log_maps import SPREAD_DB
 
     gain = torch.from_numpy(rng.normal(0, GAIN_SPREAD_DB / SPREAD_DB, (len(doppler), 1, 1, 1, 1)).astype(np.float32))

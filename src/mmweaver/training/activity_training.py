@@ -16,7 +16,7 @@ from mmweaver.training.confusion_sheet import draw_confusion
 from mmweaver.training.device import ComputeDevice, Share
 from mmweaver.training.trainer import BatchSampler, Learner, Listener, LoopRecipe, Trainer
 
-# The two activities that are withheld from the weaver are no test here, and the network shall know all twelve.
+# The recogniser learns all twelve activities, those held out from the learned method included.
 TRAIN_SPLITS = ("train", "test_activity")
 TRAIN_MAPS, VALIDATION_MAPS = "train_maps.safetensors", "validation_maps.safetensors"
 SMOOTHING = 0.1
@@ -25,7 +25,7 @@ AT_ONCE = 32
 
 @dataclass(frozen=True, kw_only=True)
 class ActivityRecipe(LoopRecipe):
-    """Chosen by what kinds of rooms of split `validation` show."""
+    """Hyperparameters of the activity network, chosen on split `validation`."""
 
     name: str = "activity"
     steps: int = 800
@@ -34,12 +34,12 @@ class ActivityRecipe(LoopRecipe):
     warm_up_steps: int = 50
     weight_decay: float = 1e-2
     validate_every: int = 100
-    validation_batches: int = 8  # all sequences of the split, dealt out
+    validation_batches: int = 8  # all sequences of the split, distributed
 
 
 @dataclass(frozen=True, kw_only=True)
 class ActivityBatch:
-    """Log maps of sequences, and what they show."""
+    """Log maps of sequences, and their labels."""
 
     doppler: Tensor  # (sequence, frame, 1, range, doppler)
     angle: Tensor  # (sequence, frame, 2, range, azimuth)
@@ -47,7 +47,7 @@ class ActivityBatch:
 
 
 class ActivityLearner(Learner):
-    """The network with its loss; `unseen` is what its picture shows."""
+    """The network with its loss; its picture is the confusion matrix on `unseen`."""
 
     def __init__(self, network: ActivityNetwork, unseen: ActivityExamples | None = None):
         super().__init__()
@@ -79,15 +79,15 @@ def train_activity(
     compute: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer:
-    """Trains on a data set, or goes on from `out`/checkpoint.pt; what comes back holds the best network.
+    """Trains on a data set, or resumes from `out`/checkpoint.pt; the returned Trainer holds the best network.
 
-    `start`: weights to fine-tune. `options` go to `Trainer`. The log maps of all sequences are kept in `out`, for
-    where signals are not stored they cost more than the training. Raises InputError for a folder without data.
+    `start`: weights to fine-tune. `options` go to `Trainer`. The log maps of all sequences are cached in `out`, for
+    those of signals that are not stored cost more than the training. Raises InputError for a folder without data.
     """
     place = compute or ComputeDevice()
-    kept = {"keep": place.is_first, "device": str(place.device)}
-    unseen = activity_examples(data, ("validation",), out / VALIDATION_MAPS, **kept)
-    examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **kept)
+    cache = {"keep": place.is_first, "device": str(place.device)}
+    unseen = activity_examples(data, ("validation",), out / VALIDATION_MAPS, **cache)
+    examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **cache)
     torch.manual_seed(recipe.seed)
     network = ActivityNetwork(examples.config)
     if start is not None:
@@ -101,7 +101,7 @@ def train_activity(
 
 
 def _batch_sampler(examples: ActivityExamples, recipe: ActivityRecipe) -> BatchSampler:
-    """Varied sequences, by step."""
+    """Samples augmented sequences by step."""
 
     def draw(step: int, share: Share) -> ActivityBatch:
         rng = stream(recipe.seed, "activity batch", step)
@@ -115,7 +115,7 @@ def _batch_sampler(examples: ActivityExamples, recipe: ActivityRecipe) -> BatchS
 
 
 def _fixed_batches(examples: ActivityExamples, count: int) -> Callable[[int, Share], ActivityBatch]:
-    """All sequences dealt out to so many batches, as they are."""
+    """All sequences, unaugmented, distributed over `count` batches."""
 
     def draw(index: int, share: Share) -> ActivityBatch:
         own = slice(index % len(examples), None, count)

@@ -37,7 +37,7 @@ def train_language(
     recipe: LanguageRecipe,
     state_file: Path | None = None,
 ) -> "T5ForConditionalGeneration":
-    """A T5 trained on (word ids, motion codes); saved on the way and gone on with where `state_file` is given."""
+    """A T5 trained on (word ids, motion codes); with `state_file` its state is saved and resumed."""
     torch.manual_seed(recipe.seed)
     model = build_t5(sizes).train()
     optimiser = torch.optim.AdamW(model.parameters(), lr=recipe.learning_rate, weight_decay=0.01)
@@ -45,7 +45,7 @@ def train_language(
     work = Resumable(state_file, {"model": model, "optimiser": optimiser, "schedule": schedule})
     for step in work.steps(recipe.steps):
         rng = stream(recipe.seed, "motion language", "batch", step)
-        torch.manual_seed(int(rng.integers(2**31)))  # of dropout; so that a run that was interrupted ends the same
+        torch.manual_seed(int(rng.integers(2**31)))  # for dropout, so that a resumed run equals an uninterrupted one
         chosen = [pairs[int(k)] for k in rng.integers(len(pairs), size=recipe.batch)]
         words, labels = _padded([words for words, _ in chosen], 0), _labels(chosen, first_motion_id, codes)
         loss = model(input_ids=words, attention_mask=(words != 0).long(), labels=labels).loss
@@ -64,7 +64,7 @@ def _rate(step: int, recipe: LanguageRecipe) -> float:
 
 
 def _labels(chosen: list[tuple[list[int], list[int]]], first: int, codes: int) -> Tensor:
-    """Begin, the codes, end, end of sentence."""
+    """Label ids (sequence, token): start, codes, end of motion, end of sentence."""
     rows = [[first + codes, *(first + code for code in motion), first + codes + 1, END] for _, motion in chosen]
     return _padded(rows, IGNORED)
 

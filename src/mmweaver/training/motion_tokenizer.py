@@ -1,6 +1,6 @@
-"""Training of the motion tokenizer: reconstruction, a codebook moved by running means, idle codes drawn anew.
+"""Training of the motion tokenizer: reconstruction, codebook by exponential moving averages, reset of idle codes.
 
-Reference: Zhang et al., T2M-GPT, CVPR 2023, 3.1 (smooth L1 on features, more on joints' ways; EMA and reset).
+Reference: Zhang et al., T2M-GPT, CVPR 2023, 3.1 (smooth L1 on features, more weight on joints; EMA and reset).
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.motion.motiongpt.tokenizer import Codebook, MotionTokenizer, TokenizerConfig
 from mmweaver.training.resuming import Resumable
 
-JOINTS, WAYS = slice(4, 67), slice(193, 259)
+JOINTS = slice(4, 67)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +42,7 @@ def train_tokenizer(
 ) -> MotionTokenizer:
     """A tokenizer trained on motions (frame, feature) of any lengths. Same seed, same weights.
 
-    With `state_file` it is saved on the way, and goes on from there.
+    With `state_file` its state is saved and resumed.
     """
     torch.manual_seed(recipe.seed)
     model = MotionTokenizer(config)
@@ -73,7 +73,7 @@ def train_tokenizer(
 
 
 class RunningMeans:
-    """The codebook follows the mean of what was assigned to each code; a code that nothing chooses is drawn anew."""
+    """Codebook update by exponential moving averages; idle codes are reset to random latents."""
 
     def __init__(self, book: Codebook, recipe: TokenizerRecipe):
         self.book, self.recipe = book, recipe
@@ -81,37 +81,37 @@ class RunningMeans:
         self.count = torch.zeros(len(book.codebook))
 
     def begin(self, latents: Float[Tensor, "n width"]) -> None:
-        """Every code begins at some latent vector."""
-        self.total = self._drawn(latents, 0)
+        """Initialises every code with a random latent vector."""
+        self.total = self._sampled(latents, 0)
         self.count = torch.ones(len(self.total))
         self.book.codebook.copy_(self.total)
 
     def follow(self, latents: Float[Tensor, "n width"], codes: Tensor, step: int) -> None:
-        """One step of the running means."""
+        """Updates the moving averages by one step."""
         keep = self.recipe.running
         one_hot = functional.one_hot(codes, len(self.count)).to(latents.dtype)
         self.total = keep * self.total + (1 - keep) * (one_hot.T @ latents)
         self.count = keep * self.count + (1 - keep) * one_hot.sum(0)
         idle = self.count < self.recipe.idle_below * (1 - keep)
         mean = self.total / self.count.clamp_min(1e-9)[:, None]
-        fresh = self._drawn(latents, step)
+        fresh = self._sampled(latents, step)
         self.book.codebook.copy_(torch.where(idle[:, None], fresh, mean))
         self.total = torch.where(idle[:, None], fresh, self.total)
         self.count = torch.where(idle, torch.ones_like(self.count), self.count)
 
     def used(self) -> int:
-        """How many codes are chosen at least now and then."""
+        """Number of codes in use."""
         return int((self.count > self.recipe.idle_below).sum())
 
     def state_dict(self) -> dict[str, Tensor]:
-        """For going on later."""
+        """State to save."""
         return {"total": self.total, "count": self.count}
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
-        """Goes on from `state_dict`."""
+        """Restores a state of `state_dict`."""
         self.total, self.count = state["total"], state["count"]
 
-    def _drawn(self, latents: Float[Tensor, "n width"], step: int) -> Float[Tensor, "code width"]:
+    def _sampled(self, latents: Float[Tensor, "n width"], step: int) -> Float[Tensor, "code width"]:
         rng = stream(self.recipe.seed, "motion tokenizer", "codes", step)
         chosen = torch.from_numpy(rng.integers(len(latents), size=len(self.count)))
         noise = torch.from_numpy(rng.normal(0, 0.01, (len(self.count), latents.shape[1])).astype(np.float32))

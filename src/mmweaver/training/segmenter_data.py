@@ -1,4 +1,4 @@
-"""Rooms for the built-in segmenter: rendered, seen as the product sees them, and varied so that it learns shapes."""
+"""Training data of the built-in segmenter: procedural rooms as at inference, and their augmentation."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,13 +24,13 @@ from mmweaver.scene.segmentation.segmenter_features import (
     grid_features,
 )
 
-_CROP = (48, 64)  # cells; a multiple of what the network halves
+_CROP = (48, 64)  # cells; a multiple of the downsampling factor of the network
 _MOST_PIECES = 40
 
 
 @dataclass(frozen=True, kw_only=True)
 class SegmenterExample:
-    """One room: what the network sees of its cells, and their groups."""
+    """One room: input features of its cells, and their groups."""
 
     kind: str
     features: Float[Array, "13 row column"]
@@ -38,7 +38,7 @@ class SegmenterExample:
 
 
 def make_example(kind: str, seed: int) -> SegmenterExample:
-    """A room of that kind as the product would see it. Raises InputError where the room cannot be arranged."""
+    """A procedural room as seen at inference. Raises InputError where the room cannot be arranged."""
     rng = stream(seed, "segmenter", kind)
     lighting = list(LIGHTINGS)[int(rng.integers(len(LIGHTINGS)))]
     photo = make_room(kind, int(rng.integers(1000)), seed).photo(lighting, noise=True)
@@ -52,7 +52,7 @@ def make_example(kind: str, seed: int) -> SegmenterExample:
 def make_examples(
     kinds: tuple[str, ...], per_kind: int, first_seed: int, folder: Path | None = None
 ) -> list[SegmenterExample]:
-    """So many rooms of each kind; seeds that give no room are passed over. `folder` keeps them for the next time."""
+    """`per_kind` rooms of each kind; seeds that give no room are skipped. `folder` caches them."""
     found = []
     for kind in kinds:
         seed, own = first_seed, 0
@@ -82,8 +82,8 @@ def _cached_example(kind: str, seed: int, folder: Path | None) -> SegmenterExamp
 
 
 def augmented(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """A mirrored piece of a room in other colours and light, with holes and errors in its depth."""
-    features, groups = _piece(example, rng)
+    """A random crop with reflection, other colours and light, and holes and errors in its depth."""
+    features, groups = _crop(example, rng)
     measured = features[MEASURED] > 0
     features[COLOURS] = _recoloured(features[COLOURS], groups, rng)
     features[HEIGHT] += (rng.normal(0, 0.02) / HEIGHT_UNIT_M) * measured
@@ -93,7 +93,7 @@ def augmented(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.n
     return features.astype(np.float32), groups
 
 
-def _piece(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def _crop(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     rows, columns = example.groups.shape
     top, left = (int(rng.integers(max(size - crop, 0) + 1)) for size, crop in zip((rows, columns), _CROP, strict=True))
     part = (slice(top, top + _CROP[0]), slice(left, left + _CROP[1]))
@@ -104,7 +104,7 @@ def _piece(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndar
 
 
 def _recoloured(colours: np.ndarray, groups: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Other contrast and tint; often each thing in a colour of its own, a gradient of light over all, or no colour."""
+    """Random contrast and tint; often a random colour per object, a gradient of light, or no colour."""
     colours = colours * rng.uniform(0.5, 1.5) + rng.normal(0, 0.1, (3, 1, 1))
     if rng.random() < 0.7:
         from scipy import ndimage

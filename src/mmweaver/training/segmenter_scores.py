@@ -1,4 +1,4 @@
-"""How right a segmenter is, and what heights and slopes alone would say."""
+"""Scores of a segmenter, and a geometric baseline from heights and slopes."""
 
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +22,7 @@ def confusion(examples: list[SegmenterExample], guess: Callable[[np.ndarray], np
 
 
 def scores(table: Int[Array, "truth guess"]) -> dict[str, Any]:
-    """Mean intersection over union of the named groups that occur, each of them, and the share of cells right."""
+    """Mean intersection over union of the named groups that occur, that of each, and the accuracy over cells."""
     inside = np.diag(table).astype(float)
     union = table.sum(axis=0) + table.sum(axis=1) - inside
     occurs = (table.sum(axis=1) > 0) & (np.arange(len(table)) > 0)
@@ -35,7 +35,7 @@ def scores(table: Int[Array, "truth guess"]) -> dict[str, Any]:
 
 
 def by_geometry(features: Float[Array, "13 row column"]) -> Int[Array, "row column"]:
-    """What heights and slopes alone tell: floor, ceiling, the rest of the upright wall, tables and seats by height."""
+    """Baseline from heights and slopes: floor, ceiling, upright cells as wall, tables and seats by height."""
     height_m, slope, measured = HEIGHT_UNIT_M * features[HEIGHT], features[SLOPE], features[MEASURED] > 0
     guess = np.zeros(height_m.shape, np.int64)
     flat, upright = np.abs(slope) > 0.9, np.abs(slope) < 0.3

@@ -1,7 +1,7 @@
-"""Trains the built-in segmenter on procedural rooms, and scores it on kinds of rooms that it never saw.
+"""Trains the built-in segmenter on procedural rooms, and evaluates it on unseen kinds of rooms.
 
-Recipe: 8 kinds of rooms for training, 4 others for the test; depth with a stereo camera's errors, up as the product
-finds it; pieces, flips, things in other colours, light, holes (`segmenter_data`); AdamW with one cosine, weighted
+Recipe: 8 kinds of rooms for training, 4 others for the test; depth with the errors of a stereo camera, estimated
+gravity; crops, flips, other colours, light, holes (`segmenter_data`); AdamW with one-cycle schedule, weighted
 cross-entropy. One thread, one seed. From a clone: `python -m studies run train_segmenter`.
 """
 
@@ -27,7 +27,7 @@ TRAIN_SEED, TEST_SEED = 1000, 900_000
 
 @dataclass(frozen=True, kw_only=True)
 class SegmenterRecipe:
-    """What is trained, and for how long."""
+    """Hyperparameters of the segmenter."""
 
     rooms_per_kind: int = 80
     test_rooms_per_kind: int = 12
@@ -43,7 +43,7 @@ def train(
     work: Path | None = None,
     say: Callable[[str], None] = print,
 ) -> tuple[Any, list[float]]:
-    """The trained network, and the loss of each epoch. Goes on from the state in `work`, if one of this recipe is."""
+    """The trained network, and the loss of each epoch. Resumes from the state of this recipe in `work`, if any."""
     import torch
 
     torch.manual_seed(recipe.seed)
@@ -55,9 +55,9 @@ def train(
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, recipe.learning_rate, total_steps=steps)
     parts = {"network": network, "optimiser": optimiser, "schedule": schedule}
     state = work / f"state-{len(examples)}-{recipe.epochs}-{recipe.seed}.pt" if work is not None else None
-    kept = Resumable(state, parts)
-    for epoch in kept.steps(recipe.epochs):
-        # Each epoch draws its own chance: one that is gone on with draws the same.
+    progress = Resumable(state, parts)
+    for epoch in progress.steps(recipe.epochs):
+        # random numbers follow from the epoch, so that a resumed run equals an uninterrupted one
         rng, total = stream(recipe.seed, "segmenter", f"epoch {epoch}"), 0.0
         order = rng.permutation(len(examples))
         for first in range(0, len(order), recipe.batch):
@@ -69,9 +69,9 @@ def train(
             optimiser.step()
             schedule.step()
             total += float(loss.detach()) * len(chosen)
-        kept.history.append({"epoch": epoch, "loss": total / len(examples)})
+        progress.history.append({"epoch": epoch, "loss": total / len(examples)})
         say(f"epoch {epoch + 1:3d}  loss {total / len(examples):.4f}")
-    return network.eval(), [row["loss"] for row in kept.history]
+    return network.eval(), [row["loss"] for row in progress.history]
 
 
 def _class_weights(examples: list[SegmenterExample]) -> np.ndarray:
@@ -92,7 +92,7 @@ def save_weights(network: Any, path: Path) -> None:
 
 
 def run(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[str, Any]:
-    """Makes the rooms, trains, scores on unseen kinds, writes the weights; returns the log."""
+    """Generates rooms, trains, evaluates on unseen kinds, writes the weights; returns the log."""
     import torch
 
     torch.set_num_threads(1)
@@ -100,7 +100,7 @@ def run(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[st
     rooms = None if work is None else work / "rooms"
     examples = make_examples(TRAIN_KINDS, recipe.rooms_per_kind, TRAIN_SEED, rooms)
     held_out = make_examples(TEST_KINDS, recipe.test_rooms_per_kind, TEST_SEED, rooms)
-    made = time.process_time()
+    generated = time.process_time()
     network, losses = train(examples, recipe, work)
     trained = time.process_time()
     counts = np.bincount(np.concatenate([example.groups.ravel() for example in examples]), minlength=len(GROUP_NAMES))
@@ -115,7 +115,7 @@ def run(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[st
         "recipe": asdict(recipe), "train_kinds": TRAIN_KINDS, "test_kinds": TEST_KINDS,
         "rooms": {"train": len(examples), "test": len(held_out)},
         "parameters": sum(value.numel() for value in network.parameters()), "bytes": out.stat().st_size,
-        "cpu_s": {"rooms": round(made - start, 1), "training": round(trained - made, 1)},
+        "cpu_s": {"rooms": round(generated - start, 1), "training": round(trained - generated, 1)},
         "loss": [round(loss, 5) for loss in losses],
         "unseen_kinds": {name: scores(confusion(held_out, guess)) for name, guess in guesses.items()},
         "seen_kinds": {"network": scores(confusion(examples[:: max(len(examples) // 100, 1)], guesses["network"]))},
