@@ -149,7 +149,7 @@ def test_a_recording_of_the_empty_room_is_the_networks_alone(weaver: Weaver, roo
             method.generate(known, TEXT, frames=2, **asked)
     with pytest.raises(InputError, match="other settings"):
         Weaver(radar="hupr").generate(known, TEXT, frames=2)
-    with pytest.raises(InputError, match=r"no radar\.npz"):
+    with pytest.raises(InputError, match="does not exist"):
         room.with_background(tmp_path / "nowhere")
 
 
@@ -179,7 +179,7 @@ def test_firmware_points_leave_the_signal_as_it_is(weaver: Weaver, room: Room):
     assert np.array_equal(board.points.x_m, firmware_points(ours.adc).x_m)
     with pytest.raises(InputError, match="known: cfar, firmware"):
         Weaver(points="lidar")
-    with pytest.raises(InputError, match="take --points cfar"):
+    with pytest.raises(InputError, match="use --points cfar"):
         Weaver(radar="bgt60", points="firmware")
 
 
@@ -237,7 +237,7 @@ def test_unknown_names_list_the_known():
 
 
 def test_public_names_are_few_and_all_there():
-    assert len(mmweaver.__all__) <= 15
+    assert len(set(mmweaver.__all__) - {"__version__"}) <= 15
     for name in mmweaver.__all__:
         assert getattr(mmweaver, name) is not None
     assert set(mmweaver.__all__) <= set(dir(mmweaver))

@@ -12,6 +12,7 @@ from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, 
 from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import preview_figure
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.result_folder import file_digest, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
 
@@ -140,7 +141,7 @@ class Generation(ShownByFacts):
         title = text if isinstance(text, str) else " | ".join(text)
         return FigureData(
             title=f"{title}   ({self.cube.config.name}, seed {self.meta['seed']})",
-            cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
+            cube=self.cube, points=self.points, aligned=AlignedPhoto.of(self.scene),
             poses=self.poses, motions=self.motions,
         )  # fmt: skip
 

@@ -25,24 +25,26 @@ def library(name: str) -> Any:
 
 
 class Codec(ABC):
-    """A codec is scored by shared code, never by itself. What it writes is all that it may read back, but for the
-    shape and the radar of the cube, which `decoded` gets as an empty cube (`like`)."""
+    """A codec; shared code scores it.
+
+    It decodes from its own bytes alone, given the shape and the radar of the cube as an empty cube (`like`).
+    """
 
     name: str
 
     @abstractmethod
     def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
-        """At most `num_bytes` bytes, the best it can; None where it cannot be so small."""
+        """At most `num_bytes` bytes, the best quality that fits; None where it cannot be so small."""
 
     @abstractmethod
     def decoded(self, data: bytes, like: RadarCube) -> CubeValues:
-        """The cube's values again, complex64."""
+        """The values of the cube (frame, range, doppler, antenna), complex64."""
 
 
 class KnobCodec(Codec):
-    """A codec with a knob of fineness, turned (by halving, on a log scale) to the most bytes that fit.
+    """A codec with one quality parameter, set by bisection on a log scale to the largest result that fits.
 
-    Works on the cube over its largest magnitude, a float32 that is part of the bytes.
+    It codes the cube divided by its largest magnitude, a float32 that is part of the bytes.
     """
 
     coarse: float
@@ -50,11 +52,11 @@ class KnobCodec(Codec):
 
     @abstractmethod
     def at(self, values: CubeValues, knob: float, cube: RadarCube) -> bytes:
-        """Bytes for values of at most 1 in magnitude."""
+        """Bytes of values (frame, range, doppler, antenna) of magnitude at most 1, at a setting of the parameter."""
 
     @abstractmethod
     def back(self, data: bytes, like: RadarCube) -> np.ndarray:
-        """Values (frame, range, doppler, antenna) of what `at` wrote."""
+        """Values (frame, range, doppler, antenna) decoded from the bytes of `at`."""
 
     def encoded(self, cube: RadarCube, num_bytes: int) -> bytes | None:
         peak = np.float32(np.abs(cube.values).max())

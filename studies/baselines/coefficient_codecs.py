@@ -52,7 +52,7 @@ def _wavelet(values: np.ndarray) -> tuple[np.ndarray, list]:
 
 
 class TopCells(KnobCodec):
-    """The largest cells: where (deflated gaps), 8 bits of log magnitude, 6 of phase. The knob counts them."""
+    """The largest cells: positions (deflated gaps), 8 bits of log magnitude, 6 of phase. Parameter: how many."""
 
     name = "top_cells"
     coarse, fine = 8.0, 60_000.0
@@ -94,7 +94,7 @@ def unpacked_top(data: bytes, shape: tuple[int, ...]) -> np.ndarray:
 
 
 class TopCoefficients(KnobCodec):
-    """The largest coefficients after the antennas' KLT and a cosine transform over frames where nothing moves."""
+    """The largest coefficients after the KLT of the antennas and a cosine transform over frames of static cells."""
 
     name = "top_klt"
     coarse, fine = 8.0, 60_000.0
@@ -114,7 +114,7 @@ class TopCoefficients(KnobCodec):
 
 
 class KltContext(KnobCodec):
-    """Antenna KLT, cosine transform over frames where nothing moves, rounding, and the context-adaptive coder."""
+    """KLT of the antennas, cosine transform over frames of static cells, rounding, and a context-adaptive coder."""
 
     name = "klt_context"
     coarse, fine = 1.0, 1e-5
@@ -139,7 +139,8 @@ class KltContext(KnobCodec):
 
 
 def antenna_klt(values: CubeValues) -> tuple[np.ndarray, bytes]:
-    """The antennas' own directions, strongest first, as the reader will have them; and their bytes."""
+    """Principal directions of the antennas (direction, antenna), strongest first, as the decoder gets them; their
+    bytes."""
     flat = values.reshape(-1, values.shape[-1]).astype(np.complex128)
     _, vectors = np.linalg.eigh(flat.T @ flat.conj())
     rows = vectors[:, ::-1].T.conj()

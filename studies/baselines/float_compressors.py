@@ -10,7 +10,7 @@ from studies.baselines.codec_interface import KnobCodec, library, merged, split
 
 
 class Sz3(KnobCodec):
-    """SZ3 with an absolute error bound; of three layouts the one that errs least (its predictors follow the axes)."""
+    """SZ3 with an absolute error bound; the best of three layouts (its predictors follow the axes)."""
 
     name = "sz3"
     coarse, fine = 1.0, 1e-5
@@ -87,7 +87,7 @@ class Zfp(KnobCodec):
 
 
 class Blosc2(KnobCodec):
-    """Numbers rounded to a step, as int16, shuffled bit by bit and packed by zstd."""
+    """Values rounded to a step, as int16, bit-shuffled and compressed by zstd."""
 
     name = "blosc2"
     coarse, fine = 1.0, 1 / 32000

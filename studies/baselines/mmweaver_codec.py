@@ -11,7 +11,8 @@ from studies.baselines.codec_interface import Codec
 
 
 class Mmw(Codec):
-    """Scatterers, static layer and residual in a .mmw file; with `keep_noise` cells of noise count as much as any."""
+    """Scatterers, static layer and residual in a .mmw file; with `keep_noise`, noise cells have the same weight as
+    others."""
 
     def __init__(self, *, keep_noise: bool = False):
         self.keep_noise = keep_noise

@@ -62,7 +62,7 @@ def _packed(weights: np.ndarray, levels: int) -> bytes:
 
 
 def _rounded(weights: np.ndarray, most: int) -> bytes:
-    """Whole numbers of at most `most`, ROW of them by one scale."""
+    """Integers of magnitude at most `most`, each ROW of them with one scale."""
     rows = np.pad(weights, (0, -len(weights) % ROW)).reshape(-1, ROW)
     scale = (np.abs(rows).max(axis=1) / most + 1e-12).astype("<f2")
     levels = np.clip(np.rint(rows / np.maximum(scale.astype(np.float32), 1e-7)[:, None]), -most, most).astype(np.int8)

@@ -13,7 +13,7 @@ TUCKER_STEPS = 3
 
 
 class TruncatedSvd(KnobCodec):
-    """Rank-k matrix of (frame and range) x (doppler and antenna). The knob is the rank."""
+    """Rank-k matrix of (frame and range) x (doppler and antenna). The parameter is the rank."""
 
     name = "svd"
     coarse, fine = 1.0, 300.0
@@ -35,7 +35,7 @@ _cache: dict[int, tuple[np.ndarray, ...]] = {}
 
 
 def _svd(matrix: np.ndarray) -> tuple[np.ndarray, ...]:
-    """The last one is kept: the knob asks for one matrix many times."""
+    """Cached for the last matrix: the bisection asks for the same one many times."""
     key = hash(matrix.tobytes())
     if key not in _cache:
         _cache.clear()
@@ -44,7 +44,7 @@ def _svd(matrix: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 class Tucker(KnobCodec):
-    """Tucker (higher-order orthogonal iteration) in 8 bits; each axis keeps its singular values above 1 / knob."""
+    """Tucker (higher-order orthogonal iteration) in 8 bits; each axis keeps singular values above 1 / parameter."""
 
     name = "tucker"
     coarse, fine = 1.0, 1e4
@@ -66,7 +66,8 @@ class Tucker(KnobCodec):
 
 
 class TensorTrain(KnobCodec):
-    """Tensor train by successive SVDs (range, frame, doppler, antenna), cut at singular values below 1 / knob."""
+    """Tensor train by successive SVDs (range, frame, doppler, antenna), truncated at singular values below 1 /
+    parameter."""
 
     name = "tensor_train"
     coarse, fine = 1.0, 1e4
@@ -92,7 +93,7 @@ class TensorTrain(KnobCodec):
 
 
 class Cp(Codec):
-    """CP by alternating least squares (tensorly), factors as float16; the rank is what fits."""
+    """CP by alternating least squares (tensorly), factors as float16; the rank is the largest that fits."""
 
     name = "cp"
 

@@ -29,7 +29,7 @@ Fitter = Callable[[RadarCube], tuple[SignalField, float]]
 
 
 def fidelity_row(signal: StudySignal, make: Fitter, seed: int = 0) -> dict[str, Any]:
-    """Fits a field to one signal and scores it: what it stores, in which type, against the same frames in theirs."""
+    """Fits a field to one signal: its scores, its stored size and the size of the frames it represents."""
     field, seconds = make(signal.cube)
     metrics = scorecard(field.cube(), signal.cube, oracle=signal.realization).as_json()
     if signal.noise_free is not None:
@@ -52,7 +52,7 @@ def fidelity_row(signal: StudySignal, make: Fitter, seed: int = 0) -> dict[str, 
 
 
 def size_of(field: SignalField) -> dict[str, Any]:
-    """Bytes of the field and of the frames it stands for, with the type of each."""
+    """Bytes and data type of the field and of the frames it represents."""
     frames, *cell = field.grid.shape
     cells = frames * cell[0] * cell[1] * cell[2]
     return {
@@ -77,14 +77,14 @@ def recipe_fitter(name: str, seed: int = 0) -> Fitter:
 
 
 def scatterer_recipe(cube: RadarCube) -> ScattererRecipe:
-    """Scatterers, static layer and gains in no more numbers than the paper's INR of 20 frames."""
+    """Scatterers, static layer and gains in at most as many values as the paper's INR of 20 frames."""
     return ScattererRecipe(
         num_points=PAPER_VALUES, num_values=PAPER_VALUES, with_static=len(cube.values) > 1, with_calibration=True
     )
 
 
 def fit_scatterers(cube: RadarCube) -> tuple[ScattererField, float]:
-    """Scatterers over a static layer, in no more values than the paper's INR; and the seconds of CPU it took."""
+    """Scatterers over a static layer, in at most as many values as the paper's INR; and the CPU seconds of the fit."""
     start = time.process_time()
     field = ScattererField.fit(cube, scatterer_recipe(cube))
     return field, time.process_time() - start

@@ -40,10 +40,10 @@ def draw_fields(
     title: str = "original",
     zoom: bool = False,
 ) -> None:
-    """Writes a PNG: the original above, then a column a field with its map over the map of its error.
+    """Writes a PNG: the original, then a column for each field with its map above the map of its error.
 
-    All maps share one scale, 50 dB below the original's peak over all frames. `zoom` shows what is near the frame's
-    strongest cell alone.
+    All maps share one scale, 50 dB below the peak of the original over all frames. `zoom` shows only the surroundings
+    of the strongest cell of the frame.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -90,7 +90,7 @@ def draw_fields(
 
 
 def draw_super_resolution(path: Path, factor: float, recipe: str, frame: int) -> None:
-    """The same picture of a radar of `factor` times the bandwidth, and of what coarse methods make of it."""
+    """The same picture for a radar of `factor` times the bandwidth, and its reconstructions by coarse methods."""
     coarse, finer_cubes = finer_truths((factor,), ("more_bandwidth",))
     cube, truth = radar_cube(coarse), finer_cubes["more_bandwidth", factor]
     turn = centring_phasor(truth.config, truth.grid).conj() * centring_phasor(cube.config, truth.grid)

@@ -61,7 +61,7 @@ def sample_scene() -> Scene:
 
 
 def without_room(scene: Scene) -> Scene:
-    """The same place with nothing in it that reflects."""
+    """The same scene without any reflecting surface."""
     return replace(
         scene,
         vertices_m=np.zeros((0, 3), np.float32),
@@ -72,7 +72,7 @@ def without_room(scene: Scene) -> Scene:
 
 
 def pose_of(activity: str, *, seconds: float, seed: int = 0, radar: RadarConfig = AWR1843) -> PoseSequence:
-    """A person in the sample room, within the ranges that the radar keeps, doing what the activity's sentence says."""
+    """A person in the sample room, within the range window of the radar, performing the sentence of an activity."""
     window_m = (float(radar.range_m[0]), float(radar.range_m[-1]))
     plan = plan_motion(SENTENCES[activity], seconds)
     return compose(plan, sample_scene(), seed=seed, range_window_m=window_m).pose
@@ -86,7 +86,7 @@ def simulated(
     impairments: Impairments | None = None,
     seed: int = 0,
 ) -> StudySignal:
-    """A person simulated in the sample room, or in nothing, before the awr1843."""
+    """A person simulated in the sample room, or without a room, with the awr1843."""
     pose = pose_of(activity, seconds=num_frames * AWR1843.frame_period_s, seed=seed)
     impairments = impairments or Impairments()
     scene = sample_scene()
@@ -139,11 +139,11 @@ def _two_people_frame(data: Path) -> AdcCube:
 
 
 def walking_in_recording(data: Path, seed: int = 0) -> StudySignal:
-    """What stood still before the radar of the two people, and a simulated walker before the same radar.
+    """Recorded static clutter of the radar of the two people, with a simulated walker added.
 
-    Clutter: the recording's mean over its 128 loops, gains and phases of the real array in it. Walker: as strong as
-    the recorded people (strongest moving cell), ideal array. Noise: white, as strong as the recording's (median of
-    the cells in the outer half of the velocities). 20 frames, 0.1 s apart.
+    Clutter: mean of the recording over its 128 loops, including gains and phases of the real array. Walker: as strong
+    as the recorded people (strongest moving cell), ideal array. Noise: white, as strong as that of the recording
+    (median of the cells in the outer half of the velocities). 20 frames, 0.1 s apart.
     """
     frame, config = _two_people_frame(data), two_people_radar()
     pose = pose_of("walking", seconds=NUM_FRAMES * config.frame_period_s, seed=seed, radar=config)
@@ -174,7 +174,7 @@ def _strongest_moving(cube: RadarCube) -> float:
 
 
 def _sample_noise_power(adc: AdcCube) -> float:
-    """Of one ADC sample, from the cells in the outer half of the velocities; a chi-squared's median is ln 2."""
+    """Noise power per ADC sample, from cells in the outer half of the velocities (chi-squared: median ln 2)."""
     cube, config = radar_cube(adc), adc.config
     is_fast = np.abs(config.radial_velocity_mps) > config.max_velocity_mps / 2
     cell = float(np.median(np.abs(cube.values[:, :, is_fast]) ** 2)) / np.log(2)

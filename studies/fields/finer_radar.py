@@ -49,7 +49,7 @@ def more_antennas(config: RadarConfig, factor: float) -> RadarConfig:
 
 
 def starting_later(pose: PoseSequence, delay_s: float) -> PoseSequence:
-    """The same motion for a radar whose clock starts `delay_s` into it."""
+    """The same motion on the clock of a radar that starts `delay_s` later."""
     return replace(pose, time_s=pose.time_s - delay_s)
 
 
@@ -59,10 +59,10 @@ def middle_delay_s(config: RadarConfig, finer: RadarConfig) -> float:
 
 
 def spectrum_on(adc: AdcCube, grid: CubeGrid) -> CubeValues:
-    """The radar's own windowed spectrum at any ranges and velocities: what zero padding shows, at any factor.
+    """The windowed spectrum of the radar at any ranges and velocities: zero padding at any factor.
 
-    Exact between the bins, and no finer in resolution. Antennas that the radar has not are interpolated linearly.
-    Complex samples only. Raises InputError for a radar with real samples.
+    Exact between the bins, and no finer in resolution. Antennas that the radar lacks are interpolated linearly. Complex
+    samples only. Raises InputError for a radar with real samples.
     """
     config = adc.config
     if not config.complex_samples:
@@ -85,7 +85,7 @@ def spectrum_on(adc: AdcCube, grid: CubeGrid) -> CubeValues:
 
 
 def interpolated(cube: RadarCube, grid: CubeGrid, *, is_centred: bool) -> CubeValues:
-    """Straight lines between the cube's cells along every axis, on the raw or on the phase-centred cube."""
+    """Linear interpolation of the cube along every axis, on the raw or on the phase-centred cube."""
     values = (centred(cube) if is_centred else cube).values
     for axis, at in enumerate(coordinates_on(cube.grid, grid)):
         mix = _linear_mix(at, cube.grid.shape[axis])
@@ -94,13 +94,13 @@ def interpolated(cube: RadarCube, grid: CubeGrid, *, is_centred: bool) -> CubeVa
 
 
 def _fourier(bins: np.ndarray, window: np.ndarray) -> np.ndarray:
-    """(bin, sample): one row gives the windowed spectrum at one place."""
+    """Matrix (bin, sample) whose rows give the windowed spectrum at one position."""
     turns = np.outer(bins, np.arange(len(window))) / len(window)
     return (window / window.sum() * np.exp(-2j * np.pi * turns)).astype(np.complex64)
 
 
 def _linear_mix(at: np.ndarray, num: int) -> np.ndarray:
-    """(wanted, had): shares of the two neighbours; beyond the last cell the last one is held."""
+    """Matrix (wanted, given) of the weights of the two neighbours; beyond the last cell its value is repeated."""
     return np.stack([np.interp(at, np.arange(num), row) for row in np.eye(num)], axis=1)
 
 

@@ -111,7 +111,7 @@ def noise_row(signal: StudySignal) -> dict[str, Any]:
 
 
 def measure(run: StudyRun, signal_names: tuple[str, ...], data: Path | None) -> Path:
-    """Scores every signal; one file."""
+    """Scores every signal; writes one result."""
     rows = [noise_row(SIGNALS[name](data)) for name in signal_names]
     config = asdict(scatterer_recipe(SIGNALS[signal_names[0]](data).cube))
     return run.write(EXPERIMENT, "scatterers", config=config, rows=rows)

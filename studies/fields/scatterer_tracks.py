@@ -123,14 +123,14 @@ def fit_tracks(target: Tensor, fit_window: FitWindow, shape: TrackShape, frame_s
 
 
 def _with_signal(target: Tensor, axis: int) -> slice:
-    """Cells of an axis near those that hold nearly all of the energy: the others only cost memory."""
+    """Cells of an axis that hold nearly all of the energy, with neighbours; others only cost memory."""
     energy = target.abs().square().sum([other for other in range(4) if other != axis])
     strong = torch.nonzero(energy > 1e-4 * energy.max())[:, 0]
     return slice(max(0, int(strong[0]) - MARGIN_BINS), int(strong[-1]) + MARGIN_BINS + 1)
 
 
 def _amplitudes(columns: Tensor, wanted: Tensor) -> tuple[Tensor, Tensor]:
-    """Least-squares amplitudes (frame, track), and what they leave (frame, cell)."""
+    """Least-squares amplitudes (frame, track), and the residual (frame, cell)."""
     normal = columns.conj() @ columns.transpose(1, 2)
     ridge = 1e-6 * normal.diagonal(dim1=1, dim2=2).real.amax(dim=1)
     normal = normal + ridge[:, None, None] * torch.eye(normal.shape[-1])
@@ -159,7 +159,7 @@ def _geometry_step(geometry: Tensor, unit, columns: Tensor, amplitude: Tensor, l
 
 
 def compare(target: Tensor, fit_window: FitWindow, shape: TrackShape, frame_s: float) -> dict[str, float]:
-    """Errors in dB over the same frames: free points, tracks in as many numbers, and how many of each."""
+    """Errors in dB over the same frames: free points, tracks with as many parameters, and the number of each."""
     recipe = FitRecipe(num_points=POINTS_A_FRAME * shape.num_frames, with_static=False, least_gain=0.0)
     free = fitted(target, fit_window, recipe)
     each = values_of_point(fit_window.response)
@@ -182,7 +182,7 @@ def _db(ratio: float) -> float:
 
 
 def measure(run: StudyRun) -> Path:
-    """One row a shape of track, means over a few places of the sequence."""
+    """One row a shape of track, means over a few positions in the sequence."""
     signal = SIGNALS[SIGNAL](None)
     cube = signal.noise_free
     assert cube is not None

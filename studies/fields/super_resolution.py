@@ -73,9 +73,9 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True, kw_only=True)
 class UpsamplingMethod:
-    """A method to sample a cube anywhere, made from the cube alone; `settings` go into the result's config.
+    """A method to evaluate a cube at any position, made from the cube alone; `settings` go into the result's config.
 
-    One with `make_renderer` answers as a finer radar itself would, and only that is asked of it.
+    A method with `make_renderer` renders what a finer radar would record, and only those questions apply to it.
     """
 
     name: str
@@ -93,7 +93,7 @@ def _lines(cube: RadarCube, is_centred: bool) -> Sampler:
 
 
 def field_method(name: str, settings: dict[str, Any], make: Callable[[RadarCube], SignalField]) -> UpsamplingMethod:
-    """Any field as a method of this experiment."""
+    """Any field as a method of this study."""
     return UpsamplingMethod(name=name, make=lambda cube: make(cube).on_grid, settings=settings)
 
 
@@ -117,7 +117,7 @@ def methods(recipe_names: tuple[str, ...]) -> list[UpsamplingMethod]:
 
 
 def _scatterer_recipe(num_frames: int) -> ScattererRecipe:
-    """As many numbers a frame as the paper's INR has over 20."""
+    """As many parameters per frame as the paper's INR has over 20 frames."""
     num_values = PAPER_VALUES * num_frames // PAPER_FRAMES
     return ScattererRecipe(num_points=num_values, num_values=num_values, with_static=False)
 
@@ -177,7 +177,7 @@ def measure(run: StudyRun, recipe_names: tuple[str, ...], factors: tuple[float, 
 def finer_truths(
     factors: tuple[float, ...], kinds: tuple[str, ...] = tuple(FINER_RADARS)
 ) -> tuple[AdcCube, dict[tuple[str, float], RadarCube]]:
-    """A walker before the awr1843, and before radars that are finer, the middles of all frames at the same instants."""
+    """A walker recorded by the awr1843, and by finer radars, with the middles of all frames at the same instants."""
     finer = {(kind, factor): FINER_RADARS[kind](AWR1843, factor) for kind in kinds for factor in factors}
     delay_s = max(middle_delay_s(AWR1843, config) for config in finer.values())
     pose = pose_of("walking", seconds=NUM_FRAMES * AWR1843.frame_period_s + delay_s + 0.1)

@@ -45,12 +45,12 @@ class Sentence:
 
     @property
     def is_for_checking(self) -> bool:
-        """Half of the motions, by a hash of their number; the lexicon never saw their sentences."""
+        """Half of the motions, by a hash of their number; the lexicon was developed without their sentences."""
         return hashlib.sha256(self.motion.encode()).digest()[0] % 2 == 1
 
 
 def sentences_of(path: Path) -> list[Sentence]:
-    """All sentences but those of the mirrored motions, which are the same ones with sides swapped."""
+    """All sentences except those of the mirrored motions, which are the same with sides swapped."""
     annotations = json.loads(path.read_text(encoding="utf-8"))
     return [
         Sentence(name=note["seg_id"], motion=motion, text=note["text"])
@@ -61,7 +61,7 @@ def sentences_of(path: Path) -> list[Sentence]:
 
 
 def reading_of(plan: MotionPlan) -> str:
-    """A plan in a row: 'walk forwards x4 | turn left'."""
+    """A plan on one line: 'walk forwards x4 | turn left'."""
     parts = []
     for step in plan.steps:
         doing = step.upper if step.lower == "stand" and step.upper else "+".join(filter(None, (step.lower, step.upper)))
@@ -79,7 +79,7 @@ def reading_of(plan: MotionPlan) -> str:
 
 
 def understood(sentences: list[Sentence]) -> dict[str, str]:
-    """Name -> reading of the sentences that are understood."""
+    """{name: reading} of the sentences that are understood."""
     found = {}
     for sentence in sentences:
         try:
@@ -98,7 +98,7 @@ def sampled(readings: dict[str, str], checking: list[Sentence], before: Collecti
 def result_row(
     sentences: list[Sentence], judgements: Judgements, before: dict[str, Judgements], digest: str
 ) -> dict[str, Any]:
-    """Shares over all sentences and each half, and what the judgements say."""
+    """Shares over all sentences and each half, and the shares of wrong ones by hand annotation."""
     readings = understood(sentences)
     checking = [sentence for sentence in sentences if sentence.is_for_checking]
     developed = [sentence for sentence in sentences if not sentence.is_for_checking]
@@ -157,7 +157,7 @@ def _plain(text: str) -> str:
 
 
 def measure(run: StudyRun, folder: Path) -> Path:
-    """Writes results/kitml/reading.json; judgements are read from results/kitml/judgements.json."""
+    """Writes results/kitml/reading.json from the hand annotations in results/kitml/judgements.json."""
     path = folder / "kitml_annotations.json"
     judgements, before = _judgements(run.out, "judgements"), _before(run.out)
     row = result_row(sentences_of(path), judgements, before, hashlib.sha256(path.read_bytes()).hexdigest())

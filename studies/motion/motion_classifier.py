@@ -15,21 +15,21 @@ STEPS, WIDTH, SEED = 400, 64, 0
 
 @dataclass(frozen=True, kw_only=True)
 class MotionClassifier:
-    """A trained network and the mean and spread of what it sees."""
+    """A trained network with mean and standard deviation of its input."""
 
     network: nn.Module
     mean: Float[Array, " statistic"]
     std: Float[Array, " statistic"]
 
     def ranks(self, motions: list[Array]) -> Int[Array, "motion activity"]:
-        """Indices into ACTIVITIES for each motion (frame, 263), the likeliest first."""
+        """Indices into ACTIVITIES for each motion (frame, 263), the most likely first."""
         seen = (np.stack([statistics_of(motion) for motion in motions]) - self.mean) / self.std
         with torch.inference_mode():
             return self.network(torch.from_numpy(seen).float()).numpy().argsort(axis=1)[:, ::-1].copy()
 
 
 def statistics_of(features: Float[Array, "frame 263"]) -> Float[Array, " statistic"]:
-    """Mean, spread, least and most of each feature over time."""
+    """Mean, standard deviation, minimum and maximum of each feature over time."""
     parts = (features.mean(axis=0), features.std(axis=0), features.min(axis=0), features.max(axis=0))
     return np.concatenate(parts)
 

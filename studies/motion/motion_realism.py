@@ -49,7 +49,7 @@ SPEEDS = {"walking": (0.8, 1.6), "running": (1.8, 5.0)}
 
 
 def recorded(path: Path, activity: str) -> list[Places]:
-    """The clips of one activity, smoothed, z up; gaits are the straight, steady ones of a usual speed."""
+    """The clips of one activity, smoothed, z up; gaits are those that are straight, steady and of a usual speed."""
     with np.load(path, allow_pickle=False) as file:
         names, lengths, places = file["names"], file["lengths"], file["pos"].astype(float)
     found = []
@@ -82,7 +82,7 @@ def speed_of(joints: Places) -> float:
 
 
 def gait_figures(joints: Places) -> Figures:
-    """Of a straight, steady walk or run."""
+    """Figures of a straight, steady walk or run."""
     pelvis, speed = joints["pelvis"], speed_of(joints)
     cadence = cadence_hz(joints)
     time = np.arange(len(pelvis))
@@ -114,7 +114,7 @@ def cadence_hz(joints: Places) -> float:
 
 
 def jump_figures(joints: Places) -> Figures:
-    """Of a clip with at least one jump: its highest."""
+    """Figures of the highest jump of a clip."""
     toes = np.minimum(joints["left_foot"][:, 2], joints["right_foot"][:, 2])
     ground = float(np.percentile(toes, 10))
     top = int(np.argmax(toes))
@@ -138,7 +138,7 @@ def jump_figures(joints: Places) -> Figures:
 
 
 def _limb_figures(joints: Places) -> Figures:
-    """Speeds and accelerations that are passed 2 % of the time."""
+    """98th percentiles of speeds and accelerations over time."""
     return {
         "ankle_speed_mps": float(np.percentile(_speed(joints["left_ankle"]), 98)),
         "wrist_speed_mps": float(np.percentile(_speed(joints["left_wrist"]), 98)),
@@ -200,7 +200,7 @@ def compare(theirs: list[Figures], generated: list[Figures]) -> dict[str, dict[s
 
 
 def measure(run: StudyRun, folder: Path) -> Path:
-    """One row for walking, running, jumping."""
+    """Writes one row each for walking, running and jumping."""
     path = folder / "cmu_joints_m_120fps.npz"
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     rows = []

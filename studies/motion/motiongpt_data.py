@@ -60,14 +60,14 @@ class SentenceExample:
 
 
 def wide_room() -> Scene:
-    """A floor of 24 x 16 m, so that nothing is cut short."""
+    """A floor of 24 x 16 m, so that no motion is cut short."""
     x, y = np.arange(-12, 12.01, 0.25), np.arange(0.0, 16.01, 0.25)
     free = np.ones((len(y), len(x)), bool)
     return replace(empty_room(floor_z_m=-1.0), free_space=FreeSpace(x_m=x, y_m=y, is_free=free, is_seen=free))
 
 
 def library_examples(seeds: range, *, held_out_words: bool = False) -> Iterator[SentenceExample]:
-    """One motion of each activity for each seed; with `held_out_words` the sentence that is never trained on."""
+    """One motion of each activity for each seed; with `held_out_words`, sentences that are never trained on."""
     room = wide_room()
     for seed in seeds:
         for activity in ACTIVITIES:
@@ -92,7 +92,7 @@ def sentence_of(activity: str, seed: int, *, held_out: bool) -> str:
 
 
 def cmu_examples(data: Path, part: str) -> Iterator[SentenceExample]:
-    """Pieces of 4 s of CMU's walks, runs and jumps of one part ("train" or "test"); shorter clips as they are."""
+    """Pieces of 4 s of CMU's walks, runs and jumps of one part ("train" or "test"); shorter clips are not padded."""
     path = data / CMU_FILE
     for k, name in enumerate(clips_of(path)):
         kind = name.split("/")[1].removesuffix("_extra")

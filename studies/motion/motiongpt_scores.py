@@ -42,7 +42,7 @@ Motions = list[tuple[str, Array]]  # asked activity, features (frame, 263)
 
 
 def generated(model: MotionGPT, seeds: range, *, held_out_words: bool) -> Motions:
-    """One motion of each activity and seed; features taken anew from the joints that a user gets."""
+    """One motion of each activity and seed; features computed from the joints that a user gets."""
     made: Motions = []
     for seed in seeds:
         for activity in ACTIVITIES:
@@ -88,7 +88,7 @@ def interval(right: Bool[Array, " motion"], per_seed: int) -> list[float]:
 
 
 def bone_spread(motions: Motions) -> float:
-    """How much bones change their length: 5th to 95th percentile over the median, the mean over bones and motions."""
+    """Variation of bone lengths: 5th to 95th percentile over the median, mean over bones and motions."""
     spreads = []
     for _, features in motions:
         joints = joints_from_features(features)
@@ -101,7 +101,7 @@ def bone_spread(motions: Motions) -> float:
 
 
 def row(name: str, classifier: MotionClassifier, motions: Motions, seconds: float) -> dict[str, Any]:
-    """One line of the result. Where not every seed has every activity, intervals are over single motions."""
+    """One row of the result. Where not every seed has every activity, intervals are over single motions."""
     top1, top3 = hits(classifier, motions, 1), hits(classifier, motions, 3)
     together = len(ACTIVITIES) if len(motions) % len(ACTIVITIES) == 0 else 1
     asked = np.array([activity for activity, _ in motions])

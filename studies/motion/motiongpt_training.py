@@ -43,7 +43,7 @@ GROUPS = (
 
 @dataclass(frozen=True, kw_only=True)
 class MotiongptRecipe:
-    """The whole training."""
+    """Hyperparameters of the whole training."""
 
     tokenizer: TokenizerRecipe = field(default_factory=lambda: TokenizerRecipe(steps=7000, batch=24, frames=48))
     language: LanguageRecipe = field(default_factory=lambda: LanguageRecipe(steps=3500, batch=32))
@@ -52,9 +52,9 @@ class MotiongptRecipe:
 
 
 def statistics(examples: list[SentenceExample]) -> tuple[Float[Array, " feature"], Float[Array, " feature"]]:
-    """Mean of each feature, and one spread for each group of them, as HumanML3D has it.
+    """Mean of each feature, and one standard deviation per group of features, as HumanML3D defines it.
 
-    The spread of the root's channels is divided by 5, so that they count more; MotionGPT's own std does it by 25.
+    That of the root's channels is divided by 5, so that they have more weight; MotionGPT's own std divides by 25.
     """
     every = np.concatenate([example.features for example in examples])
     mean, std = every.mean(axis=0), every.std(axis=0)
@@ -65,8 +65,10 @@ def statistics(examples: list[SentenceExample]) -> tuple[Float[Array, " feature"
 
 
 def train(data: Path, work: Path, recipe: MotiongptRecipe | None = None) -> dict[str, Any]:
-    """Trains tokenizer and language model; gives everything that `save_weights` needs. Without CMU's files in `data`
-    the library alone is used."""
+    """Trains tokenizer and language model; returns the arguments of `save_weights`.
+
+    Without CMU's files in `data` the library alone is used.
+    """
     recipe = recipe or MotiongptRecipe()
     work.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)

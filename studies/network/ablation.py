@@ -64,7 +64,7 @@ class SampledExamples(RoomExamples):
 
 
 class _PartOfLoss(NetworkLearner):
-    """A learner that leaves terms of the loss out."""
+    """A learner without some terms of the loss."""
 
     def __init__(self, *arguments: Any, excluded: tuple[str, ...]):
         super().__init__(*arguments)
@@ -86,7 +86,7 @@ class AblationMaterial:
 
     @classmethod
     def of(cls, data: Path, rooms: int, most: int | None) -> "AblationMaterial":
-        """Of a data set: so many rooms to train in, at most so many to be evaluated in."""
+        """From a data set: so many rooms to train in, at most so many to evaluate in."""
         stored, plan = read_rooms(data), read_plan(data)
         train = [room for room in stored if "train" in room.split]
         unseen = tuple(room for room in stored if "validation" in room.split)
@@ -109,7 +109,7 @@ class AblationMaterial:
 
 
 def trained(variant: AblationVariant, material: AblationMaterial, out: Path, recipe: TrainingRecipe) -> NetworkLearner:
-    """The variant, best on validation by its own loss."""
+    """The variant, trained; its weights are those best on validation by its own loss."""
     recipe = replace(recipe, **dict(variant.recipe))
     rooms, unseen = material.sampled if variant.is_sampled else material.mean
     torch.manual_seed(recipe.seed)
@@ -126,7 +126,7 @@ def trained(variant: AblationVariant, material: AblationMaterial, out: Path, rec
 
 
 def photo_of(case: Case, variant: AblationVariant, generic: StoredRoom) -> StoredRoom:
-    """The room whose photo a variant is shown."""
+    """The room whose photo is the input of a variant."""
     return {"own": case.room, "generic": generic, "shuffled": case.other}[variant.photo]
 
 
@@ -143,7 +143,7 @@ def sampled_scores(method: Method, case: Case) -> dict[str, float]:
 
 
 def mean_scores(learner: NetworkLearner, photo: StoredRoom, case: Case) -> dict[str, float]:
-    """Differences of mean power maps in dB, of everything and of the person alone in the receiver's noise."""
+    """Differences of expected power maps in dB, of everything and of the person alone with receiver noise."""
     one = RoomExamples(case.room, "validation")
     joints = torch.from_numpy(case.room.joints_m[case.index])[None]
     velocity = torch.from_numpy(case.room.joint_velocity_mps[case.index])[None]
@@ -174,7 +174,7 @@ def _noisy(maps: PowerMaps, learner: NetworkLearner) -> PowerMaps:
 
 
 def row_of(name: str, each: list[dict[str, float]], rooms: list[str]) -> dict[str, Any]:
-    """One variant's row: means and intervals over rooms, and each case, to be compared pair by pair."""
+    """The row of a variant: means and intervals over rooms, and the value of each case for paired comparison."""
     metrics = {}
     for column in each[0]:
         mean, low, high = interval(np.array([one[column] for one in each]), rooms)
@@ -185,7 +185,7 @@ def row_of(name: str, each: list[dict[str, float]], rooms: list[str]) -> dict[st
 
 
 def slug(name: str) -> str:
-    """A variant's name as a file's."""
+    """The name of a variant as a file name."""
     return name.replace(",", "").replace(" ", "_")
 
 
@@ -225,7 +225,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
 def _evaluator(
     name: str, material: AblationMaterial, runs: Path, recipe: TrainingRecipe
 ) -> Callable[[Case], dict[str, float]]:
-    """What gives a row's figures of one case; a variant is trained when the first is asked for."""
+    """A function that scores one case; a variant is trained when the first case is scored."""
     if name in REFERENCES:
         return partial(sampled_scores, REFERENCES[name])
     variant, made = VARIANTS[name], []

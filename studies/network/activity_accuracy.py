@@ -27,7 +27,7 @@ SPLITS = ("test_room", "test_layout", "test_person")
 
 
 def row_of(network: ActivityNetwork, examples: ActivityExamples, split: str) -> dict[str, Any]:
-    """Accuracy in a split, its floors, and the confusion matrix."""
+    """Accuracy in a split, its baselines, and the confusion matrix."""
     answers, label = scores_of(network, examples).argmax(dim=1).numpy(), examples.label.numpy()
     mean, low, high = interval((answers == label).astype(np.float64), list(examples.room))
     counts = np.bincount(label, minlength=len(ACTIVITY_NAMES))

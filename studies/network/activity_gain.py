@@ -57,7 +57,7 @@ ALONE = "other_rooms"  # the head trained on without anything generated
 
 @dataclass(frozen=True)
 class UnseenRoom:
-    """A room that is to be recognised in, and one of another kind whose photo is the wrong one."""
+    """A room to recognise in, and a room of another kind whose photo is the wrong one."""
 
     room: StoredRoom
     other: StoredRoom
@@ -73,7 +73,7 @@ class UnseenRoom:
         return reconstruct(self.room.photo)
 
     def true_scene(self, room: StoredRoom) -> Scene:
-        """What a stored room is like, beyond its photo."""
+        """The ground truth scene of a stored room."""
         return make_room(room.kind, room.layout, self.plan_seed).scene(room.lighting)
 
 
@@ -109,7 +109,7 @@ def motions_in(room: UnseenRoom, each: int, seed: int) -> list[tuple[str, PoseSe
 
 
 def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) -> Method:
-    """Our physics in some room."""
+    """The simulator in some room."""
 
     def method(room: UnseenRoom) -> Maker:
         simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed)
@@ -129,7 +129,7 @@ def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) ->
 def with_generated(
     network: WeaverNetwork, scene_of: Callable[[UnseenRoom], Scene], *, recorded: bool = False
 ) -> Method:
-    """The network, given a photo, and `recorded` with a recording of the room with nobody in it."""
+    """The network with a photo, and with `recorded` a background recording too."""
 
     def method(room: UnseenRoom) -> Maker:
         config, num_frames = room.room.config, room.room.joints_m.shape[1]
@@ -172,13 +172,13 @@ def unseen_rooms(
 
 
 def labelled(network: ActivityNetwork, cubes: Iterable[RadarCube], names: list[str]) -> Labelled:
-    """Cubes as the network's convolutions see them."""
+    """Features of cubes by the convolutions of the network, with labels."""
     doppler, angle = compute_log_maps(cubes, network.config)
     return Labelled(frames=seen(network, doppler, angle), label=torch.tensor([ACTIVITY_NAMES.index(n) for n in names]))
 
 
 def seen(network: ActivityNetwork, doppler: Tensor, angle: Tensor) -> Tensor:
-    """Features of each frame, a few sequences at a time."""
+    """Features (sequence, frame, feature), computed for a few sequences at a time."""
     with torch.no_grad():
         parts = zip(doppler.split(32), angle.split(32), strict=True)
         return torch.cat([network.frames(one.float(), other.float()) for one, other in parts])
@@ -186,14 +186,14 @@ def seen(network: ActivityNetwork, doppler: Tensor, angle: Tensor) -> Tensor:
 
 @dataclass(frozen=True)
 class GainStudy:
-    """A recogniser, recordings of other rooms as it sees them, and whether its head begins anew."""
+    """A recogniser, features of recordings of other rooms, and whether its head is initialised anew."""
 
     network: ActivityNetwork
     base: Labelled
     begins_anew: bool = False
 
     def head(self) -> TimeHead:
-        """The head that is trained on."""
+        """The head that is fine-tuned."""
         head = copy.deepcopy(self.network.head)
         if self.begins_anew:
             for part in head.modules():
@@ -203,7 +203,7 @@ class GainStudy:
 
 
 def evaluated(study: GainStudy, own: Labelled | None, test: Labelled, seed: int) -> tuple[float, float]:
-    """Accuracy and log loss on test sequences once the head has been trained on; a quarter of a batch is the room's."""
+    """Accuracy and log loss on test sequences after fine-tuning the head; a quarter of each batch is of the room."""
     torch.manual_seed(seed)
     head, rng = study.head(), stream(seed, "activity gain head")
     rate = ANEW_RATE if study.begins_anew else LEARNING_RATE
@@ -234,7 +234,7 @@ Found = dict[str, list[float]]  # {method: accuracy, log loss} in one room
 def gained(
     study: GainStudy, room: UnseenRoom, methods: dict[str, Method], *, each: int, seed: int, split: str = "test_room"
 ) -> Found:
-    """What each method's data are worth in one room; besides, the head trained on with nothing generated."""
+    """What the data of each method are worth in one room, and the head fine-tuned without generated data."""
     network = study.network
     indices = [index for index, name in enumerate(room.room.split) if name == split]
     names = [room.room.activity[index] for index in indices]
@@ -259,7 +259,8 @@ def gains(
     split: str = "test_room",
     after: Callable[[dict[str, np.ndarray]], object] = lambda found: None,
 ) -> dict[str, np.ndarray]:
-    """{method: accuracy and log loss in each room, (room, 2)}; `after` is given what is there after each room."""
+    """{method: accuracy and log loss in each room, (room, 2)}; `after` is called with the results so far after each
+    room."""
     found: dict[str, list[list[float]]] = {}
     for seed, room in enumerate(rooms):
         one: Found = cache.figures(room.name, partial(gained, study, room, methods, each=each, seed=seed, split=split))
@@ -270,7 +271,7 @@ def gains(
 
 
 def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[str, Any]]:
-    """One row a method: accuracy and log loss, and how much better than trained on other rooms alone."""
+    """One row a method: accuracy and log loss, and the gain over training on other rooms alone."""
     names, rows = [room.name for room in rooms][: len(found[ALONE])], []
     for method, values in found.items():
         better = values - found[ALONE]
@@ -288,7 +289,7 @@ def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[
 
 
 def gain_study(recogniser_file: Path, data: Path, recordings: int | None) -> GainStudy:
-    """The recogniser and what it has seen elsewhere: all that it was trained on, or so many recordings of it."""
+    """The recogniser and its data of other rooms: all that it was trained on, or so many recordings."""
     if recordings is None:
         examples = activity_examples(data, TRAIN_SPLITS, recogniser_file.parent / TRAIN_MAPS, keep=False)
     else:
@@ -299,7 +300,7 @@ def gain_study(recogniser_file: Path, data: Path, recordings: int | None) -> Gai
 
 
 def few_of(label: np.ndarray, count: int) -> np.ndarray:
-    """Indices of `count` sequences, all activities in turn."""
+    """Indices of `count` sequences, alternating between activities."""
     rng = stream(0, "activity gain recordings")
     order = rng.permutation(len(label))
     place = np.zeros(len(label), int)  # how many of its activity come before
@@ -310,7 +311,7 @@ def few_of(label: np.ndarray, count: int) -> np.ndarray:
 
 
 def methods_of(weaver: WeaverNetwork, paper: Path | None) -> dict[str, Method]:
-    """Whose data is tried."""
+    """The methods whose data is compared."""
     methods: dict[str, Method] = {
         "weaver": with_generated(weaver, lambda room: room.photographed),
         "weaver_with_background": with_generated(weaver, lambda room: room.photographed, recorded=True),

@@ -47,7 +47,7 @@ Method = Callable[[int], RadarCube]
 
 
 def write_capture(folder: Path, room: StoredRoom, index: int, *, joints: bool) -> Path:
-    """One sequence as the folder that a user has; the photo lies in the folder above."""
+    """One sequence as a capture folder of a user; the photo is in the parent folder."""
     folder.mkdir(parents=True, exist_ok=True)
     cube = room.cube(index)
     write_radar_npz(folder / "radar.npz", cube)
@@ -131,7 +131,7 @@ def _learned(learned: LearnedRoom, room: StoredRoom) -> Method:
 
 
 def _together(cubes: list[RadarCube]) -> RadarCube:
-    """One recording after the other."""
+    """Recordings concatenated in time."""
     values = np.concatenate([cube.values for cube in cubes])
     config = cubes[0].config
     return RadarCube(values=values, grid=CubeGrid.of(config, len(values)), config=config, scale=cubes[0].scale)

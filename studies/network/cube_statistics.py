@@ -13,7 +13,7 @@ POOLED = 4  # neighbouring cells of a profile that are taken together
 
 
 def cube_statistics(cube: RadarCube, network: ActivityNetwork) -> np.ndarray:
-    """Statistics of the log maps and of the antennas, and what the activity network's head decides from, (number,)."""
+    """Statistics of the log maps and of the antennas, and the features of the activity network's head, (number,)."""
     values = torch.from_numpy(cube.values)
     with torch.no_grad():
         doppler, angle = network.maps(values)
@@ -24,7 +24,8 @@ def cube_statistics(cube: RadarCube, network: ActivityNetwork) -> np.ndarray:
 
 
 def _of_map(maps: Tensor) -> Tensor:
-    """Of log maps (frame, range, other): levels, profiles along both axes, steps along all three, what stays."""
+    """Statistics of log maps (frame, range, other): levels, profiles along both axes, differences along all three,
+    static part."""
     levels = torch.quantile(maps.flatten(), torch.tensor(LEVELS))
     profiles = [maps.mean(dim=axes) for axes in ((0, 1), (0, 2))] + [maps.amax(dim=axes) for axes in ((0, 1), (0, 2))]
     pooled = [profile.unflatten(0, (-1, POOLED)).mean(dim=1) for profile in profiles]
@@ -35,7 +36,7 @@ def _of_map(maps: Tensor) -> Tensor:
 
 
 def _of_antennas(cube: RadarCube) -> Tensor:
-    """Shares of the covariance's eigenvalues of the horizontal row, and how similar the antennas are in power."""
+    """Normalised eigenvalues of the covariance of the horizontal row, and the similarity of the antennas' power."""
     row = azimuth_row(cube.grid.antenna_position_m, cube.grid.wavelength_m)
     signal = cube.values[..., row].reshape(-1, len(row)).astype(np.complex128)
     covariance = signal.T @ signal.conj()

@@ -45,7 +45,7 @@ def halves(rooms: list[StoredRoom], seed: int) -> tuple[list[StoredRoom], list[S
 
 
 def tuned(weights: Path, rooms: list[StoredRoom], shots: int, out: Path, seed: int) -> WeaverNetwork:
-    """The network after so many jumps, one or more a room; all steps are taken, for there is nothing to validate on."""
+    """The network tuned on so many jumps, one or more a room, for all steps: nothing is left to validate on."""
     network = load_weights(weights)[0]
     if shots == 0:
         return network
@@ -69,7 +69,7 @@ def _jumps(room: StoredRoom) -> list[int]:
 
 
 def evaluated(method: Method, cases: list[Case]) -> dict[str, dict[str, float | str]]:
-    """{column: mean and interval over rooms}."""
+    """{column: metric with mean and interval over rooms}."""
     values: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for case in cases:
         truth, prediction = Representations(case.room.cube(case.index)), Representations(method(case))

@@ -54,7 +54,7 @@ OTHER = 1000  # added to a person's number for other skin
 
 @dataclass(frozen=True)
 class Case:
-    """One sequence of an unseen room, with everything a method may be given."""
+    """One sequence of an unseen room, with everything a method may use."""
 
     room: StoredRoom
     index: int
@@ -83,7 +83,7 @@ Method = Callable[[Case], RadarCube]
 
 
 def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0) -> Method:
-    """Our physics in some room, always with another noise than the truth's."""
+    """The simulator in some room, always with another noise seed than the ground truth."""
 
     def method(case: Case) -> RadarCube:
         simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed)
@@ -98,7 +98,7 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
 
 
 def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
-    """The network, given a photo, and `recorded` with as many frames of the empty room as the radar records them."""
+    """The network with a photo, and with `recorded` as many frames of background recording as the sequence has."""
 
     def method(case: Case) -> RadarCube:
         config = case.room.config
@@ -114,12 +114,12 @@ def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, re
 
 
 def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int) -> RadarCube:
-    """What the radar records of a room with nobody in it, noise and all."""
+    """The radar's recording of a room with nobody in it, with noise."""
     return radar_cube(Simulator(scene, config).run((), num_frames=num_frames, seed=seed).adc)
 
 
 def nearest(train: list[StoredRoom]) -> Method:
-    """The training sequence whose joints are nearest in the radar's frame, as it was recorded."""
+    """The recorded training sequence whose joints are nearest in the frame of the radar."""
     pool = [(room, index) for room in train for index, split in enumerate(room.split) if split == "train"]
     joints = np.stack([room.joints_m[index] for room, index in pool])
 
@@ -132,7 +132,7 @@ def nearest(train: list[StoredRoom]) -> Method:
 
 
 def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
-    """The mean of one sequence of each training room over frames and rooms: the static mean without the truth's."""
+    """The mean of one sequence of each training room over frames and rooms: a static mean without the ground truth."""
     found = [(room, room.split.index("train")) for room in train if "train" in room.split][:most]
 
     @lru_cache(maxsize=1)
@@ -148,7 +148,7 @@ def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
 
 
 def scored(cases: list[Case], methods: dict[str, Method]) -> dict[str, dict[str, np.ndarray]]:
-    """{method: {column: value of each case}}; the floors come along, and CPU seconds."""
+    """{method: {column: value of each case}}, with baselines and CPU seconds."""
     rows: dict[str, dict[str, list[float]]] = {}
 
     def add(name: str, values: dict[str, float]) -> None:
@@ -185,13 +185,13 @@ def _floor_cube(name: str, truth: RadarCube) -> RadarCube:
 
 
 def _magnitude_nmse_db(cube: RadarCube, truth: RadarCube) -> float:
-    """Error of |cube| over the energy of the truth: what is left when phases count for nothing."""
+    """Squared error of |cube| over the energy of the ground truth: independent of phases."""
     error = np.abs(cube.values) - np.abs(truth.values)
     return float(10 * np.log10((error**2).sum() / (np.abs(truth.values) ** 2).sum()))
 
 
 def energy_db(cube: RadarCube, truth: RadarCube) -> float:
-    """A cube's energy over the truth's: what has collapsed to zeros has little."""
+    """The energy of a cube over that of the ground truth; very low for a method that has collapsed to zeros."""
     energy = [float((np.abs(each.values).astype(np.float64) ** 2).sum()) for each in (cube, truth)]
     return float(10 * np.log10(max(energy[0], 1e-30) / energy[1]))
 
@@ -208,8 +208,9 @@ def interval(values: np.ndarray, rooms: list[str], seed: int = 0) -> tuple[float
 def cases_of(
     rooms: list[StoredRoom], split: str, each: int, plan: dict[str, Any], seed: int, most: int | None = None
 ) -> list[Case]:
-    """`each` sequences of every room that has the split, or of at most so many rooms; the wrong photo is that of a
-    room of another kind.
+    """`each` sequences of every room that has the split, or of at most `most` rooms.
+
+    The wrong photo is that of a room of another kind.
     """
     rng = stream(seed, "cases", split)
     chosen = [room for room in rooms if split in room.split]

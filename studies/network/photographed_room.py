@@ -87,7 +87,7 @@ def _adc(room: RayTracedRoom) -> np.ndarray:
 
 
 def _parts(room: RayTracedRoom, turned: np.random.Generator | None = None) -> dict[Interaction, np.ndarray]:
-    """Samples of the room's static paths by kind, with other phases where `turned` samples them."""
+    """Samples of the static paths of a room by kind, with other phases where `turned` samples them."""
     found = {}
     for kind in room.counts:
         part = room.paths.of_kind(kind)

@@ -38,16 +38,16 @@ TRUE, GENERATED = "true", "generated"
 
 
 def folds_of(rooms: list[str], seed: int = 0) -> list[set[str]]:
-    """Rooms shared out into five parts."""
+    """Rooms divided into five folds."""
     names = np.array(sorted(set(rooms)))
     order = stream(seed, "real or generated").permutation(len(names))
     return [set(names[order[fold::FOLDS]].tolist()) for fold in range(min(FOLDS, len(names)))]
 
 
 def real_or_simulated_scores(true: np.ndarray, made: np.ndarray, rooms: list[str]) -> np.ndarray:
-    """Share of right answers for each case, its true and its generated cube: 0, 0.5 or 1.
+    """Share of right answers for each case, its ground truth and its generated cube: 0, 0.5 or 1.
 
-    Statistics (case, number), both in the same order, and each case's room; no room is both learned from and evaluated.
+    Statistics (case, number), both in the same order, and the room of each case; no room is both in training and test.
     """
     right = np.zeros(len(rooms))
     for held in folds_of(rooms):

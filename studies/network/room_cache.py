@@ -10,10 +10,10 @@ from mmweaver.core.atomic_files import atomic_file
 
 
 class RoomCache:
-    """A folder of JSON files, one a room, for one setting of an experiment.
+    """A folder of JSON files, one a room, for one setting of a study.
 
-    `about` is everything the figures depend on: with other settings, weights or data nothing is found again. Without a
-    folder nothing is cache.
+    `about` is everything the scores depend on: with other settings, weights or data nothing is found again. Without a
+    folder nothing is cached.
     """
 
     def __init__(self, folder: Path | None, about: dict[str, Any]):
@@ -21,7 +21,7 @@ class RoomCache:
         self.folder = None if folder is None else folder / mark
 
     def figures(self, name: str, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-        """What is cache of a room, or what `make` gives, which is cache then."""
+        """The cached scores of a room, or those that `make` returns, which are then cached."""
         if self.folder is None:
             return make()
         file = self.folder / f"{name}.json"
@@ -34,5 +34,5 @@ class RoomCache:
 
 
 def digest(file: Path) -> str:
-    """A file's sha256."""
+    """The sha256 of a file."""
     return hashlib.sha256(file.read_bytes()).hexdigest()

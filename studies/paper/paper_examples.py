@@ -31,7 +31,7 @@ POINTS, FRAMES = 16_384, 2
 
 @dataclass(frozen=True, kw_only=True)
 class PaperBatch:
-    """Sequences, each of another room, and a patch of each."""
+    """Sequences, each of another room, with a patch of each."""
 
     image: Tensor  # (sequence, 5, row, column)
     motion: Tensor  # (sequence, frame, 22, 6), all frames
@@ -42,7 +42,7 @@ class PaperBatch:
 
 
 class PaperRoom:
-    """One stored room: its photo as the network sees it, and the sequences of one split."""
+    """One stored room: its photo as the network gets it, and the sequences of one split."""
 
     def __init__(self, room: StoredRoom, split: str):
         self.room = room
@@ -57,8 +57,10 @@ class PaperRoom:
 
 
 def paper_rooms(folder: Path, split: str, device: str = "cpu") -> list[PaperRoom]:
-    """The rooms that have sequences of a split; signals that are not stored are made on `device` when a batch wants
-    them. Raises InputError where there are none."""
+    """The rooms that have sequences of a split; signals that are not stored are synthesised on `device` when needed.
+
+    Raises InputError where there are none.
+    """
     rooms = [PaperRoom(room, split) for room in read_rooms(folder, device=device) if split in room.split]
     if not rooms:
         raise InputError(f"{folder} has no sequences of split {split!r}; make more with: mmweaver dataset")
@@ -66,7 +68,7 @@ def paper_rooms(folder: Path, split: str, device: str = "cpu") -> list[PaperRoom
 
 
 def sample_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: int, share: Share = (0, 1)) -> PaperBatch:
-    """`size` sequences of as many rooms, of them the share of one process; the same seed and step give the same."""
+    """`size` sequences of as many rooms, and of them the share of one process; determined by seed and step."""
     rng = stream(seed, "paper batch", step)
     images, motions, frames, encoded, truth, span = [], [], [], [], [], []
     for number, which in enumerate(rng.choice(len(rooms), size=size, replace=len(rooms) < size)):
@@ -93,7 +95,7 @@ def sample_paper_batch(rooms: list[PaperRoom], seed: int, step: int, *, size: in
 
 
 def _patch(cube: RadarCube, rng: np.random.Generator) -> tuple[int, int]:
-    """The first range of the patch and how many; half of the patches where the first frame moves."""
+    """First range and length of the patch; half of the patches lie where the first frame has motion."""
     _, num_ranges, num_loops, num_antennas = cube.values.shape
     length = min(num_ranges, max(1, POINTS // (FRAMES * num_loops * num_antennas)))
     middle = int(rng.integers(num_ranges))

@@ -78,7 +78,7 @@ ACTIVATIONS: dict[str, Callable[[torch.Tensor], torch.Tensor]] = {"relu": torch.
 
 
 def _activate(activation: str, z: torch.Tensor) -> None:
-    """In place. What is negative as a bfloat16 is negative as an int16, whose maximum takes a sixth of the time."""
+    """In place. A negative bfloat16 is a negative int16, whose maximum takes a sixth of the time."""
     if activation == "relu" and z.dtype == torch.bfloat16:
         z.view(torch.int16).clamp_min_(0)
     elif activation == "relu":
@@ -127,7 +127,8 @@ class InrShape:
         return layers
 
     def fresh(self, generator: np.random.Generator) -> Weights:
-        """Weights as torch's Linear draws them: even in +-1 / sqrt(fan in), biases too; for sines as SIREN does."""
+        """Weights as torch's Linear initialises them: uniform in +-1 / sqrt(fan in), biases too; for sines as SIREN
+        does."""
         parts = []
         for at, (fan_in, fan_out) in enumerate(zip(self.sizes, self.sizes[1:], strict=False)):
             reach = 1 / np.sqrt(fan_in)
@@ -216,7 +217,7 @@ def evaluate_on_axes(
 
 
 class _FrameDecoder:
-    """Frames one after the other in the same two buffers: fresh memory costs as much as the arithmetic."""
+    """Frames one after the other in the same two buffers: allocating memory costs as much as the arithmetic."""
 
     def __init__(self, shape: InrShape, theta: Weights, terms: list[torch.Tensor], dtype: torch.dtype):
         self.shape, self.theta, self.dtype = shape, theta, dtype
@@ -253,10 +254,10 @@ class _FrameDecoder:
 
 
 class InrField(SignalField):
-    """A sequence held by the proposed INR: theta for all frames, gamma and beta for each.
+    """A sequence represented by the proposed INR: theta for all frames, gamma and beta for each.
 
-    Between frames gamma and beta are interpolated. `amplitude` is what 1.0 of the network means in the cube's unit;
-    `is_centred` says that the network holds the phase-centred cube (see fields.phase_centring).
+    Between frames gamma and beta are interpolated. `amplitude` is the value of the network's 1.0 in the unit of the
+    cube; `is_centred`: the network represents the phase-centred cube (see fields.phase_centring).
     """
 
     def __init__(
@@ -315,7 +316,7 @@ class InrField(SignalField):
         ]
 
     def _modulation_at(self, frame: Float[np.ndarray, "_"]) -> tuple[Modulation, Modulation]:
-        """gamma and beta at fractional frame numbers; held beyond the first and the last."""
+        """gamma and beta at fractional frame numbers; constant before the first and after the last."""
         at = np.clip(frame, 0, len(self.gamma) - 1)
         low = np.minimum(at.astype(np.int64), max(len(self.gamma) - 2, 0))
         high = np.minimum(low + 1, len(self.gamma) - 1)
@@ -327,7 +328,7 @@ class InrField(SignalField):
 
 
 class BaseInrField(SignalField):
-    """A sequence held by the base INR: time is a fourth coordinate."""
+    """A sequence represented by the base INR: time is a fourth coordinate."""
 
     def __init__(
         self,

@@ -16,10 +16,10 @@ SHARE_CSSIM, SHARE_MSE, SHARE_PERCEPTUAL = 0.5, 0.3, 0.2
 def paper_loss(
     made: Tensor, truth: Tensor, span: Tensor, perceiver: ActivityNetwork, unit_sqrt_mw: float
 ) -> dict[str, Tensor]:
-    """Terms of the loss, already in their shares.
+    """Terms of the loss, weighted.
 
-    Complex patches (sequence, frame, range, doppler, antenna) in the network's unit; `span` (sequence,) is the data
-    range of each sequence, as the metric cSSIM has it; `unit_sqrt_mw` what 1.0 is.
+    Complex patches (sequence, frame, range, doppler, antenna) in the unit of the network; `span` (sequence,) is the
+    data range of each sequence as in the metric cSSIM; `unit_sqrt_mw` is the value of 1.0 in sqrt(mW).
     """
     similarity = torch.stack([_ssim(part(made), part(truth), span).mean() for part in (torch.real, torch.imag)]).mean()
     squared = (made - truth).abs().square().mean() / 2
@@ -35,7 +35,7 @@ def paper_loss(
 
 
 def _ssim(made: Tensor, truth: Tensor, span: Tensor) -> Tensor:
-    """SSIM at each place of (sequence, frame, range, doppler, antenna); as metrics.ssim, differentiable."""
+    """SSIM at each cell of (sequence, frame, range, doppler, antenna); as metrics.ssim, differentiable."""
     p, t = made.movedim(-1, 2), truth.movedim(-1, 2)
     c1, c2 = ((k * span)[:, None, None, None, None].square() for k in (K1, K2))
     mean_p, mean_t = _smoothed(p), _smoothed(t)
@@ -46,7 +46,7 @@ def _ssim(made: Tensor, truth: Tensor, span: Tensor) -> Tensor:
 
 
 def _smoothed(maps: Tensor) -> Tensor:
-    """Gaussian windows over the last two axes, as two products of matrices; edges are mirrored, edge cells too."""
+    """Gaussian windows over the last two axes, as two matrix products; boundaries reflect, edge cells included."""
     rows, columns = (_window(size).to(maps.device) for size in maps.shape[-2:])
     return rows @ maps @ columns.T
 
@@ -55,7 +55,7 @@ _WINDOWS: dict[int, Tensor] = {}
 
 
 def _window(size: int) -> Tensor:
-    """(size, size): each row the weights of one place's window."""
+    """(size, size): each row holds the window weights of one position."""
     if size not in _WINDOWS:
         taps = np.exp(-0.5 * (np.arange(-WINDOW_RADIUS, WINDOW_RADIUS + 1) / WINDOW_SIGMA) ** 2)
         places = np.pad(np.arange(size), WINDOW_RADIUS, mode="symmetric")

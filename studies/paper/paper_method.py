@@ -30,7 +30,7 @@ def load_paper(file: Path) -> PaperNetwork:
 
 
 def paper_method(weights: Path) -> Callable[[Any], RadarCube]:
-    """A row for `learned_scores`: the cube of a `Case`, of which it sees room.photo, room.config and joints."""
+    """A row of `learned_scores`: the cube of a `Case`, from room.photo, room.config and joints."""
     network = load_paper(weights)
 
     def method(case: Any) -> RadarCube:
@@ -43,7 +43,7 @@ def paper_method(weights: Path) -> Callable[[Any], RadarCube]:
 def paper_field(
     network: PaperNetwork, scene: Scene, config: RadarConfig, joints_m: np.ndarray, velocity_mps: np.ndarray
 ) -> InrField:
-    """The INR that the network writes of a room's photo and one motion. Raises InputError for other joints."""
+    """The INR that the network predicts from the photo of a room and one motion. Raises InputError for other joints."""
     if joints_m.shape != velocity_mps.shape or joints_m.shape[1:] != (22, 3):
         raise InputError(f"the network needs joints and velocities (frame, 22, 3), not {joints_m.shape}")
     return field_of_image(network, SceneTensors.of(scene, config).image, config, joints_m, velocity_mps)
@@ -52,7 +52,7 @@ def paper_field(
 def field_of_image(
     network: PaperNetwork, image: Tensor, config: RadarConfig, joints_m: np.ndarray, velocity_mps: np.ndarray
 ) -> InrField:
-    """The same of a room's picture (5, row, column); the field lies on the CPU wherever the network does."""
+    """The same from a picture (5, row, column) of a room; the field is on the CPU wherever the network is."""
     device = next(network.parameters()).device
     motion = motion_of(torch.from_numpy(joints_m).float(), torch.from_numpy(velocity_mps).float())
     with torch.inference_mode():
@@ -68,10 +68,10 @@ def _on(device: torch.device, *tensors: Tensor) -> list[Tensor]:
 
 
 def motion_of(joints_m: Tensor, velocity_mps: Tensor) -> Tensor:
-    """What the pose encoder reads, (..., frame, 22, 6)."""
+    """Input of the pose encoder, (..., frame, 22, 6)."""
     return torch.cat([joints_m, velocity_mps], dim=-1) / MOTION_SCALE
 
 
 def unit_sqrt_mw(config: RadarConfig) -> float:
-    """What the network's 1.0 stands for: about a usual sequence's largest |I| or |Q|."""
+    """The value of the network's 1.0 in sqrt(mW): about the largest |I| or |Q| of a typical sequence."""
     return float(np.sqrt(config.noise_power_mw)) * 10 ** (UNIT_DB / 20)

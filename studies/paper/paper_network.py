@@ -21,8 +21,8 @@ TRUNK_WIDTH = 1088
 class Hypernetwork(nn.Module):
     """z_env (sequence, 512) and z_pose (sequence, frame, 512) -> theta (sequence, 4898) and gamma, beta.
 
-    z_env is repeated over the frames and joined to z_pose; theta comes from the mean over the frames. gamma and beta
-    are (sequence, frame, 4, 32); gamma starts around 1, the rest as the layers' own start has it.
+    z_env is repeated over the frames and concatenated with z_pose; theta comes from the mean over the frames. gamma and
+    beta are (sequence, frame, 4, 32); gamma is initialised around 1, the rest as the layers' default.
     """
 
     def __init__(self, shape: InrShape | None = None):

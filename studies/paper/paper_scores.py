@@ -73,7 +73,7 @@ def rows_of(scores: dict[str, dict[str, np.ndarray]], cases: list[Case]) -> list
 
 
 def learning_curve(folder: Path) -> list[dict[str, Any]]:
-    """Validations of the run whose weights lie in a folder: step, loss and what it consists of; none without a log."""
+    """Validations of a training run in a folder: step, loss and its terms; empty without a log."""
     file = folder / LOG
     if not file.is_file():
         return []

@@ -42,7 +42,7 @@ class PaperRecipe(LoopRecipe):
 
 
 class PaperLearner(Learner):
-    """The network with the paper's loss; `shown` gives the rooms whose first sequences its picture shows."""
+    """The network with the paper's loss; `shown` returns the rooms whose first sequences its picture shows."""
 
     def __init__(
         self,
@@ -56,7 +56,7 @@ class PaperLearner(Learner):
         self._perceiver = (perceiver.requires_grad_(False),)  # no module of this one: its weights are not trained
 
     def _apply(self, fn: Any, recurse: bool = True) -> "PaperLearner":
-        """The perceiver goes where the network goes."""
+        """Moves the feature network along with this one."""
         super()._apply(fn, recurse)
         self._perceiver[0].to(next(self.network.parameters()).device)
         return self
@@ -105,8 +105,8 @@ def train_paper(
 ) -> Trainer:
     """Trains on split `train`, or continues from `out`/checkpoint.pt; `features`: weights of recipe `activity`.
 
-    Keeps what is best on split `validation`. `start`: weights to fine-tune. `options` go to `Trainer`. Raises
-    InputError for folders without data and foreign weights.
+    Returns the trainer with the weights that were best on split `validation`. `start`: weights to fine-tune. `options`
+    go to `Trainer`. Raises InputError for folders without data and foreign weights.
     """
     device = str((compute or ComputeDevice()).device)
     rooms, unseen = paper_rooms(data, "train", device), paper_rooms(data, "validation", device)

@@ -16,10 +16,10 @@ OCTAVES: Frequencies = tuple(2.0**i for i in range(NUM_FREQUENCIES))  # the pape
 
 
 def harmonics(num_cells: int, highest: float = 1.0) -> Frequencies:
-    """As many evenly spaced frequencies, the last at `highest` of what an axis of so many cells can resolve.
+    """`num` evenly spaced frequencies, the last at `highest` of what an axis of so many cells can resolve.
 
-    The octaves go to 128 radians whatever the axis: 12 antennas hold 17, 32 Doppler bins 49, 64 range bins 99. What
-    lies above fits the cells as well, but rings between them.
+    The octaves go to 128 radians for every axis: 12 antennas resolve 17, 32 Doppler bins 49, 64 range bins 99. Higher
+    frequencies fit the cells as well, but ring between them.
     """
     nyquist = np.pi * max(num_cells - 1, 1) / 2
     return tuple(float(highest * nyquist * (i + 1) / NUM_FREQUENCIES) for i in range(NUM_FREQUENCIES))
@@ -45,11 +45,11 @@ def encode_axis(
 def positional_encoding(
     x_norm: Float[torch.Tensor, "point axis"], frequencies: tuple[Frequencies, ...] | None = None
 ) -> Float[torch.Tensor, "point encoded"]:
-    """All coordinates, axis after axis, so that a linear layer upon it is a sum of one term an axis."""
+    """All coordinates, axis after axis, so that a linear layer on it is a sum of one term per axis."""
     frequencies = frequencies or (OCTAVES,) * x_norm.shape[1]
     return torch.cat([encode_axis(x_norm[:, axis], each) for axis, each in enumerate(frequencies)], dim=1)
 
 
 def normalised(cell: Float[np.ndarray, "_"], num_cells: int) -> Float[np.ndarray, "_"]:
-    """Cell numbers 0..num-1 to [-1, 1]; the one cell of an axis of length 1 is 0."""
+    """Cell indices 0..num-1 mapped to [-1, 1]; the one cell of an axis of length 1 to 0."""
     return 2 * cell / (num_cells - 1) - 1 if num_cells > 1 else np.zeros(len(cell))

@@ -29,11 +29,11 @@ from studies.paper.positional_encoding import OCTAVES, harmonics, normalised
 
 @dataclass(frozen=True, kw_only=True)
 class InrFitRecipe:
-    """How one sequence is fitted.
+    """Hyperparameters of fitting one sequence.
 
-    `favour` names what half of the samples are taken from: "active_ranges" (frames' ranges with something that moves,
-    as the paper says; the loss is left biased towards them) or "active_cells" (the loss is weighted back to that of
-    even samples). `peak_is_one`: the network's 1.0 is the largest |I| or |Q|; else its rms is 1/3.
+    `favour`: where half of the samples come from, "active_ranges" (ranges of frames with motion, as the paper says; the
+    loss stays biased towards them) or "active_cells" (the loss is weighted back to uniform samples). `peak_is_one`: the
+    network's 1.0 is the largest |I| or |Q|; otherwise its rms is 1/3.
     """
 
     name: str
@@ -87,7 +87,7 @@ RECIPES: Registry[InrFitRecipe] = Registry(
 
 @dataclass(frozen=True, kw_only=True)
 class Fit:
-    """A fitted field and what it cost."""
+    """A fitted field and its cost."""
 
     field: SignalField
     seconds: float  # of CPU
@@ -112,7 +112,7 @@ def fit(cube: RadarCube, recipe: InrFitRecipe, *, seed: int = 0, device: str = "
 
 
 def _amplitude(values: np.ndarray, peak_is_one: bool) -> float:
-    """What 1.0 of the network stands for."""
+    """The value of the network's 1.0."""
     parts = np.ascontiguousarray(values).view(np.float32)
     amplitude = (
         float(np.abs(parts).max()) if peak_is_one else 3 * float(np.sqrt(np.mean(parts.astype(np.float64) ** 2)))
@@ -237,7 +237,7 @@ class _Network:
 
 
 def inr_shape(recipe: InrFitRecipe, grid_shape: tuple[int, ...]) -> InrShape:
-    """The network that a recipe asks for, on a grid of (frame, range, doppler, antenna) cells."""
+    """The network of a recipe, on a grid of (frame, range, doppler, antenna) cells."""
     highest = recipe.highest_harmonic
     if highest is None:
         frequencies = (OCTAVES,) * len(grid_shape)

@@ -31,7 +31,7 @@ METRICS = {
 
 @dataclass(frozen=True, kw_only=True)
 class CloudScores:
-    """Each metric's value with the 95 % interval over the pieces; a metric that does not apply is missing."""
+    """Value and 95 % interval over the pieces of each metric; a metric that does not apply is missing."""
 
     num_frames: int
     values: dict[str, float]
@@ -45,7 +45,7 @@ class CloudScores:
         return "  ".join(f"{name} {value:.3f}" for name, value in self.values.items())
 
     def metrics(self, floor: "CloudScores") -> dict[str, Any]:
-        """As results/*.json hold them."""
+        """The metrics of a result row, with `floor` as the baseline."""
         return {
             name: {
                 "value": round(value, 4),
@@ -60,7 +60,7 @@ class CloudScores:
 
 
 def part_of(cloud: PointCloud, frame: int) -> PointCloud:
-    """The points of one frame, of the same kind as the cloud."""
+    """The points of one frame, as a cloud of the same type."""
     chosen = cloud.frame == frame
     return type(cloud)(**{field.name: getattr(cloud, field.name)[chosen] for field in fields(cloud)})
 

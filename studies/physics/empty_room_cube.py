@@ -10,7 +10,7 @@ HALF_M = 4.0
 def empty_room(*, floor_z_m: float, has_floor: bool = True, wall_y_m: float | None = None) -> Scene:
     """A concrete floor at `floor_z_m` (below the radar, so negative) and a plasterboard wall `wall_y_m` ahead.
 
-    Without a floor the plane is still named, far below, for a scene always has one.
+    Without a floor its plane is set far below, as a scene always has one.
     """
     floor = _plane(
         "floor", (0.0, HALF_M, floor_z_m if has_floor else floor_z_m - 100), (0, 0, 1), (1, 0, 0), "concrete"

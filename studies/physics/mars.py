@@ -49,7 +49,7 @@ Clouds = list[tuple[PointCloud, ...]]  # one tuple a piece, one cloud a sample
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
-    """The numbers that are estimated; all global, none of a frame."""
+    """The estimated parameters; all are global, none belongs to a frame."""
 
     shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0)  # from the Kinect's frame to the radar's
     gain_db: float = 0.0  # against the preset's receiver
@@ -59,7 +59,7 @@ class Setup:
 
 @dataclass(frozen=True, kw_only=True)
 class MarsVariant:
-    """What is changed in the simulator; the defaults are the simulator as it stands."""
+    """Changes of the simulator; the defaults are the simulator itself."""
 
     impairments: Impairments = Impairments()  # noqa: RUF009 (frozen)
     brighter_db: float = 0.0
@@ -101,7 +101,7 @@ VARIANTS: dict[str, MarsVariant] = {
 
 
 def settings_of(setup: Setup) -> FirmwareSettings:
-    """The firmware's settings with the threshold estimated."""
+    """The settings of the firmware with the estimated threshold."""
     base = FIRMWARE["iwr1443_mars"]
     assert base.range_cfar is not None, "the preset has a CFAR in range"
     return replace(base, range_cfar=replace(base.range_cfar, threshold=setup.threshold))
@@ -140,12 +140,12 @@ def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed
 
 
 def _smoothed(joints_m: np.ndarray, frames: float) -> np.ndarray:
-    """A Gaussian of so many frames over time."""
+    """Gaussian smoothing over time, of a width in frames."""
     return gaussian_filter1d(joints_m, frames, axis=0, mode="nearest") if frames else joints_m
 
 
 def detect(adcs: list[AdcCube], pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) -> Clouds:
-    """What the chain reports at the frames that were recorded, cut to the box that the recordings were cut to."""
+    """Detections of the firmware's chain at the recorded frames, cropped to the box of the recordings."""
     settings = settings_of(setup)
     if variant.grouped:
         settings = replace(settings, group_range=True, group_doppler=True)
@@ -163,11 +163,11 @@ def detect(adcs: list[AdcCube], pieces: list[MarsStretch], setup: Setup, variant
 
 # estimation ---------------------------------------------------------------------------------------------------------
 def calibrate(pieces: list[MarsStretch], report: Callable[[str], object] = print) -> Setup:
-    """The global numbers, from `validate` alone.
+    """The global parameters, from `validate` alone.
 
-    Left and right, near and far by the median distance of the clouds' centroids; the gain by the median intensity and
-    the threshold by the mean number of points; height by the Chamfer distance, for the beam holds the centroid's height
-    where it is, wherever the body is.
+    Position from the median distance of the centroids of the clouds; gain from the median intensity and threshold from
+    the mean number of points; height from the Chamfer distance, as the beam fixes the height of the centroid wherever
+    the body is.
     """
     real: Clouds = [piece.clouds for piece in pieces]
     setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
@@ -187,7 +187,7 @@ def _best(tried: list[Setup], pieces: list[MarsStretch], real: Clouds, report: C
 
 
 def _centred(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
-    """The radar's place moved sideways and in depth until the centroids agree."""
+    """The position of the radar shifted sideways and in depth until the centroids agree."""
     right, ahead, _ = _centroid_offset(_simulated(pieces, setup, MarsVariant()), real)
     x, y, z = setup.shift_m
     return replace(setup, shift_m=(round(float(x - right), 3), round(float(y - ahead), 3), z))
@@ -205,7 +205,7 @@ def _middle(cloud: PointCloud) -> np.ndarray:
 
 
 def _levels(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
-    """Gain, then threshold, twice: the threshold decides which intensities are left."""
+    """Gain, then threshold, twice: the threshold decides which intensities remain."""
     wanted = np.mean([len(cloud.x_m) for piece in real for cloud in piece])
     adcs = simulate(pieces, setup, MarsVariant())
     for _ in range(2):
@@ -236,7 +236,7 @@ def centroid_baseline(pieces: list[MarsStretch], setup: Setup) -> Clouds:
 
 
 def surface_baseline(pieces: list[MarsStretch], setup: Setup, num: int) -> Clouds:
-    """As many points as an average frame has, anywhere on the body's skin."""
+    """As many points as an average frame has, anywhere on the skin of the body."""
     body = ScatteringBody(0, setup.height_m)
     clouds: Clouds = []
     for index, piece in enumerate(pieces):
@@ -254,7 +254,7 @@ def random_frame_baseline(pieces: list[MarsStretch], pool: list[MarsStretch]) ->
 
 
 def neighbour_oracle(pieces: list[MarsStretch]) -> Clouds:
-    """The real frame before, for the first the one after."""
+    """The previous real frame; for the first frame the next."""
     return [(piece.clouds[1], *piece.clouds[:-1]) for piece in pieces]
 
 

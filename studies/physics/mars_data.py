@@ -83,13 +83,13 @@ def read_mars(folder: Path | str, split: str) -> list[MarsStretch]:
 
 
 def as_published(cloud: Cloud) -> Cloud:
-    """Without what lies beyond the box that the recordings were cut to: |x| and |z| up to 1 m, y up to 3 m."""
+    """Points within the box of the published recordings: |x| and |z| up to 1 m, y up to 3 m."""
     kept = (np.abs(cloud.x_m) <= ASIDE_M) & (np.abs(cloud.z_m) <= UP_M) & (cloud.y_m <= AHEAD_M)
     return type(cloud)(**{field.name: getattr(cloud, field.name)[kept] for field in fields(cloud)})
 
 
 def cut(stretches: list[MarsStretch], length: int, most: int) -> list[MarsStretch]:
-    """Up to `most` pieces of `length` frames in time, spread evenly over all that there are."""
+    """Up to `most` pieces of `length` consecutive frames, spread evenly."""
     pieces = []
     for stretch in stretches:
         for first in range(0, int(stretch.frame[-1]) - length + 2, length):

@@ -27,13 +27,13 @@ EDGES_M = np.arange(-1.0, 1.05, 0.1)
 
 
 def setup_of(result: Path) -> Setup:
-    """What was estimated, from a result of mars."""
+    """The estimated parameters, from a result of mars."""
     held = json.loads(result.read_text(encoding="utf-8"))["config"]["estimated_on_validate"]
     return Setup(**{**held, "shift_m": tuple(held["shift_m"])})
 
 
 def draw(pieces: list[MarsStretch], real: Clouds, ours: Clouds, setup: Setup, path: Path) -> None:
-    """One column a piece, the last of all heights; above what was recorded, below what was simulated."""
+    """One column a piece, the last of all heights; recorded above, simulated below."""
     from matplotlib.figure import Figure
 
     columns = len(pieces) + 1

@@ -84,7 +84,7 @@ REFERENCE_M = 1.75
 
 @dataclass(frozen=True, kw_only=True)
 class RecordedMotion:
-    """A body's joints at RATE_HZ, z up, and what it is called."""
+    """Joints of a body at RATE_HZ, z up, with a label."""
 
     joints_m: Joints
     height_m: float
@@ -109,7 +109,7 @@ def recorded(path: Path, activity: str, most: int = MOST_CLIPS) -> list[Recorded
 
 
 def library(like: RecordedMotion, activity: str, seed: int) -> RecordedMotion:
-    """A generated motion of the recorded one's gait, length, speed and body."""
+    """A generated motion of the gait, length, speed and body of the recorded one."""
     seconds = len(like.joints_m) / RATE_HZ
     moves: tuple[Move, ...] = ()
     step = Step(lower="walk" if activity == "walking" else "jog", end_s=seconds)
@@ -135,7 +135,7 @@ def library(like: RecordedMotion, activity: str, seed: int) -> RecordedMotion:
 
 
 def body_of(like: RecordedMotion) -> SkeletonProportions:
-    """The library's body whose legs are as long: steps follow the legs. (The recordings' trunk is short for them.)"""
+    """A library body with the same leg length: steps follow the legs. (The recordings have short trunks.)"""
     legs = [
         np.linalg.norm(like.joints_m[:, joint(f"{side}_{start}")] - like.joints_m[:, joint(f"{side}_{end}")], axis=1)
         for side in ("left", "right")
@@ -162,7 +162,7 @@ def _middle(joints_m: Joints) -> Float[Array, "shown 22 3"]:
 
 
 def about_the_top(joints_m: Joints) -> Float[Array, "shown 22 3"]:
-    """JUMP_S about the instant at which the lower foot is highest."""
+    """A window of JUMP_S around the highest position of the lower foot."""
     toes = joints_m[:, [joint("left_foot"), joint("right_foot")], 2].min(axis=1)
     frames = min(round(JUMP_S * RATE_HZ), len(joints_m))
     first = int(np.clip(int(toes.argmax()) - frames // 2, 0, len(joints_m) - frames))
@@ -191,9 +191,9 @@ def placed(joints_m: Joints, *, is_away: bool) -> Joints:
 
 
 def spectrogram(motion: RecordedMotion, simulator: Simulator, seed: int, *, is_away: bool) -> Spectrogram:
-    """The person's power over time and velocity, from the cube: static removed, range bins about the pelvis, no noise.
+    """Power of the person over time and velocity from the cube, without static clutter and noise, near the pelvis.
 
-    Velocities are signed along the person's path (ahead positive) and each frame's sum is one.
+    Velocities are signed along the person's path (ahead positive), and each frame sums to one.
     """
     clip = MotionClip(joints_m=placed(motion.joints_m, is_away=is_away), fps=RATE_HZ, label=motion.label)
     frames = int(np.floor((clip.duration_s - RADAR.active_time_s) / RADAR.frame_period_s))
@@ -241,7 +241,7 @@ UNKNOWN = {"seconds": "see the manifest: all rows together"}
 
 # Results -------------------------------------------------------------------------------------------------------------
 def summary(found: list[Figures], rigid: list[Figures], recordings: list[Figures] | None) -> dict[str, dict[str, Any]]:
-    """Each figure's median, its interval and percentiles over clips; for ours also whether it lies inside theirs."""
+    """Median, interval and percentiles of each figure over clips; for generated clips also whether it is inside."""
     rows = {}
     for name in found[0]:
         values = np.array([one[name] for one in found])
@@ -276,7 +276,7 @@ def _interval(values: Float[Array, " clip"]) -> tuple[float, float]:
 
 
 def measure(run: StudyRun, folder: Path, picture: Path | None = None, most: int = MOST_CLIPS) -> tuple[Path, Path]:
-    """Writes recorded.json and library.json, one row a gait; a picture where one is asked for."""
+    """Writes recorded.json and library.json, one row a gait, and a picture if asked for."""
     path = folder / FILE
     digest = hashlib.sha256(path.read_bytes()).hexdigest()
     shown_by, theirs_rows, our_rows, shown = simulator(), [], [], {}

@@ -52,7 +52,7 @@ DEFINITIONS: dict[str, tuple[str, str]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class Spectrogram:
-    """Share of each frame's energy at each velocity (rising, ahead positive), and the pelvis's true velocity."""
+    """Share of each frame's energy at each velocity (rising, ahead positive), and the true velocity of the pelvis."""
 
     time_s: PerFrame
     velocity_mps: PerDoppler
@@ -60,7 +60,7 @@ class Spectrogram:
     pelvis_mps: PerFrame
 
     def about_pelvis(self) -> Float[Array, "frame velocity"]:
-        """Shares on PROFILE_MPS about the pelvis's velocity, each frame's sum one."""
+        """Shares on PROFILE_MPS relative to the velocity of the pelvis; each frame sums to one."""
         rows = [
             np.interp(PROFILE_MPS + at, self.velocity_mps, share, left=0.0, right=0.0)
             for at, share in zip(self.pelvis_mps, self.share, strict=True)
@@ -70,13 +70,13 @@ class Spectrogram:
 
 
 def quantiles(share: Float[Array, "frame velocity"], velocity_mps: Array, part: float) -> PerFrame:
-    """The velocity below which such a part of each frame's energy lies."""
+    """The velocity below which that share of the energy of each frame lies."""
     total = np.cumsum(share, axis=1)
     return np.array([np.interp(part * row[-1], row, velocity_mps) for row in total])
 
 
 def spread_figures(seen: Spectrogram) -> Figures:
-    """What asks for no rhythm."""
+    """Figures that need no periodicity."""
     shares = seen.about_pelvis()
     profile = shares.mean(axis=0)
     low, high = (float(quantiles(profile[None], PROFILE_MPS, part)[0]) for part in (0.05, 0.95))
@@ -91,7 +91,7 @@ def spread_figures(seen: Spectrogram) -> Figures:
 
 
 def gait_figures(seen: Spectrogram, lags_s: tuple[float, float]) -> Figures:
-    """Those of `spread_figures`, and those of steps, which last between `lags_s`."""
+    """Those of `spread_figures`, and those of steps, whose duration is within `lags_s`."""
     shares = seen.about_pelvis()
     lower, upper = (quantiles(shares, PROFILE_MPS, part) for part in (0.01, 0.99))
     period_s = float(seen.time_s[1] - seen.time_s[0])
@@ -108,9 +108,9 @@ def gait_figures(seen: Spectrogram, lags_s: tuple[float, float]) -> Figures:
 
 
 def step_lag(envelope: PerFrame, period_s: float, lags_s: tuple[float, float]) -> tuple[float, float]:
-    """Lag in seconds of the strongest autocorrelation between `lags_s`, and that autocorrelation.
+    """Lag in seconds of the strongest autocorrelation within `lags_s`, and that autocorrelation.
 
-    Each lag is normalised by the parts that overlap, so that short clips are not pulled to short lags.
+    Each lag is normalised by the overlapping parts, so that short clips are not biased towards short lags.
     """
     time = np.arange(len(envelope))
     left = envelope - np.polyval(np.polyfit(time, envelope, 1), time)
@@ -142,7 +142,7 @@ def step_difference(envelope: PerFrame, lag: float) -> float:
 
 
 def kinematic_figures(joints_m: Joints, rate_hz: float) -> Figures:
-    """How fast limbs go ahead of the pelvis along the path; ahead is where it goes."""
+    """Speeds of limbs ahead of the pelvis along the path."""
     pelvis = joints_m[:, 0, :2]
     direction = (pelvis[-1] - pelvis[0]) / np.linalg.norm(pelvis[-1] - pelvis[0])
     low, high = np.percentile(np.gradient(pelvis @ direction, 1 / rate_hz), (5, 95))

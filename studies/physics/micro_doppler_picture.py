@@ -17,7 +17,7 @@ SPAN_DB = 45.0
 
 
 def draw(shown: dict[str, tuple[Spectrogram, Spectrogram]], path: Path) -> None:
-    """Of each activity the recorded and the generated spectrogram towards the radar; the file is a .png."""
+    """Recorded and generated spectrogram towards the radar of each activity; writes a .png."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.style import context

@@ -68,7 +68,7 @@ class Pair:
 
 
 def make_pair(simulator: Simulator, places: tuple[Place, Place], seed: int) -> Pair:
-    """Draws two sentences and two bodies by the seed and simulates them. Raises InputError where they do not fit."""
+    """Samples two sentences and two bodies by the seed and simulates them. Raises InputError where they do not fit."""
     texts = [str(text) for text in stream(seed, "several people").choice(SENTENCES, 2, replace=False)]
     window_m = (float(AWR1843.range_m[0]), float(AWR1843.range_m[-1]))
     plans = [plan_motion(text, NUM_FRAMES * AWR1843.frame_period_s) for text in texts]
@@ -108,7 +108,7 @@ def scores_of(pair: Pair) -> dict[str, dict[str, float]]:
 
 
 def dimming_db(pair: Pair) -> float:
-    """Moving energy that the second person adds to the first, over what that person has alone, in dB."""
+    """Moving energy that the second person adds to the first, over that of the second person alone, in dB."""
     cubes = (pair.without_second, pair.mutual, pair.empty, pair.second_alone)
     first, both, empty, alone = (remove_static(cube).values for cube in cubes)
     added, own = both - first, alone - empty  # the same receiver noise in all: it cancels
@@ -116,7 +116,7 @@ def dimming_db(pair: Pair) -> float:
 
 
 def points_near(points: PointCloud, pose: PoseSequence) -> float:
-    """Detections within NEAR_M of a person's pelvis on the floor, a frame."""
+    """Detections per frame within NEAR_M of a person's pelvis, on the floor plane."""
     at_s = np.asarray(points.frame) * AWR1843.frame_period_s
     pelvis_m = pose.joints_m[np.clip(np.searchsorted(pose.time_s, at_s), 0, len(pose.time_s) - 1), joint("pelvis")]
     return float((np.hypot(points.x_m - pelvis_m[:, 0], points.y_m - pelvis_m[:, 1]) < NEAR_M).sum() / NUM_FRAMES)
@@ -185,7 +185,7 @@ def measure(run: StudyRun, picture: Path | None = None, seeds: tuple[int, ...] =
 
 
 def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
-    """Range-azimuth maps of what moves: mutual, the plain sum, and the one minus the other; one row an arrangement."""
+    """Range-azimuth maps of the moving part: mutual occlusion, plain sum and their ratio; one row an arrangement."""
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

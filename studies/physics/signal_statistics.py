@@ -58,7 +58,7 @@ DEFINITIONS: dict[str, tuple[str, str]] = {
 
 
 def statistics(adc: AdcCube) -> dict[str, float]:
-    """The numbers of DEFINITIONS for one recording."""
+    """The metrics of DEFINITIONS of one recording."""
     cube = radar_cube(adc)
     moving = remove_static(cube)
     cells = np.sort(np.abs(cube.values).ravel() ** 2)[::-1]
@@ -84,7 +84,7 @@ def statistics(adc: AdcCube) -> dict[str, float]:
 
 
 def antenna_phase_deg(cube: RadarCube) -> float | None:
-    """How far the strongest cells are from plane waves over the horizontal row; None for a row of two or fewer."""
+    """Deviation of the strongest cells from plane waves over the horizontal row; None for a row of two or fewer."""
     place_m, wavelength_m = cube.grid.antenna_position_m, cube.grid.wavelength_m
     row = azimuth_row(place_m, wavelength_m)
     if len(row) < 3:
@@ -102,7 +102,7 @@ def antenna_phase_deg(cube: RadarCube) -> float | None:
 
 
 def quarters(adc: AdcCube) -> list[AdcCube]:
-    """A recording of one frame cut into four shorter frames."""
+    """A recording of one frame divided into four shorter frames."""
     loops = adc.config.num_loops // QUARTERS
     config = replace(adc.config, num_loops=loops)
     return [
@@ -115,13 +115,13 @@ def _db(ratio: float) -> float:
 
 
 def recorded_people(data: Path) -> AdcCube:
-    """Two people who move, one frame of 128 loops."""
+    """Two moving people, one frame of 128 loops."""
     path = data / "radar" / "openradar_two_people" / "adc_frame_loops_vrx_samples_c64.npy"
     return read_adc_npy(path, two_people_radar(num_loops=128), "loop,vrx,sample")
 
 
 def recorded_hall(data: Path) -> AdcCube:
-    """A hall in which nothing moves, one frame of 85 loops."""
+    """A static hall, one frame of 85 loops."""
     folder = data / "radar" / "iwr6843_dca1000"
     return read_bin(folder / "adc_data_example.bin", read_mmwave_studio(folder / "mmwaveDevice.mmwave.json"))
 
@@ -133,7 +133,7 @@ def recorded_breath(data: Path) -> AdcCube:
 
 
 def slow_frame(adc: AdcCube) -> AdcCube:
-    """Many short frames as one: the mean chirp of each is a loop of it."""
+    """Many short frames as one: the mean chirp of each becomes a loop of it."""
     period_s, num = adc.config.frame_period_s, len(adc.samples)
     idle_s = period_s / adc.config.num_tx - adc.config.ramp_end_time_s
     config = replace(adc.config, num_loops=num, idle_time_s=idle_s, frame_period_s=1.001 * num * period_s)
@@ -158,7 +158,7 @@ def walker(config: RadarConfig, seed: int) -> AdcCube:
 
 
 def breather(config: RadarConfig, seed: int) -> AdcCube:
-    """Somebody who stands and does nothing but breathe, as `recorded_breath` has the recorded one."""
+    """A person who stands and only breathes, placed as the recorded one of `recorded_breath`."""
     frames = config.num_loops
     standing = pose_of("waving", seconds=1.0, seed=seed)  # it begins in a stance
     joints_m = standing.joints_m[:1] - standing.joints_m[:1, :1] * np.array([1.0, 1.0, 0.0])

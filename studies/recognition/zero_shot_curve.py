@@ -29,7 +29,7 @@ SEEDS = (0, 1, 2)
 
 
 def chosen_recordings(labels: np.ndarray, each: int, seed: int) -> np.ndarray:
-    """Which recordings (of these labels) train: `each` of every activity, by chance."""
+    """Indices of the training recordings (of these labels): `each` of every activity, at random."""
     rng = stream(seed, "real recordings", each)
     kinds = np.unique(labels)
     return np.concatenate([rng.permutation(np.flatnonzero(labels == kind))[:each] for kind in kinds]).astype(int)
@@ -38,7 +38,7 @@ def chosen_recordings(labels: np.ndarray, each: int, seed: int) -> np.ndarray:
 def accuracy(
     frozen: Frozen, features: np.ndarray, labels: np.ndarray, is_training: np.ndarray, *, generated: bool
 ) -> float:
-    """Balanced accuracy of the windows that do not train, with or without the generated ones."""
+    """Balanced accuracy on the windows that are not trained on, with or without the generated ones."""
     rows, names = [features[is_training]], [labels[is_training]]
     weights = [np.ones(int(is_training.sum()))]
     if generated:

@@ -28,7 +28,7 @@ THIRDS = ("faintest", "middle", "brightest")
 
 
 def thirds(value: np.ndarray) -> np.ndarray:
-    """0, 1 or 2: which third of all values each is in.
+    """0, 1 or 2: the third of all values that each is in.
 
     >>> thirds(np.array([5.0, 1.0, 3.0])).tolist()
     [2, 0, 1]

@@ -105,7 +105,7 @@ def measure(caches: list[Path], recordings: Path, run: StudyRun) -> Path:
 
 
 def _without_recipe(source: dict[str, Any]) -> dict[str, Any]:
-    """The source without its recipe, which frozen.json holds."""
+    """The source without its recipe, which is in frozen.json."""
     return {key: value for key, value in source.items() if key != "recipe"}
 
 

@@ -40,9 +40,9 @@ METRICS = {
 
 
 def validate(made: TrainingSet, samples: list[VariationSample]) -> dict[str, float]:
-    """Balanced accuracy on generated windows whose circumstances were held out of training: what a feature is worth.
+    """Balanced accuracy on generated windows under conditions that were held out of training.
 
-    Each split trains on one side of a span and tests on the other; `every_third` is a plain split.
+    Each split trains on one side of a span of conditions and tests on the other; `every_third` is a plain split.
     """
     number = np.arange(len(samples))
     of = {key: np.array([getattr(one, key) or 9.0 for one in samples], float) for key in VARIED}
@@ -66,7 +66,7 @@ VARIED = ("tempo", "distance_m", "radar_height_m", "noise_db", "threshold_db", "
 
 
 def first_draws(recipe: GenerationRecipe, each: int, seed: int) -> list[VariationSample]:
-    """The circumstances of each window in the order of `generate_windows` (its first draw, where it drew again)."""
+    """The sampled conditions of each window in the order of `generate_windows` (the first sample, if repeated)."""
     return [
         sample_variation(recipe.variation_of(label), stream(seed, "zero shot", label, index))
         for index in range(each)
@@ -137,9 +137,9 @@ def digest(folder: Path) -> str:
 
 
 def freeze(name: str, caches: list[Path], run: StudyRun) -> Path:
-    """Pools all windows of the caches and writes the frozen files of the package, with where each came from.
+    """Pools all windows of the caches and writes the frozen files of the package with their sources.
 
-    results/zero_shot/frozen.json says the same, with the digest of the features.
+    results/zero_shot/frozen.json holds the same, with the hash of the features.
     """
     read = [read_cache(cache) for cache in caches]
     made = [featurize(windows) for windows, _ in read]
@@ -154,7 +154,7 @@ def freeze(name: str, caches: list[Path], run: StudyRun) -> Path:
 
 
 def read_cache(cache: Path) -> tuple[list[PointRecording], dict[str, Any]]:
-    """The windows of a cache, and where they come from: commit, seed, how many, core seconds, recipe."""
+    """The windows of a cache, and their source: commit, seed, number, core seconds, recipe."""
     recipe = radhar_recipe()
     files = sorted(cache.glob("*_*_*.npz"))
     windows = [read_window(path, path.stem.split("_")[0], recipe) for path in files]
@@ -177,7 +177,7 @@ def describe_frozen(name: str, run: StudyRun) -> Path:
 
 
 def generate(recipe: GenerationRecipe, cache: Path, *, each: int, seed: int, part: int = 0, parts: int = 1) -> None:
-    """Fills a cache; several processes may share one, each with its part. Says in it what made it."""
+    """Fills a cache and records the commit in it; several processes may share one, each with its part."""
     check_cache(cache, recipe)
     (cache / "commit.txt").write_text(f"{_commit_text()}\n", encoding="utf-8")
     note = cache / f"seconds_{part}.txt"

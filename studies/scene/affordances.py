@@ -74,7 +74,7 @@ class Tally:
 
 # Procedural rooms ---------------------------------------------------------------------------------------------------
 def measure_room(room: ProceduralRoom, tally: Tally, *, lighting: str, with_mask: bool, place: bool) -> None:
-    """Adds one room's counts."""
+    """Adds the counts of one room."""
     photo = room.photo(lighting, noise=True)
     begin = time.process_time()
     scene = reconstruct(photo if with_mask else dataclasses.replace(photo, classes=None))
@@ -105,7 +105,7 @@ def _is_same_seat(found: Seat, seat: Seat) -> bool:
 
 
 def _is_on_seat(room: ProceduralRoom, found: Seat) -> bool:
-    """On a piece that one sits on, at the height of its seats."""
+    """Whether a place is on a seat, at the height of its surface."""
     piece = np.array(room.boxes.piece)
     distance = room.boxes.distance_m(found.position_m[None])[0]
     frame = RadarFrame(room.shell)
@@ -119,7 +119,7 @@ def _is_on_seat(room: ProceduralRoom, found: Seat) -> bool:
 
 
 def _is_findable(room: ProceduralRoom, seat: Seat) -> bool:
-    """In the picture and the radar's window, and enough of its surface not hidden."""
+    """In the picture and the range window, with enough of its surface visible."""
     if np.hypot(*seat.position_m[:2]) > RANGE_WINDOW_M[1]:
         return False
     offset = np.array([(a, b) for a in (-0.3, 0.0, 0.3) for b in (-0.3, 0.0, 0.3)])
@@ -140,7 +140,7 @@ def _is_seen(room: ProceduralRoom, points: np.ndarray) -> np.ndarray:
 
 
 def _is_in_view(room: ProceduralRoom, mark: Landmark) -> bool:
-    """Its middle within the picture's width, and near enough to be gone to."""
+    """Its middle within the width of the picture, and near enough to walk to."""
     pixel, depth_m = project(mark.position_m @ room.radar_from_camera, room.intrinsics)
     in_width = 20 < pixel[0] < room.intrinsics.width - 20
     return bool(depth_m > 0.3 and in_width and np.hypot(*mark.position_m[:2]) < 4.0)
@@ -185,7 +185,8 @@ def _measure_placements(room: ProceduralRoom, scene: Scene, tally: Tally) -> Non
 def procedural_row(
     kinds: tuple[str, ...], number: int, split: str, *, with_mask: bool, place: bool, workers: int = 1
 ) -> dict[str, Any]:
-    """So many rooms, each kind in turn; every room another layout and seed. Several processes make the same row."""
+    """The row of `number` rooms, each kind in turn, with another layout and seed; independent of the number of
+    processes."""
     tally = Tally()
     by_kind: dict[str, Tally] = {}
     one_room = functools.partial(_one_room, kinds=kinds, with_mask=with_mask, place=place)
@@ -230,7 +231,7 @@ def _shares(tally: Tally) -> dict[str, Any]:
 
 # Real rooms -----------------------------------------------------------------------------------------------------------
 def real_row(folder: Path) -> dict[str, Any]:
-    """One photographed room against what a person saw in its photo."""
+    """One photographed room compared with the annotation of its photo."""
     truth = json.loads(REAL_TRUTH.read_text(encoding="utf-8"))[folder.name]
     photo, assumptions = read_photo(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
     tally = Tally()
@@ -289,7 +290,7 @@ def _add_share(metrics: dict[str, Any], name: str, values: list[bool], definitio
 
 
 def share_of(name: str, values: list[bool], definition: str) -> dict[str, Any]:
-    """With its bootstrap interval over the things counted; empty where there is nothing to count."""
+    """A share with its bootstrap interval over the counted items; empty where there are none."""
     if not values:
         return {}
     counted = np.array(values, float)
@@ -302,7 +303,7 @@ def share_of(name: str, values: list[bool], definition: str) -> dict[str, Any]:
 def measure(
     run: StudyRun, folders: list[Path], number: int, methods: tuple[str, ...] = METHODS, workers: int = 1
 ) -> list[Path]:
-    """A file each: depth alone (with the real rooms and placements), and with the true mask."""
+    """Writes a result each: depth alone (with the real rooms and placements), and with the true mask."""
     written = []
     for method in methods:
         with_mask = method == "mask"

@@ -46,8 +46,9 @@ Array = np.ndarray
 
 
 def floor_error_m(scene: Scene, photo: RgbdPhoto, marks: list[list[float]]) -> tuple[float, int]:
-    """How far the found floor is from the median height of the marked places (x, y as shares of the photo), and how
-    many of them have a depth.
+    """Distance of the found floor from the median height of annotated places, and how many of them have a depth.
+
+    Places are x, y as shares of the photo.
     """
     rows, columns = photo.depth_m.shape
     points = unproject(photo.depth_m, photo.intrinsics) @ scene.radar_from_camera.T
@@ -69,9 +70,9 @@ def measured_m(scene: Scene, photo: RgbdPhoto) -> Points:
 
 
 def deepest_m(tree: Any, pose: PoseSequence, seat_m: Float[Array, "2"] | None) -> tuple[float, float]:
-    """How deep a measured point is inside the body beyond what is allowed: in trunk, legs and head, and in the arms.
+    """Depth of measured points inside the body beyond the tolerance: in trunk, legs and head, and in the arms.
 
-    About a seat trunk and thighs may sink in, for they sit there.
+    Near a seat, trunk and thighs may sink in.
     """
     worst = {"body": 0.0, "arms": 0.0}
     for capsule, points, radius in sampled(pose, _ALONG):

@@ -41,7 +41,7 @@ UNKNOWN = {
 
 @dataclass(frozen=True, kw_only=True)
 class Agreement:
-    """Frames with motion, how many of them are right, and how many a random bin would get right."""
+    """Frames with motion, how many of them are correct, and how many a random bin would get."""
 
     moving: int
     right: int
@@ -49,7 +49,7 @@ class Agreement:
 
 
 def agreement(result: Generation) -> Agreement:
-    """Holds a generation's range-Doppler track against its joints."""
+    """Compares the range-Doppler track of a generation with its joints."""
     cube = remove_static(result.cube)
     power = range_doppler_power(cube)[:, :, moving_doppler(cube)].sum(axis=2)
     strongest_m = cube.grid.range_m[np.argmax(power, axis=1)]

@@ -21,7 +21,8 @@ _ARMS = {"shoulder", "elbow", "wrist"}
 
 @dataclass(frozen=True, kw_only=True)
 class Contact:
-    """The deepest of a motion: of trunk, legs and head, of the arms, in metres beyond what is allowed; 0 = none."""
+    """Deepest intersection of a motion: of trunk, legs and head, and of the arms, in metres beyond the tolerance; 0 =
+    none."""
 
     body_m: float
     arms_m: float
@@ -46,7 +47,7 @@ def sampled(pose: PoseSequence, along: np.ndarray) -> Iterator[tuple[Capsule, np
 def contact(room: ProceduralRoom, pose: PoseSequence, seat_m: np.ndarray | None = None) -> Contact:
     """Capsules of the body against all boxes and walls, 15 times a second.
 
-    `seat_m` is where the person sits, if so: the piece under it (found within 0.4 m) may be sunk into.
+    `seat_m`: where the person sits, if so; the piece under it (found within 0.4 m) may be sunk into.
     """
     boxes = _solid(room)
     own = _piece_under(boxes, seat_m)
@@ -68,7 +69,7 @@ def contact(room: ProceduralRoom, pose: PoseSequence, seat_m: np.ndarray | None 
 
 
 def _solid(room: ProceduralRoom) -> Boxes:
-    """What a body may not be in: all boxes but those that lie flat on the floor."""
+    """The solids of a room: all boxes except those flat on the floor."""
     boxes = room.boxes
     keep = np.flatnonzero(boxes.centre_m[:, 2] + boxes.half_m[:, 2] - room.floor_z_m > 0.03)
     return Boxes(

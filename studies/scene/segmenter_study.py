@@ -47,7 +47,7 @@ Guess = Callable[[np.ndarray], np.ndarray]
 
 
 def unseen_row(name: str, guess: Guess, examples: list[SegmenterExample]) -> dict[str, Any]:
-    """Cells of rendered rooms of unseen kinds."""
+    """Scores on cells of rendered rooms of unseen kinds."""
     found = scores(confusion(examples, guess))
     metrics = {
         "miou": _metric(found["miou"], "mean intersection over union of the groups that occur"),
@@ -58,7 +58,7 @@ def unseen_row(name: str, guess: Guess, examples: list[SegmenterExample]) -> dic
 
 
 def real_rows(name: str, guess: Guess, folders: list[Path]) -> list[dict[str, Any]]:
-    """Marked places of real photos."""
+    """Scores on annotated places of real photos."""
     rows = []
     for folder in folders:
         photo, _ = read_photo(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
@@ -71,7 +71,7 @@ def real_rows(name: str, guess: Guess, folders: list[Path]) -> list[dict[str, An
 
 
 def marked_right(photo: RgbdPhoto, guess: Guess, marked: dict[str, list[tuple[float, float]]]) -> list[bool]:
-    """For each marked place (shares of width and height) whether its group is one of those named."""
+    """For each annotated place (shares of width and height) whether its group is one of those named."""
     groups = guess(grid_features(make_grid(photo)))
     rows, columns = groups.shape
     right = []
@@ -82,7 +82,7 @@ def marked_right(photo: RgbdPhoto, guess: Guess, marked: dict[str, list[tuple[fl
 
 
 def affordance_row(name: str, number: int) -> dict[str, Any]:
-    """Seats, tables, doors and windows in rooms of unseen kinds with a mask of that sort."""
+    """Seats, tables, doors and windows in rooms of unseen kinds with a given kind of mask."""
     tally = Tally()
     for index in range(number):
         room = make_room(TEST_KINDS[index % len(TEST_KINDS)], index // len(TEST_KINDS) % 10, 20_000 + index)
@@ -105,7 +105,7 @@ def affordance_row(name: str, number: int) -> dict[str, Any]:
 
 
 def draw(path: Path, folders: list[Path]) -> None:
-    """The real photos over what the network says of them."""
+    """The real photos above the predictions of the network."""
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

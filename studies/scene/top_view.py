@@ -65,7 +65,7 @@ def draw_top(
 
 
 def _draw_points(axes: "Axes", scene: Scene) -> None:
-    """What was measured between floor and head, darker where higher."""
+    """Measured points between floor and head, darker where higher."""
     step = max(1, scene.photo.intrinsics.width // 320)
     points = AlignedPhoto.of(scene).points_m[::step, ::step]
     points = points[np.isfinite(points[..., 2])]

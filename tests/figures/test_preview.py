@@ -37,7 +37,7 @@ def test_the_photo_is_in_the_page(view: FigureData, tmp_path: Path):
 
 
 def test_the_page_of_a_recording_has_no_photo(view: FigureData, tmp_path: Path):
-    draw_preview(replace(view, photo=None, poses=(), motions=(), radar_from_camera=None), tmp_path / "a.png")
+    draw_preview(replace(view, aligned=None, poses=(), motions=()), tmp_path / "a.png")
     page = pixels(tmp_path / "a.png")
     assert page.shape == (700, 1600, 3)
     assert not (page == 120).all(axis=2).sum() > 1000

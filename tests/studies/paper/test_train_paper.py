@@ -63,7 +63,7 @@ def test_weights_of_another_recipe_are_refused(
 
 @pytest.mark.slow
 def test_two_processes_train_it(tiny_geometry: Path, features: Path, tmp_path: Path):
-    """tests/cli/test_train_recipes.py holds two processes of the same loop."""
+    """The fast test of two processes is in tests/training/test_trainer.py, of the same loop."""
     pytest.importorskip("accelerate")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
