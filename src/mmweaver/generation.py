@@ -29,6 +29,7 @@ class Room(ShownByFacts):
     scene: Scene
     inputs: dict[str, Any]
     seconds: dict[str, float]
+    background: RadarCube | None = None  # a recording by the same radar in the same place, nobody present
 
     def facts(self) -> dict[str, str]:
         """The photo's and the scene's."""
@@ -58,7 +59,7 @@ class Room(ShownByFacts):
             came_from = Path(source)
             source = read_recording(came_from).cube
         inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
-        return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
+        return replace(self, background=source, inputs=inputs)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
