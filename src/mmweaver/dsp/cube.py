@@ -84,6 +84,15 @@ def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
     return RadarCube(values=values[None].astype(np.complex64), grid=CubeGrid.of(config, 1), config=config, scale=1.0)
 
 
+def static_samples(static: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Samples (tx, rx, sample) of least energy of static clutter, of its cube (range, antenna) at zero Doppler."""
+    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
+    spectrum = static.T.astype(np.complex128)  # (antenna, range)
+    if not config.complex_samples:
+        spectrum = np.concatenate([spectrum.real, spectrum.imag], axis=-1)
+    return (spectrum @ inverse).reshape(config.num_tx, config.num_rx, -1).astype(np.complex64)
+
+
 def remove_static_adc(adc: AdcCube) -> AdcCube:
     """Takes the mean over the loops of each frame away: what does not move vanishes, for every antenna and sample."""
     still = adc.samples.mean(axis=1, keepdims=True, dtype=np.complex128)

@@ -17,9 +17,9 @@ from torch import Tensor
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.skeleton import NUM_JOINTS
-from mmweaver.models.background import agreeing_gain
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import sha256_of
+from mmweaver.paths.background import agreeing_gain
 from mmweaver.paths.mean_paths import Echoes
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
