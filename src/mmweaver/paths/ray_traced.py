@@ -39,8 +39,10 @@ _SENTENCES = (
     "nothing passes through furniture, and waves do not bend around edges",
 )
 ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
-SEVERAL_PEOPLE = "people occlude each other, but there are no paths from one person over another to the"
-    " radar (see docs/several_people.md)"
+SEVERAL_PEOPLE = (
+    "people occlude each other, but there are no paths from one person over another to the radar"
+    " (see docs/several_people.md)"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
