@@ -12,6 +12,7 @@ from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, 
 from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import preview_figure
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.result_folder import file_digest, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
 
@@ -28,6 +29,7 @@ class Room(ShownByFacts):
     scene: Scene
     inputs: dict[str, Any]
     seconds: dict[str, float]
+    background: RadarCube | None = None  # a recording by the same radar in the same place, nobody present
 
     def facts(self) -> dict[str, str]:
         """The photo's and the scene's."""
@@ -57,7 +59,7 @@ class Room(ShownByFacts):
             came_from = Path(source)
             source = read_recording(came_from).cube
         inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
-        return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
+        return replace(self, background=source, inputs=inputs)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -140,7 +142,7 @@ class Generation(ShownByFacts):
         title = text if isinstance(text, str) else " | ".join(text)
         return FigureData(
             title=f"{title}   ({self.cube.config.name}, seed {self.meta['seed']})",
-            cube=self.cube, points=self.points, photo=self.photo, radar_from_camera=self.scene.radar_from_camera,
+            cube=self.cube, points=self.points, aligned=AlignedPhoto.of(self.scene),
             poses=self.poses, motions=self.motions,
         )  # fmt: skip
 

@@ -20,6 +20,7 @@ from mmweaver.figures.preview import draw_azimuth_with_clutter, draw_photo
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.generation import Room
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -46,8 +47,8 @@ def views_of(kind: str, *, frames: int = 20) -> list[FigureData]:
     cubes = (truth, *(one.cube for one in found))
     return [
         FigureData(
-            title=kind.replace("_", " "), cube=cube, points=point_cloud(cube), photo=room.scene.photo,
-            radar_from_camera=room.scene.radar_from_camera, poses=found[0].poses, motions=found[0].motions,
+            title=kind.replace("_", " "), cube=cube, points=point_cloud(cube),
+            aligned=AlignedPhoto.of(room.scene), poses=found[0].poses, motions=found[0].motions,
         )
         for cube in cubes
     ]  # fmt: skip

@@ -13,6 +13,7 @@ from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_azimuth_with_clutter, draw_doppler_time, draw_photo
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small
 from studies.study import Reads
@@ -30,8 +31,8 @@ def views_of(folder: Path, text: str = TEXT, *, frames: int = FRAMES, seed: int 
         room = weaver.read_room(folder / "rgb.png", folder / "depth.png", folder / "camera.json")
         made = weaver.generate(room, text, frames=frames, seed=seed, keep_adc=False)
         found[name] = FigureData(
-            title=f"{folder.name.replace('_', ' ')}: {name}", cube=made.cube, points=made.points, photo=made.photo,
-            radar_from_camera=made.scene.radar_from_camera, poses=made.poses, motions=made.motions,
+            title=f"{folder.name.replace('_', ' ')}: {name}", cube=made.cube, points=made.points,
+            aligned=AlignedPhoto.of(made.scene), poses=made.poses, motions=made.motions,
         )  # fmt: skip
     return found
 

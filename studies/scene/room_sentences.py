@@ -15,6 +15,7 @@ from mmweaver.figures.skeleton_drawing import SkeletonInPhoto
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.generation import Generation, Room
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 from studies.manifest import StudyRun
 from studies.scene.room_pictures import save_small, small
 from studies.scene.top_view import draw_top
@@ -92,13 +93,13 @@ def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
     row[0].set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
     row[0].set_title(textwrap.shorten(text, 40, placeholder="..."))
     for share, alpha in _POSES:
-        skeleton = SkeletonInPhoto(row[0], photo, scene.radar_from_camera, width=1.3)
+        skeleton = SkeletonInPhoto(row[0], AlignedPhoto.of(scene), width=1.3)
         index = round(share * (len(result.pose.time_s) - 1))
         skeleton.show(result.pose.joints_m[index], (0.2 + 0.6 * share, 0.9, 0.3), alpha=alpha)
     draw_top(row[1], scene, pose=result.motion)
     row[1].set_title("from above (m)")
     view = FigureData(
-        title="", cube=result.cube, points=result.points, photo=photo, radar_from_camera=scene.radar_from_camera,
+        title="", cube=result.cube, points=result.points, aligned=AlignedPhoto.of(scene),
         poses=result.poses, motions=result.motions,
     )  # fmt: skip
     draw_range_time(row[2], view)

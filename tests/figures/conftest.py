@@ -8,6 +8,7 @@ from mmweaver.core.records import CameraIntrinsics, CubeGrid, PointCloud, PoseSe
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.windows import hann
 from mmweaver.figures.figure_data import FigureData
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 RADAR_FROM_CAMERA = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 STANDING_M = {
@@ -37,7 +38,7 @@ def make_photo(width: int = 160, height: int = 120) -> RgbdPhoto:
 
 
 def make_cube(pose: PoseSequence) -> RadarCube:
-    """Every joint a point target, in front of a standing one at 2 m and weak noise."""
+    """Every joint a point target, in front of a static one at 2 m and weak noise."""
     grid = CubeGrid.of(AWR1843, len(pose.time_s))
     noise = stream(1, "noise")
     values = 1e-3 * (noise.normal(size=grid.shape) + 1j * noise.normal(size=grid.shape))
@@ -67,9 +68,10 @@ def make_view() -> FigureData:
         frame=np.arange(12), x_m=cloud_m[:, 0], y_m=cloud_m[:, 1], z_m=cloud_m[:, 2],
         radial_velocity_mps=np.full(12, -0.8), snr_db=np.full(12, 20.0),
     )  # fmt: skip
+    aligned = AlignedPhoto(photo=make_photo(), radar_from_camera=RADAR_FROM_CAMERA, floor_z_m=-1.0)
     return FigureData(
         title="awr1843: a stick person nears the radar",
-        cube=make_cube(pose), points=points, photo=make_photo(), radar_from_camera=RADAR_FROM_CAMERA,
+        cube=make_cube(pose), points=points, aligned=aligned,
         poses=(pose,), motions=(motion,),
     )  # fmt: skip
 

@@ -15,7 +15,7 @@ def frames_of(path: Path) -> list[np.ndarray]:
         return [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(picture)]
 
 
-def test_a_picture_a_frame_in_real_time(view: FigureData, tmp_path: Path):
+def test_one_picture_per_frame_in_real_time(view: FigureData, tmp_path: Path):
     draw_animation(view, tmp_path / "a.gif")
     with Image.open(tmp_path / "a.gif") as picture:
         assert picture.size == (900, 370)
@@ -38,5 +38,5 @@ def test_the_skeleton_and_the_maps_move(view: FigureData, tmp_path: Path):
 def test_a_recording_of_one_frame(view: FigureData, tmp_path: Path):
     grid = replace(view.cube.grid, frame_time_s=view.cube.grid.frame_time_s[:1])
     cube = replace(view.cube, values=view.cube.values[:1], grid=grid)
-    draw_animation(replace(view, cube=cube, photo=None, poses=(), motions=()), tmp_path / "a.gif")
+    draw_animation(replace(view, cube=cube, aligned=None, poses=(), motions=()), tmp_path / "a.gif")
     assert len(frames_of(tmp_path / "a.gif")) == 1

@@ -37,14 +37,14 @@ def test_the_photo_is_in_the_page(view: FigureData, tmp_path: Path):
 
 
 def test_the_page_of_a_recording_has_no_photo(view: FigureData, tmp_path: Path):
-    draw_preview(replace(view, photo=None, poses=(), motions=(), radar_from_camera=None), tmp_path / "a.png")
+    draw_preview(replace(view, aligned=None, poses=(), motions=()), tmp_path / "a.png")
     page = pixels(tmp_path / "a.png")
     assert page.shape == (700, 1600, 3)
     assert not (page == 120).all(axis=2).sum() > 1000
 
 
 @pytest.mark.parametrize("frames", [1, 2])
-def test_silence_of_another_radar_is_drawn_too(frames: int, tmp_path: Path):
+def test_a_zero_cube_of_another_radar_is_drawn(frames: int, tmp_path: Path):
     grid = CubeGrid.of(BGT60, frames)
     cube = RadarCube(values=np.zeros(grid.shape, np.complex64), grid=grid, config=BGT60, scale=float("nan"))
     none = np.zeros(0)

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, RgbdPhoto
-from mmweaver.core.shapes import Array, PerFrame, Rotation
+from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
+from mmweaver.core.shapes import Array, PerFrame
 from mmweaver.core.virtual_array import has_elevation
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import (
@@ -18,6 +18,7 @@ from mmweaver.dsp.spectra import (
     range_elevation_power,
 )
 from mmweaver.figures.theme import SPAN_DB
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 MAX_FRAMES = 100  # longer sequences are thinned out
 Power = Float[Array, "frame range column"]
@@ -35,8 +36,7 @@ class FigureData:
     title: str
     cube: RadarCube
     points: PointCloud
-    photo: RgbdPhoto | None = None
-    radar_from_camera: Rotation | None = None
+    aligned: AlignedPhoto | None = None
     poses: tuple[PoseSequence, ...] = ()
     motions: tuple[PoseSequence, ...] = ()
 

@@ -53,7 +53,7 @@ def preview_figure(view: FigureData) -> "Figure":
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
-        photo = view.photo is not None
+        photo = view.aligned is not None
         figure = Figure(figsize=(16.0, 9.0 if photo else 7.0), dpi=DPI, facecolor="white")
         figure.suptitle(
             shortened(view.heading, 150), x=0.04, y=0.98, ha="left", va="top", fontsize=13, fontweight="bold"
@@ -95,9 +95,9 @@ def draw_photo(axes: "Axes", view: FigureData) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize, to_rgb
 
-    assert view.photo is not None
-    height, width = view.photo.rgb.shape[:2]
-    axes.imshow(view.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
+    assert view.aligned is not None
+    height, width = view.aligned.photo.rgb.shape[:2]
+    axes.imshow(view.aligned.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
     axes.set_anchor("NW")
     people = view.shown_poses
@@ -127,15 +127,14 @@ def _draw_person(
     colour_at: Callable[[float], tuple[float, float, float]],
 ) -> None:
     """One person at several times, and the path of the pelvis."""
-    assert view.photo is not None
-    assert view.radar_from_camera is not None
+    assert view.aligned is not None
     count = len(pose.time_s)
     chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
     for step, index in enumerate(chosen):
         share = step / max(len(chosen) - 1, 1)
-        skeleton = SkeletonInPhoto(axes, view.photo, view.radar_from_camera, width=1.6 + 1.4 * share)
+        skeleton = SkeletonInPhoto(axes, view.aligned, width=1.6 + 1.4 * share)
         skeleton.show(pose.joints_m[index], colour_at(share), alpha=0.45 + 0.55 * share)
-    pelvis = project(pose.joints_m[:, joint("pelvis")], view.photo, view.radar_from_camera)
+    pelvis = project(pose.joints_m[:, joint("pelvis")], view.aligned)
     axes.plot(pelvis[:, 0], pelvis[:, 1], color="white", linewidth=0.8, alpha=0.8)
 
 

@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from mmweaver.core.records import RgbdPhoto
-from mmweaver.core.shapes import Array, Points, Rotation
+from mmweaver.core.shapes import Array, Points
 from mmweaver.core.skeleton import BONES, joint
-from mmweaver.geometry import pinhole
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,13 +22,12 @@ HEAD_RADIUS_M = 0.09
 PER_BONE = 6  # pieces per bone, so that it can vanish behind an edge
 
 
-def project(points_m: Points, photo: RgbdPhoto, radar_from_camera: Rotation) -> Float[Array, "point 3"]:
+def project(points_m: Points, aligned: AlignedPhoto) -> Float[Array, "point 3"]:
     """Radar frame -> (column, row, depth in metres) in the photo; nan behind the camera.
 
     Reference: docs/conventions.md, "Camera".
     """
-    # Points are rows, so the inverse rotation, R^T p, is p R.
-    pixels, depth_m = pinhole.project(points_m @ radar_from_camera, photo.intrinsics)
+    pixels, depth_m = aligned.project(points_m)
     return np.where(depth_m[:, None] > NEAREST_M, np.column_stack([pixels, depth_m]), np.nan)
 
 
@@ -46,10 +45,10 @@ def is_occluded(pixels: Float[Array, "point 3"], photo: RgbdPhoto) -> Bool[Array
 class SkeletonInPhoto:
     """The bones of one person as lines in a photo's axes: full where visible, faint where occluded by furniture."""
 
-    def __init__(self, axes: "Axes", photo: RgbdPhoto, radar_from_camera: Rotation, width: float = 2.0):
+    def __init__(self, axes: "Axes", aligned: AlignedPhoto, width: float = 2.0):
         from matplotlib.lines import Line2D
 
-        self._photo, self._rotation = photo, radar_from_camera
+        self._aligned = aligned
         self._back, self._occluded, self._seen = (
             Line2D([], [], linewidth=one, color="black", solid_capstyle="round", solid_joinstyle="round")
             for one in (width + 1.4, width * 0.6, width)
@@ -63,7 +62,7 @@ class SkeletonInPhoto:
 
     def show(self, joints_m: Float[Array, "22 3"], colour: tuple[float, float, float], alpha: float = 1.0) -> None:
         """Moves the lines to a pose; joints in metres in the radar's frame."""
-        pieces, occluded = bone_pieces(joints_m, self._photo, self._rotation)
+        pieces, occluded = bone_pieces(joints_m, self._aligned)
         for line, shown in ((self._back, ~occluded), (self._occluded, occluded), (self._seen, ~occluded)):
             line.set_data(*_with_gaps(pieces[shown]).T)
         self._back.set_alpha(0.5 * alpha)
@@ -85,7 +84,7 @@ def _with_gaps(pieces: Float[Array, "piece 2 2"]) -> Float[Array, "point 2"]:
 
 
 def bone_pieces(
-    joints_m: Float[Array, "22 3"], photo: RgbdPhoto, radar_from_camera: Rotation
+    joints_m: Float[Array, "22 3"], aligned: AlignedPhoto
 ) -> tuple[Float[Array, "piece 2 2"], Bool[Array, " piece"]]:
     """Bones and head outline in short pieces, (piece, end, column/row) in pixels, and whether each is occluded."""
     start, end = (joints_m[np.array([bone[side] for bone in BONES])] for side in (0, 1))
@@ -93,8 +92,8 @@ def bone_pieces(
     bones_m = start + share * (end - start)  # (knot, bone, 3)
     pieces_m = np.stack([bones_m[:-1], bones_m[1:]], axis=2).reshape(-1, 2, 3)
     pieces_m = np.concatenate([pieces_m, _head_pieces(joints_m)])
-    pieces = project(pieces_m.reshape(-1, 3), photo, radar_from_camera).reshape(-1, 2, 3)
-    occluded = is_occluded(pieces.mean(axis=1), photo)
+    pieces = project(pieces_m.reshape(-1, 3), aligned).reshape(-1, 2, 3)
+    occluded = is_occluded(pieces.mean(axis=1), aligned.photo)
     ahead = np.isfinite(pieces).all(axis=(1, 2))
     return pieces[ahead][:, :, :2], occluded[ahead]
 

@@ -7,20 +7,26 @@ from mmweaver.core.errors import InputError
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.lexicon import (
     ARMS,
+    BEFORE_NOUNS,
     BOTH,
     DIRECTIONS,
+    DISTANCES,
     FILLERS,
-    GOING,
+    FLOOR_VERBS,
+    LEG_VERBS,
     MANY,
     NEGATIONS,
     NOT_HUMAN,
+    NOUNS_LIKE_VERBS,
     NUMBERS,
     OTHER_MOVEMENT,
     OWN,
     RADAR,
     SEATS,
     SPEEDS,
+    STEPPING,
     TARGETS,
+    THINGS,
 )
 from mmweaver.motion.language.modifiers import modifiers
 from mmweaver.motion.language.plan import Step
@@ -28,71 +34,6 @@ from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import LEGS, step_of
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import Word
-
-STEPPING = GOING | {
-    "walk",
-    "jog",
-    "run",
-    "jump",
-    "hop",
-    "turn",
-    "advance",
-    "march",
-    "retreat",
-    "sidestep",
-    "stumble",
-    "pushed",
-    "dance",
-    "tumble",
-    "stagger",
-    "limp",
-}
-DISTANCES = {"meters", "metres", "meter", "metre", "m", "cm", "centimeters", "feet", "yards"}
-LEG_VERBS = {
-    "kick",
-    "raise",
-    "lift",
-    "stomp",
-    "stamp",
-    "one_leg_stand",
-    "hop",
-    "jump",
-    "leap",
-    "turn",
-    "pivot",
-    "rotate",
-    "spin",
-    "kneel_down",
-    "kneel",
-    "lunge",
-    "limp",
-    "hobble",
-    "step",
-    "walk",
-}
-FLOOR_VERBS = {
-    "lie",
-    "lay",
-    "lie_down",
-    "fall",
-    "collapse",
-    "topple",
-    "pick_up",
-    "put_down",
-    "get_up",
-    "stand_up",
-    "kneel",
-    "kneel_down",
-    "kneel_up",
-    "stomp",
-    "stamp",
-    "look_around",
-    "bend",
-    "faint",
-    "wipe",
-    "clean",
-    "point",
-}
 
 
 @dataclass
@@ -195,31 +136,9 @@ def _start_of(words: list[Word], before: int, at: int) -> int:
     light = [i for i in range(before + 1, at) if words[i].is_verb and not words[i].is_activity]
     if light:
         return light[0]
-    while at - 1 > before and (words[at - 1].text in _BEFORE_NOUNS or words[at - 1].text.startswith("deg")):
+    while at - 1 > before and (words[at - 1].text in BEFORE_NOUNS or words[at - 1].text.startswith("deg")):
         at -= 1
     return at
-
-
-_THINGS = {"object", "objects", "something", "thing", "things", "box", "it", "them"}
-_BEFORE_NOUNS = {
-    "a",
-    "an",
-    "one",
-    "small",
-    "big",
-    "quick",
-    "fast",
-    "slow",
-    "sharp",
-    "short",
-    "full",
-    "is",
-    "gets",
-    "sideways",
-    "little",
-    "slight",
-    "further",
-}
 
 
 def _refuse(clause: Clause) -> None:
@@ -320,28 +239,14 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
         parsed.unknown = unknown + [word.text for word in words if word.is_verb]
         return
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
-    if moved is not None and any(not _is_known(word) or word.text in _THINGS for word in words[moved + 1 : moved + 3]):
+    if moved is not None and any(not _is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
     odd = _unknown_manner(words)
     if odd:
         raise InputError(not_known(clause.text, odd))
     for text in unknown:
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
-        if doing and text not in (
-            "ceiling",
-            "evening",
-            "morning",
-            "bed",
-            "red",
-            "building",
-            "wing",
-            "king",
-            "tired",
-            "something",
-            "anything",
-            "everything",
-            "during",
-        ):
+        if doing and text not in NOUNS_LIKE_VERBS:
             raise InputError(not_known(clause.text, text))
     if {word.text for word in words} & DISTANCES:
         parsed.notes.append(f"the distance in {clause.text!r} is not kept: it follows from time and speed")

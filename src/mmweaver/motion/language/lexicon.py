@@ -219,3 +219,51 @@ FILLERS = words_in(
     than meanwhile both-handed right-handed right-hand
     """
 )
+# Verbs with which "step" or "steps" is a noun.
+STEPPING = GOING | words_in(
+    """
+    walk jog run jump hop turn advance march retreat sidestep stumble pushed dance tumble stagger limp
+    """
+)
+# Units of distance.
+DISTANCES = words_in(
+    """
+    meters metres meter metre m cm centimeters feet yards
+    """
+)
+# Verbs with which a leg, knee or foot is no other movement.
+LEG_VERBS = words_in(
+    """
+    kick raise lift stomp stamp one_leg_stand hop jump leap turn pivot rotate spin kneel_down kneel lunge limp
+    hobble step walk
+    """
+)
+# Verbs with which the floor is no other movement.
+FLOOR_VERBS = words_in(
+    """
+    lie lay lie_down fall collapse topple pick_up put_down get_up stand_up kneel kneel_down kneel_up stomp
+    stamp look_around bend faint wipe clean point
+    """
+)
+# Words for an object, which a person who "moves" one does not act out.
+THINGS = words_in(
+    """
+    object objects something thing things box it them
+    """
+)
+# Words that belong to the noun or verb after them.
+BEFORE_NOUNS = words_in(
+    """
+    a an one small big quick fast slow sharp short full is gets sideways little slight further
+    """
+)
+# Nouns and adjectives that look like forms of a verb.
+NOUNS_LIKE_VERBS = words_in(
+    """
+    ceiling evening morning bed red building wing king tired something anything everything during
+    """
+)
+# What the spelling correction knows in addition to verbs.
+ALL_WORDS = frozenset().union(
+    ARMS, BOTH, DIRECTIONS, FILLERS, MANY, NEGATIONS, NOT_HUMAN, NUMBERS, OTHER_MOVEMENT, RADAR, SEATS, SPEEDS, TARGETS
+)

@@ -21,7 +21,7 @@ def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
         if text in SPEEDS:
             about = replace(about, speed=SPEEDS[text])
         elif text in ("left", "right"):
-            about = _left_or_right(about, text, before, after, words, i, notes)
+            about = _left_or_right(about, words, i, notes)
         elif text in BOTH or (text == "two" and after in ARMS):
             about = replace(about, hand=about.hand or "both")
         elif text in SEATS:
@@ -37,10 +37,9 @@ def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
     return about
 
 
-def _left_or_right(
-    about: Step, text: str, before: str, after: str, words: list[Word], i: int, notes: list[str]
-) -> Step:
+def _left_or_right(about: Step, words: list[Word], i: int, notes: list[str]) -> Step:
     """Before an arm it names the arm; else it is a direction, the viewer's unless "his left" makes it the person's."""
+    text, before, after = words[i].text, words[i - 1].text if i else "", words[i + 1].text if i + 1 < len(words) else ""
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
     if about.direction == "circle":

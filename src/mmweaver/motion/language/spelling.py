@@ -4,24 +4,7 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
-from mmweaver.motion.language.lexicon import (
-    ARMS,
-    BOTH,
-    DIRECTIONS,
-    FILLERS,
-    GOING,
-    IRREGULAR,
-    LIGHT,
-    MANY,
-    NEGATIONS,
-    NOT_HUMAN,
-    NUMBERS,
-    OTHER_MOVEMENT,
-    RADAR,
-    SEATS,
-    SPEEDS,
-    TARGETS,
-)  # fmt: skip
+from mmweaver.motion.language.lexicon import ALL_WORDS, GOING, IRREGULAR, LIGHT
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
 
@@ -99,28 +82,9 @@ def _one_edit_apart(one: str, other: str) -> bool:
 @lru_cache(maxsize=1)
 def _known() -> frozenset[str]:
     """Every word that the parser knows in some form."""
-    verbs = set(ACTIVITY_OF_LEMMA) | set(GOING) | set(LIGHT)
-    known = set(IRREGULAR) | set(RECOVERING)
-    known |= _forms(verbs)
-    for words in (
-        ARMS,
-        BOTH,
-        DIRECTIONS,
-        FILLERS,
-        MANY,
-        NEGATIONS,
-        NOT_HUMAN,
-        NUMBERS,
-        OTHER_MOVEMENT,
-        RADAR,
-        SEATS,
-        SPEEDS,
-        TARGETS,
-    ):
-        known |= set(words)
+    known = _forms({*ACTIVITY_OF_LEMMA, *GOING, *LIGHT}) | ALL_WORDS | set(IRREGULAR) | RECOVERING | words_in(_MORE)
     for pattern, _ in ACTIVITY_PHRASES:
         known |= set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", pattern)))
-    known |= words_in(_MORE)
     return frozenset(word for word in known if word.isalpha() and word.islower())
 
 

@@ -112,7 +112,7 @@ def _found(
             " a photo with more floor, or --as-recorded"
         )
     if start_m is not None:
-        _check_start(floor, start_m)
+        floor.check_start(start_m)
     rng = stream(seed, "motion", "placement", "clip")
     starts = np.array([start_m], float) if start_m is not None else _starts(floor, rng)
     headings = TO_RADAR_RAD + 2 * math.pi * np.arange(HEADINGS) / HEADINGS
@@ -132,17 +132,6 @@ def _found(
     if best is None:
         raise InputError(_no_room(track, floor, clip, start_m, heading_rad))
     return best[1], best[2]
-
-
-def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
-    spot = np.array(start_m, float)
-    if bool(floor.can_stand(spot)):
-        return
-    near = floor.nearest_walkable_m(spot)
-    hint = "" if near is None else f"; the nearest free place is {near[0]:.2f},{near[1]:.2f}"
-    raise InputError(
-        f"the start {spot[0]:g},{spot[1]:g} is not free, or is outside the picture or the radar's range window{hint}"
-    )
 
 
 def _starts(floor: FloorMap, rng: np.random.Generator) -> Float[Array, "start 2"]:

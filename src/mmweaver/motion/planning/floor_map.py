@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Bool, Float
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 
@@ -149,3 +150,17 @@ class FloorMap:
             return None
         positions_m = self.cell_centres_m[self.walkable]
         return positions_m[np.argmin(np.hypot(*(positions_m - position_m).T))]
+
+    def check_start(self, start_m: tuple[float, float]) -> None:
+        """Raises InputError, naming the nearest walkable position, where nobody can start at `start_m` (x, y)."""
+        spot = np.array(start_m, dtype=float)
+        if bool(self.can_stand(spot)):
+            return
+        near = self.nearest_walkable_m(spot)
+        if not bool(self.sees(spot)):
+            low, high = self.range_window_m
+            why = f"is outside the radar's window ({low:.2f} to {high:.2f} m, within 40 degrees and the picture)"
+        else:
+            why = f"is not free: a body needs {BODY_RADIUS_M:g} m around it"
+        hint = "there is no free position" if near is None else f"the nearest free place is {near[0]:.2f},{near[1]:.2f}"
+        raise InputError(f"the start {spot[0]:g},{spot[1]:g} {why}; {hint}")

@@ -18,7 +18,7 @@ from mmweaver.motion.planning.curved_and_lateral_paths import (
     lay_curved_or_lateral,
     turn_by,
 )
-from mmweaver.motion.planning.floor_map import BODY_RADIUS_M, FloorMap
+from mmweaver.motion.planning.floor_map import FloorMap
 from mmweaver.motion.planning.occluded_geometry import occluded_along
 from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
@@ -84,7 +84,7 @@ def place(
     if not floor.walkable.any() and not (usable_seats(floor, body) and _starts_seated(plan)):
         raise InputError(_no_floor(floor))
     if start_m is not None:
-        _check_start(floor, start_m)
+        floor.check_start(start_m)
     rng = stream(seed, "motion", f"placement {attempt}" if attempt else "placement")
     trajectories: list[Trajectory] = []
     for _ in range(TRIES):
@@ -371,20 +371,6 @@ def _stool_at_end(
             trajectory.notes.append(stool_note(stool, none_at_all=none_at_all))
             return stool
     raise NoTrajectory("no room for a stool")
-
-
-def _check_start(floor: FloorMap, start_m: tuple[float, float]) -> None:
-    spot = np.array(start_m, dtype=float)
-    if bool(floor.can_stand(spot)):
-        return
-    near = floor.nearest_walkable_m(spot)
-    if not bool(floor.sees(spot)):
-        low, high = floor.range_window_m
-        why = f"is outside the radar's window ({low:.2f} to {high:.2f} m, within 40 degrees and the picture)"
-    else:
-        why = f"is not free: a body needs {BODY_RADIUS_M:g} m around it"
-    hint = "there is no free place" if near is None else f"the nearest free place is {near[0]:.2f},{near[1]:.2f}"
-    raise InputError(f"the start {spot[0]:g},{spot[1]:g} {why}; {hint}")
 
 
 def _no_floor(floor: FloorMap) -> str:
