@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from mmweaver.formats.radar_file import load_radar
     from mmweaver.generate import Weaver
     from mmweaver.generation import Generation
-    from mmweaver.recordings.processing import ProcessedRecording, process_recording
+    from mmweaver.recordings.processing import process_recording
     from mmweaver.recordings.read_recording import Recording, read_recording
 
 _HOME = {
@@ -28,7 +28,6 @@ _HOME = {
     "PRESETS": "core.presets",
     "PointCloud": "core.records",
     "PoseSequence": "core.records",
-    "ProcessedRecording": "recordings.processing",
     "RadarConfig": "core.radar_config",
     "RadarCube": "core.records",
     "Recording": "recordings.read_recording",
@@ -49,7 +48,6 @@ __all__ = [
     "InputError",
     "PointCloud",
     "PoseSequence",
-    "ProcessedRecording",
     "RadarConfig",
     "RadarCube",
     "Recording",

@@ -43,9 +43,8 @@ from mmweaver.scene.sample_photo import sample_photo
 class Weaver:
     """Generates radar signals with one method and one radar.
 
-    `method` is an object that follows `methods.Method`, or a name in METHODS: "weaver", the network, "physics", or
-    "auto", the network for all that it can make, which is all but raw ADC samples, several people, and frames of long
-    chirps (see `methods.Auto`). `radar` is a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
+    `method` is an object that follows `methods.Method`, or a name in METHODS: "weaver", the network (the default, also
+    called "auto"), or "physics". `radar` is a preset's name, a TI .cfg or radar.json file, or a RadarConfig. `listener`
     is called with the name of each stage as it begins.
     `points` chooses the point cloud: "cfar", this project's own, "firmware", that of TI's demo, which needs ADC
     samples, or a registered detector; `firmware` are the settings of TI's (default: what the radar's .cfg or preset
@@ -188,9 +187,8 @@ class Weaver:
 
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
-        half a metre apart. `keep_adc` also returns the raw samples, which take several times the cube's memory and,
-        unless a method is named, make physics the method. The same seed gives the same bits. Raises InputError for a
-        request that cannot be met.
+        half a metre apart. `keep_adc` also returns the raw samples, which take several times the cube's memory; the
+        cube is the same without. The same seed gives the same bits. Raises InputError for a request that cannot be met.
         """
         request = self.request(
             text, motion=motion, frames=frames, fps=fps, seed=seed, at=at, heading_rad=heading_rad, height_m=height_m,
@@ -207,7 +205,7 @@ class Weaver:
         motions = tuple(person.pose for person in people)
         signal = self.method(
             room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
-            keep_adc=request.keep_adc or needs_adc(self.points), stages=stages,
+            keep_adc=request.keep_adc or needs_adc(self.points), stages=stages, background=room.background,
         )  # fmt: skip
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)

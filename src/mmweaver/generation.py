@@ -29,11 +29,13 @@ class Room(ShownByFacts):
     scene: Scene
     inputs: dict[str, Any]
     seconds: dict[str, float]
+    background: RadarCube | None = None  # a recording by the same radar in the same place, nobody present
 
     def facts(self) -> dict[str, str]:
         """The photo's and the scene's."""
         size = self.scene.photo.facts()["size"]
-        return {"photo": size, **self.scene.facts(), "inputs": ", ".join(self.inputs)}
+        background = "none" if self.background is None else f"by {self.background.config.name}"
+        return {"photo": size, **self.scene.facts(), "background": background, "inputs": ", ".join(self.inputs)}
 
     def _repr_html_(self) -> str:
         return _with_picture(super()._repr_html_(), _png_of(self.scene.photo.rgb))
@@ -58,7 +60,7 @@ class Room(ShownByFacts):
             came_from = Path(source)
             source = read_recording(came_from).cube
         inputs = self.inputs if came_from is None else self.inputs | {"background": _recording_digest(came_from)}
-        return replace(self, scene=replace(self.scene, empty_recording=source), inputs=inputs)
+        return replace(self, background=source, inputs=inputs)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

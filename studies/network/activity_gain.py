@@ -134,7 +134,7 @@ def with_generated(
     def method(room: UnseenRoom) -> Maker:
         config, num_frames = room.room.config, room.room.joints_m.shape[1]
         empty = empty_room(room.true_scene(room.room), config, num_frames, OTHER) if recorded else None
-        learned = LearnedRoom(network, scene_of(room), config, room_seed=1, empty=empty)
+        learned = LearnedRoom(network, scene_of(room), config, room_seed=1, background=empty)
         return lambda pose, seed: learned.cube([FrameMotion.of(pose, config, num_frames)], seed=seed)
 
     return method

@@ -99,7 +99,7 @@ def one_room(room: StoredRoom, arguments: argparse.Namespace, plan_seed: int) ->
     methods: dict[str, Method] = {name: _learned(LearnedRoom(network, scene, room.config, room_seed=1), room)
                                   for name, network in networks.items()}  # fmt: skip
     takes = _together([read_capture(work / "tuned_with_joints" / f"take{k}").cube for k in range(len(given))])
-    methods["captures_as_background"] = _learned(LearnedRoom(start, scene, room.config, empty=takes), room)
+    methods["captures_as_background"] = _learned(LearnedRoom(start, scene, room.config, background=takes), room)
     methods["captures_mean"] = _mean(room, given)
     realization = _realization(room, plan_seed)
     try:

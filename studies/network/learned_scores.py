@@ -105,7 +105,7 @@ def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, re
         empty = None
         if recorded:
             empty = empty_room(case.true_scene, config, len(case.joints[0]), case.spec.seed + OTHER)
-        learned_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, empty=empty)
+        learned_room = LearnedRoom(network, reconstruct(room_of(case).photo), config, room_seed=1, background=empty)
         joints, velocity = case.joints
         motion = FrameMotion(joints_m=joints, velocity_mps=velocity, subject=OTHER + case.spec.person)
         return learned_room.cube([motion], seed=case.index)

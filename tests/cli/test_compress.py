@@ -26,9 +26,9 @@ def test_a_cube_and_a_size(recording: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "3000"]) == 2
     assert "--overwrite" in capsys.readouterr().err
     assert main(["compress", str(recording), "-o", str(out), "--quality", "15", "--overwrite"]) == 0
-    told = capsys.readouterr().out
-    assert "times fewer" in told
-    assert "dB in cells with signal" in told
+    shown = capsys.readouterr().out
+    assert "times fewer" in shown
+    assert "dB in cells with signal" in shown
     assert main(["compress", str(recording), "-o", str(out), "--bytes", "9000", "--keep-noise", "--overwrite"]) == 0
 
 

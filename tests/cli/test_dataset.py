@@ -21,23 +21,23 @@ REFERENCE = "office,living_room,lab,kitchen,library,bedroom,dining_room,meeting_
 def test_a_small_set_and_going_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     words = ["dataset", str(tmp_path / "d"), "--rooms", "office", "--layouts", "1", "--sequences", "1", "--frames", "3"]
     assert main([*words, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert (told["rooms_made"], told["sequences_made"]) == (1, 1)
+    shown = json.loads(capsys.readouterr().out)
+    assert (shown["rooms_made"], shown["sequences_made"]) == (1, 1)
     assert main([*words, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["rooms_already_there"] == 1
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "shown"),
     [(["--rooms", "castle"], "unknown kind of room"), (["--layouts", "0"], "num_layouts"), (["--radar", "x"], "x")],
 )
-def test_bad_wishes_make_nothing(words: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_bad_requests_make_nothing(words: list[str], shown: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert main(["dataset", str(tmp_path / "d"), *words]) == 2
-    assert told in capsys.readouterr().err
+    assert shown in capsys.readouterr().err
     assert not (tmp_path / "d").exists()
 
 
-def test_it_tells_beforehand_what_it_costs(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_the_cost_is_printed_beforehand(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     words = [
         "dataset",
         str(tmp_path / "d"),
@@ -51,9 +51,9 @@ def test_it_tells_beforehand_what_it_costs(tmp_path: Path, capsys: pytest.Captur
         REFERENCE,
     ]
     assert main([*words, "--dry-run"]) == 0
-    told = capsys.readouterr().out
-    assert told.startswith("12,000 sequences in 100 rooms to make (train ")
-    assert "22.0 GB" in told
+    shown = capsys.readouterr().out
+    assert shown.startswith("12,000 sequences in 100 rooms to generate (train ")
+    assert "22.0 GB" in shown
     assert main([*words, "--dry-run", "--json", "--geometry-only"]) == 0
     cost = json.loads(capsys.readouterr().out)
     assert cost["sequences"] == sum(cost["splits"].values()) == 12_000

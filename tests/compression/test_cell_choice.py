@@ -14,7 +14,7 @@ def test_active_cells_are_those_of_the_metrics():
     assert active_cells(np.ones((1, 2, 2, 3), np.complex64)).all()
 
 
-def test_bins_that_nobody_kept_do_not_count():
+def test_missing_bins_do_not_count():
     """Where most cells are exactly zero, the noise floor is that of the others."""
     noise = stream(0, "noise").normal(size=(2, 8, 16, 4)).astype(np.complex64)
     noise[:, :, :12] = 0
@@ -22,7 +22,7 @@ def test_bins_that_nobody_kept_do_not_count():
     assert np.argwhere(active_cells(noise)).tolist() == [[1, 3, 14]]
 
 
-def test_cells_at_rest_are_active_together():
+def test_static_cells_are_active_in_all_frames():
     is_active = np.zeros((3, 4, 8), bool)
     is_active[1, 2, 4] = is_active[1, 2, 7] = True
     joined = share_static_frames(is_active)
@@ -30,7 +30,7 @@ def test_cells_at_rest_are_active_together():
     assert joined[:, 2, 7].tolist() == [False, True, False]
 
 
-def test_cells_open_where_it_pays():
+def test_cells_open_where_coding_pays():
     """Signal at the fine step, strong noise at the coarse one, the rest not at all."""
     parts = np.zeros((2, 4, 1, 3, 2))
     parts[:, :, 0, 0] = np.array([5.0, 1.0])

@@ -16,7 +16,7 @@ def opened(levels: np.ndarray, seed: int = 2) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_map_and_numbers_come_back(shape: tuple[int, ...]):
+def test_map_and_levels_round_trip(shape: tuple[int, ...]):
     levels = clusters(shape)
     levels[0, 0, 0, 0, 0] = -70_000  # far beyond the single rungs
     classes = opened(levels)
@@ -32,7 +32,7 @@ def test_map_and_numbers_come_back(shape: tuple[int, ...]):
     assert np.array_equal(again, levels)
 
 
-def test_maps_in_clusters_cost_less_than_their_own_entropy():
+def test_clustered_maps_cost_less_than_their_order_0_entropy():
     levels = clusters((2, 1, 8, 64, 32))
     classes = np.where((levels != 0).any(axis=(0, 1)), FINE, 0)
     writer = Encoder()
@@ -42,7 +42,7 @@ def test_maps_in_clusters_cost_less_than_their_own_entropy():
     assert 0 < 8 * len(writer.to_bytes()) < 0.7 * entropy_bits
 
 
-def test_numbers_cost_less_than_their_own_entropy():
+def test_levels_cost_less_than_their_order_0_entropy():
     levels = clusters((2, 8, 4, 64, 32))
     classes = np.where((levels != 0).any(axis=(0, 1)), FINE, 0)
     writer = Encoder()
@@ -52,7 +52,7 @@ def test_numbers_cost_less_than_their_own_entropy():
     assert 8 * len(writer.to_bytes()) < -0.95 * counts.sum() * np.sum(share * np.log2(share))
 
 
-def test_nothing_costs_nothing():
+def test_zeros_cost_next_to_nothing():
     classes = np.zeros((20, 64, 32), np.int64)
     writer = Encoder()
     MapCoder(classes.shape).code(writer, classes, classes)

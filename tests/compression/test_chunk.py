@@ -22,7 +22,7 @@ def encoder() -> ChunkEncoder:
     return encoder_of(crowd(), 0, FitRecipe(num_points=60, stages=6))
 
 
-def test_a_finer_step_costs_more_and_errs_less(encoder: ChunkEncoder):
+def test_a_finer_step_costs_more_and_has_less_error(encoder: ChunkEncoder):
     truth = crowd().values
     sizes, errors = [], []
     for step in (0.1, 0.02, 0.004, 8e-4):
@@ -63,6 +63,6 @@ def test_noise_power_and_gains_survive(encoder: ChunkEncoder):
 
 
 @pytest.mark.parametrize("data", [b"", b"\0" * 16, b"\xff" * 400])
-def test_nonsense_is_an_input_error(data: bytes):
+def test_malformed_chunks_are_refused(data: bytes):
     with pytest.raises(InputError, match=r"is malformed"):
         decode_chunk(data, SMALL)

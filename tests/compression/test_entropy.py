@@ -5,7 +5,7 @@ from mmweaver.compression.entropy import BitModel, Decoder, Encoder, LadderModel
 from mmweaver.core.seeding import stream
 
 
-def test_bits_and_numbers_come_back_and_cost_what_they_should():
+def test_bits_and_numbers_round_trip_at_their_entropy():
     rng = stream(0, "bits")
     probability = rng.uniform(0.001, 0.2, 20_000)
     bits = (rng.random(20_000) < probability).astype(np.int64)
@@ -22,23 +22,23 @@ def test_bits_and_numbers_come_back_and_cost_what_they_should():
     assert np.array_equal(reader.uniform(sizes, np.zeros_like(sizes)), numbers)
 
 
-def test_a_mixture_learns_which_side_knows():
+def test_a_mixture_learns_the_informative_context():
     """Bits that one context decides and another does not: soon they cost next to nothing."""
     rng = stream(1, "bits")
     sizes = []
-    for told in (True, False):
+    for is_informative in (True, False):
         writer = Encoder()
         mixture = Mixture([BitModel(2), BitModel(2)])
         for _ in range(60):
             bits = rng.integers(0, 2, 100)
             other = rng.integers(0, 2, 100)
-            mixture.code(writer, [bits if told else other, other], bits)
+            mixture.code(writer, [bits if is_informative else other, other], bits)
         sizes.append(len(writer.to_bytes()) * 8 / 6000)
     assert sizes[0] < 0.1
     assert sizes[1] == pytest.approx(1.0, abs=0.05)
 
 
-def test_whole_numbers_of_any_size():
+def test_integers_of_any_size():
     numbers = np.array([0, 1, 2, 3, 5, 8, 200, 70_000, 0, 12])
     context = np.array([0, 1, 0, 1, 0, 1, 0, 1, 0, 1])
     writer = Encoder()
@@ -48,7 +48,7 @@ def test_whole_numbers_of_any_size():
     assert np.array_equal(again, numbers)
 
 
-def test_a_ladder_holds_any_number_and_is_cheap_where_numbers_are_even():
+def test_a_ladder_codes_any_number_and_is_cheap_for_uniform_ones():
     numbers = np.concatenate([np.arange(70), [1000, 70_000, 2**27]])
     contexts = [numbers % 3, numbers % 2]
     writer = Encoder()
@@ -64,7 +64,7 @@ def test_a_ladder_holds_any_number_and_is_cheap_where_numbers_are_even():
     assert 8 * len(writer.to_bytes()) < 1.05 * bits
 
 
-def test_a_damaged_stream_ends():
+def test_a_damaged_stream_terminates():
     noise = stream(2, "damage").integers(0, 256, 400).astype(np.uint8).tobytes()
     reader = Decoder(noise)
     with pytest.raises((ValueError, AssertionError)):

@@ -27,7 +27,7 @@ def long_file(long_cube: RadarCube) -> bytes:
 
 
 @pytest.mark.parametrize("num_bytes", [1500, 4000, 9000])
-def test_the_size_asked_for_is_met_from_below(num_bytes: int, tmp_path: Path):
+def test_the_requested_size_is_not_exceeded(num_bytes: int, tmp_path: Path):
     cube = crowd()
     data = compress_cube(cube, num_bytes=num_bytes)
     assert 0.9 * num_bytes <= len(data) <= num_bytes
@@ -39,7 +39,7 @@ def test_the_size_asked_for_is_met_from_below(num_bytes: int, tmp_path: Path):
     assert error_db(again.values, cube.values) < {1500: -10, 4000: -25, 9000: -35}[num_bytes]
 
 
-def test_the_quality_asked_for_is_met(tmp_path: Path):
+def test_the_requested_quality_is_met(tmp_path: Path):
     cube = crowd()
     (tmp_path / "a.mmw").write_bytes(compress_cube(cube, quality_db=25.0))
     again = read_cube(tmp_path / "a.mmw")
@@ -48,8 +48,8 @@ def test_the_quality_asked_for_is_met(tmp_path: Path):
     assert -27 < error_db(again.values[active], cube.values[active]) <= -25
 
 
-def test_noise_is_kept_where_asked(tmp_path: Path):
-    """Signal gets the bytes unless noise is wanted too; both say what they did."""
+def test_noise_is_kept_on_request(tmp_path: Path):
+    """Bytes go to the signal unless noise is requested too; both report their errors."""
     cube = crowd()
     files = [compress_cube(cube, num_bytes=9000, keep_noise=keep) for keep in (False, True)]
     plain, even = (errors_db(data, cube) for data in files)
@@ -71,7 +71,7 @@ def test_files_of_version_1_are_still_read():
     assert describe_mmw(path)["chunks"][0]["scatterers"] > 10
 
 
-def test_frames_are_read_without_the_others(long_cube: RadarCube, long_file: bytes, tmp_path: Path):
+def test_single_frames_are_read(long_cube: RadarCube, long_file: bytes, tmp_path: Path):
     path, data = tmp_path / "a.mmw", long_file
     path.write_bytes(data)
     whole = read_cube(path)
@@ -93,7 +93,7 @@ def test_the_same_cube_gives_the_same_bytes():
     assert compress_cube(crowd(), num_bytes=2000) == compress_cube(crowd(), num_bytes=2000)
 
 
-def test_a_file_says_what_is_in_it(long_file: bytes, tmp_path: Path):
+def test_a_file_is_described(long_file: bytes, tmp_path: Path):
     (tmp_path / "a.mmw").write_bytes(long_file)
     facts = describe_mmw(tmp_path / "a.mmw")
     assert facts["shape"] == [5, 24, 16, 12]
@@ -112,12 +112,12 @@ def test_a_file_says_what_is_in_it(long_file: bytes, tmp_path: Path):
         ({"quality_db": float("nan")}, "not possible"),
     ],
 )
-def test_impossible_wishes(wish: dict, word: str):
+def test_impossible_requests_are_refused(wish: dict, word: str):
     with pytest.raises(InputError, match=word):
         compress_cube(crowd(num_frames=1), **wish)
 
 
-def test_cubes_that_cannot_be_written():
+def test_cubes_that_cannot_be_stored_are_refused():
     cube = crowd(num_frames=1)
     empty = np.zeros_like(cube.values)
     broken = cube.values.copy()

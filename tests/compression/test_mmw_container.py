@@ -16,7 +16,7 @@ def header(config=AWR1843, **more) -> MmwHeader:
 
 
 @pytest.mark.parametrize("config", [AWR1843, BGT60, replace(AWR1843, name="mine", num_loops=16)], ids=lambda c: c.name)
-def test_header_and_chunks_come_back(config, tmp_path: Path):
+def test_header_and_chunks_round_trip(config, tmp_path: Path):
     size = write_mmw(tmp_path / "a.mmw", header(config), CHUNKS)
     file = MmwFile(tmp_path / "a.mmw")
     assert size == file.num_bytes == (tmp_path / "a.mmw").stat().st_size

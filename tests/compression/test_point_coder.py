@@ -8,18 +8,18 @@ from mmweaver.compression.entropy import Decoder, Encoder
 from mmweaver.compression.point_coder import CodedPoints, PointCoder, PointSteps, dequantize, nearness, quantize
 from mmweaver.fields.scatterers.layers import no_points
 from tests.fields.echoes import SMALL
-from tests.fields.scatterers.test_refinement import AXES, RESPONSE, drawn
+from tests.fields.scatterers.test_refinement import AXES, RESPONSE, random_points
 
 SHAPE = (3, 24, 16)
 
 
 def coded_at(step: float, num_points: int = 25) -> tuple[CodedPoints, PointSteps]:
     steps = PointSteps.of(step, RESPONSE, AXES)
-    return quantize(drawn(num_points, num_frames=3), steps, AXES, 2, 1), steps
+    return quantize(random_points(num_points, num_frames=3), steps, AXES, 2, 1), steps
 
 
 @pytest.mark.parametrize("step", [0.5, 0.05, 1e-4])
-def test_whole_numbers_come_back(step: float):
+def test_quantized_points_round_trip(step: float):
     coded, steps = coded_at(step)
     writer = Encoder()
     PointCoder(SHAPE, steps, 2, 300).code(writer, coded)
@@ -33,9 +33,9 @@ def test_whole_numbers_come_back(step: float):
         assert np.array_equal(getattr(again, name)[key[1]], getattr(coded, name)[key[0]]), name
 
 
-def test_every_parameter_is_as_fine_as_the_step_asks():
-    """The cells err by about step / sqrt(12) times a few; ten times the step, ten times the error."""
-    points = drawn(10, num_frames=3)
+def test_every_parameter_follows_the_step():
+    """The error of cells is a few times step / sqrt(12); ten times the step, ten times the error."""
+    points = random_points(10, num_frames=3)
     truth = RESPONSE.render(points, AXES)
     errors = []
     for step in (0.02, 0.002):
@@ -46,9 +46,9 @@ def test_every_parameter_is_as_fine_as_the_step_asks():
     assert all(0.2 < error < 2.0 for error in errors)
 
 
-def test_small_ones_are_left_out():
+def test_weak_scatterers_are_dropped():
     coded, steps = coded_at(0.05)
-    fewer = quantize(drawn(25, num_frames=3), steps, AXES, 2, int(np.median(coded.size)))
+    fewer = quantize(random_points(25, num_frames=3), steps, AXES, 2, int(np.median(coded.size)))
     assert 0 < len(fewer) < len(coded)
     none = quantize(no_points(3), steps, AXES, 2, 1)
     assert len(none) == 0
@@ -63,12 +63,12 @@ def test_nearness_shows_where_scatterers_are():
     assert near.max() <= 5
 
 
-def test_an_array_without_directions_spends_nothing_on_them():
+def test_an_array_without_directions_codes_none():
     steps = PointSteps.of(0.01, RESPONSE, AXES)
     sizes = []
     for num_directions in (0, 1, 2):
         writer = Encoder()
-        coded = quantize(drawn(25, num_frames=3), steps, AXES, num_directions, 1)
+        coded = quantize(random_points(25, num_frames=3), steps, AXES, num_directions, 1)
         PointCoder(SHAPE, steps, num_directions, 0).code(writer, coded)
         sizes.append(len(writer.to_bytes()))
     assert sizes[0] < sizes[1] < sizes[2]

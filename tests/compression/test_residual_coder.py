@@ -17,7 +17,7 @@ def clusters(shape: tuple[int, ...], seed: int = 0) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shape", [(2, 4, 3, 20, 16), (2, 1, 1, 37, 9), (2, 12, 1, 24, 1), (2, 2, 2, 1, 1)])
-def test_numbers_come_back(shape: tuple[int, ...]):
+def test_levels_round_trip(shape: tuple[int, ...]):
     levels = clusters(shape)
     levels[0, 0, 0, 0, 0] = -70_000  # far beyond the learned steps
     near = stream(1, "near").integers(0, 9, shape[2:])
@@ -28,7 +28,7 @@ def test_numbers_come_back(shape: tuple[int, ...]):
     assert np.array_equal(again, levels)
 
 
-def test_clusters_cost_less_than_their_own_entropy():
+def test_clusters_cost_less_than_their_order_0_entropy():
     """Neighbours must help: fewer bits than the order-0 entropy of the same numbers."""
     levels = clusters((2, 8, 4, 64, 32))
     writer = Encoder()
@@ -39,7 +39,7 @@ def test_clusters_cost_less_than_their_own_entropy():
     assert 8 * len(writer.to_bytes()) < 0.8 * entropy_bits
 
 
-def test_nothing_costs_nothing():
+def test_zeros_cost_next_to_nothing():
     levels = np.zeros((2, 12, 20, 64, 32), np.int64)
     writer = Encoder()
     ResidualCoder(levels.shape[1:]).code(writer, levels, np.zeros(levels.shape[2:], np.int64))

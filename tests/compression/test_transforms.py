@@ -8,7 +8,7 @@ from mmweaver.core.seeding import stream
 
 
 @pytest.mark.parametrize("config", [AWR1843, BGT60, IWR6843], ids=lambda config: config.name)
-def test_beams_are_unitary_and_coefficients_come_back(config: RadarConfig):
+def test_beams_are_unitary_and_coefficients_round_trip(config: RadarConfig):
     beams = beams_of(config)
     assert np.allclose(beams @ beams.conj().T, np.eye(config.num_antennas))
     parts = stream(0, "residual").normal(size=(2, 3, 5, 7, config.num_antennas))
@@ -19,7 +19,7 @@ def test_beams_are_unitary_and_coefficients_come_back(config: RadarConfig):
     assert np.allclose(from_coefficients(values, beams), residual)
 
 
-def test_what_stands_still_ahead_is_one_beam_of_each_row_and_one_coefficient():
+def test_static_clutter_ahead_is_one_beam_per_row_and_one_coefficient():
     residual = np.zeros((4, 1, 5, 12), complex)
     residual[:, 0, 2, :] = 1.0
     values = np.abs(to_coefficients(residual, beams_of(AWR1843)))

@@ -1,4 +1,4 @@
-"""What a data set costs, told beforehand: what is there costs nothing; a disk that is too small is refused."""
+"""Estimated cost of a data set: existing rooms cost nothing; a disk that is too small is refused."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +14,7 @@ from mmweaver.datasets.dataset_plan import DatasetPlan
 PLAN = DatasetPlan(kinds=("office", "gym"), lightings=("day",), num_layouts=3, sequences_a_room=10)
 
 
-def test_what_is_there_costs_nothing(tmp_path: Path):
+def test_existing_rooms_cost_nothing(tmp_path: Path):
     whole = estimate_cost(PLAN, AWR1843, tmp_path)
     assert (whole.rooms, whole.sequences) == (6, 60)
     assert sum(whole.splits.values()) == 60
@@ -36,7 +36,7 @@ def test_time_and_disk_grow_with_frames_and_shrink_without_signals(tmp_path: Pat
     assert "with 4 workers" in own.summary(4)
 
 
-def test_a_full_disk_is_refused_before_anything_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_a_full_disk_is_refused_beforehand(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     cost = estimate_cost(PLAN, AWR1843, tmp_path)
     check_for_space(cost, tmp_path / "not" / "there" / "yet")
     monkeypatch.setattr("shutil.disk_usage", lambda path: SimpleNamespace(free=1e6))

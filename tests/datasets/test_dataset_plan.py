@@ -1,4 +1,4 @@
-"""Plans: the same again, nothing withheld in training."""
+"""Plans: reproducible, and nothing held out occurs in training."""
 
 from dataclasses import replace
 
@@ -12,12 +12,12 @@ PLAN = DatasetPlan(kinds=("office", "living_room", "dining_room"), lightings=("d
                    sequences_a_room=30)  # fmt: skip
 
 
-def test_the_same_plan_says_the_same():
+def test_equal_plans_are_equal():
     assert PLAN.rooms() == PLAN.rooms()
     assert replace(PLAN, seed=1).rooms() != PLAN.rooms()
 
 
-def test_every_sentence_is_understood():
+def test_every_sentence_is_parsed():
     for texts in ACTIVITIES.values():
         for text in texts:
             assert parse(text).steps
@@ -42,7 +42,7 @@ def test_a_leak_is_found(split: str):
         check_for_leaks(leaky)
 
 
-def test_what_shows_two_withheld_things_is_not_made():
+def test_combinations_of_held_out_properties_are_not_generated():
     both = HeldOut().split(kind="living_room", layouts_after=5, person=0, activity="jumping")
     assert both == ""
 

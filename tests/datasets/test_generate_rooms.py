@@ -1,4 +1,4 @@
-"""A small data set: whole, the same again, and safe from a kill."""
+"""A small data set: complete, reproducible, and safe from a kill."""
 
 import hashlib
 import json
@@ -49,7 +49,7 @@ def test_half_precision_keeps_the_noise(folder: Path):
     assert 10 * np.log10(noise / expected) == pytest.approx(0, abs=1.5)
 
 
-def test_after_a_kill_the_rest_is_made_and_is_the_same_to_the_bit(folder: Path, tmp_path: Path):
+def test_after_a_kill_the_rest_is_generated_bit_by_bit(folder: Path, tmp_path: Path):
     again = tmp_path / "again"
     shutil.copytree(folder, again)
     shutil.rmtree(again / "office_001")
@@ -81,7 +81,7 @@ def test_another_plan_and_a_full_folder_are_refused(folder: Path, tmp_path: Path
         read_rooms(tmp_path)
 
 
-def test_a_room_that_was_made_meanwhile_is_kept(folder: Path, tmp_path: Path):
+def test_a_room_written_in_the_meantime_is_kept(folder: Path, tmp_path: Path):
     again = tmp_path / "again"
     shutil.copytree(folder, again)
     before = (again / "office_000" / "zarr.json").stat().st_mtime_ns
@@ -104,8 +104,8 @@ def contents(folder: Path) -> dict[str, str]:
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="the state of a process is not to be had here")
-def test_what_a_dead_worker_left_is_swept_before_anybody_asks_after_it(tmp_path: Path):
-    """A worker that was killed stays in the list of processes until its parent asks how it ended."""
+def test_leftovers_of_a_zombie_worker_are_removed(tmp_path: Path):
+    """A killed worker stays a zombie until its parent waits for it."""
     child = subprocess.Popen([sys.executable, "-c", "pass"])
     deadline = time.monotonic() + 30
     while Path(f"/proc/{child.pid}/stat").exists() and time.monotonic() < deadline:

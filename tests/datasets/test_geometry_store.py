@@ -1,4 +1,4 @@
-"""A data set without signals: they are made from it, the same as those that are stored, and no ray is cast."""
+"""A data set without signals: synthesised ones equal stored ones, and no ray is cast."""
 
 import subprocess
 import sys
@@ -30,28 +30,28 @@ def _error(got: np.ndarray, wanted: np.ndarray) -> float:
     return float((np.abs(got - wanted) ** 2).sum() / (np.abs(wanted) ** 2).sum())
 
 
-def test_signals_are_those_that_would_be_stored(folders: dict[bool, Path]):
+def test_synthesised_signals_equal_stored_ones(folders: dict[bool, Path]):
     """-68 dB was measured, of which the stored set's half precision is a part."""
-    for drawn, stored in zip(read_rooms(folders[True]), read_rooms(folders[False]), strict=True):
-        assert np.array_equal(drawn.joints_m, stored.joints_m)
-        assert np.array_equal(drawn.static, stored.static)
-        assert drawn.split == stored.split
-        for index in range(len(drawn.split)):
+    for synthesised, stored in zip(read_rooms(folders[True]), read_rooms(folders[False]), strict=True):
+        assert np.array_equal(synthesised.joints_m, stored.joints_m)
+        assert np.array_equal(synthesised.static, stored.static)
+        assert synthesised.split == stored.split
+        for index in range(len(synthesised.split)):
             wanted = stored.cube(index).values
-            got = drawn.cube(index).values
+            got = synthesised.cube(index).values
             assert _error(got, wanted) < 1e-6
-            assert _error(drawn.cube(index, np.array([1, 3])).values, got[[1, 3]]) < 1e-8
+            assert _error(synthesised.cube(index, np.array([1, 3])).values, got[[1, 3]]) < 1e-8
             assert np.array_equal(stored.cube(index, np.array([1, 3])).values, wanted[[1, 3]])
 
 
-def test_a_twin_is_another_signal(folders: dict[bool, Path]):
+def test_another_realization_is_another_signal(folders: dict[bool, Path]):
     room = read_rooms(folders[True])[0]
-    first, twin = room.cube(0).values, room.cube(0, realization=7).values
-    assert _error(twin, first) > 0.3
-    assert np.array_equal(twin, room.cube(0, realization=7).values)
+    first, other = room.cube(0).values, room.cube(0, realization=7).values
+    assert _error(other, first) > 0.3
+    assert np.array_equal(other, room.cube(0, realization=7).values)
 
 
-def test_a_sequence_takes_little(folders: dict[bool, Path]):
+def test_a_sequence_takes_little_space(folders: dict[bool, Path]):
     with_signals, without = (
         sum(_size(folders[key] / "office_000" / name) for name in names)
         for key, names in ((False, ("iq",)), (True, ("geometry/node_joints_m", "geometry/visibility")))
@@ -59,13 +59,13 @@ def test_a_sequence_takes_little(folders: dict[bool, Path]):
     assert without < with_signals / 50
 
 
-def test_geometry_of_other_people_is_refused(folders: dict[bool, Path], monkeypatch: pytest.MonkeyPatch):
+def test_geometry_of_another_body_surface_is_refused(folders: dict[bool, Path], monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("mmweaver.datasets.geometry_store.skin_mark", lambda: "another")
     with pytest.raises(InputError, match="another version"):
         read_rooms(folders[True])[0].cube(0)
 
 
-def test_the_same_command_does_not_mix_both(folders: dict[bool, Path]):
+def test_signals_and_geometry_are_not_mixed(folders: dict[bool, Path]):
     with pytest.raises(InputError, match="another plan"):
         generate_dataset(folders[True], replace(TINY_PLAN, geometry_only=False), AWR1843)
 

@@ -1,4 +1,4 @@
-"""Noise alone fires at the asked rate; thresholds are those of the textbooks."""
+"""Noise alone has the requested false alarm rate; thresholds are those of the textbooks."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def assert_rate(num_fired: int, num_cells: int, rate: float, tolerance: float) -
 @pytest.mark.parametrize("cfar", CFARS)
 @pytest.mark.parametrize("num_looks", [1, 12])
 @pytest.mark.parametrize("rate", RATES)
-def test_independent_noise_fires_at_the_asked_rate(cfar, num_looks: int, rate: float):
+def test_independent_noise_has_the_requested_false_alarm_rate(cfar, num_looks: int, rate: float):
     power = stream(0, "test cfar", num_looks).gamma(num_looks, 3.0, (120, 64, 32))
     cells = CfarCells(guard=(1, 1), training=(4, 3))
     found = cfar(power, false_alarm_rate=rate, num_looks=num_looks, cells=cells, hann_windowed=False)
@@ -42,7 +42,9 @@ def noise_cells() -> np.ndarray:
 @pytest.mark.parametrize("cfar", CFARS)
 @pytest.mark.parametrize("rate", RATES)
 @pytest.mark.parametrize("cells", [CfarCells(), CfarCells(guard=(2, 2), training=(6, 4))], ids=["wide", "narrow"])
-def test_windowed_noise_of_twelve_antennas_fires_at_the_asked_rate(noise_cells, cfar, rate: float, cells: CfarCells):
+def test_windowed_noise_of_twelve_antennas_has_the_requested_false_alarm_rate(
+    noise_cells, cfar, rate: float, cells: CfarCells
+):
     power = noise_cells.mean(axis=-1)
     found = cfar(power, false_alarm_rate=rate, num_looks=12, cells=cells)
     assert_rate(int(found.is_detected.sum()), power.size, rate, 0.05)
@@ -50,13 +52,13 @@ def test_windowed_noise_of_twelve_antennas_fires_at_the_asked_rate(noise_cells, 
 
 @pytest.mark.parametrize("cfar", CFARS)
 @pytest.mark.parametrize("rate", RATES)
-def test_windowed_noise_of_one_antenna_fires_at_the_asked_rate(noise_cells, cfar, rate: float):
+def test_windowed_noise_of_one_antenna_has_the_requested_false_alarm_rate(noise_cells, cfar, rate: float):
     power = np.moveaxis(noise_cells[..., [0, 5, 11]], -1, 0).reshape(-1, 64, 32)
     found = cfar(power, false_alarm_rate=rate, num_looks=1)
     assert_rate(int(found.is_detected.sum()), power.size, rate, 0.05)
 
 
-def test_near_the_ends_of_range_too(noise_cells):
+def test_the_rate_holds_near_the_ends_of_range(noise_cells):
     power = noise_cells.mean(axis=-1)
     found = ca_cfar(power, false_alarm_rate=1e-2, num_looks=12)
     edges = found.is_detected[:, [0, 1, 2, -3, -2, -1]]
@@ -83,7 +85,7 @@ def test_a_target_is_found_and_scale_does_not_matter(cfar):
         assert np.argwhere(found.is_detected).tolist() == [[0, 3, 31], [0, 40, 0]]
 
 
-def test_training_wraps_around_in_doppler():
+def test_training_cells_are_cyclic_in_doppler():
     power = np.ones((1, 32, 16))
     power[0, 16, 0] = 1000.0
     noise = ca_cfar(power, cells=CfarCells(guard=(1, 1), training=(2, 2))).noise_power[0, 16]
@@ -99,7 +101,7 @@ def test_an_ordered_statistic_is_not_masked_by_a_neighbour():
 
 
 @pytest.mark.parametrize("cfar", CFARS)
-def test_what_cannot_be_is_refused(cfar):
+def test_impossible_maps_and_rates_are_refused(cfar):
     with pytest.raises(InputError, match="false alarm rate"):
         cfar(np.ones((1, 8, 8)), false_alarm_rate=0.0)
     with pytest.raises(InputError, match="one cell"):
@@ -109,7 +111,7 @@ def test_what_cannot_be_is_refused(cfar):
 
 
 @pytest.mark.parametrize("cfar", CFARS)
-def test_a_narrow_map_meets_no_cell_twice(cfar):
+def test_a_narrow_map_uses_no_cell_twice(cfar):
     power = stream(0, "test narrow").gamma(3, 1.0, (400, 32, 8))
     found = cfar(power, false_alarm_rate=1e-2, num_looks=3, hann_windowed=False)
     assert_rate(int(found.is_detected.sum()), power.size, 1e-2, 0.0)

@@ -62,7 +62,7 @@ def test_every_cell_is_the_plain_sum(name: str):
 
 
 @pytest.mark.parametrize("config", [AWR1843, MMMESH, HUPR, IWR6843, BGT60], ids=lambda config: config.name)
-def test_cube_to_adc_to_cube(config: RadarConfig):
+def test_cube_to_adc_and_back(config: RadarConfig):
     adc = noise_adc(config)
     cube = radar_cube(adc)
     back = adc_from_cube(cube)
@@ -111,7 +111,7 @@ def test_an_unknown_removal_is_refused():
 
 
 @pytest.mark.parametrize("config", PRESETS.values(), ids=PRESETS)
-def test_what_rests_is_known_from_zero_doppler_alone(config: RadarConfig):
+def test_static_clutter_follows_from_zero_doppler(config: RadarConfig):
     once = noise_adc(config).samples[:, :1]
     whole = radar_cube(AdcCube(samples=np.repeat(once, config.num_loops, axis=1), config=config, scale=1.0))
     made = static_cube(whole.values[0, :, config.num_loops // 2], config)

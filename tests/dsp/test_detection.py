@@ -1,4 +1,4 @@
-"""Which point cloud."""
+"""Point detectors by name."""
 
 import numpy as np
 import pytest

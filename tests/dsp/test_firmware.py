@@ -41,7 +41,7 @@ def around(cloud, x: float, y: float, z: float, within_m: float = 0.25) -> np.nd
 
 @pytest.mark.parametrize("config", [IWR1443_RADHAR, IWR1443_MARS], ids=lambda c: c.name)
 @pytest.mark.parametrize(("x", "z"), [(0.0, 0.0), (0.7, 0.3), (-0.9, -0.4)])
-def test_a_target_comes_back_within_a_bin(config: RadarConfig, x: float, z: float):
+def test_a_target_is_reported_within_a_bin(config: RadarConfig, x: float, z: float):
     speed = 2 * config.velocity_resolution_mps
     cloud = firmware_points(targets_adc(config, (x, 2.0, z, speed, 30.0)))
     best = np.argmax(cloud.intensity)
@@ -54,7 +54,7 @@ def test_a_target_comes_back_within_a_bin(config: RadarConfig, x: float, z: floa
 
 
 def test_the_device_grid():
-    """What the recordings show: RadHAR's places on 4.09 cm, MARS' on 2.93 cm, and their velocity steps."""
+    """As in the recordings: RadHAR's ranges on a grid of 4.09 cm, MARS' of 2.93 cm, and their velocity steps."""
     assert range_step_m(IWR1443_RADHAR) == pytest.approx(0.0409, abs=5e-5)
     assert IWR1443_RADHAR.range_resolution_m == pytest.approx(0.0436, abs=5e-5)
     assert IWR1443_RADHAR.range_m[-1] == pytest.approx(5.447, abs=1e-3)
@@ -68,7 +68,7 @@ def test_the_device_grid():
     assert np.abs(cosine - np.rint(cosine)).max() < 0.02
 
 
-def test_static_clutter_shows_at_zero_velocity_alone_and_clutter_removal_takes_it():
+def test_static_clutter_is_at_zero_velocity_and_clutter_removal_removes_it():
     walls = [(x, y, 0.0, 0.0, 300.0) for x, y in ((0.2, 1.5), (-1.0, 2.2), (0.8, 3.0), (0.0, 4.0))]
     person = (0.3, 2.0, 0.1, 1.23, 30.0)
     adc = targets_adc(IWR1443_RADHAR, *walls, person, frames=3)
@@ -99,7 +99,7 @@ def test_two_targets_of_one_cell_are_two_objects_with_beamforming_on():
     assert len(both.frame) == 2 * len(alone.frame)
 
 
-def test_the_list_is_cut_from_zero_velocity_upwards():
+def test_the_list_is_filled_from_zero_velocity_upwards():
     """As the device's: not the strongest, but the first in its own order, and the elevated row leaves room for 64."""
     every = FirmwareSettings(
         range_cfar=FirmwareCfar(threshold=0), group_range=False, group_doppler=False, second_peak=None
@@ -149,7 +149,7 @@ def test_a_cube_gives_the_targets_of_its_samples():
     assert cloud.radial_velocity_mps[best] == pytest.approx(0.71, abs=0.01)
 
 
-def test_silence_has_no_points_and_other_radars_are_refused():
+def test_zero_signals_have_no_points_and_other_radars_are_refused():
     silent = targets_adc(IWR1443_MARS, noise=0.0, frames=2)
     assert len(firmware_points(silent).frame) == 0
     bgt = AdcCube(samples=np.zeros((1, 8, 1, 3, 64), np.complex64), config=BGT60, scale=1.0)

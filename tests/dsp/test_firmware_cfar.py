@@ -1,4 +1,4 @@
-"""Detection matrix, CFAR in whole logarithms, peak grouping."""
+"""Detection matrix, CFAR in integer logarithms, peak grouping."""
 
 from dataclasses import replace
 
@@ -42,14 +42,14 @@ def test_noise_against_a_loop(average: str, cyclic: bool):
         assert np.array_equal(noise[at], expected)
 
 
-def test_a_map_with_no_room_for_a_side_detects_nothing():
+def test_a_map_without_training_cells_detects_nothing():
     level = np.full((10, 4), 5)
     level[5, 2] = 9000
     passed, _ = cfar_detections(level, FirmwareSettings(), 512.0)
     assert not passed.any()
 
 
-def test_caso_sees_beside_a_step_where_cago_does_not():
+def test_caso_detects_next_to_a_step_and_cago_does_not():
     level = np.full((60, 8), 1000)
     level[30:] = 4000
     level[27, 3] = 3000
@@ -70,7 +70,7 @@ def test_both_directions_must_pass():
     assert [tuple(cell) for cell in np.argwhere(cfar_detections(level, both, 512.0)[0])] == [(40, 9)]
 
 
-def test_the_window_is_of_both_sides_on_one_device_and_of_each_on_the_other():
+def test_the_window_spans_both_sides_on_one_device_and_each_on_the_other():
     level = np.zeros((60, 1), int)
     level[30 + 4 + 1 + 4 :] = 800  # from the fifth training cell on
     cfar = FirmwareCfar(average="cago", window=8, guard=4, noise_shift=4, threshold=0)
@@ -103,7 +103,7 @@ def test_peak_grouping():
         assert found == expected[in_range, in_doppler]
 
 
-def test_peak_grouping_wraps_in_doppler_and_ends_at_the_range_bins_asked_for():
+def test_peak_grouping_is_cyclic_in_doppler_and_limited_in_range():
     level = np.zeros((10, 8), int)
     level[5, 0], level[5, 7], level[6, 0] = 5, 6, 9
     settings = FirmwareSettings(first_range_bin=1, last_range_bin=5)

@@ -28,7 +28,7 @@ def point(response: PointResponse, range_m: float, velocity_mps: float, towards:
 def rendered(config: RadarConfig, range_m: float, velocity_mps: float, towards: np.ndarray) -> np.ndarray:
     response = PointResponse(config)
     axes = response.axes()
-    return (response.render(point(response, range_m, velocity_mps, towards), axes) * response.turn(axes)).numpy()
+    return (response.render(point(response, range_m, velocity_mps, towards), axes) * response.phasor(axes)).numpy()
 
 
 def mismatch_db(config: RadarConfig, velocity_mps: float, range_m: float = 2.1) -> tuple[float, complex]:
@@ -47,7 +47,7 @@ def test_a_moving_point_is_exact_off_every_bin(velocity_mps: float, bound_db: fl
     assert abs(factor) == pytest.approx(1.0, abs=5e-3)
 
 
-def test_its_phase_is_that_of_the_carrier_at_its_range():
+def test_the_phase_is_that_of_the_carrier_at_the_range():
     for range_m in (1.5, 2.1, 2.8):
         _, factor = mismatch_db(AWR1843, 0.8, range_m)
         delay_s = 2 * range_m / 299_792_458.0
@@ -55,7 +55,7 @@ def test_its_phase_is_that_of_the_carrier_at_its_range():
         assert abs(np.angle(factor * np.exp(-2j * np.pi * turns))) < 0.02
 
 
-def test_what_is_left_of_the_tdm_phase_matters():
+def test_the_residual_tdm_phase_matters():
     """A cube is compensated bin by bin; a point between two bins keeps a phase step between transmitters."""
     towards = direction_of(0.3, 0.1)
     half_bin_mps = 3.5 * SMALL.velocity_resolution_mps
@@ -65,13 +65,13 @@ def test_what_is_left_of_the_tdm_phase_matters():
     for known in (response.delay, 0 * response.delay):
         response.delay = known
         axes = response.axes()
-        ours = (response.render(point(response, 1.4, half_bin_mps, towards), axes) * response.turn(axes)).numpy()
+        ours = (response.render(point(response, 1.4, half_bin_mps, towards), axes) * response.phasor(axes)).numpy()
         errors.append(error_db(np.vdot(ours, truth) / np.vdot(ours, ours) * ours, truth))
     assert errors[0] < -45
     assert errors[1] > errors[0] + 15
 
 
-def test_velocity_beyond_the_limit_comes_back_at_the_other_end():
+def test_velocity_beyond_the_limit_aliases():
     assert mismatch_db(SMALL, 1.15 * SMALL.max_velocity_mps, 1.4)[0] < -30
 
 
@@ -84,17 +84,17 @@ def test_a_finer_grid_holds_the_cells_of_the_own_one():
     assert torch.allclose(finer[::2, ::2], own, atol=1e-5)
 
 
-def test_cells_one_by_one_are_the_cells_of_the_grid():
+def test_single_cells_equal_those_of_the_grid():
     response = PointResponse(SMALL)
     axes = response.axes()
     points = point(response, 1.4, 0.6, direction_of(-0.2, 0.1))
-    whole = response.render(points, axes) * response.turn(axes)
+    whole = response.render(points, axes) * response.phasor(axes)
     r, d, a = np.array([2, 9, 20]), np.array([1, 10, 15]), np.array([0, 5, 11])
     cells = replace(
         axes, range_bin=axes.range_bin[r], doppler_bin=axes.doppler_bin[d], place=axes.place[a],
         delay=axes.delay[a], parts=axes.parts[:, a],
     )  # fmt: skip
-    some = response.at_cells(points, cells) * response.turn_at_cells(cells)
+    some = response.at_cells(points, cells) * response.phasor_at_cells(cells)
     assert torch.allclose(some, whole[r, d, a], atol=1e-6)
 
 

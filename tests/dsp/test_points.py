@@ -34,7 +34,7 @@ def test_a_frame_has_its_strongest_points_only(method: str):
         assert few.snr_db[few.frame == frame] == pytest.approx(strongest)
 
 
-def test_points_lie_where_the_radar_sees():
+def test_points_lie_in_the_field_of_view():
     points = point_cloud(noise_cube(AWR1843), false_alarm_rate=0.2)
     range_m = np.sqrt(points.x_m**2 + points.y_m**2 + points.z_m**2)
     half_m = AWR1843.range_resolution_m / 2
@@ -44,7 +44,7 @@ def test_points_lie_where_the_radar_sees():
     assert np.abs(points.radial_velocity_mps).max() <= AWR1843.max_velocity_mps
 
 
-def test_moving_only_has_no_still_points():
+def test_moving_only_has_no_static_points():
     points = point_cloud(noise_cube(AWR1843), false_alarm_rate=0.2, moving_only=True)
     assert len(points.frame) > 100
     assert np.abs(points.radial_velocity_mps).min() > 1.49 * AWR1843.velocity_resolution_mps

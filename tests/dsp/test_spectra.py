@@ -51,7 +51,7 @@ def test_azimuth_peaks_where_the_wave_comes_from(config: RadarConfig, azimuth_de
 
 @pytest.mark.parametrize("elevation_deg", [-20.0, 0.0, 12.0])
 @pytest.mark.parametrize("right", [-0.5, 0.0, 0.4])
-def test_elevation_does_not_care_about_azimuth(elevation_deg: float, right: float):
+def test_elevation_is_independent_of_azimuth(elevation_deg: float, right: float):
     cube = plane_wave(AWR1843, (7, 20), right, float(np.sin(np.radians(elevation_deg))))
     axis_rad = elevation_axis_rad(num=81, limit_deg=40.0)
     power = range_elevation_power(cube, axis_rad)[0]

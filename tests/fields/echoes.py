@@ -38,7 +38,7 @@ def exact_point(config: RadarConfig, range_m: float, velocity_mps: float, toward
 
 @lru_cache
 def crowd(config: RadarConfig = SMALL, num_frames: int = 3, num_points: int = 12, noise: float = 2e-4) -> RadarCube:
-    """Moving points over two that stand still, and noise; another cloud in each frame."""
+    """Moving points, two static ones, and noise; new points in each frame."""
     rng = stream(5, "crowd")
     low, high = config.range_m[3], config.range_m[-4]
     still = [exact_point(config, r, 0.0, direction_of(a, 0.1)) for r, a in ((low + 0.1, -0.4), (high - 0.2, 0.5))]

@@ -12,6 +12,6 @@ def test_beams_are_unitary(config: RadarConfig):
     assert np.allclose(beams @ beams.conj().T, np.eye(config.num_antennas))
 
 
-def test_a_far_wall_ahead_fills_one_beam_a_row():
+def test_a_far_wall_ahead_fills_one_beam_per_row():
     heard = beams_of(AWR1843) @ np.ones(12)
     assert np.count_nonzero(np.abs(heard) > 1e-9) == 2

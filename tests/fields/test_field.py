@@ -23,7 +23,7 @@ class Formula(SignalField):
         return (frame + 10 * range_bin + 1j * (doppler_bin - 100 * antenna)).astype(np.complex64)
 
 
-def test_a_grid_is_its_points_in_order(monkeypatch):
+def test_a_grid_equals_its_points(monkeypatch):
     monkeypatch.setattr(field_module, "CHUNK_POINTS", 1000)  # several chunks, one of them short
     values = Formula().on_grid(CubeGrid.of(SMALL, 3))
     frame, range_bin, doppler_bin, antenna = np.indices(values.shape)

@@ -24,14 +24,14 @@ def test_it_is_unitary_and_invertible():
 
 
 @pytest.mark.parametrize(("axis", "raw_rad"), [(1, np.pi), (2, np.pi)])
-def test_raw_cubes_turn_by_half_a_turn_a_bin_and_centred_ones_do_not(axis: int, raw_rad: float):
+def test_raw_cubes_rotate_by_pi_per_bin_and_centred_ones_do_not(axis: int, raw_rad: float):
     cube = radar_cube(point_adc())
     assert turn_per_bin_rad(cube.values, axis) == pytest.approx(raw_rad, abs=0.25)
     assert turn_per_bin_rad(centred(cube).values, axis) < 0.25
 
 
 def test_one_scatterer_is_real_across_its_range_lobe():
-    """Exactly: the periodic Hann is symmetric about sample N/2, so all kept bins share one phase or its opposite."""
+    """Exactly: the periodic Hann is symmetric about sample N/2, so all bins share one phase or its opposite."""
     config = replace(AWR1843, num_loops=4)
     beat = 30.37
     tone = np.exp(2j * np.pi * beat * np.arange(256) / 256)
@@ -44,7 +44,7 @@ def test_one_scatterer_is_real_across_its_range_lobe():
 
 
 def test_tdm_compensation_leaves_a_small_slope_across_the_doppler_lobe():
-    """Transmitter of turn k: 2 pi k / (num_tx num_loops) a bin, less than 8 degrees for the awr1843."""
+    """k-th transmitter: 2 pi k / (num_tx num_loops) per bin, less than 8 degrees for the awr1843."""
     loops, config = np.arange(32), replace(AWR1843, num_range_bins=4, first_range_bin=0)
     shift = 5.4
     time_loops = loops[:, None] + config.tx_delay_s / config.loop_period_s
@@ -58,7 +58,7 @@ def test_tdm_compensation_leaves_a_small_slope_across_the_doppler_lobe():
         assert turn < np.radians(8)
 
 
-def test_turns_at_points_are_those_of_the_grid():
+def test_phasors_at_points_equal_those_of_the_grid():
     grid = CubeGrid.of(SMALL, 2)
     turn = centring_phasor(SMALL, grid)
     coordinates = np.array([[0.0, 3.0, 5.0, 1.0], [1.0, 31.0, 0.0, 2.0]])

@@ -32,7 +32,7 @@ def test_a_coarser_grid_is_refused(bad: float):
         finer_grid(NATIVE, n_d=bad)
 
 
-def test_coordinates_count_cells():
+def test_coordinates_are_in_cells():
     frame, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, finer_grid(NATIVE, n_r=2.0, n_d=4.0, n_a=2.0))
     assert np.allclose(frame, [0, 1, 2])
     assert np.allclose(range_bin, np.arange(128) / 2, atol=1e-9)
@@ -58,7 +58,7 @@ def test_one_antenna_is_enough():
     assert antenna_coordinate(single, single, NATIVE.wavelength_m).tolist() == [0.0]
 
 
-def test_drawn_coordinates_stay_within_the_radius():
+def test_sampled_coordinates_stay_within_the_radius():
     for radius in (0, 1, 7):
         _, range_bin, doppler_bin, antenna = coordinates_on(NATIVE, sampled_grid(NATIVE, radius, seed=0))
         for at in (range_bin, doppler_bin, antenna):
@@ -75,7 +75,7 @@ def test_the_radius_is_one_of_the_papers():
         sampled_grid(NATIVE, 8, seed=0)
 
 
-def test_draws_follow_the_seed():
+def test_samples_follow_the_seed():
     one, again, other = (sampled_grid(NATIVE, 3, seed=seed).range_m for seed in (0, 0, 1))
     assert (one == again).all()
     assert (one != other).any()

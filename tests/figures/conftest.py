@@ -38,7 +38,7 @@ def make_photo(width: int = 160, height: int = 120) -> RgbdPhoto:
 
 
 def make_cube(pose: PoseSequence) -> RadarCube:
-    """Every joint a point target, in front of a standing one at 2 m and weak noise."""
+    """Every joint a point target, in front of a static one at 2 m and weak noise."""
     grid = CubeGrid.of(AWR1843, len(pose.time_s))
     noise = stream(1, "noise")
     values = 1e-3 * (noise.normal(size=grid.shape) + 1j * noise.normal(size=grid.shape))

@@ -15,7 +15,7 @@ def frames_of(path: Path) -> list[np.ndarray]:
         return [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(picture)]
 
 
-def test_a_picture_a_frame_in_real_time(view: FigureData, tmp_path: Path):
+def test_one_picture_per_frame_in_real_time(view: FigureData, tmp_path: Path):
     draw_animation(view, tmp_path / "a.gif")
     with Image.open(tmp_path / "a.gif") as picture:
         assert picture.size == (900, 370)

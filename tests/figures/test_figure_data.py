@@ -9,12 +9,12 @@ from mmweaver.core.records import CubeGrid
 from mmweaver.figures.figure_data import MAX_FRAMES, Fan, FigureData, decibels
 
 
-def test_decibels_are_relative_to_the_peak_and_end_at_the_floor():
+def test_decibels_are_relative_to_the_peak_and_limited():
     assert decibels(np.array([1.0, 10.0, 100.0, 0.0])).tolist() == pytest.approx([-20, -10, 0, -50])
     assert decibels(np.zeros((2, 3))).tolist() == [[-50.0] * 3] * 2
 
 
-def test_a_fan_lays_a_target_at_its_place_in_metres():
+def test_a_fan_puts_a_target_at_its_position_in_metres():
     range_m, angle_rad = np.linspace(0.5, 3.5, 61), np.deg2rad(np.linspace(-60, 60, 121))
     values = np.zeros((61, 121))
     values[30, 90] = 1.0  # 2 m, 30 degrees right
@@ -50,7 +50,7 @@ def test_long_sequences_are_thinned_out(view: FigureData):
     assert view.heading == view.title
 
 
-def test_the_moving_maps_see_the_walker_and_the_full_maps_the_standing_target(view: FigureData):
+def test_moving_maps_show_the_walker_and_full_maps_the_static_target(view: FigureData):
     pelvis_m = np.linalg.norm(view.poses[0].joints_m[:, 0], axis=1)
     extent_m = np.linalg.norm(view.poses[0].joints_m, axis=2)
     range_m = view.cube.grid.range_m

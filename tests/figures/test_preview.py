@@ -44,7 +44,7 @@ def test_the_page_of_a_recording_has_no_photo(view: FigureData, tmp_path: Path):
 
 
 @pytest.mark.parametrize("frames", [1, 2])
-def test_silence_of_another_radar_is_drawn_too(frames: int, tmp_path: Path):
+def test_a_zero_cube_of_another_radar_is_drawn(frames: int, tmp_path: Path):
     grid = CubeGrid.of(BGT60, frames)
     cube = RadarCube(values=np.zeros(grid.shape, np.complex64), grid=grid, config=BGT60, scale=float("nan"))
     none = np.zeros(0)

@@ -1,4 +1,4 @@
-"""The skeleton is drawn where the camera would see the joints, and occluded where something stands before it."""
+"""The skeleton is drawn at the projected joints, and occluded behind objects."""
 
 import numpy as np
 import pytest
@@ -18,10 +18,10 @@ def test_projection_follows_the_pinhole(view: FigureData):
     assert np.isnan(pixels[3]).all()  # behind the camera
 
 
-def test_what_stands_behind_the_block_is_occluded(view: FigureData):
-    behind, before, beside, unknown = [130.0, 100.0, 3.0], [130.0, 100.0, 0.9], [20.0, 20.0, 3.0], [500.0, 20.0, 3.0]
+def test_points_behind_the_block_are_occluded(view: FigureData):
+    behind, before, aside, unknown = [130.0, 100.0, 3.0], [130.0, 100.0, 0.9], [20.0, 20.0, 3.0], [500.0, 20.0, 3.0]
     nothing = [np.nan, np.nan, np.nan]
-    pixels = np.array([behind, before, beside, unknown, nothing])
+    pixels = np.array([behind, before, aside, unknown, nothing])
     assert is_occluded(pixels, view.aligned.photo).tolist() == [True, False, False, False, False]
 
 
@@ -34,7 +34,7 @@ def test_bones_begin_and_end_at_the_joints(view: FigureData):
         assert np.linalg.norm(ends - pixel, axis=1).min() < 1e-6
 
 
-def test_the_skeleton_lies_in_the_picture_where_the_projection_says(view: FigureData):
+def test_the_skeleton_is_drawn_at_its_projection(view: FigureData):
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -46,8 +46,8 @@ def test_the_skeleton_lies_in_the_picture_where_the_projection_says(view: Figure
     SkeletonInPhoto(axes, view.aligned).show(view.poses[0].joints_m[0], (1.0, 0.0, 0.0))
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
-    drawn = np.asarray(canvas.buffer_rgba())
-    red = np.argwhere((drawn[:, :, 0] > 150) & (drawn[:, :, 1] < 110))
+    picture = np.asarray(canvas.buffer_rgba())
+    red = np.argwhere((picture[:, :, 0] > 150) & (picture[:, :, 1] < 110))
     for name in ("pelvis", "left_wrist", "right_knee", "neck"):
         column, row, _ = project(view.poses[0].joints_m[0][[joint(name)]], view.aligned)[0]
         assert np.abs(red - [row, column]).max(axis=1).min() <= 2, name

@@ -17,12 +17,12 @@ def test_it_is_the_unwrapped_difference_of_phase_steps():
     assert antenna_phase_error_rad(prediction, TRUTH, EVERYWHERE) == pytest.approx(np.abs(wrapped).mean())
 
 
-def test_a_phase_and_a_gain_of_each_cell_do_not_matter():
+def test_a_common_phase_and_gain_per_cell_do_not_matter():
     turned = TRUTH * (RNG.random(SHAPE[:3]) * np.exp(2j * np.pi * RNG.random(SHAPE[:3])))[..., None]
     assert antenna_phase_error_rad(turned, TRUTH, EVERYWHERE) == pytest.approx(0, abs=1e-9)
 
 
-def test_chance_is_a_quarter_turn():
+def test_chance_is_half_pi():
     big = (40, 40, 10, 4)
     one, other = (np.exp(2j * np.pi * RNG.random(big)) for _ in range(2))
     assert antenna_phase_error_rad(one, other, np.ones(big[:3], bool)) == pytest.approx(np.pi / 2, abs=0.02)

@@ -9,7 +9,7 @@ from mmweaver.metrics.cells import cells_of, noise_floor
 from tests.cubes import SMALL, point_cube
 
 
-def test_the_floor_of_noise_is_its_power():
+def test_the_noise_floor_is_the_noise_power():
     """The median of the mean of 12 exponential powers lies 3 % below their mean."""
     noise = stream(0, "floor").standard_normal((4, 64, 32, 12, 2)).view(np.complex128)[..., 0]
     power = np.mean(np.abs(noise) ** 2, axis=-1)
@@ -23,7 +23,7 @@ def test_noise_alone_is_neither_active_nor_moving():
     assert not cells.is_active.any()
 
 
-def test_the_still_point_is_active_and_the_moving_ones_move():
+def test_the_static_point_is_active_and_moving_points_move():
     cube = point_cube()
     cells = cells_of(cube)
     power = range_doppler_power(cube)

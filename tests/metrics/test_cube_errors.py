@@ -12,7 +12,7 @@ NOISE = stream(0, "prediction").standard_normal((*TRUTH.shape, 2)).view(np.compl
 PREDICTION = (TRUTH + 0.05 * NOISE).astype(np.complex64)
 
 
-def test_psnr_is_scikit_images():
+def test_psnr_equals_scikit_image():
     from skimage.metrics import peak_signal_noise_ratio
 
     peak = peak_of(TRUTH)
@@ -22,7 +22,7 @@ def test_psnr_is_scikit_images():
     )
 
 
-def test_complex_ssim_is_scikit_images_map_by_map():
+def test_complex_ssim_equals_scikit_image_map_by_map():
     from skimage.metrics import structural_similarity
 
     span, scores = span_of(TRUTH), []
@@ -37,7 +37,7 @@ def test_complex_ssim_is_scikit_images_map_by_map():
     assert complex_ssim(PREDICTION, TRUTH, data_range=span) == pytest.approx(np.mean(scores), abs=1e-6)
 
 
-def test_nmse_is_numpys_norms():
+def test_nmse_equals_numpy_norms():
     where = cells_of(point_cube()).is_active
     p, t = PREDICTION[where].astype(np.complex128), TRUTH[where].astype(np.complex128)
     expected = 20 * np.log10(np.linalg.norm(p - t) / np.linalg.norm(t))

@@ -8,7 +8,7 @@ from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim, sho
 TRUTH = 10 ** (-8 * stream(0, "map").random((3, 20, 16)))
 
 
-def test_the_difference_is_that_of_the_pictures():
+def test_the_difference_is_that_of_the_displays():
     prediction = TRUTH * 10 ** (0.3 * stream(1, "map").standard_normal(TRUTH.shape))
     top = TRUTH.max()
     pictures = [np.clip(10 * np.log10(power / top), -50, None) for power in (prediction, TRUTH)]
@@ -16,7 +16,7 @@ def test_the_difference_is_that_of_the_pictures():
     assert log_map_difference_db(prediction, TRUTH) == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_ssim_is_scikit_images_over_what_is_drawn():
+def test_the_ssim_equals_scikit_image_over_shown_cells():
     from skimage.metrics import structural_similarity
 
     prediction = TRUTH * 10 ** (0.3 * stream(1, "map").standard_normal(TRUTH.shape))
@@ -38,13 +38,13 @@ def test_scale_counts_and_faint_cells_do_not():
     assert log_map_ssim(TRUTH, TRUTH) == pytest.approx(1)
 
 
-def test_an_empty_map_is_far_from_every_other_and_no_truth():
+def test_an_empty_map_is_far_from_others_and_no_ground_truth():
     assert log_map_ssim(0 * TRUTH, TRUTH) < 0.2
     with pytest.raises(InputError, match="zero everywhere"):
         log_map_ssim(TRUTH, 0 * TRUTH)
 
 
-def test_a_faint_glow_is_worse_than_nothing():
+def test_a_faint_glow_is_worse_than_zeros():
     """Sparse map: 5 dB of glow everywhere brings the shown cells nearer, and must not pay."""
     sparse = np.where(TRUTH > 10**-1.0, TRUTH, 1e-12)
     glow = np.full_like(TRUTH, float(sparse.max()) * 10**-4.5)

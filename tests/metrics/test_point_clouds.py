@@ -16,7 +16,7 @@ def cloud(frame: list[int], places: np.ndarray) -> PointCloud:
     )  # fmt: skip
 
 
-def test_hausdorff_is_scipys():
+def test_hausdorff_equals_scipy():
     from scipy.spatial.distance import directed_hausdorff
 
     one, other = RNG.random((30, 3)), RNG.random((20, 3))
@@ -24,7 +24,7 @@ def test_hausdorff_is_scipys():
     assert hausdorff_m(one, other) == pytest.approx(expected)
 
 
-def test_chamfer_is_all_pairs():
+def test_chamfer_equals_all_pairs():
     one, other = RNG.random((30, 3)), RNG.random((20, 3))
     distance = np.linalg.norm(one[:, None] - other[None], axis=-1)
     assert chamfer_m(one, other) == pytest.approx((distance.min(1).mean() + distance.min(0).mean()) / 2)

@@ -1,4 +1,4 @@
-"""What a metric must do to deserve a headline; and that PSNR and cSSIM do not do it."""
+"""Requirements for a headline metric; PSNR and cSSIM fail them."""
 
 import json
 from dataclasses import replace
@@ -17,7 +17,7 @@ HEADLINES = [name for name, metric in METRICS.items() if metric.is_headline]
 
 
 def other_phases(cube: RadarCube) -> RadarCube:
-    """The right magnitudes under a random phase a cell, the same for all its antennas: a twin of a kind."""
+    """The right magnitudes under a random phase per cell, the same for all its antennas: another realization."""
     phase = 2j * np.pi * stream(0, "twin").random(cube.values.shape[:3])
     return replace(cube, values=(cube.values * np.exp(phase)[..., None]).astype(np.complex64))
 
@@ -32,7 +32,7 @@ def card(truth: RadarCube) -> Scorecard:
     return scorecard(truth, truth, oracle=other_phases(truth))
 
 
-def test_the_truth_scores_perfectly(card: Scorecard):
+def test_the_ground_truth_scores_perfectly(card: Scorecard):
     for name, metric in METRICS.items():
         assert card.prediction[name] == pytest.approx(metric.perfect, abs=1e-6), name
 
@@ -48,7 +48,7 @@ def test_all_zeros_score_poorly_on_every_headline(card: Scorecard, name: str):
     assert poor[METRICS[name].unit], card.baselines["zeros"][name]
 
 
-def test_psnr_and_cssim_are_saturated_by_nothing_at_all(card: Scorecard):
+def test_psnr_and_cssim_are_saturated_by_zeros(card: Scorecard):
     """On a sparse cube the empty one has 0.9 and 30 dB (the paper: 0.88 and 35), and beats the right magnitudes."""
     zeros, oracle = card.baselines["zeros"], card.oracle
     assert oracle is not None

@@ -7,7 +7,7 @@ from mmweaver.metrics.ssim import ssim_map
 
 
 @pytest.mark.parametrize("data_range", [1.0, 50.0])
-def test_it_is_scikit_images(data_range: float):
+def test_it_equals_scikit_image(data_range: float):
     from skimage.metrics import structural_similarity
 
     rng = stream(0, "ssim")
@@ -33,11 +33,11 @@ def test_a_stack_is_scored_map_by_map():
     assert np.allclose(whole[1, 2], ssim_map(p[1, 2], t[1, 2], data_range=1.0))
 
 
-def test_a_map_is_wholly_like_itself():
+def test_a_map_equals_itself():
     x = stream(2, "ssim").random((20, 20))
     assert np.allclose(ssim_map(x, x, data_range=1.0), 1)
 
 
-def test_a_range_of_nothing_is_refused():
+def test_a_zero_data_range_is_refused():
     with pytest.raises(InputError, match="data range"):
         ssim_map(np.zeros((3, 3)), np.zeros((3, 3)), data_range=0.0)

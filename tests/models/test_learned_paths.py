@@ -6,11 +6,15 @@ import numpy as np
 import pytest
 import torch
 
-from mmweaver.core.presets import AWR1843
+from mmweaver.core.presets import AWR1843, HUPR
 from mmweaver.core.records import Scene
+from mmweaver.dsp.cube import cube_values, radar_cube, remove_static, tdm_compensation
+from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.adc_synthesis import phasor
+from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.random_phases import sample_moving
 from mmweaver.scene.procedural.procedural_room import make_room
 from tests.rooms import back_wall, floor, scene_of, standing_person
 
@@ -55,17 +59,16 @@ def test_twenty_frames_are_at_most_10018_numbers(room: LearnedRoom):
 
 def test_a_gliding_body_turns_the_phase_as_its_doppler_says(room: LearnedRoom):
     """Frame to frame: 4 pi v dt / wavelength, for a body that neither turns nor shadows itself anew."""
-    from mmweaver.paths.random_phases import sample_moving
-
     step_s, velocity = AWR1843.frame_period_s, 0.7
     range_m = 2.0 + velocity * step_s * torch.arange(4)[:, None]
-    echoes = Echoes(
+    echoes = MeanEchoes(
         range_m=range_m, velocity_mps=torch.full_like(range_m, velocity), direction=torch.zeros(4, 1, 2),
         cross_section_m2=torch.full_like(range_m, 0.1),
     )  # fmt: skip
     aspect = torch.tensor([[2.0, 0.0, 0.0]]).expand(4, -1)
-    points = sample_moving(echoes, aspect, room.radar.response, 0)
-    turned = np.angle((points.amplitude[1:] / points.amplitude[:-1]).numpy())
+    paths = sample_moving(echoes, aspect, AWR1843, 0)
+    signal = paths.amplitude * phasor(paths.length_m / AWR1843.wavelength_m)
+    turned = np.angle((signal[1:] / signal[:-1]).numpy())
     wanted = np.angle(np.exp(4j * np.pi * velocity * step_s / AWR1843.wavelength_m))
     assert np.allclose(np.exp(1j * turned), np.exp(1j * wanted), atol=0.02)
 
@@ -77,3 +80,64 @@ def test_an_empty_floor_has_no_more_than_its_own_echoes():
         WeaverNetwork().eval(), replace(scene_of((floor(), back_wall())), photo=make_room("gym", 0, 0).photo()), AWR1843
     )
     assert np.isfinite(room.field([_motion(0.0)]).native()).all()
+
+
+def test_samples_give_the_cube_again_and_the_cube_does_not_depend_on_them(room: LearnedRoom):
+    motion = _motion(0.3, -0.5)
+    cube, adc = room.signal([motion], seed=5, keep_adc=True)
+    assert np.array_equal(cube.values, room.cube([motion], seed=5).values)
+    assert adc is not None
+    again = radar_cube(adc)
+    assert _error_db(again.values, cube.values) < -38
+    assert _error_db(remove_static(again).values, remove_static(cube).values) < -33
+
+
+def test_noise_of_samples_is_white_and_has_the_cells_that_were_asked_for(room: LearnedRoom):
+    cells = cell_noise(np.random.default_rng(0), AWR1843, 3, 0) * np.float32(np.sqrt(room.noise_power))
+    cells *= tdm_compensation(AWR1843)
+    samples = room._sample_noise(cells, 0, 1)
+    assert _error_db(cube_values(samples, AWR1843), cells) < -90
+    power = np.abs(samples) ** 2
+    assert power.mean() == pytest.approx(AWR1843.noise_power_mw, rel=0.01)
+    assert power.mean(axis=(0, 1, 2, 3)) == pytest.approx(np.full(256, AWR1843.noise_power_mw), rel=0.15)
+    assert power.mean(axis=(0, 2, 3, 4)) == pytest.approx(np.full(32, AWR1843.noise_power_mw), rel=0.1)
+
+
+def test_who_stands_behind_another_is_occluded(room: LearnedRoom):
+    front, behind = (_standing(0.0, y_m, subject) for subject, y_m in enumerate((1.4, 2.6)))
+    aside = _standing(0.9, 2.6, 1)
+    both, away = (room.paths([front, other]).moving for other in (behind, aside))
+    alone = room.paths([behind]).moving
+    count = alone.amplitude.shape[1]
+
+    def power(paths):
+        return float(paths.amplitude[:, -count:].abs().square().sum())
+
+    assert power(both) < 0.2 * power(alone)
+    assert power(away) == pytest.approx(power(room.paths([aside]).moving), rel=1e-5)
+
+
+def test_long_frames_are_rendered_by_segments(scene: Scene):
+    """Samples and cube of the same paths agree; a waver's Doppler spreads as far as the motion does within a frame."""
+    torch.manual_seed(0)
+    room = LearnedRoom(WeaverNetwork().eval(), scene, HUPR)
+    pose = standing_person((0.0, 2.2, -1.2), (0.0, -0.5, 0.0))
+    motion = FrameMotion.of(pose, HUPR, 2)
+    assert (motion.num_segments, motion.joints_m.shape) == (7, (14, 22, 3))
+    cube, adc = room.signal([motion], seed=0, keep_adc=True)
+    assert adc is not None
+    assert _error_db(radar_cube(adc).values, cube.values) < -36
+    at_middle = FrameMotion(
+        joints_m=motion.joints_m[3::7], velocity_mps=motion.velocity_mps[3::7], subject=motion.subject
+    )
+    steady = room.cube([at_middle], seed=0)
+    # a stiff body that glides is the same, extrapolated from the middle of each frame
+    assert _error_db(remove_static(steady).values, remove_static(cube).values) < -15
+
+
+def _standing(x_m: float, y_m: float, subject: int) -> FrameMotion:
+    return FrameMotion.of(replace(standing_person((x_m, y_m, -1.2)), subject=subject), AWR1843, 3)
+
+
+def _error_db(got: np.ndarray, wanted: np.ndarray) -> float:
+    return 10 * float(np.log10((np.abs(got - wanted) ** 2).sum() / (np.abs(wanted) ** 2).sum()))

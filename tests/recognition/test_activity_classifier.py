@@ -1,4 +1,4 @@
-"""The recogniser learns what can be learnt, takes gaps, and is the same each time."""
+"""The classifier learns, accepts missing values, and is reproducible."""
 
 from dataclasses import replace
 
@@ -52,7 +52,7 @@ def test_columns_without_values_do_no_harm():
         ActivityClassifier(SMALL).fit(features[:, 3:], labels)
 
 
-def test_repetitions_vote_together():
+def test_repetitions_are_averaged():
     features, labels = data(0)
     unseen, _ = data(1)
     alone = [ActivityClassifier(replace(SMALL, seed=seed)).fit(features, labels) for seed in (0, 1)]

@@ -1,4 +1,4 @@
-"""What hardly moves is still told apart: by where it rests and in what rhythm it comes and goes."""
+"""Nearly stationary bodies are distinguished by position and rhythm."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ RATE_HZ, FRAMES = 30.0, 60
 
 
 def resting(range_m: np.ndarray, shown: np.ndarray, wall_m: float | None = None) -> PointRecording:
-    """A spot at rest at `range_m` in the frames `shown`, and perhaps a wall that is always there."""
+    """A static spot at `range_m` in the frames `shown`, and optionally a permanent wall."""
     frame, distance_m = np.flatnonzero(shown), range_m[shown]
     if wall_m is not None:
         frame = np.concatenate([frame, np.arange(FRAMES)])
@@ -29,7 +29,7 @@ TIME_S = np.arange(FRAMES) / RATE_HZ
 ALWAYS = np.ones(FRAMES, bool)
 
 
-def test_a_spot_that_flickers_is_heard_in_its_band():
+def test_a_flickering_spot_has_power_in_its_band():
     for rate_hz in (1.0, 2.0, 4.0):
         shown = np.sin(2 * np.pi * rate_hz * TIME_S + 0.3) > 0
         row = body_features(resting(np.full(FRAMES, 2.0), shown), STILL_MPS)
@@ -38,7 +38,7 @@ def test_a_spot_that_flickers_is_heard_in_its_band():
         assert low <= rate_hz < high
 
 
-def test_a_spot_that_wanders_and_comes_back_has_a_span_and_no_way():
+def test_a_spot_that_returns_has_a_span_and_no_displacement():
     there_and_back = body_features(resting(2.0 + 0.2 * np.sin(np.pi * TIME_S / 2), ALWAYS), STILL_MPS)
     away = body_features(resting(1.5 + 0.3 * TIME_S, ALWAYS), STILL_MPS)
     assert abs(there_and_back["body_middle_span"] - 0.18) < 0.05
@@ -46,10 +46,10 @@ def test_a_spot_that_wanders_and_comes_back_has_a_span_and_no_way():
     assert abs(away["body_way"] - 0.3 * 2 * 7 / 8) < 0.05
 
 
-def test_a_wall_is_no_body():
+def test_a_wall_does_not_count_as_body():
     wandering = 2.0 + 0.2 * np.sin(np.pi * TIME_S)
     without = body_features(resting(wandering, ALWAYS), STILL_MPS)
-    beside = body_features(resting(wandering, ALWAYS, wall_m=2.6), STILL_MPS)
+    with_wall = body_features(resting(wandering, ALWAYS, wall_m=2.6), STILL_MPS)
     for name, value in without.items():
-        assert np.isclose(value, beside[name], equal_nan=True), name
+        assert np.isclose(value, with_wall[name], equal_nan=True), name
     assert not body_points(resting(wandering, np.zeros(FRAMES, bool), wall_m=2.6), STILL_MPS).rests.any()

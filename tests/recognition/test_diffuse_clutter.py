@@ -1,4 +1,4 @@
-"""The clutter's level is the one asked for, and it hides bodies at rest."""
+"""The clutter has the requested level and masks stationary bodies."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from mmweaver.recognition.generated_windows import GenerationRecipe, generate_wi
 from mmweaver.recognition.variation import Variation
 
 
-def test_its_level_is_told_in_a_range_bin_over_the_noise_of_a_chirp():
+def test_its_level_is_relative_to_the_noise_of_a_chirp_in_a_range_bin():
     config = IWR1443_RADHAR
     rng = np.random.default_rng(0)
     samples = np.stack([diffuse_clutter(config, 10.0, rng) for _ in range(40)])
@@ -23,7 +23,7 @@ def test_its_level_is_told_in_a_range_bin_over_the_noise_of_a_chirp():
     assert power[0] < 1e-6 * power[at]
 
 
-def test_it_hides_a_body_at_rest():
+def test_it_masks_a_stationary_body():
     quiet = Variation(
         turn_deg=0.0, roam_mps=(0.0, 0.0), noise_db=(0.0, 0.0), wall_share=0.0, most_panels=0, clutter_db=(-40.0, -40.0)
     )

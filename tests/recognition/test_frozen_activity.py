@@ -1,4 +1,4 @@
-"""The frozen recognisers are what they say: made by this code, from generated windows alone."""
+"""The frozen recognisers are reproducible and come from generated windows only."""
 
 import json
 

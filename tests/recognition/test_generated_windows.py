@@ -1,4 +1,4 @@
-"""Windows generated from sentences: the same each time, and with the motion that the sentence says."""
+"""Windows generated from sentences: reproducible, with the motion of the sentence."""
 
 from dataclasses import replace
 
@@ -26,21 +26,21 @@ def test_the_same_seed_gives_the_same_points_and_another_does_not():
     assert (one.num_frames, one.label) == (15, "walk")
 
 
-def test_who_walks_towards_the_radar_moves_nearer():
+def test_walking_towards_the_radar_reduces_range():
     walking = generate_window(RECIPE, "walk", 0, 3).cloud
     moving = walking.radial_velocity_mps[np.abs(walking.radial_velocity_mps) > 0.1]
     assert len(moving) > 15
     assert np.mean(moving < 0) > 0.7
 
 
-def test_who_stands_hardly_moves():
+def test_standing_people_hardly_move():
     standing, walking = (generate_window(RECIPE, label, 0, 3).cloud for label in ("stand", "walk"))
     assert np.mean(np.abs(standing.radial_velocity_mps) > 0.1) < 0.3 * np.mean(
         np.abs(walking.radial_velocity_mps) > 0.1
     )
 
 
-def test_a_cache_gives_back_what_was_made(tmp_path):
+def test_a_cache_returns_the_generated_windows(tmp_path):
     made = generate_windows(RECIPE, each=1, seed=3, cache=tmp_path)
     heard = []
     again = generate_windows(RECIPE, each=1, seed=3, cache=tmp_path, report=lambda done, of: heard.append((done, of)))
@@ -57,7 +57,7 @@ def test_more_noise_gives_no_more_points_of_a_body():
     assert moving[1].sum() < 0.3 * moving[0].sum()
 
 
-def test_activities_that_cannot_be_are_refused():
+def test_impossible_activities_are_refused():
     with pytest.raises(InputError, match="two activities"):
         replace(RECIPE, activities={"walk": ("a person walks",)})
     with pytest.raises(InputError, match="no activity that is known"):
@@ -66,7 +66,7 @@ def test_activities_that_cannot_be_are_refused():
         replace(RECIPE, activities={"walk": ("a person walks",), "stand": ()})
 
 
-def test_habits_change_one_activity_alone():
+def test_habits_change_one_activity_only():
     still = replace(RECIPE, habits={"walk": {"vigour": (0.9, 0.91)}})
     assert still.variation_of("walk").vigour == (0.9, 0.91)
     assert still.variation_of("stand") == QUIET
@@ -78,8 +78,8 @@ def test_habits_change_one_activity_alone():
         replace(RECIPE, habits={"run": {"vigour": (0.0, 1.0)}})
 
 
-def test_a_window_may_be_any_part_of_a_way():
-    """Among a few walkers to and fro some come nearer, some go away, and they do so at different speeds."""
+def test_a_window_may_be_any_part_of_a_path():
+    """Of a few walkers to and fro, some approach, some recede, at different speeds."""
     activities = {**RECIPE.activities, "walk": ("a person walks back and forth",)}
     recipe = replace(RECIPE, activities=activities, variation=replace(QUIET, hurry=(0.3, 0.4)), window_s=1.0)
     clouds = [generate_window(recipe, "walk", index, 5).cloud for index in range(6)]

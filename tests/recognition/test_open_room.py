@@ -1,4 +1,4 @@
-"""Rooms of chance that the simulator takes."""
+"""Random open rooms for the simulator."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from mmweaver.recognition.open_room import Panel, open_room
 PANEL = Panel(centre_m=(1.0, 2.0, 0.0), half_size_m=(0.4, 0.4), turn_rad=0.46, material="metal")
 
 
-def test_a_panel_echoes_at_its_distance():
+def test_a_panel_echoes_at_its_range():
     bare = Simulator(open_room(floor_z_m=-1.0, wall_y_m=None), IWR1443_RADHAR)
     room = Simulator(open_room(floor_z_m=-1.0, wall_y_m=None, panels=(PANEL,)), IWR1443_RADHAR)
     spectra = [np.abs(np.fft.fft(one.room_adc[0, 0] * np.hanning(240))) for one in (bare, room)]
@@ -24,5 +24,5 @@ def test_nobody_walks_through_the_wall():
     assert not free.is_free[free.y_m > 3.0].any()
 
 
-def test_the_floor_lies_where_it_is_put():
+def test_the_floor_is_at_its_height():
     assert open_room(floor_z_m=-0.8, wall_y_m=3.0).floor.centre_m[2] == -0.8

@@ -1,4 +1,4 @@
-"""Recordings cut into windows."""
+"""Recordings split into windows."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ def recording(frames: list[int], num_frames: int = 10) -> PointRecording:
     return PointRecording(name="one", cloud=cloud, num_frames=num_frames, frame_rate_hz=2.0, label="walk")
 
 
-def test_windows_follow_each_other_and_count_frames_from_zero():
+def test_windows_are_consecutive_and_renumbered():
     windows = recording([0, 3, 3, 4, 9]).windows(2.0)
     assert [window.cloud.frame.tolist() for window in windows] == [[0, 3, 3], [0]]
     assert [window.cloud.x_m.tolist() for window in windows] == [[0.0, 1.0, 2.0], [3.0]]
@@ -30,6 +30,6 @@ def test_a_short_recording_has_no_window():
     assert recording([0]).duration_s == 5.0
 
 
-def test_points_are_chosen_by_mask():
+def test_points_are_selected_by_mask():
     cloud = recording([0, 1, 2]).cloud
     assert cloud.select(cloud.frame > 0).y_m.tolist() == [1.0, 2.0]

@@ -1,4 +1,4 @@
-"""RadHAR's text files and the .npz of the same."""
+"""RadHAR's text files, and .npz."""
 
 import numpy as np
 import pytest
@@ -74,7 +74,7 @@ def test_bad_files_are_refused_in_one_line(tmp_path, name, content, message):
     assert "\n" not in str(caught.value)
 
 
-def test_a_folder_that_is_none_is_refused(tmp_path):
+def test_a_missing_folder_is_refused(tmp_path):
     with pytest.raises(InputError, match="is not a folder"):
         read_point_recordings(tmp_path / "none", LABELS)
 

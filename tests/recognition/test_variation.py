@@ -1,4 +1,4 @@
-"""Circumstances by chance stay within their spans."""
+"""Sampled conditions stay within their ranges."""
 
 import numpy as np
 
@@ -6,17 +6,17 @@ from mmweaver.core.seeding import stream
 from mmweaver.recognition.variation import Variation, sample_variation
 
 
-def test_draws_fill_their_spans_and_stay_inside():
+def test_samples_fill_their_ranges():
     variation = Variation()
-    drawn = [sample_variation(variation, stream(seed, "draw")) for seed in range(300)]
+    samples = [sample_variation(variation, stream(seed, "draw")) for seed in range(300)]
     for name in ("tempo", "vigour", "distance_m", "height_m", "noise_db", "threshold_db", "gain_db"):
         low, high = getattr(variation, name)
-        values = np.array([getattr(one, name) for one in drawn])
+        values = np.array([getattr(one, name) for one in samples])
         assert low <= values.min() < low + 0.1 * (high - low), name
         assert high >= values.max() > high - 0.1 * (high - low), name
-    walls = [one.wall_m is not None for one in drawn]
+    walls = [one.wall_m is not None for one in samples]
     assert abs(np.mean(walls) - variation.wall_share) < 0.1
-    assert {one.skin_exponent for one in drawn} == set(variation.skin_exponents)
+    assert {one.skin_exponent for one in samples} == set(variation.skin_exponents)
 
 
 def test_the_start_is_at_its_distance():

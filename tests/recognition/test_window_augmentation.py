@@ -1,4 +1,4 @@
-"""Copies lose and gain points, and are the same for the same stream."""
+"""Augmented copies lose and gain points, reproducibly."""
 
 import numpy as np
 
@@ -26,7 +26,7 @@ NOTHING = WindowAugmentation(
 )  # fmt: skip
 
 
-def test_with_nothing_to_disturb_only_time_and_sides_turn():
+def test_with_zero_limits_only_time_and_sides_are_reversed():
     seen = set()
     for seed in range(12):
         cloud = augmented(window(), np.random.default_rng(seed), NOTHING).cloud
@@ -39,7 +39,7 @@ def test_with_nothing_to_disturb_only_time_and_sides_turn():
     assert len(seen) == 4
 
 
-def test_points_are_lost_and_added_within_bounds():
+def test_points_are_dropped_and_added_within_limits():
     counts = []
     for seed in range(40):
         copy = augmented(window(), np.random.default_rng(seed))
@@ -53,7 +53,7 @@ def test_points_are_lost_and_added_within_bounds():
     assert max(counts) > 0.9 * FRAMES
 
 
-def test_things_rest_and_the_same_stream_gives_the_same_copy():
+def test_added_objects_are_static_and_copies_follow_the_stream():
     things = WindowAugmentation(most_things=8, false_points=0.0, least_resting=1.0)
     one, again = (augmented(window(), np.random.default_rng(3), things).cloud for _ in range(2))
     assert np.array_equal(one.y_m, again.y_m)

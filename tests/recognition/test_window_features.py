@@ -1,4 +1,4 @@
-"""Features tell motions apart, and do not hear what they shall not."""
+"""Features distinguish motions and ignore static points."""
 
 import numpy as np
 
@@ -10,7 +10,7 @@ RATE_HZ, FRAMES = 30.0, 60
 
 
 def swinging(rate_hz: float = 1.0, across_m: float = 0.0, still: int = 0, mirrored: bool = False) -> PointRecording:
-    """A body whose velocity swings with a rate, two points a frame, and points of a room that stand still."""
+    """A body whose velocity oscillates, two points per frame, and static points of a room."""
     frame = np.repeat(np.arange(FRAMES), 2 + still)
     body = np.tile(np.arange(2 + still) < 2, FRAMES)
     velocity = np.where(body, np.rint(3 * np.sin(2 * np.pi * rate_hz * frame / RATE_HZ)) * 0.615, 0.0)
@@ -22,12 +22,12 @@ def swinging(rate_hz: float = 1.0, across_m: float = 0.0, still: int = 0, mirror
     return PointRecording(name="one", cloud=cloud, num_frames=FRAMES, frame_rate_hz=RATE_HZ)
 
 
-def test_rhythm_is_heard():
+def test_rhythm_shows_in_its_band():
     for rate_hz in (1.0, 1.5, 2.5):
         assert abs(window_features(swinging(rate_hz))["momentum_top_hz"] - rate_hz) < 0.2
 
 
-def test_what_stands_still_is_not_heard():
+def test_static_points_are_ignored():
     one, other = window_features(swinging()), window_features(swinging(still=7))
     for name, value in one.items():
         assert np.isclose(value, other[name], equal_nan=True), name

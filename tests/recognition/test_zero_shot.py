@@ -1,4 +1,4 @@
-"""From sentences to a recogniser that works on unseen generated windows: the whole recipe, small."""
+"""From sentences to a recogniser that works on unseen generated windows: the whole recipe on a small scale."""
 
 from dataclasses import replace
 
@@ -30,14 +30,14 @@ def made():
     return training_set(RECIPE, each=12, seed=1)
 
 
-def test_what_was_never_recorded_is_recognised(made):
+def test_unseen_windows_are_recognised(made):
     unseen = generate_windows(RECIPE, each=6, seed=2)
     found = report(evaluate_recogniser(made.train(SMALL), unseen, RECIPE.window_s))
     assert found["window"]["balanced_accuracy"] > 0.74
     assert found["classes"] == ["squats", "walk"]
 
 
-def test_a_training_set_is_kept_to_the_bit(made, tmp_path):
+def test_a_training_set_round_trips_bit_by_bit(made, tmp_path):
     write_training_set(tmp_path / "a.npz", made)
     write_training_set(tmp_path / "b.npz", made)
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()

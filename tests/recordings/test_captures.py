@@ -1,4 +1,4 @@
-"""A user's folders: what is read, what is refused, and the noise and the room in them."""
+"""A user's capture folders: reading, refusals, noise and static clutter."""
 
 import json
 from dataclasses import replace
@@ -78,7 +78,7 @@ def test_a_capture_folder_brings_its_own_photo(tmp_path: Path):
     assert np.nanmedian(one.photo.depth_m) == pytest.approx(2.0, abs=0.01)
 
 
-def test_what_does_not_belong_together_is_refused(made: Path, tmp_path: Path):
+def test_inconsistent_captures_are_refused(made: Path, tmp_path: Path):
     with pytest.raises(InputError, match="not a capture folder"):
         read_capture(tmp_path)
     one = read_capture(made)
@@ -97,7 +97,7 @@ def test_what_does_not_belong_together_is_refused(made: Path, tmp_path: Path):
         read_capture(late)
 
 
-def test_a_photo_that_changed_since_is_refused(made: Path, tmp_path: Path):
+def test_a_changed_photo_is_refused(made: Path, tmp_path: Path):
     rgb, depth = tmp_path / "rgb.jpg", tmp_path / "depth.npy"
     rgb.write_bytes(b"other")
     depth.write_bytes(b"other")

@@ -1,4 +1,4 @@
-"""Real recordings go through the same door as signals that were made."""
+"""Real recordings are processed like generated signals."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -50,8 +50,8 @@ def test_a_folder_is_written_once(samples: Path, tmp_path: Path):
     recording.save(tmp_path / "out", overwrite=True)
 
 
-def test_a_simulated_sequence_in_a_capture_folder_comes_back_bit_by_bit(tmp_path: Path):
-    """What the simulator made, sent as packets of a DCA1000 beside a RealSense, read as `process` reads it."""
+def test_a_simulated_capture_folder_round_trips_bit_by_bit(tmp_path: Path):
+    """A simulated signal as packets of a DCA1000 with a RealSense, read by `process`."""
     config = radar_of_cfg(tmp_path)
     adc = Simulator(scene_of((floor(), back_wall())), config).run(
         standing_person((0.1, 2.0, -1.2), (0.0, -0.5, 0.0)), num_frames=3, seed=0
@@ -73,7 +73,7 @@ def test_a_simulated_sequence_in_a_capture_folder_comes_back_bit_by_bit(tmp_path
     assert np.diff(meta["frame_clock_s"]) == pytest.approx([0.1, 0.1], abs=2e-3)
 
 
-def test_lost_packets_are_told(tmp_path: Path):
+def test_lost_packets_are_reported(tmp_path: Path):
     config = radar_of_cfg(tmp_path)
     packets = packets_of(tmp_path, counts(config))
     write_radar(tmp_path / "iwr1843", counts(config), packets[:5] + packets[7:])
@@ -82,7 +82,7 @@ def test_lost_packets_are_told(tmp_path: Path):
     assert "photo_of_frame" not in recording.meta
 
 
-def test_a_recording_that_is_no_capture_needs_a_radar(tmp_path: Path):
+def test_only_a_capture_folder_needs_no_radar(tmp_path: Path):
     with pytest.raises(InputError, match="does not exist"):
         process_recording(tmp_path / "adc.bin", None)
     (tmp_path / "adc.bin").write_bytes(b"\0" * 64)

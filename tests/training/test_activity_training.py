@@ -1,4 +1,4 @@
-"""Recipe activity on a tiny data set: it goes on exactly, shares its batches, and what it writes is read."""
+"""Recipe activity on a tiny data set: it resumes exactly, shares its batches, and its files are read back."""
 
 import json
 from dataclasses import replace
@@ -26,7 +26,7 @@ def stop_at_three(progress: Progress) -> None:
         raise StoppedError
 
 
-def test_it_goes_on_where_it_stopped(tiny_geometry: Path, tmp_path: Path):
+def test_it_resumes_where_it_stopped(tiny_geometry: Path, tmp_path: Path):
     whole = train_activity(tiny_geometry, tmp_path / "whole", RECIPE, save_every_s=0.0)
     with pytest.raises(StoppedError):
         train_activity(tiny_geometry, tmp_path / "parts", RECIPE, listener=stop_at_three, save_every_s=0.0)
@@ -40,7 +40,7 @@ def test_it_goes_on_where_it_stopped(tiny_geometry: Path, tmp_path: Path):
     assert len(list((tmp_path / "whole" / "pictures").glob("*.png"))) == 2
 
 
-def test_maps_are_made_once_for_a_data_set(
+def test_maps_are_computed_once_per_data_set(
     tiny_geometry: Path, tiny_signals: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=1))
@@ -56,21 +56,21 @@ def test_maps_are_made_once_for_a_data_set(
         train_activity(tiny_signals, tmp_path, replace(RECIPE, steps=1))
 
 
-def test_some_sequences_can_be_picked_by_what_they_show(tiny_geometry: Path):
+def test_sequences_can_be_picked_by_label(tiny_geometry: Path):
     every = activity_examples(tiny_geometry, TRAIN_SPLITS)
     some = activity_examples(tiny_geometry, TRAIN_SPLITS, pick=lambda label: np.flatnonzero(label == label[0]))
     assert set(some.label.tolist()) == {int(every.label[0])}
     assert torch.equal(some.doppler[0], every.doppler[0])
 
 
-def test_two_shares_have_the_gradient_of_the_whole(tiny_geometry: Path, tmp_path: Path):
-    drawn = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=0, batch_size=4))
-    learner = drawn.learner.eval()  # nothing dropped by chance
+def test_two_shares_have_the_gradient_of_the_whole_batch(tiny_geometry: Path, tmp_path: Path):
+    initial = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=0, batch_size=4))
+    learner = initial.learner.eval()  # nothing dropped by chance
     gradients = []
     for shares in ([(0, 1)], [(0, 2), (1, 2)]):
         learner.zero_grad()
         for share in shares:
-            loss = learner(drawn._train(3, share))["cross_entropy"] / len(shares)
+            loss = learner(initial._train(3, share))["cross_entropy"] / len(shares)
             loss.backward()
         gradients.append(torch.cat([p.grad.flatten() for p in learner.parameters() if p.grad is not None]))
     assert torch.allclose(*gradients, atol=1e-6)

@@ -1,4 +1,4 @@
-"""Tuning on captures: it learns the room, keeps people as they were where it knows none, finds a recording's gain."""
+"""Fine-tuning on captures: it learns the room, leaves echoes of unknown people, estimates the gain of a recording."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -38,7 +38,7 @@ def start() -> dict[str, torch.Tensor]:
     return network.state_dict()
 
 
-def test_without_joints_only_what_rests_changes(captures, start, tmp_path: Path):
+def test_without_joints_only_static_clutter_changes(captures, start, tmp_path: Path):
     empty = [replace(capture, pose=None) for capture in captures]
     tuned = tune(empty, tmp_path, replace(RECIPE, steps=12, learning_rate=1e-2), start=start)
     assert tuned.trainer.best.value < 0.9 * tuned.loss_before
@@ -55,8 +55,8 @@ def test_without_joints_only_what_rests_changes(captures, start, tmp_path: Path)
     assert card.tuned_from in page
 
 
-def test_what_does_not_help_is_not_kept(captures, start, tmp_path: Path):
-    """Steps far too large: the weights it began with are the best."""
+def test_weights_that_do_not_improve_are_not_used(captures, start, tmp_path: Path):
+    """Steps far too large: the initial weights stay the best."""
     tuned = tune(captures, tmp_path, replace(RECIPE, learning_rate=3.0, largest_gradient=1e9), start=start)
     assert tuned.trainer.best.value == pytest.approx(tuned.loss_before)
     assert all(torch.equal(tensor, start[name.removeprefix("network.")])
@@ -71,7 +71,7 @@ def test_with_joints_all_is_tuned(captures, start, tmp_path: Path):
     assert tuned.gain == 1.0
 
 
-def test_the_gain_of_counts_is_found(captures, start):
+def test_the_gain_of_counts_is_estimated(captures, start):
     network = WeaverNetwork()
     network.load_state_dict(start)
     (room,) = rooms_of(captures[:1])
@@ -80,8 +80,8 @@ def test_the_gain_of_counts_is_found(captures, start):
     assert estimate_gain(network, [room.calibrated(1000.0)]) == pytest.approx(own / 1000, rel=1e-3)
 
 
-def test_counts_are_tuned_on_as_milliwatts(captures, start, tmp_path: Path):
-    """One capture only, in counts of a converter."""
+def test_captures_in_counts_are_calibrated(captures, start, tmp_path: Path):
+    """A single capture, in ADC counts."""
     cube = captures[0].cube
     values = (cube.values * np.float32(1e4)).astype(np.complex64)
     counts = replace(captures[0], cube=replace(cube, values=values, scale=float("nan")))

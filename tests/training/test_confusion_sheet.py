@@ -1,17 +1,17 @@
-"""A recogniser's confusion as a picture."""
+"""Confusion matrix as a picture."""
 
 import numpy as np
 
 from mmweaver.training.confusion_sheet import confusion, draw_confusion
 
 
-def test_each_row_is_a_share_of_what_was_shown():
+def test_each_row_is_normalised_by_its_class():
     true, answers = np.array([0, 0, 0, 2]), np.array([0, 0, 1, 2])
     share = confusion(true, answers, 3)
     assert np.allclose(share, [[2 / 3, 1 / 3, 0], [0, 0, 0], [0, 0, 1]])
 
 
-def test_the_picture_is_darker_where_it_is_right():
+def test_the_picture_is_darker_on_the_diagonal():
     names = ("walking", "waving")
     right = draw_confusion(np.array([0, 1]), np.array([0, 1]), names)
     wrong = draw_confusion(np.array([0, 1]), np.array([1, 0]), names)

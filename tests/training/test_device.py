@@ -16,7 +16,7 @@ class Nested:
     name: str
 
 
-def test_alone_nothing_is_joined_or_averaged():
+def test_a_single_process_averages_nothing():
     place, module = ComputeDevice(), nn.Linear(2, 2)
     assert place.is_first
     assert place.joined(module) is module
@@ -29,7 +29,7 @@ def test_only_the_first_writes():
 
 
 @pytest.mark.parametrize(("precision", "dtype"), [("float32", torch.float32), ("bf16", torch.bfloat16)])
-def test_products_are_in_the_precision_chosen(precision: str, dtype: torch.dtype):
+def test_products_are_in_the_chosen_precision(precision: str, dtype: torch.dtype):
     with ComputeDevice(precision=precision).arithmetic():
         assert (torch.ones(2, 2) @ torch.ones(2, 2)).dtype == dtype
 

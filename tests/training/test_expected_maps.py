@@ -1,4 +1,4 @@
-"""Expected maps against the mean of many drawn signals of the same geometry."""
+"""Expected maps against the mean over many realizations of the same geometry."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from mmweaver.training.expected_maps import ExpectedMaps
 from mmweaver.training.network_examples import examples, power_maps
 
 pytest.importorskip("zarr")
-DRAWS = 16
+REALIZATIONS = 16
 FRAMES = np.array([0, 2])
 
 
@@ -21,24 +21,27 @@ def room(tiny_geometry: Path) -> StoredRoom:
 
 
 def _mean(room: StoredRoom, index: int, name: str) -> torch.Tensor:
-    drawn = [power_maps(room.cube(index, FRAMES, realization=1 + draw).values, room.config) for draw in range(DRAWS)]
-    return torch.stack([getattr(maps, name) for maps in drawn]).mean(dim=0)
+    sampled = [
+        power_maps(room.cube(index, FRAMES, realization=1 + realization).values, room.config)
+        for realization in range(REALIZATIONS)
+    ]
+    return torch.stack([getattr(maps, name) for maps in sampled]).mean(dim=0)
 
 
-def test_moving_cells_are_the_mean_of_all_draws(room: StoredRoom):
-    """0.2 to 0.4 dB with 24 draws, which scatter themselves."""
+def test_moving_cells_are_the_mean_over_realizations(room: StoredRoom):
+    """0.2 to 0.4 dB with 24 realizations, whose mean fluctuates itself."""
     expected = ExpectedMaps(room).frames(0, FRAMES)[0].range_doppler
-    drawn = _mean(room, 0, "range_doppler")
-    shown = drawn > drawn.max() * 1e-5
+    sampled = _mean(room, 0, "range_doppler")
+    shown = sampled > sampled.max() * 1e-5
     middle = shown.shape[-1] // 2
     shown[..., middle - 1 : middle + 2] = False
-    gap_db = 10 * torch.log10(expected / drawn)[shown]
+    gap_db = 10 * torch.log10(expected / sampled)[shown]
     assert shown.sum() > 20
     assert gap_db.mean().abs() < 0.5
     assert gap_db.abs().mean() < 1.0
 
 
-def test_the_person_alone_is_what_the_room_does_not_return(room: StoredRoom):
+def test_the_person_alone_is_the_difference_from_the_room(room: StoredRoom):
     whole, alone = ExpectedMaps(room).frames(0, FRAMES)
     middle = alone.range_doppler.shape[-1] // 2
     moving = [column for column in range(2 * middle) if abs(column - middle) > 3]
@@ -49,11 +52,11 @@ def test_the_person_alone_is_what_the_room_does_not_return(room: StoredRoom):
 
 @pytest.mark.parametrize("name", ["range_doppler", "range_azimuth", "range_elevation"])
 def test_all_power_is_there(room: StoredRoom, name: str):
-    expected, drawn = getattr(ExpectedMaps(room).frames(0, FRAMES)[0], name), _mean(room, 0, name)
-    assert 10 * torch.log10(expected.sum() / drawn.sum()) == pytest.approx(0, abs=1.0)
+    expected, sampled = getattr(ExpectedMaps(room).frames(0, FRAMES)[0], name), _mean(room, 0, name)
+    assert 10 * torch.log10(expected.sum() / sampled.sum()) == pytest.approx(0, abs=1.0)
 
 
-def test_they_are_what_training_gets(tiny_geometry: Path):
+def test_training_uses_expected_maps(tiny_geometry: Path):
     one = examples(tiny_geometry, "train")[0]
     expected = ExpectedMaps(one.room)
     assert torch.equal(one.static.range_azimuth, expected.static.range_azimuth)

@@ -1,4 +1,4 @@
-"""The page beside the weights."""
+"""Model cards."""
 
 from pathlib import Path
 
@@ -11,19 +11,19 @@ CARD = WeightsCard(
 )  # fmt: skip
 
 
-def test_it_says_what_one_must_know(tmp_path: Path):
+def test_a_model_card_is_complete(tmp_path: Path):
     file = tmp_path / "weights.safetensors"
     file.write_bytes(b"weights")
     figures = {"this network": {"range_doppler": 5.25, "range_azimuth": 6.0}, "empty maps": {"range_doppler": 20.0,
                "range_azimuth": 21.0}}  # fmt: skip
     page = model_card(CARD, file, data="Made up.", evaluated_on="Other rooms.", figures=figures)
     assert page.startswith("---\nlicense: mit\nlibrary_name: mmweaver\n")
-    for told in (
+    for text in (
         "Made up.", "Other rooms.", "| this network | 5.25 | 6.00 |", "| empty maps | 20.00 | 21.00 |", "d" * 64,
         "| steps | 1,500, seed 3 |",
         "| learning_rate | 0.001 |", "uncalibrated",
     ):  # fmt: skip
-        assert told in page
+        assert text in page
     import hashlib
 
     assert hashlib.sha256(b"weights").hexdigest() in page

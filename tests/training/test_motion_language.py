@@ -1,4 +1,4 @@
-"""A tiny T5 learns to say the codes that belong to a sentence."""
+"""A tiny T5 learns the codes of a sentence."""
 
 from typing import Any
 

@@ -32,7 +32,7 @@ def test_it_learns_and_uses_its_codes(tmp_path: Path):
     assert len(codes.unique()) > 8
 
 
-def test_stopping_half_way_changes_nothing(tmp_path: Path):
+def test_an_interruption_changes_nothing(tmp_path: Path):
     recipe = TokenizerRecipe(steps=20, batch=4, frames=32)
     whole = train_tokenizer(waves(), TINY, recipe)
     state = tmp_path / "state.pt"
@@ -44,14 +44,14 @@ def test_stopping_half_way_changes_nothing(tmp_path: Path):
 
 
 def _stop_after(recipe: TokenizerRecipe, steps: int, state: Path) -> None:
-    """The same recipe, cut off: saved as the clock would have it."""
+    """The same recipe, interrupted, with the usual saves."""
     from mmweaver.training import resuming
 
     every, resuming.SAVE_EVERY_S = resuming.SAVE_EVERY_S, 0.0
-    kept = resuming.Resumable.steps
+    original = resuming.Resumable.steps
 
     def cut(self: resuming.Resumable, most: int):
-        for done, step in enumerate(kept(self, most)):
+        for done, step in enumerate(original(self, most)):
             if done == steps:
                 return
             yield step
@@ -60,4 +60,4 @@ def _stop_after(recipe: TokenizerRecipe, steps: int, state: Path) -> None:
     try:
         train_tokenizer(waves(), TINY, recipe, state)
     finally:
-        resuming.Resumable.steps, resuming.SAVE_EVERY_S = kept, every
+        resuming.Resumable.steps, resuming.SAVE_EVERY_S = original, every

@@ -1,4 +1,4 @@
-"""Training on a tiny data set: it goes on exactly, and what it writes is read."""
+"""Training on a tiny data set: it resumes exactly, and its files are read back."""
 
 from pathlib import Path
 
@@ -17,7 +17,7 @@ pytest.importorskip("zarr")
 RECIPE = TrainingRecipe(steps=4, batch_size=1, frames=2, validate_every=2, validation_batches=1, warm_up_steps=1)
 
 
-def test_interrupted_training_ends_where_the_other_does(
+def test_interrupted_training_equals_an_uninterrupted_one(
     tiny_signals: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)
@@ -40,7 +40,7 @@ def test_interrupted_training_ends_where_the_other_does(
     assert torch.allclose(network.part, whole.learner.network.part, atol=1e-3)
 
 
-def test_other_settings_do_not_go_on_from_a_checkpoint(tiny_signals: Path, tmp_path: Path):
+def test_a_checkpoint_of_other_settings_is_refused(tiny_signals: Path, tmp_path: Path):
     from dataclasses import replace
 
     train(tiny_signals, tmp_path, replace(RECIPE, steps=1))
@@ -63,7 +63,7 @@ def test_everything_moves_to_the_device_that_was_chosen(tiny_signals: Path):
     assert {parameter.grad.device.type for parameter in learner.parameters() if parameter.grad is not None} == {"meta"}
 
 
-def test_bf16_does_no_harm(tiny_signals: Path):
+def test_bf16_trains(tiny_signals: Path):
     rooms = examples(tiny_signals, "train")
     batch = sample_batch(rooms, 0, 0, size=1, frames=2)
     torch.manual_seed(0)

@@ -1,4 +1,4 @@
-"""What recipe activity leaves: weights that are read again, and their page."""
+"""Weights and model card of recipe activity."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from mmweaver.training.recipe_weights import write_activity_weights
 pytest.importorskip("zarr")
 
 
-def test_weights_are_read_again_and_their_page_gives_the_baseline(tiny_signals: Path, tmp_path: Path):
+def test_weights_are_read_back_and_the_model_card_has_the_baseline(tiny_signals: Path, tmp_path: Path):
     data = tiny_signals
     trainer = train_activity(data, tmp_path / "a", ActivityRecipe(steps=2, batch_size=2, validate_every=2))
     features = write_activity_weights(tmp_path / "a", data, trainer)

@@ -1,4 +1,4 @@
-"""Left and right exchanged, once and twice."""
+"""Left-right reflection, once and twice."""
 
 from dataclasses import fields
 
@@ -20,7 +20,7 @@ def _view() -> SceneTensors:
     return SceneTensors.stack([SceneTensors.of(reconstruct(make_room("office").photo()), AWR1843)])
 
 
-def test_twice_is_as_before():
+def test_reflecting_twice_changes_nothing():
     view = _view()
     again = reflected_scene(reflected_scene(view))
     for field in fields(SceneTensors):
@@ -35,13 +35,13 @@ def test_a_raised_right_hand_is_a_raised_left_hand():
     assert reflected_joints(joints)[joint("left_wrist")].tolist() == torch.tensor([-0.4, 2.0, 0.7]).tolist()
 
 
-def test_the_network_s_resting_map_turns_round():
-    """Before training the network says what physics does, which has no handedness."""
+def test_the_network_s_static_map_is_reflected():
+    """Before training the network equals physics, which is symmetric under reflection."""
     torch.manual_seed(0)
     network, radar, view = WeaverNetwork().eval(), MeanPower(AWR1843), _view()
     with torch.inference_mode():
         maps = [
-            radar.maps(points_of(network.encode_room(one).resting, radar.response)).range_azimuth
+            radar.maps(points_of(network.encode_room(one).static, radar.response)).range_azimuth
             for one in (view, reflected_scene(view))
         ]
     gap_db = 10 * torch.log10(maps[1].flip(-1) / maps[0])

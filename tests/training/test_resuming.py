@@ -1,4 +1,4 @@
-"""A training that was interrupted ends with the same weights as one that was not."""
+"""An interrupted training ends with the same weights as an uninterrupted one."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def run(file: Path | None, steps: int) -> tuple[torch.nn.Module, Resumable]:
     return model, work
 
 
-def test_going_on_is_as_never_stopped(tmp_path: Path):
+def test_a_resumed_run_equals_an_uninterrupted_one(tmp_path: Path):
     whole, _ = run(None, 120)
     run(tmp_path / "state.pt", 70)
     resumed, work = run(tmp_path / "state.pt", 120)
@@ -34,7 +34,7 @@ def test_going_on_is_as_never_stopped(tmp_path: Path):
     assert torch.equal(whole.weight, finished.weight)
 
 
-def test_it_goes_on_with_the_threads_it_began_with(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+def test_it_resumes_with_its_number_of_threads(tmp_path: Path, caplog: pytest.LogCaptureFixture):
     run(tmp_path / "state.pt", 1)
     state = torch.load(tmp_path / "state.pt", weights_only=True)
     assert state["threads"] == torch.get_num_threads() == 1

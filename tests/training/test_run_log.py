@@ -1,4 +1,4 @@
-"""What a run leaves to look at."""
+"""Log files of a training run."""
 
 import json
 from pathlib import Path
@@ -25,7 +25,7 @@ def test_a_row_every_fifty_steps_and_at_validations(tmp_path: Path):
     assert [row["validation"] for row in rows] == [None, 2.0, None]
 
 
-def test_pictures_are_whole_files_named_by_step(tmp_path: Path):
+def test_pictures_are_complete_files_named_by_step(tmp_path: Path):
     image = np.arange(60, dtype=np.uint8).reshape(4, 5, 3)
     RunLog(tmp_path, 0).picture(250, image)
     (file,) = (tmp_path / "pictures").iterdir()
@@ -33,10 +33,10 @@ def test_pictures_are_whole_files_named_by_step(tmp_path: Path):
     assert np.array_equal(np.asarray(Image.open(file)), image)
 
 
-@pytest.mark.parametrize(("done", "kept"), [(0, []), (60, [50]), (150, [50, 100, 150])])
-def test_rows_after_the_checkpoint_go(tmp_path: Path, done: int, kept: list[int]):
+@pytest.mark.parametrize(("done", "expected"), [(0, []), (60, [50]), (150, [50, 100, 150])])
+def test_rows_after_the_checkpoint_are_dropped(tmp_path: Path, done: int, expected: list[int]):
     log = RunLog(tmp_path, 0)
     for step in (50, 100, 150):
         log.row(figures(step))
     RunLog(tmp_path, done)
-    assert [json.loads(line)["step"] for line in (tmp_path / "log.jsonl").read_text().splitlines()] == kept
+    assert [json.loads(line)["step"] for line in (tmp_path / "log.jsonl").read_text().splitlines()] == expected

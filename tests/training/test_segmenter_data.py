@@ -1,4 +1,4 @@
-"""Rooms that the segmenter learns from."""
+"""Training data of the segmenter."""
 
 from pathlib import Path
 
@@ -9,19 +9,19 @@ from mmweaver.scene.segmentation.segmenter_features import CHANNELS, COLOURS, HE
 from mmweaver.training.segmenter_data import augmented, make_example, make_examples
 
 
-def test_kept_rooms_come_back(tmp_path: Path):
+def test_cached_rooms_are_read_back(tmp_path: Path):
     first = make_examples(("office",), 1, 1000, tmp_path)
-    (kept,) = tmp_path.iterdir()
-    stamp = kept.stat().st_mtime_ns
+    (cached,) = tmp_path.iterdir()
+    stamp = cached.stat().st_mtime_ns
     again = make_examples(("office",), 1, 1000, tmp_path)
-    assert kept.stat().st_mtime_ns == stamp
+    assert cached.stat().st_mtime_ns == stamp
     assert np.array_equal(first[0].features, again[0].features)
     fresh = make_example("office", 1000)
     assert np.allclose(fresh.features, again[0].features, atol=3e-3)
     assert np.array_equal(fresh.groups, again[0].groups)
 
 
-def test_variations_keep_the_shapes_and_change_the_colours():
+def test_augmentation_keeps_shapes_and_changes_colours():
     example = make_example("office", 1000)
     changed, holes = [], []
     for draw in range(12):

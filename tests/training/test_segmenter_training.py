@@ -14,12 +14,12 @@ def example() -> SegmenterExample:
     return make_example("office", 1000)
 
 
-def test_no_kind_is_in_both_parts():
+def test_no_kind_is_in_both_splits():
     assert not set(TRAIN_KINDS) & set(TEST_KINDS)
     assert len(TRAIN_KINDS) == 8
 
 
-def test_it_learns_and_its_weights_come_back(example: SegmenterExample, tmp_path: Path):
+def test_it_learns_and_its_weights_are_restored(example: SegmenterExample, tmp_path: Path):
     recipe = SegmenterRecipe(epochs=6, batch=2)
     network, losses = train([example] * 4, recipe)
     assert losses[-1] < 0.9 * losses[0]
@@ -35,7 +35,7 @@ def test_it_learns_and_its_weights_come_back(example: SegmenterExample, tmp_path
         assert torch.allclose(again(cells), network(cells))
 
 
-def test_a_stopped_training_goes_on_to_the_same_end(
+def test_a_stopped_training_resumes_to_the_same_end(
     example: SegmenterExample, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setattr("mmweaver.training.resuming.SAVE_EVERY_S", 0.0)

@@ -1,4 +1,4 @@
-"""The loop: exact after any stop, the same with two processes, sound where gradients are not."""
+"""The training loop: exact after interruptions, with two processes, and with non-finite gradients."""
 
 import json
 import os
@@ -20,11 +20,11 @@ def weights(out: Path) -> dict[str, torch.Tensor]:
     return torch.load(out / "checkpoint.pt", weights_only=True)["parts"]["network"]
 
 
-def test_it_learns_logs_and_draws(tmp_path: Path):
+def test_it_learns_logs_and_saves_pictures(tmp_path: Path):
     made = trainer(tmp_path, replace(RECIPE, steps=200, validate_every=50))
-    told: list[Progress] = []
-    made.run(told.append)
-    assert made.best.value < 0.2 * told[0].loss
+    reported: list[Progress] = []
+    made.run(reported.append)
+    assert made.best.value < 0.2 * reported[0].loss
     rows = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
     assert [row["step"] for row in rows] == [50, 100, 150, 200]
     assert rows[0]["learning_rate"] > rows[-1]["learning_rate"] >= 0
@@ -40,7 +40,7 @@ def two_processes(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([*command, *words], env=environment, capture_output=True, text=True, timeout=120)
 
 
-def test_two_processes_are_one_with_the_same_batch_even_after_a_kill(tmp_path: Path):
+def test_two_processes_equal_one_with_the_same_batch_even_after_a_kill(tmp_path: Path):
     pytest.importorskip("accelerate")
     killed = two_processes(str(tmp_path / "two"), "5")
     assert killed.returncode != 0
@@ -62,18 +62,18 @@ def test_two_processes_are_one_with_the_same_batch_even_after_a_kill(tmp_path: P
         assert first["validation"] == pytest.approx(second["validation"], rel=1e-5)
 
 
-def test_a_batch_that_cannot_be_shared_is_refused(tmp_path: Path):
+def test_an_indivisible_batch_is_refused(tmp_path: Path):
     with pytest.raises(InputError, match="multiple"):
         trainer(tmp_path, compute=ComputeDevice(share=(0, 3)))
 
 
-def test_steps_without_meaning_are_passed_over_and_many_end_it(tmp_path: Path):
+def test_non_finite_steps_are_skipped_and_many_end_the_run(tmp_path: Path):
     def bad(from_step: int, to_step: int):
-        def drawn(step, share):
+        def sample(step, share):
             x, y = draw(step, share)
             return x, y * float("nan") if from_step <= step < to_step else y
 
-        return drawn
+        return sample
 
     made = trainer(tmp_path / "some", train=bad(2, 4))
     made.run()
@@ -82,7 +82,7 @@ def test_steps_without_meaning_are_passed_over_and_many_end_it(tmp_path: Path):
         trainer(tmp_path / "all", replace(RECIPE, steps=100), train=bad(2, 100)).run()
 
 
-def test_it_stops_early_and_stays_so(tmp_path: Path):
+def test_it_stops_early_for_good(tmp_path: Path):
     recipe = replace(RECIPE, steps=500, learning_rate=0.0, validate_every=1, patience=3)
     made = trainer(tmp_path, recipe)
     made.run()
@@ -92,7 +92,7 @@ def test_it_stops_early_and_stays_so(tmp_path: Path):
     assert again.step == 4
 
 
-def test_rows_of_steps_that_were_lost_go(tmp_path: Path):
+def test_rows_of_lost_steps_are_dropped(tmp_path: Path):
     recipe = replace(RECIPE, validate_every=1)
     trainer(tmp_path, recipe).run()
     lines = (tmp_path / "log.jsonl").read_text().splitlines()
@@ -129,9 +129,9 @@ def test_tensorboard_holds_figures_and_pictures(tmp_path: Path):
     assert [image.step for image in events.Images("validation")] == [4, 8]
 
 
-def test_devices_and_precisions_that_are_not_there_are_refused():
-    for words, told in ((("nonsense", "auto"), "device"), (("cpu", "int4"), "precision")):
-        with pytest.raises(InputError, match=told):
+def test_unavailable_devices_and_precisions_are_refused():
+    for words, says in ((("nonsense", "auto"), "device"), (("cpu", "int4"), "precision")):
+        with pytest.raises(InputError, match=says):
             ComputeDevice.chosen(*words)
     assert ComputeDevice.chosen("cpu").precision == "float32"
     assert isinstance(ToyLearner(), torch.nn.Module)

@@ -1,4 +1,4 @@
-"""The sheet: truth and network side by side; the same maps look the same."""
+"""The sheet: ground truth and network side by side; equal maps look equal."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def maps(sequences: int, seed: int = 0) -> PowerMaps:
     )
 
 
-def test_a_row_a_sequence_and_at_most_three():
+def test_one_row_per_sequence_and_at_most_three():
     heights = [draw_sheet(maps(count), maps(count), AWR1843).shape[0] for count in (1, 3, 5)]
     assert heights[0] < heights[1] == heights[2]
 

@@ -14,7 +14,7 @@ TINY_PLAN = DatasetPlan(
 
 
 def tiny_data(folder: Path, *, geometry_only: bool) -> Path:
-    """An office to train on and a dining room to validate on; where it is there already, nothing is made."""
+    """An office to train on and a dining room to validate on; an existing one is reused."""
     generate_dataset(folder, replace(TINY_PLAN, geometry_only=geometry_only), AWR1843)
     return folder
 

@@ -207,14 +207,9 @@ def _read_room(weaver: "Weaver", arguments: argparse.Namespace, background: "Rad
 
 
 def _background(arguments: argparse.Namespace) -> "RadarCube | None":
-    """The background recording, if one is given. Raises InputError where physics would have to use it."""
+    """The background recording, if one is given. Raises InputError for what is no recording."""
     if arguments.background is None:
         return None
-    if arguments.method == "physics" or arguments.bin or arguments.points == "firmware":
-        raise InputError(
-            "--background is for the network, which has no raw samples; leave it out, or --method physics, --bin and"
-            " --points firmware"
-        )
     from mmweaver.recordings.read_recording import read_recording
 
     return read_recording(arguments.background).cube

@@ -37,8 +37,8 @@ def add_generate_options(parser: argparse.ArgumentParser) -> None:
     advanced = parser.add_argument_group("advanced")
     advanced.add_argument(
         "--method", default="auto",
-        help="how the signal is made: weaver, the trained network; physics; or auto (default), weaver but for --bin,"
-        " --points firmware, several people and chirps of more than 40 ms a frame, which physics makes",
+        help="which paths make the signal: weaver, those of the trained network (default, also called auto), or"
+        " physics, those of the ray tracer, at five times the cost",
     )  # fmt: skip
     advanced.add_argument(
         "--weights", type=source, metavar="FILE|DIR|HUB",

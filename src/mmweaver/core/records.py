@@ -251,7 +251,6 @@ class Scene(ShownByFacts):
     seats: tuple[Seat, ...]
     assumptions: tuple[str, ...]  # sentences for meta.json
     landmarks: tuple[Landmark, ...] = ()
-    empty_recording: RadarCube | None = None  # the same radar in the same place, with nobody there
 
     def facts(self) -> dict[str, str]:
         """Sizes, planes, seats and landmarks."""

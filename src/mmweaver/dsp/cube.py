@@ -77,11 +77,20 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
 
 
 def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
-    """One frame of what rests, of its value (range, antenna) at zero Doppler: a window's response fills few bins."""
+    """One frame of static clutter, of its value (range, antenna) at zero Doppler."""
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     response = _fft(weight, 0)[:, None] * tdm_compensation(config)
     values = still[:, None, :] * (response / response[config.num_loops // 2])
     return RadarCube(values=values[None].astype(np.complex64), grid=CubeGrid.of(config, 1), config=config, scale=1.0)
+
+
+def static_samples(static: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Samples (tx, rx, sample) of least energy of static clutter, of its cube (range, antenna) at zero Doppler."""
+    inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
+    spectrum = static.T.astype(np.complex128)  # (antenna, range)
+    if not config.complex_samples:
+        spectrum = np.concatenate([spectrum.real, spectrum.imag], axis=-1)
+    return (spectrum @ inverse).reshape(config.num_tx, config.num_rx, -1).astype(np.complex64)
 
 
 def remove_static_adc(adc: AdcCube) -> AdcCube:

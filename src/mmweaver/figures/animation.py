@@ -67,10 +67,13 @@ class CellsOnScreen:
     columns: slice
     row_cell: np.ndarray  # (pixel row,)
     column_cell: np.ndarray  # (pixel column,)
+    colours: np.ndarray  # (256, 4) uint8
 
     @classmethod
     def of(cls, axes: "Axes", cells: np.ndarray) -> "CellsOnScreen":
         """For a map (up, right) that fills the axes, once the figure is laid out; the frame around it stays."""
+        from matplotlib import colormaps
+
         figure = axes.get_figure(root=True)
         assert figure is not None
         height = round(figure.bbox.height)
@@ -79,20 +82,26 @@ class CellsOnScreen:
         rows = np.arange(int(height - top) + 1, int(height - bottom) + 1)
         across = (columns + 0.5 - left) / (right - left)
         up = (height - rows - 0.5 - bottom) / (top - bottom)
+        row_cell, column_cell = (
+            np.clip((share * count).astype(int), 0, count - 1)
+            for share, count in ((up, cells.shape[0]), (across, cells.shape[1]))
+        )
         return cls(
-            slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1),
-            (up * cells.shape[0]).astype(int), (across * cells.shape[1]).astype(int),
+            slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1), row_cell, column_cell,
+            colormaps[POWER_MAP](np.arange(256), bytes=True),
         )  # fmt: skip
 
     def paint(self, pixels: np.ndarray, values_db: np.ndarray) -> None:
         """Writes a map (up, right) in dB into the picture (height, width, 4); nan leaves the picture as it is."""
-        from matplotlib import colormaps
-
-        level = np.nan_to_num((values_db + SPAN_DB) * (255 / SPAN_DB), nan=256.0)
-        level = np.clip(np.rint(level), 0, 256).astype(np.intp)[self.row_cell][:, self.column_cell]
-        colours = colormaps[POWER_MAP](np.arange(257), bytes=True)
+        power = np.rint((values_db + SPAN_DB) * (255 / SPAN_DB))
+        is_empty = np.isnan(power)
+        level = np.where(is_empty, 0, np.clip(power, 0, 255)).astype(np.uint8)
         place = pixels[self.rows, self.columns]
-        np.copyto(place, colours[level], where=(level < 256)[:, :, None])
+        painted = self.colours[level[self.row_cell][:, self.column_cell]]
+        if is_empty.any():
+            np.copyto(place, painted, where=~is_empty[self.row_cell][:, self.column_cell][:, :, None])
+        else:
+            place[:] = painted
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
-"""Room and motion -> signal by the network: what `method="weaver"` runs."""
+"""The network as a path solver: room and motion -> paths, and their signal. What `method="weaver"` runs."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,43 +9,80 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import PoseSequence, RadarCube, Scene
+from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
+from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.dsp.point_response import Points
+from mmweaver.dsp.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
+from mmweaver.fields.scatterers.cell_noise import cell_noise
+from mmweaver.fields.scatterers.fit_window import FitWindow
+from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.models.background import BackgroundRecording
-from mmweaver.models.body_anchors import facing
+from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.network import SceneEncoding, WeaverNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.motion.animation.resample import joints_and_velocities
+from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
+from mmweaver.paths.apparent_paths import signal_points
+from mmweaver.paths.background import BackgroundRecording
+from mmweaver.paths.cube_rendering import CubeRenderer
+from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower
-from mmweaver.paths.occlusion import hidden
+from mmweaver.paths.occlusion import occluded
+from mmweaver.paths.paths import Paths, ScenePaths
 from mmweaver.paths.radar_equation import points_of
-from mmweaver.paths.random_phases import field_of, sample_moving, sample_static
+from mmweaver.paths.random_phases import place_of, sample_moving, sample_moving_segments, sample_static
+from mmweaver.paths.receiver import quantised
+
+NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
+ADC_FRAMES_AT_ONCE = 20
 
 
 @dataclass(frozen=True, kw_only=True)
 class FrameMotion:
-    """One person at the middle of each radar frame: joints and their velocities, (frame, 22, 3)."""
+    """One person at the middle of each radar frame: joints and their velocities, (frame, 22, 3).
+
+    Where chirps last long, at the middle of each time segment of each frame: (frame * segment, 22, 3).
+    """
 
     joints_m: np.ndarray
     velocity_mps: np.ndarray
     subject: int
+    num_segments: int = 1
 
     @classmethod
     def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int) -> "FrameMotion":
         """A dense motion at so many radar frames."""
-        time_s = np.arange(num_frames) * config.frame_period_s + config.active_time_s / 2
-        joints_m, velocity_mps = joints_and_velocities(pose, time_s)
-        return cls(joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject)
+        middle_s = FrameClock(config).middle_s
+        if len(middle_s) == 1:
+            middle_s = np.array([config.active_time_s / 2])
+        time_s = np.arange(num_frames)[:, None] * config.frame_period_s + middle_s
+        joints_m, velocity_mps = joints_and_velocities(pose, time_s.ravel())
+        return cls(joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject, num_segments=len(middle_s))
+
+    def segments(self, clock: FrameClock) -> tuple[Tensor, Tensor]:
+        """Joints and velocities, (frame, segment, 22, 3); extrapolated where known at the frame's middle alone."""
+        joints, velocity = (
+            torch.from_numpy(part).float().unflatten(0, (-1, self.num_segments))
+            for part in (self.joints_m, self.velocity_mps)
+        )
+        late_s = torch.from_numpy(clock.middle_s - clock.middle_s.mean()).float()
+        if len(late_s) == self.num_segments:
+            return joints, velocity
+        return joints + velocity * late_s[:, None, None], velocity.expand(-1, len(late_s), -1, -1)
+
+    @property
+    def middle_joints_m(self) -> Tensor:
+        """Joints at the middle of each frame, float32 (frame, 22, 3)."""
+        return torch.from_numpy(self.joints_m[self.num_segments // 2 :: self.num_segments]).float()
 
 
 class LearnedRoom:
-    """A room that the network has encoded for one radar; `field` may then be asked for many motions.
+    """A room that the network has encoded for one radar; `paths`, `cube` and `signal` may be asked for many motions.
 
-    The network runs on `device` and is moved there; phases are drawn and echoes rendered on the CPU. `empty`: a
-    recording of the room by this radar with nobody there, which what rests is then taken from. Raises InputError for
-    one of another radar.
+    The network runs on `device` and is moved there; phases are sampled and paths rendered on the CPU. `background`: a
+    recording of the room by this radar with nobody there, from which static clutter is then taken. Raises InputError
+    for one of another radar.
     """
 
     def __init__(
@@ -56,72 +93,170 @@ class LearnedRoom:
         *,
         room_seed: int = 0,
         device: str = "cpu",
-        empty: RadarCube | None = None,
+        background: RadarCube | None = None,
     ):
         self.network, self.config, self.device = network.to(device), config, device
-        self.radar = MeanPower(config)
+        self.radar, self.renderer = MeanPower(config), CubeRenderer(config)
+        self.noise_power, self.background = self.radar.noise, None
         view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)
         with torch.inference_mode(), one_thread():
             self.code: SceneEncoding = network.encode_room(view[None].to(device))
-            resting = self.code.resting[0].to("cpu")
-            self._drawn = sample_static(resting, self.radar.response, room_seed)
-            self.empty: BackgroundRecording | None = None
-            if empty is not None:
-                expected = self.radar.maps(points_of(resting, self.radar.response)).range_azimuth
-                self.empty = BackgroundRecording.of(empty, expected, self.radar)
-                self._drawn = self.empty.conditioned(self._drawn)
-                self.radar.noise = self.empty.noise_power
-            self._strong = resting[self._drawn.strong]
-            self.static = self._drawn.layer()
+            echoes = self.code.static[0].to("cpu")
+            self.static = sample_static(echoes, config, room_seed)
+            size = self.static.amplitude.abs()
+            self._num_noticed = int((size > NOTICED * size[0]).sum())
+            if background is not None:
+                expected = self.radar.maps(points_of(echoes, self.radar.response)).range_azimuth
+                self.background = BackgroundRecording.of(background, expected, self.radar)
+                self.static = self.background.conditioned(self.static, self.renderer)
+                self.noise_power = self.background.noise_power
+            response = self.renderer.static(self.static)
+            self.layer = response.layer() if self.background is None else self.background.static  # (range, antenna)
+            self._noticed = response[: self._num_noticed]
+        self._synthesis: tuple[AdcSynthesis, Tensor] | None = None
+
+    def paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
+        """Paths of the room and of everybody, who occlude the room and each other."""
+        with torch.inference_mode(), one_thread():
+            return self._paths(motions)
+
+    def _paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
+        moving = Paths.cat(
+            [self._moving(motion, [one for one in motions if one is not motion]) for motion in motions], 1
+        )
+        noticed_m = self.static.departure_vertex_m[: self._num_noticed]
+        by_each = [occluded(noticed_m, motion.middle_joints_m) for motion in motions]
+        hidden = torch.zeros(len(by_each[0]), len(self.static), dtype=torch.uint8)
+        hidden[:, : self._num_noticed] = torch.stack(by_each).any(dim=0)
+        return ScenePaths(static=self.static, moving=moving, occluded=hidden)
+
+    def _moving(self, motion: FrameMotion, others: list[FrameMotion]) -> Paths:
+        """One person's paths (frame * segment, path), less those that others occlude."""
+        clock = self.renderer.clock
+        joints, velocity = motion.segments(clock)
+        count = joints.shape[1]
+        each = []
+        for index in range(count):  # each segment's frames are a sequence of the frame rate the network knows
+            at = joints[None, :, index], velocity[None, :, index]
+            each.append(self.network.moving(self.code, *(part.to(self.device) for part in at))[0].to("cpu"))
+        echoes = MeanEchoes.stack(each).map(lambda tensor: tensor.transpose(0, 1))  # (frame, segment, echo)
+        others_m = [other.segments(clock)[0] for other in others]
+        shown = [
+            self._shown(one, joints[:, index], [other[:, index] for other in others_m])
+            for index, one in enumerate(each)
+        ]
+        echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1))
+        sight = aspect(joints.flatten(0, 1)).unflatten(0, (-1, count))
+        if count == 1:
+            paths = sample_moving(echoes[:, 0], sight[:, 0], self.config, motion.subject)
+            return self._from_reference(paths)
+        middle_s = torch.from_numpy(clock.middle_s)
+        return sample_moving_segments(echoes, sight, middle_s, self.config, motion.subject)
+
+    def _shown(self, echoes: MeanEchoes, joints_m: Tensor, others_m: list[Tensor]) -> Tensor:
+        """1 where nobody else stands before an echo (frame, echo), 0 elsewhere; others' joints (frame, 22, 3) each.
+
+        A ghost is lost where its joint is occluded: its departure or its arrival leads straight there.
+        """
+        place_m = place_of(echoes).float()[:, :NUM_ANCHORS]
+        reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
+        ends_m = torch.cat([place_m, reflected_m], dim=1)
+        hidden = torch.zeros(ends_m.shape[:2], dtype=torch.bool)
+        for other_m in others_m:
+            hidden |= occluded(ends_m, other_m)
+        return (~hidden).float()
+
+    def _from_reference(self, paths: Paths) -> Paths:
+        """Paths whose places are those of the middle loop's first chirp, at the middle of all chirps."""
+        clock = self.renderer.clock
+        late_s = clock.middle_s[0] - (clock.chirp_s.min() + self.config.num_loops / 2 * self.config.loop_period_s)
+
+        def moved(end):
+            return replace(end, position_m=end.position_m + late_s * end.velocity_mps)
+
+        return replace(paths, departure=moved(paths.departure), arrival=moved(paths.arrival))
 
     def field(self, motions: Sequence[FrameMotion]) -> ScattererField:
-        """The field of everybody's motion; people are superimposed and hide neither each other nor the room."""
-        with torch.inference_mode(), one_thread():
-            points = [self._points(motion) for motion in motions]
-        together = Points.cat(points, 1)
-        return field_of(self.static, together, self.config, len(together.range_bin), self.radar.noise)
+        """The moving paths and the static layer as a scatterer field, in sqrt(mW); it does not know of occlusion."""
+        paths = self.paths(motions)
+        with torch.inference_mode():
+            window = FitWindow.of(self.config, len(paths.occluded), 0)
+            points = signal_points(paths.moving, self.renderer.clock, window.response)
+            layers = Layers(
+                points=points, static=self.layer / window.phasor[:, self.config.num_loops // 2],
+                calibration=torch.ones(self.config.num_antennas, dtype=torch.complex64), noise_power=self.noise_power,
+            )  # fmt: skip
+        return ScattererField(layers, window, CubeGrid.of(self.config, len(paths.occluded)), 1.0, 1.0)
 
     def cube(self, motions: Sequence[FrameMotion], *, seed: int) -> RadarCube:
-        """The signal of everybody, the shadows they cast on the room, and the receiver's noise.
+        """The signal of everybody, what they occlude of the room taken away, and the receiver's noise.
 
-        In sqrt(mW), or in the units of the recording of the empty room.
+        In sqrt(mW), or in the units of the background recording.
         """
-        field = self.field(motions)
+        return self.signal(motions, seed=seed, keep_adc=False)[0]
+
+    def signal(self, motions: Sequence[FrameMotion], *, seed: int, keep_adc: bool) -> tuple[RadarCube, AdcCube | None]:
+        """The cube, and with `keep_adc`, on which it does not depend, ADC samples of the same paths and noise."""
         with torch.inference_mode(), one_thread():
-            values = field.native()
-            self._take_shadows_off(values, motions)
-            cube = RadarCube(values=values, grid=field.grid, config=self.config, scale=1.0)
-        whole = field.with_noise(cube, seed)
-        if self.empty is None:
-            return replace(whole, scale=1.0)
-        return replace(whole, values=whole.values / np.float32(self.empty.unit), scale=self.empty.unit)
+            paths = self._paths(motions)
+            grid = CubeGrid.of(self.config, len(paths.occluded))
+            noise = cell_noise(stream(seed, "scatterer field noise"), self.config, len(paths.occluded), 0)
+            noise *= np.float32(math.sqrt(self.noise_power)) * tdm_compensation(self.config)
+            values = self.renderer.moving(paths.moving)
+            lost = paths.occluded[:, : self._num_noticed].bool()
+            occluded_layers = [self._noticed[row].layer() for row in lost]
+            self.renderer.add_static(values, self.layer - torch.stack(occluded_layers))
+            values += torch.from_numpy(noise)
+            cube = RadarCube(values=values.numpy(), grid=grid, config=self.config, scale=1.0)
+            adc = self._adc(paths, replace(cube, values=noise), seed) if keep_adc else None
+        unit = 1.0 if self.background is None else self.background.unit
+        if unit == 1.0:
+            return cube, adc
+        cube = replace(cube, values=cube.values / np.float32(unit), scale=unit)
+        return cube, None if adc is None else replace(adc, samples=adc.samples / np.float32(unit), scale=unit)
 
-    def _take_shadows_off(self, values: np.ndarray, motions: Sequence[FrameMotion]) -> None:
-        """Takes off what the room does not return because somebody stands before it."""
-        is_hidden = [hidden(self._strong, torch.from_numpy(motion.joints_m).float()) for motion in motions]
-        lost = self._drawn.hidden(torch.stack(is_hidden).any(dim=0))
-        response = self.radar.response
-        axes = response.axes()
-        at_rest = response.doppler_kernel(axes.doppler_bin)[0]
-        bins = torch.nonzero(at_rest.abs() > 1e-6)[:, 0]  # a resting echo has three
-        turn = response.turn(axes)[:, bins]
-        values[:, :, bins.numpy()] -= (lost[:, :, None] * (at_rest[bins][:, None] * turn)).numpy()
+    def _adc(self, paths: ScenePaths, noise: RadarCube, seed: int) -> AdcCube:
+        """Samples of the paths with noise whose own cube is `noise`, and white in what no cell holds."""
+        config = self.config
+        if self._synthesis is None:
+            synthesis = AdcSynthesis(config)
+            self._synthesis = synthesis, self._static_adc(synthesis)
+        synthesis, static = self._synthesis
+        frames, count = len(paths.occluded), len(synthesis.clock.segments)
+        samples = np.empty((frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples), np.complex64)
+        for first in range(0, frames, ADC_FRAMES_AT_ONCE):
+            some = slice(first, min(first + ADC_FRAMES_AT_ONCE, frames))
+            moving = paths.moving[some.start * count : some.stop * count]
+            here = replace(paths, moving=moving, occluded=paths.occluded[some])
+            clean = synthesis.moving(moving) + (static - synthesis.occluded(here))[:, None]
+            clean = clean.numpy() + self._sample_noise(noise.values[some], first, seed)
+            samples[some] = clean if config.complex_samples else clean.real
+        count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
+        samples = quantised(torch.from_numpy(samples), count_sqrt_mw).numpy()
+        return AdcCube(samples=samples, config=config, scale=1.0)
 
-    def _points(self, motion: FrameMotion) -> Points:
-        joints, velocity = torch.from_numpy(motion.joints_m).float(), torch.from_numpy(motion.velocity_mps).float()
-        moving = self.network.moving(self.code, joints[None].to(self.device), velocity[None].to(self.device))
-        return sample_moving(moving[0].to("cpu"), aspect(joints), self.radar.response, motion.subject)
+    def _static_adc(self, synthesis: AdcSynthesis) -> Tensor:
+        """Samples (tx, rx, sample) of the room without people."""
+        if self.background is None:
+            return synthesis.static(self.static)
+        return torch.from_numpy(static_samples(self.background.static.numpy(), self.config))
 
+    def _sample_noise(self, cells: np.ndarray, first: int, seed: int) -> np.ndarray:
+        """Noise (frame, loop, tx, rx, sample) whose cube is `cells` (frame, range, doppler, antenna).
 
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """20 frames are 30 ms of one thread; several are hardly quicker, and on a busy machine a hundred times slower."""
-    before = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
+        White noise, less what the cube's cells hold of it, plus the samples of least energy that give those cells.
+        """
+        config = self.config
+        shape = (len(cells), config.num_loops, config.num_tx, config.num_rx, config.num_samples, 2)
+        white = stream(seed, "learned receiver noise", first).standard_normal(shape, dtype=np.float32)
+        power_mw = config.noise_power_mw if self.background is None else self.background.sample_noise_mw
+        white = white.view(np.complex64)[..., 0] * np.float32(math.sqrt(power_mw / 2))
+        if not config.complex_samples:
+            white = white.real.astype(np.complex64)
+        missing = cells - cube_values(white, config)
+        grid = CubeGrid.of(config, len(cells))
+        own = adc_from_cube(RadarCube(values=missing, grid=grid, config=config, scale=1.0))
+        return white + own.samples
 
 
 def aspect(joints_m: Tensor) -> Tensor:

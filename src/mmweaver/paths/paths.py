@@ -4,7 +4,7 @@ The frame of reference is the radar's (x right, y away, z up, origin at the arra
 those at the receiver's port in sqrt(mW). The carrier's phase, exp(j 2 pi length / wavelength), is not in the amplitude.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import numpy as np
@@ -68,6 +68,12 @@ class ApparentPoint(TensorRecord):
         """(..., path) how fast the distance grows."""
         return (self.direction * self.velocity_mps).sum(-1)
 
+    @property
+    def distance_acceleration_mps2(self) -> Tensor:
+        """(..., path) how fast that rate grows: by acceleration, and by moving past the array."""
+        across2 = self.velocity_mps.square().sum(-1) - self.rate_mps.square()
+        return (self.direction * self.acceleration_mps2).sum(-1) + across2 / self.distance_m.clamp(min=1e-9)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Paths(TensorRecord):
@@ -110,6 +116,15 @@ class Paths(TensorRecord):
         """No paths, (0,)."""
         return cls.direct(torch.zeros(0, dtype=torch.complex64), ApparentPoint.of(np.zeros((0, 3, 3))))
 
+    def one_way(self) -> "Paths":
+        """The same with both orders of reciprocal paths as paths of their own, padded; (segment, path)."""
+        if not bool(self.is_reciprocal.any()):
+            return self
+        forward = replace(self, is_reciprocal=torch.zeros_like(self.is_reciprocal))
+        amplitude = self.amplitude * self.is_reciprocal
+        back = replace(forward, amplitude=amplitude, departure=self.arrival, arrival=self.departure)
+        return Paths.cat([forward, back], dim=1)
+
     def __len__(self) -> int:
         return len(self.amplitude)
 
@@ -122,6 +137,11 @@ class Paths(TensorRecord):
     def rate_mps(self) -> Tensor:
         """(..., path) how fast the length grows: twice the radial velocity of a direct echo."""
         return self.departure.rate_mps + self.arrival.rate_mps
+
+    @property
+    def acceleration_mps2(self) -> Tensor:
+        """(..., path) how fast that rate grows."""
+        return self.departure.distance_acceleration_mps2 + self.arrival.distance_acceleration_mps2
 
 
 @dataclass(frozen=True, kw_only=True)

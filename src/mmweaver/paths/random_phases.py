@@ -1,98 +1,101 @@
-"""Mean echoes -> one signal: the phases that nobody can know are drawn, the rest follows from geometry.
+"""Mean echoes -> paths of one realization: unknown phases are sampled, the rest follows from geometry.
 
-A moving echo stands for several spots of skin that ride on one part of the body; their sum glitters as the part turns,
-as real skin does. Spots belong to the person, resting phases to the room, so that the same seed, person and room give
-the same signal, and a person's frames belong together. Reference: decisions 4 and 91.
+A moving echo stands for several spots of skin that ride on one part of the body; their sum scintillates as the part
+turns, as real skin does. Spots belong to the person, static phases to the room, so that the same seed, person and room
+give the same signal, and a person's frames belong together. Reference: decisions 4 and 91.
 """
 
 import math
-from dataclasses import dataclass, replace
-from functools import lru_cache
 
+import numpy as np
 import torch
 from torch import Tensor
 
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import CubeGrid
 from mmweaver.core.seeding import stream
-from mmweaver.core.tensor_record import TensorRecord
-from mmweaver.dsp.point_response import PointResponse, Points
-from mmweaver.fields.scatterers.fit_window import FitWindow
-from mmweaver.fields.scatterers.layers import Layers
-from mmweaver.fields.scatterers.scatterer_field import ScattererField
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.dsp.point_response import PointResponse
+from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
 from mmweaver.paths.radar_equation import carrier, points_of
+from mmweaver.paths.static_paths import scattered_paths
 
 SPOTS = 6  # of skin, for each echo
 SPOT_SPREAD_M = 0.04
-HEARD, MISSED = 1e-4, 4e-3  # of the strongest resting echo's amplitude: in the layer; in a shadow
+FAINTEST = 1e-4  # of the strongest static path's amplitude: fainter ones are left out
 
 
-@dataclass(frozen=True, kw_only=True)
-class SampledStaticClutter(TensorRecord):
-    """Resting echoes with their phases: what the room returns, and what of it somebody hides."""
-
-    heard: Tensor  # (row,) which echoes have rows, the strongest first
-    num_strong: int  # rows that a shadow is noticed of
-    at_range: Tensor  # (row, range)
-    echo: Tensor  # (row, antenna) complex
-    recorded: Tensor | None = None  # (range, antenna): where the empty room was recorded, its layer
-
-    def layer(self) -> Tensor:
-        """(range, antenna), complex."""
-        return self.at_range.T @ self.echo if self.recorded is None else self.recorded
-
-    @property
-    def strong(self) -> Tensor:
-        """Those echoes that a shadow is noticed of."""
-        return self.heard[: self.num_strong]
-
-    def hidden(self, is_hidden: Tensor) -> Tensor:
-        """What the hidden ones of the strong echoes (frame, echo) would have added to the layer."""
-        at_range, echo = self.at_range[: self.num_strong], self.echo[: self.num_strong]
-        return torch.stack([at_range[row].T @ echo[row] for row in is_hidden])
-
-
-def sample_static(resting: Echoes, response: PointResponse, room_seed: int) -> SampledStaticClutter:
-    """Draws the phases of resting echoes (echo,)."""
+def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
+    """Static echoes (echo,) with sampled phases, the strongest first; those too faint to matter are left out."""
     rng = stream(room_seed, "weaver", "room")
-    count = resting.range_m.shape[-1]
-    points = points_of(resting, response)
-    turns = torch.from_numpy(2 * math.pi * rng.random(count)).to(torch.float32)
-    points = replace(points, amplitude=torch.polar(points.amplitude, turns))
-    size = points.amplitude.abs() / points.amplitude.abs().max()
-    heard = size.argsort(descending=True)[: int((size > HEARD).sum())]
-    points = points[heard]
-    at_range, _, _, _, steer = response.factors(points, response.axes())
-    return SampledStaticClutter(
-        heard=heard, num_strong=int((size > MISSED).sum()), at_range=at_range.to(steer.dtype),
-        echo=points.amplitude[:, None] * steer,
-    )  # fmt: skip
+    amplitude = points_of(static, PointResponse(config)).amplitude
+    cycles = torch.from_numpy(rng.random(len(amplitude)))
+    size = amplitude / amplitude.max()
+    kept = size.argsort(descending=True)[: int((size > FAINTEST).sum())]
+    place_m = place_of(static)[kept].numpy()
+    delay_s = 2 * np.linalg.norm(place_m, axis=1) / SPEED_OF_LIGHT_MPS
+    # sampled is the phase at the receiver: the amplitude lacks what the renderers add along the path
+    along = config.centre_frequency_hz * delay_s - config.chirp_slope_hz_per_s * delay_s**2 / 2
+    sampled = amplitude[kept].numpy() * np.exp(2j * np.pi * (cycles[kept].numpy() - along))
+    return scattered_paths(place_m, sampled, Interaction.DIFFUSE, config)
 
 
-def sample_moving(moving: Echoes, aspect: Tensor, response: PointResponse, subject: int) -> Points:
-    """Moving echoes (frame, echo) -> points with phases. `aspect` (frame, 3): the line of sight seen by the body."""
+def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:
+    """Moving echoes (frame, echo) with sampled phases. `aspect` (frame, 3): twice the line of sight the body sees."""
+    offset_m, level = _spots(moving.range_m.shape[-1], subject)
+    along_m = torch.einsum("fc,esc->fes", aspect, offset_m)
+    scintillation = (carrier(along_m, config) * level).sum(dim=-1)
+    amplitude = points_of(moving, PointResponse(config)).amplitude * scintillation
+    return Paths.direct(amplitude, _scatterers(moving, moving.range_m, moving.velocity_mps, 0 * moving.range_m))
+
+
+def sample_moving_segments(
+    moving: MeanEchoes, aspect: Tensor, time_s: Tensor, config: RadarConfig, subject: int
+) -> Paths:
+    """The same of frames with long chirps: echoes (frame, segment, echo), a path for each spot of skin.
+
+    `aspect` (frame, segment, 3), `time_s` (segment,) the middles of the segments. Spots are paths of their own, whose
+    lengths follow the turning body: a sum of them, constant within a segment, would jump from one to the next. Returns
+    paths (frame * segment, echo * spot).
+    """
+    offset_m, level = _spots(moving.range_m.shape[-1], subject)
+    along_m = torch.einsum("gtc,esc->gtes", aspect, offset_m)
+    range_m = moving.range_m[..., None] + along_m
+    turning_mps = torch.gradient(along_m, spacing=(time_s.float(),), dim=1)[0]
+    velocity_mps = moving.velocity_mps[..., None] + turning_mps
+    acceleration = torch.gradient(velocity_mps, spacing=(time_s.float(),), dim=1)[0]
+    amplitude = points_of(moving, PointResponse(config)).amplitude[..., None] * level
+    spots = moving.map(lambda tensor: tensor[:, :, :, None].expand(-1, -1, -1, SPOTS, *tensor.shape[3:]))
+    return Paths.direct(amplitude, _scatterers(spots, range_m, velocity_mps, acceleration)).map(
+        lambda tensor: tensor.flatten(0, 1).flatten(1, 2)
+    )
+
+
+def place_of(echoes: MeanEchoes) -> Tensor:
+    """Where echoes lie, (..., echo, 3) in metres, float64."""
+    return echoes.range_m.double()[..., None] * _unit(echoes.direction)
+
+
+def _scatterers(echoes: MeanEchoes, range_m: Tensor, velocity_mps: Tensor, acceleration_mps2: Tensor) -> ApparentPoint:
+    """Points in the echoes' directions with radial motion (..., echo)."""
+    unit = _unit(echoes.direction)
+    return ApparentPoint(
+        position_m=range_m.double()[..., None] * unit,
+        velocity_mps=velocity_mps.double()[..., None] * unit,
+        acceleration_mps2=acceleration_mps2.double()[..., None] * unit,
+    )
+
+
+def _unit(direction: Tensor) -> Tensor:
+    """Unit vectors (..., 3) of direction cosines (..., 2) along x and z, ahead of the radar; float64."""
+    x, z = direction.double().unbind(-1)
+    ahead = (1 - x.square() - z.square()).clamp(min=0).sqrt()
+    return torch.nn.functional.normalize(torch.stack([x, ahead, z], dim=-1), dim=-1)
+
+
+def _spots(count: int, subject: int) -> tuple[Tensor, Tensor]:
+    """Of each echo's spots of skin: place on the body (echo, spot, 3) in metres, and complex amplitude (echo, spot)."""
     rng = stream(subject, "weaver", "skin")
-    count = moving.range_m.shape[-1]
-    offset = torch.from_numpy(rng.standard_normal((count, SPOTS, 3)) * SPOT_SPREAD_M).to(torch.float32)
-    spot = torch.from_numpy(rng.standard_normal((count, SPOTS, 2)) / math.sqrt(2 * SPOTS)).to(torch.float32)
-    points = points_of(moving, response)
-    along = torch.einsum("fc,esc->fes", aspect, offset)
-    glitter = (carrier(along, response.config) * torch.complex(spot[..., 0], spot[..., 1])).sum(dim=-1)
-    return replace(points, amplitude=points.amplitude * glitter * carrier(moving.range_m, response.config))
-
-
-def field_of(
-    static: Tensor, points: Points, config: RadarConfig, num_frames: int, noise_power: float
-) -> ScattererField:
-    """The field of drawn layers; its values are in sqrt(mW)."""
-    layers = Layers(
-        points=points, static=static, calibration=torch.ones(config.num_antennas, dtype=torch.complex64),
-        noise_power=noise_power,
-    )  # fmt: skip
-    return ScattererField(layers, *_cells(config, num_frames), 1.0, 1.0)
-
-
-@lru_cache(maxsize=8)
-def _cells(config: RadarConfig, num_frames: int) -> tuple[FitWindow, CubeGrid]:
-    return FitWindow.of(config, num_frames, 0), CubeGrid.of(config, num_frames)
+    offset_m = torch.from_numpy(rng.standard_normal((count, SPOTS, 3)) * SPOT_SPREAD_M).to(torch.float32)
+    level = torch.from_numpy(rng.standard_normal((count, SPOTS, 2)) / math.sqrt(2 * SPOTS)).to(torch.float32)
+    return offset_m, torch.view_as_complex(level)

@@ -10,12 +10,17 @@ from scipy.interpolate import CubicSpline
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import AdcCube, PoseSequence, Scene
+from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
+from mmweaver.dsp.cube import static_samples
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
+from mmweaver.paths.apparent_paths import static_points
+from mmweaver.paths.background import BackgroundRecording
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
 from mmweaver.paths.body_paths import BodyPaths
+from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.multi_person_paths import PeoplePaths
 from mmweaver.paths.paths import Interaction, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
@@ -28,14 +33,15 @@ CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
 _SENTENCES = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
     " makers' documents; they are not calibrated against a recording",
-    "the body is made of capsules with a wrinkled skin that glints where it faces the radar (reflectivity 0.14, slope"
+    "the body is made of capsules with a wrinkled skin with a specular lobe towards the radar (reflectivity 0.14, slope"
     " 0.10); clothes are in that figure and not modelled",
     "who stands or sits still sways, trembles and breathes by typical amounts",
     "nothing passes through furniture, and waves do not bend around edges",
 )
 ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
 SEVERAL_PEOPLE = (
-    "people hide each other, but no wave goes from one person over another to the radar (see docs/several_people.md)"
+    "people occlude each other, but there are no paths from one person over another to the radar"
+    " (see docs/several_people.md)"
 )
 
 
@@ -54,17 +60,43 @@ class Simulator:
     """
 
     def __init__(
-        self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0
-    ):
+        self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0,
+        background: RadarCube | None = None,
+    ):  # fmt: skip
+        """`background`: a recording by this radar with nobody present, whose static clutter and noise are then used.
+
+        Raises InputError for the recording of another radar.
+        """
         self.config = config
         self.impairments = impairments or Impairments()
         self.synthesis = AdcSynthesis(config)
         self.clock = self.synthesis.clock
         self.room = RayTracedRoom(scene, config, micro_seed)
+        self.background: BackgroundRecording | None = None
         with one_thread():
-            self._static = self.synthesis.static(self.room.paths)
-            self._static += self.synthesis.static(leakage_path(config, self.impairments))
+            if background is not None:
+                self.background = self._use(background)
+                samples = static_samples(self.background.static.numpy(), config)
+                self._static = torch.from_numpy(samples)
+            else:
+                self._static = self.synthesis.static(self.room.paths)
+                self._static += self.synthesis.static(leakage_path(config, self.impairments))
             self._static_rate = self.synthesis.static_rate(self.room.paths)
+
+    def _receiver(self, seed: int) -> Receiver:
+        """The radar's own, or that of the background recording."""
+        receiver = Receiver(self.config, self.impairments, seed)
+        if self.background is None:
+            return receiver
+        return receiver.with_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
+
+    def _use(self, recording: RadarCube) -> BackgroundRecording:
+        """Gives the room's static paths the amplitudes that a recording makes most likely."""
+        radar, paths = MeanPower(self.config), self.room.paths
+        expected = radar.maps(static_points(paths, radar.response)).range_azimuth
+        background = BackgroundRecording.of(recording, expected, radar)
+        self.room.paths = background.conditioned(paths, CubeRenderer(self.config))
+        return background
 
     @property
     def room_adc(self) -> np.ndarray:
@@ -96,7 +128,8 @@ class Simulator:
             mutual_occlusion=mutual_occlusion,
         )
         samples = np.concatenate([chunk.samples for chunk in chunks])
-        return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=1.0), assumptions=ASSUMPTIONS)
+        scale = 1.0 if self.background is None else self.background.unit
+        return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=scale), assumptions=ASSUMPTIONS)
 
     def chunks(
         self,
@@ -119,13 +152,15 @@ class Simulator:
         for one in poses:
             self._check(one, num_frames)
         bodies = [body_of(one, num_points, echo) for one in poses]
-        receiver = Receiver(self.config, self.impairments, seed)
+        receiver = self._receiver(seed)
+        unit = 1.0 if self.background is None else self.background.unit
         micro_motions = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
         for first in range(0, num_frames, CHUNK_FRAMES):
             frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
             people = self._people(poses, bodies, micro_motions, frames, mutual_occlusion)
-            samples = self.samples(people.scene(len(frames)), frames, receiver)
-            yield AdcCube(samples=samples.numpy(), config=self.config, scale=1.0)
+            samples = self.samples(people.scene(len(frames)), frames, receiver).numpy()
+            samples = samples if unit == 1.0 else samples / np.float32(unit)
+            yield AdcCube(samples=samples, config=self.config, scale=unit)
 
     def samples(self, paths: ScenePaths, frames: np.ndarray, receiver: Receiver) -> torch.Tensor:
         """What the receiver records of paths in frames of these numbers, complex64 (frame, loop, tx, rx, sample)."""

@@ -4,6 +4,7 @@ Reference: docs/radar_primer.md, section 6.
 """
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +20,8 @@ class Impairments:
     """What keeps a real receiver from the ideal; each can be switched off.
 
     Phase noise and the jitter of a chirp's start shift the beat signal in time by delta: s(t + delta). Phase noise of
-    L(1 MHz) that falls by 20 dB a decade is white in frequency, so delta is white; only the room's echoes, the
-    strongest, are shifted.
+    L(1 MHz) that falls by 20 dB a decade is white in frequency, so delta is white; only static
+    paths, the strongest, are shifted.
     """
 
     thermal_noise: bool = True
@@ -30,7 +31,7 @@ class Impairments:
     quantise: bool = True
     channel_gain_db: float = 0.0  # rms of each transmitter's and each receiver's gain error; a board keeps its own
     channel_phase_rad: float = 0.0
-    board: int = 0  # which board: draws these errors, whatever the seed
+    board: int = 0  # which board: determines these errors, whatever the seed
 
 
 IDEAL = Impairments(
@@ -45,6 +46,7 @@ class Receiver:
     def __init__(self, config: RadarConfig, impairments: Impairments, seed: int):
         self.config, self.impairments, self.seed = config, impairments, seed
         self.channels = channel_errors(config, impairments)
+        self.count_sqrt_mw = config.adc_count_sqrt_mw
         # rms of either part of a sample's noise, and of a sample's shift in time by phase noise
         self.noise_sqrt_mw = float(np.sqrt(config.noise_power_mw / 2)) if impairments.thermal_noise else 0.0
         self.phase_noise_s = 0.0
@@ -53,6 +55,14 @@ class Receiver:
             density = 2e12 * 10 ** (impairments.phase_noise_dbc_per_hz / 10)
             deviation_hz = np.sqrt(density * config.sample_rate_hz / 2)
             self.phase_noise_s = float(deviation_hz / config.chirp_slope_hz_per_s)
+
+    def with_noise(self, noise_power_mw: float, count_sqrt_mw: float) -> "Receiver":
+        """The same with thermal noise of this power a sample and a converter of this count."""
+        other = copy(self)
+        other.count_sqrt_mw = count_sqrt_mw
+        if self.impairments.thermal_noise:
+            other.noise_sqrt_mw = float(np.sqrt(noise_power_mw / 2))
+        return other
 
     def receive(
         self, moving: Tensor, static: Tensor, static_rate: Tensor, frames: Sequence[int], *, on_device: bool = False
@@ -83,13 +93,7 @@ class Receiver:
             samples += noise
         if not self.config.complex_samples:
             samples = torch.complex(samples.real, torch.zeros_like(samples.real))
-        return self.quantised(samples) if self.impairments.quantise else samples
-
-    def quantised(self, samples: Tensor) -> Tensor:
-        """Samples as a 16-bit converter gives them: whole counts in either part, clipped."""
-        count = self.config.adc_count_sqrt_mw
-        parts = torch.view_as_real(samples)
-        return torch.view_as_complex((parts / count).round_().clamp_(-32768, 32767) * count)
+        return quantised(samples, self.count_sqrt_mw) if self.impairments.quantise else samples
 
     @property
     def _has_unstable_clock(self) -> bool:
@@ -138,14 +142,20 @@ class Receiver:
 def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
     """Factors (tx, rx), complex64, of an uncalibrated board: one of each transmitter times one of each receiver."""
     rng = stream(impairments.board, "channel errors")
-    drawn = rng.standard_normal((2, config.num_tx + config.num_rx))
-    gain_db, phase_rad = impairments.channel_gain_db * drawn[0], impairments.channel_phase_rad * drawn[1]
+    errors = rng.standard_normal((2, config.num_tx + config.num_rx))
+    gain_db, phase_rad = impairments.channel_gain_db * errors[0], impairments.channel_phase_rad * errors[1]
     each = 10 ** (gain_db / 20) * np.exp(1j * phase_rad)
     return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
 
 
+def quantised(samples: Tensor, count: float) -> Tensor:
+    """Samples as a 16-bit converter gives them: whole multiples of `count` in either part, clipped."""
+    parts = torch.view_as_real(samples)
+    return torch.view_as_complex((parts / count).round_().clamp_(-32768, 32767) * count)
+
+
 def leakage(config: RadarConfig, impairments: Impairments) -> complex:
-    """Amplitude of the transmitter's direct way into the receiver, sqrt(mW)."""
+    """Amplitude of the transmitter's direct path into the receiver, sqrt(mW)."""
     if impairments.leakage_db is None:
         return 0j
     return complex(10 ** ((config.tx_power_dbm + impairments.leakage_db) / 20))

@@ -1,4 +1,4 @@
-"""Noise drawn in cells against noise sent through the radar's own processing."""
+"""Noise sampled in cells against noise through the radar's own processing."""
 
 from dataclasses import replace
 
@@ -16,12 +16,12 @@ EVERY_BIN = replace(AWR1843, num_samples=64, first_range_bin=0, num_range_bins=6
 
 
 def alike(values: np.ndarray, axis: int, step: int) -> float:
-    """How much of a cell its neighbour is; both counted without the turn that the frame's start gives them."""
+    """Correlation of neighbouring cells, without the phase rotation due to the start of the frame."""
     return float(np.abs(np.mean(values * np.roll(values, step, axis).conj())) / np.mean(np.abs(values) ** 2))
 
 
 @pytest.mark.parametrize("config", [AWR1843, EVERY_BIN])
-def test_it_is_what_processing_makes_of_white_samples(config: RadarConfig):
+def test_cell_noise_has_the_statistics_of_processed_white_samples(config: RadarConfig):
     rng = np.random.default_rng(0)
     shape = (6, config.num_loops, config.num_tx, config.num_rx, config.num_samples, 2)
     samples = rng.standard_normal(shape, dtype=np.float32).view(np.complex64)[..., 0]
@@ -35,7 +35,7 @@ def test_it_is_what_processing_makes_of_white_samples(config: RadarConfig):
             assert alike(got, axis, step) == pytest.approx(alike(wanted, axis, step), abs=0.02), (axis, step)
 
 
-def test_frames_that_overlap_share_their_chirps():
+def test_overlapping_frames_share_chirps():
     hop, num_loops = AWR1843.num_loops // 4, AWR1843.num_loops
     got = cell_noise(np.random.default_rng(0), AWR1843, 8, hop)
     assert np.mean(np.abs(got) ** 2) == pytest.approx(1.0, rel=0.05)

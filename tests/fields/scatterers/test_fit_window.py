@@ -24,7 +24,7 @@ def overlapping(hop: int = 3, num_frames: int = 6) -> RadarCube:
 
 
 @pytest.mark.parametrize("hop", [3, 4, 7])
-def test_overlapping_windows_are_one_long_frame_and_come_back(hop: int):
+def test_overlapping_windows_form_one_long_frame_and_are_recovered(hop: int):
     cube = overlapping(hop)
     assert overlap_hop(cube) == hop
     fit_window = FitWindow.of(SMALL, 6, hop)
@@ -49,7 +49,7 @@ def test_an_error_in_the_long_frame_has_the_energy_it_has_in_the_cube():
     assert np.ptp(energy) < 1e-4 * energy[0]
 
 
-def test_frames_that_do_not_share_chirps_stay_alone():
+def test_frames_without_shared_chirps_stay_separate():
     assert overlap_hop(crowd(num_frames=2)) == 0
     cube = overlapping()
     lying = replace(cube, values=cube.values[::-1].copy())  # times say overlap, values do not
@@ -58,7 +58,7 @@ def test_frames_that_do_not_share_chirps_stay_alone():
     assert overlap_hop(odd) == 0
 
 
-def test_without_overlap_the_working_frames_are_the_cube_turned():
+def test_without_overlap_the_working_frames_are_the_centred_cube():
     cube = crowd(num_frames=2)
     fit_window = FitWindow.of(SMALL, 2, 0)
     working = fit_window.working(cube.values)

@@ -14,7 +14,7 @@ def left_db(working: torch.Tensor, fit_window: FitWindow, recipe: FitRecipe) -> 
     return float(error), layers.counts()
 
 
-def test_a_crowd_is_found_down_to_its_noise():
+def test_many_scatterers_are_fitted_down_to_the_noise():
     cube = crowd()
     fit_window = FitWindow.of(SMALL, 3, 0)
     working = fit_window.working(cube.values)
@@ -27,7 +27,7 @@ def test_a_crowd_is_found_down_to_its_noise():
     assert counts.sum() <= 90
 
 
-def test_swapping_the_weakest_helps_or_does_no_harm():
+def test_replacing_the_weakest_does_no_harm():
     cube = crowd()
     fit_window = FitWindow.of(SMALL, 3, 0)
     working = fit_window.working(cube.values)
@@ -45,7 +45,7 @@ def test_frames_of_noise_get_no_scatterers():
     assert 0.8 < layers.noise_power / 2 < 1.2
 
 
-def test_gains_of_the_antennas_are_learned():
+def test_antenna_gains_are_learned():
     cube = crowd(num_points=20)
     gain = torch.ones(12, dtype=torch.complex64)
     gain[3], gain[7] = 1.2, torch.polar(torch.tensor(1.0), torch.tensor(0.3))
@@ -60,22 +60,22 @@ def test_gains_of_the_antennas_are_learned():
     assert abs(layers.calibration[3] / layers.calibration[4]) > 1.1
 
 
-def test_so_many_numbers_are_not_exceeded_and_static_beams_worth_nothing_go():
-    """A wall straight ahead beside a crowd: few beams keep it, and the points get the rest."""
+def test_the_parameter_budget_holds_and_useless_static_beams_are_dropped():
+    """A wall straight ahead and many points: few beams represent the wall, and the points get the rest."""
     fit_window = FitWindow.of(SMALL, 3, 0)
     wall = torch.zeros(24, 12, dtype=torch.complex64)
     wall[6:10] = 0.3
     working = fit_window.working(crowd().values) + static_cells(wall, fit_window.response, fit_window.axes)
-    kept_db = {}
+    active_db = {}
     for most in (600, 1200):
         layers = fitted(working, fit_window, FitRecipe(num_points=999, num_values=most, stages=10))
         assert 0.9 * most < layers.num_values(fit_window.response) <= most
-        kept = layers.active_beams
-        assert kept is not None
-        assert 6 < int(kept.sum()) < 0.7 * kept.numel()
+        active = layers.active_beams
+        assert active is not None
+        assert 6 < int(active.sum()) < 0.7 * active.numel()
         beams = layers.static @ torch.from_numpy(beams_of(SMALL)).to(layers.static.dtype).T
-        assert float(beams[~kept].abs().max()) < 1e-5
+        assert float(beams[~active].abs().max()) < 1e-5
         left = working - rendered(layers, fit_window.response, fit_window.axes)
-        kept_db[most] = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
-    assert kept_db[1200] < kept_db[600] - 2
-    assert kept_db[1200] < -30
+        active_db[most] = float(10 * torch.log10(left.abs().square().sum() / working.abs().square().sum()))
+    assert active_db[1200] < active_db[600] - 2
+    assert active_db[1200] < -30

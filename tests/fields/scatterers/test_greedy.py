@@ -6,7 +6,7 @@ from mmweaver.fields.scatterers.greedy import Beams, matched_power, next_points
 from tests.fields.echoes import SMALL, direction_of, exact_point
 
 
-def test_the_first_scatterer_is_within_a_cell_and_a_beam_of_the_truth():
+def test_the_first_scatterer_is_within_a_cell_and_a_beam():
     fit_window = FitWindow.of(SMALL, 1, 0)
     towards = direction_of(0.35, 0.0)
     target = fit_window.working(exact_point(SMALL, 1.4, 1.1, towards)[None])
@@ -17,7 +17,7 @@ def test_the_first_scatterer_is_within_a_cell_and_a_beam_of_the_truth():
     assert abs(float(points.direction[0, 0, 0]) - towards[0]) < 0.2
 
 
-def test_what_is_too_weak_is_left():
+def test_weak_candidates_are_rejected():
     fit_window = FitWindow.of(SMALL, 2, 0)
     target = torch.zeros(2, 24, 16, 12, dtype=torch.complex64)
     target[1, 5, 5] = 1.0
@@ -30,5 +30,5 @@ def test_what_is_too_weak_is_left():
     assert none.amplitude.shape == (2, 0)
 
 
-def test_an_array_that_cannot_tell_has_one_beam():
+def test_an_array_without_aperture_has_one_beam():
     assert len(Beams.over(PointResponse(SMALL).axes(), 0).direction) == 1

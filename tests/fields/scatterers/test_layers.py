@@ -19,19 +19,19 @@ def some(amplitudes: list[list[float]]) -> Points:
     return Points(range_bin=size * 10, doppler_bin=size, direction=torch.stack([size, -size], -1), amplitude=size + 0j)
 
 
-def test_padding_goes_to_the_end_and_no_more_of_it_than_needed():
+def test_padding_is_moved_to_the_end_and_trimmed():
     points = compact(some([[0.0, 0.3, 0.0, 0.1], [0.0, 0.0, 0.2, 0.0]]))
     assert points.amplitude.real.tolist() == torch.tensor([[0.3, 0.1], [0.2, 0.0]]).tolist()
     assert points.range_bin[0].tolist() == torch.tensor([3.0, 1.0]).tolist()
     assert join_points(points, no_points(2)).amplitude.shape == (2, 2)
 
 
-def test_the_strongest_are_kept_over_all_frames():
+def test_the_strongest_are_selected_over_all_frames():
     points = strongest(some([[0.5, 0.3, 0.1], [0.4, 0.05, 0.0]]), 3)
     assert (points.amplitude != 0).sum(dim=1).tolist() == [2, 1]
 
 
-def test_a_static_layer_is_found_again():
+def test_a_static_layer_is_recovered():
     response = PointResponse(SMALL)
     axes = response.axes()
     parts = torch.randn(2, 24, 12, generator=torch.Generator().manual_seed(0))
@@ -40,7 +40,7 @@ def test_a_static_layer_is_found_again():
     assert torch.allclose(fit_static(cells, response, axes), static, atol=1e-5)
 
 
-def test_values_are_counted():
+def test_parameters_are_counted():
     response = PointResponse(SMALL)
     gains = torch.ones(12, dtype=torch.complex64)
     layers = Layers(points=some([[0.5, 0.0]]), static=torch.zeros(24, 12) + 0j, calibration=gains, noise_power=1.0)
@@ -49,10 +49,10 @@ def test_values_are_counted():
     assert with_all.num_values(response) == 12 + 2 * 24 * 12 + 24 + 1
 
 
-def test_a_sparse_static_layer_costs_its_beams_and_the_marks_of_which_they_are():
-    kept = torch.zeros(64, 12, dtype=torch.bool)
-    kept[3, :5] = True
-    assert static_values(None, kept.numel()) == 2 * 64 * 12
-    assert static_values(kept, kept.numel()) == 2 * 5 + 64 * 12 / 32
-    assert static_values(~kept, kept.numel()) == 2 * 64 * 12  # cheaper without the marks
-    assert static_values(torch.ones_like(kept), kept.numel()) == 2 * 64 * 12
+def test_a_sparse_static_layer_costs_its_beams_and_their_mask():
+    mask = torch.zeros(64, 12, dtype=torch.bool)
+    mask[3, :5] = True
+    assert static_values(None, mask.numel()) == 2 * 64 * 12
+    assert static_values(mask, mask.numel()) == 2 * 5 + 64 * 12 / 32
+    assert static_values(~mask, mask.numel()) == 2 * 64 * 12  # cheaper without the marks
+    assert static_values(torch.ones_like(mask), mask.numel()) == 2 * 64 * 12

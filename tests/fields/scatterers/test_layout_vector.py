@@ -6,7 +6,7 @@ from mmweaver.fields.scatterers.layout_vector import ScattererLayout
 from tests.fields.echoes import SMALL
 
 
-def test_a_row_becomes_points_and_a_row_again():
+def test_vector_to_points_and_back():
     layout = ScattererLayout.of(PointResponse(SMALL), 5)
     row = torch.rand(2, layout.num_values, generator=torch.Generator().manual_seed(0)) * 2 - 1
     points = layout.points(row)
@@ -18,14 +18,14 @@ def test_a_row_becomes_points_and_a_row_again():
         ScattererLayout.of(PointResponse(SMALL), 4).packed(points)
 
 
-def test_the_ends_of_the_axes_are_one():
+def test_axes_are_scaled_to_one_at_their_ends():
     layout = ScattererLayout.of(PointResponse(SMALL), 1)
     points = layout.points(torch.tensor([-1.0, 1.0, 0.2, 0.1, 1.0, 0.0]))
     assert points.range_bin.item() == pytest.approx(10.0)
     assert points.doppler_bin.item() == pytest.approx(7.0)
 
 
-def test_a_network_can_learn_through_it():
+def test_gradients_flow_through_the_layout():
     response = PointResponse(SMALL)
     layout = ScattererLayout.of(response, 2)
     row = torch.zeros(layout.num_values, requires_grad=True)

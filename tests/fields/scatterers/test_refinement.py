@@ -9,7 +9,7 @@ RESPONSE = PointResponse(SMALL)
 AXES = RESPONSE.axes()
 
 
-def drawn(num_points: int, seed: int = 0, num_frames: int = 2) -> Points:
+def random_points(num_points: int, seed: int = 0, num_frames: int = 2) -> Points:
     generator = torch.Generator().manual_seed(seed)
 
     def uniform(low: float, high: float, *more: int) -> torch.Tensor:
@@ -22,7 +22,7 @@ def drawn(num_points: int, seed: int = 0, num_frames: int = 2) -> Points:
 
 
 def shaken(points: Points, by: float) -> Points:
-    other = drawn(points.amplitude.shape[1], seed=9)
+    other = random_points(points.amplitude.shape[1], seed=9)
     return Points(
         range_bin=points.range_bin + by * (other.range_bin - 21) / 10,
         doppler_bin=points.doppler_bin + by * other.doppler_bin / 6,
@@ -32,9 +32,9 @@ def shaken(points: Points, by: float) -> Points:
 
 
 @pytest.mark.parametrize("largest", [100, 4])
-def test_shaken_points_find_back(largest: int):
+def test_perturbed_points_are_recovered(largest: int):
     """All together, and in groups of neighbours."""
-    truth = drawn(9)
+    truth = random_points(9)
     target = RESPONSE.render(truth, AXES)
     found, residual = refined(shaken(truth, 0.25), target, RESPONSE, AXES, Damping.fresh(2), steps=40, largest=largest)
     left = residual.abs().square().sum() / target.abs().square().sum()
@@ -42,8 +42,8 @@ def test_shaken_points_find_back(largest: int):
     assert torch.allclose(target - RESPONSE.render(found, AXES), residual, atol=1e-5)
 
 
-def test_no_step_makes_it_worse_and_padding_stays():
-    truth = drawn(6)
+def test_no_step_increases_the_error_and_padding_stays():
+    truth = random_points(6)
     target = RESPONSE.render(truth, AXES)
     start = shaken(truth, 0.6)
     start.amplitude[1, 3:] = 0
@@ -61,14 +61,14 @@ def test_no_step_makes_it_worse_and_padding_stays():
     assert (points.amplitude[1, 3:] == 0).all()
 
 
-def test_a_step_is_that_of_the_explicit_jacobian():
+def test_a_step_equals_that_of_the_explicit_jacobian():
     """One nearly undamped step against least squares on a Jacobian by finite differences.
 
     Ours leaves out the slow turns (TDM, migration, squint), so it is near, not equal.
     """
     from mmweaver.fields.scatterers.layout_vector import ScattererLayout
 
-    truth = drawn(3, num_frames=1)
+    truth = random_points(3, num_frames=1)
     layout = ScattererLayout.over(AXES, 3)
     start = layout.packed(truth).double()[0] + 0.002
     target = RESPONSE.render(truth, AXES)[0]

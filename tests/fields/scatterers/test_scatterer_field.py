@@ -29,7 +29,7 @@ def one_point(config=SMALL, range_m: float = 1.4, velocity_mps: float = 0.5, num
     return RadarCube(values=np.stack(values), grid=CubeGrid.of(config, num_frames), config=config, scale=1.0)
 
 
-def test_the_native_grid_by_three_ways(field: ScattererField):
+def test_three_ways_to_render_the_native_grid_agree(field: ScattererField):
     truth = crowd().values
     native = field.native()
     assert error_db(native, truth) < -30
@@ -45,7 +45,7 @@ def test_finer_grids_contain_the_native_cells(field: ScattererField):
     assert error_db(finer[:, ::2, ::2], field.native()) < -60
 
 
-def test_between_the_bins_it_is_what_a_shifted_radar_sees():
+def test_values_between_bins_equal_those_of_a_shifted_radar():
     """Half a range bin off: the exact cube of the same point, moved by half a bin, up to its phase."""
     field = ScattererField.fit(one_point(), FitRecipe(num_points=3, stages=1, with_static=False, least_gain=0.0))
     half = replace(field.grid, range_m=field.grid.range_m + SMALL.range_resolution_m / 2)
@@ -54,7 +54,7 @@ def test_between_the_bins_it_is_what_a_shifted_radar_sees():
     assert error_db(np.abs(ours), np.abs(moved)) < -35
 
 
-def test_another_radar_sees_the_same_point():
+def test_a_point_is_rendered_for_another_radar():
     """Twice the bandwidth and half the loops, nothing fitted again: right phase and place."""
     field = ScattererField.fit(one_point(), FitRecipe(num_points=1, stages=1, with_static=False, least_gain=0.0))
     slope = 1.25 * SMALL.chirp_slope_hz_per_s
@@ -71,7 +71,7 @@ def test_another_radar_sees_the_same_point():
     assert error_db(ours, truth) < -20
 
 
-def test_what_stands_still_is_seen_by_another_radar_too():
+def test_static_clutter_is_rendered_for_another_radar():
     cube = one_point(velocity_mps=0.0, num_frames=2)
     field = ScattererField.fit(cube, FitRecipe(num_points=0, stages=1))
     assert int(field.layers.counts().sum()) == 0
@@ -81,7 +81,7 @@ def test_what_stands_still_is_seen_by_another_radar_too():
 
 
 def test_overlapping_windows_at_any_instant():
-    """Fitted once for the whole fit_window; a window between two windows is that of the scatterers there."""
+    """Fitted once for all chirps; a window between two windows is rendered from the same scatterers."""
     long = replace(SMALL, num_loops=64)
     whole = exact_point(long, 1.4, 0.6, direction_of(0.2, 0.0))
     cube = overlapping(hop=4, num_frames=5)
@@ -102,7 +102,7 @@ def test_overlapping_windows_at_any_instant():
     assert cube.values.shape == (5, 24, 16, 12)
 
 
-def test_noise_has_the_power_and_the_colour_of_the_capture():
+def test_noise_has_the_power_and_correlation_of_the_recording():
     rng = np.random.default_rng(0)
     from mmweaver.core.records import AdcCube
     from mmweaver.dsp.cube import radar_cube
@@ -121,7 +121,7 @@ def test_noise_has_the_power_and_the_colour_of_the_capture():
 
 
 @pytest.mark.parametrize("value", [0.0, np.nan])
-def test_a_cube_of_nothing_is_refused(value: float):
+def test_an_empty_cube_is_refused(value: float):
     cube = crowd()
     with pytest.raises(InputError):
         ScattererField.fit(replace(cube, values=np.full_like(cube.values, value)))

@@ -10,11 +10,13 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import RadarCube, Scene
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.models.background import BackgroundRecording, agreeing_gain
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.paths.random_phases import SampledStaticClutter
+from mmweaver.paths.background import BackgroundRecording, agreeing_gain
+from mmweaver.paths.cube_rendering import CubeRenderer
+from mmweaver.paths.paths import Interaction, StaticPaths
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import scattered_paths
 from mmweaver.scene.procedural.procedural_room import make_room
 from tests.rooms import standing_person
 
@@ -33,7 +35,7 @@ def recording(scene: Scene) -> RadarCube:
 
 def _woven(scene: Scene, recording: RadarCube | None) -> LearnedRoom:
     torch.manual_seed(0)
-    return LearnedRoom(WeaverNetwork().eval(), scene, AWR1843, empty=recording)
+    return LearnedRoom(WeaverNetwork().eval(), scene, AWR1843, background=recording)
 
 
 def _still(cube: RadarCube) -> np.ndarray:
@@ -41,24 +43,23 @@ def _still(cube: RadarCube) -> np.ndarray:
 
 
 def test_what_rests_is_the_recordings_own(scene: Scene, recording: RadarCube):
-    known, drawn = (_woven(scene, one) for one in (recording, None))
-    turn = known.radar.response.turn(known.radar.axes)[:, REST]
+    known, sampled = (_woven(scene, one) for one in (recording, None))
     recorded = _still(recording)
-    assert np.allclose((known.static * turn).numpy(), recorded, atol=1e-6 * np.abs(recorded).max())
-    assert np.linalg.norm((drawn.static * turn).numpy() - recorded) > np.linalg.norm(recorded)
+    assert np.allclose(known.layer.numpy(), recorded, atol=1e-6 * np.abs(recorded).max())
+    assert np.linalg.norm(sampled.layer.numpy() - recorded) > np.linalg.norm(recorded)
 
 
 def test_counts_without_a_scale_come_out_as_counts(scene: Scene, recording: RadarCube):
     counts = replace(recording, values=(1e6 * recording.values).astype(np.complex64), scale=float("nan"))
     with_scale, without = (_woven(scene, one) for one in (recording, counts))
-    assert with_scale.empty is not None
-    assert without.empty is not None
-    assert with_scale.empty.assumptions == ()
-    assert "no absolute scale" in without.empty.assumptions[0]
-    assert without.empty.unit == pytest.approx(1e-6, rel=0.5)  # by what the network expects
+    assert with_scale.background is not None
+    assert without.background is not None
+    assert with_scale.background.assumptions == ()
+    assert "no absolute scale" in without.background.assumptions[0]
+    assert without.background.unit == pytest.approx(1e-6, rel=0.5)  # by what the network expects
     motion = FrameMotion.of(standing_person((0.0, 2.2, -1.2)), AWR1843, 4)
     cube = without.cube([motion], seed=0)
-    assert cube.scale == without.empty.unit
+    assert cube.scale == without.background.unit
     assert np.linalg.norm(_still(cube)) == pytest.approx(np.linalg.norm(_still(counts)), rel=0.3)
     # and its noise is the recording's
     moving = [bin_ for bin_ in range(AWR1843.num_loops) if abs(bin_ - REST) > 8]
@@ -66,34 +67,32 @@ def test_counts_without_a_scale_come_out_as_counts(scene: Scene, recording: Rada
     assert levels[0] == pytest.approx(levels[1], rel=0.05)
 
 
-def test_a_shadow_takes_away_what_was_recorded_and_not_what_was_drawn():
-    """Where the geometry explains the recording, with fewer echoes than cells and with more."""
-    at_range = torch.zeros(2, 64, dtype=torch.complex64)
-    at_range[0, 20] = at_range[1, 40] = 1.0
-    drawn = SampledStaticClutter(
-        heard=torch.arange(2), num_strong=2, at_range=at_range, echo=torch.ones(2, 12, dtype=torch.complex64)
+def test_occlusion_takes_away_what_was_recorded_and_not_what_was_sampled():
+    """Where the geometry explains the recording, with fewer paths than cells and with more."""
+    place_m = np.array([[0.0, 20 * AWR1843.range_resolution_m, 0.0], [0.0, 40 * AWR1843.range_resolution_m, 0.0]])
+    place_m += [0.0, AWR1843.first_range_bin * AWR1843.range_resolution_m, 0.0]
+    sampled = scattered_paths(place_m, np.ones(2), Interaction.DIFFUSE, AWR1843)
+    renderer = CubeRenderer(AWR1843)
+    static = renderer.static(sampled).scaled(torch.tensor([3j, -0.5])).layer()
+    static[50] += 2.0  # the geometry knows of nothing there
+    background = BackgroundRecording(
+        static=static, noise_power=1e-9, sample_noise_mw=1e-9, unit=1.0, count_sqrt_mw=1e-6, assumptions=()
     )
-    still = torch.zeros(64, 12, dtype=torch.complex64)
-    still[20], still[40], still[50] = 3j, -0.5, 2.0  # at 50 the geometry knows of nothing
-    empty = BackgroundRecording(still=still, noise_power=1e-9, unit=1.0, assumptions=())
-    known = empty.conditioned(drawn)
-    assert torch.equal(known.layer(), still)
-    hidden = known.hidden(torch.tensor([[True, True]]))[0]
-    assert torch.allclose(hidden[20], still[20], rtol=0.05)
-    assert torch.allclose(hidden[40], still[40], rtol=0.05)
-    assert float(hidden[50].abs().max()) < 1e-3
-    many = SampledStaticClutter(heard=torch.arange(900), num_strong=900, at_range=at_range[[0]].repeat(900, 1),
-                      echo=drawn.echo[[0]].repeat(900, 1))  # fmt: skip
-    shared = empty.conditioned(many).hidden(torch.ones(1, 900, dtype=torch.bool))[0]
-    assert torch.allclose(shared[20], still[20], rtol=0.05)
+    known = renderer.static(background.conditioned(sampled, renderer)).layer()
+    assert torch.allclose(known[20], static[20], rtol=0.05)
+    assert torch.allclose(known[40], static[40], rtol=0.05)
+    assert float(known[50].abs().max()) < 0.05
+    many = StaticPaths.cat([sampled[:1]] * 900)
+    shared = renderer.static(background.conditioned(many, renderer)).layer()
+    assert torch.allclose(shared[20], static[20], rtol=0.05)
 
 
 def test_what_moves_in_the_recording_is_told(scene: Scene, recording: RadarCube):
     values = recording.values.copy()
     values[:, 30, 5] += 100 * np.abs(values[:, :, 5]).mean()
     woven = _woven(scene, replace(recording, values=values))
-    assert woven.empty is not None
-    assert any("moves" in sentence for sentence in woven.empty.assumptions)
+    assert woven.background is not None
+    assert any("moves" in sentence for sentence in woven.background.assumptions)
 
 
 @pytest.mark.parametrize("harm", ["radar", "slower", "nan", "zeros", "none"])

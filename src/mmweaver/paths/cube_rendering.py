@@ -1,0 +1,163 @@
+"""Paths -> the range-Doppler cube without ADC samples: each path's range kernel x (Doppler spectrum . antennas).
+
+What `adc_synthesis` and the transforms give together, for a fraction of the cost. In range a path leaves the window's
+spectrum K, in Doppler the transform of its own chirps. Within a time segment a path moves by a share of a range bin: K
+is taken to first order, K(r - b - d) = K(r - b) - d K'(r - b), with d for each chirp and antenna.
+Reference: docs/radar_primer.md, equations 7 and 12.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.dsp.cube import doppler_weight, tdm_compensation
+from mmweaver.dsp.window_kernels import WindowKernel
+from mmweaver.dsp.windows import hann
+from mmweaver.paths.adc_synthesis import ArrayPhases, phasor, unpadded
+from mmweaver.paths.frame_clock import FrameClock, Segment
+from mmweaver.paths.paths import Paths, StaticPaths
+
+FRAMES_AT_ONCE = 4  # stay in the cache
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticResponse(TensorRecord):
+    """What each static path leaves in the cube at zero Doppler: a sum of two products of range and antenna."""
+
+    at_range: Tensor  # (path, range) range kernel
+    range_slope: Tensor  # (path, range) its slope
+    echo: Tensor  # (path, antenna) complex
+    tilted: Tensor  # (path, antenna) complex: the same times how many bins an antenna is off the array's mean
+
+    def layer(self) -> Tensor:
+        """The sum of all paths, complex (range, antenna)."""
+        return self.at_range.T @ self.echo + self.range_slope.T @ self.tilted
+
+    def each(self) -> Tensor:
+        """Every path's own, complex (range * antenna, path)."""
+        both = self.at_range[..., None] * self.echo[:, None] + self.range_slope[..., None] * self.tilted[:, None]
+        return both.flatten(1).T
+
+    def scaled(self, factor: Tensor) -> "StaticResponse":
+        """Of paths whose amplitudes are multiplied by factors (path,)."""
+        return StaticResponse(
+            at_range=self.at_range, range_slope=self.range_slope,
+            echo=self.echo * factor[:, None], tilted=self.tilted * factor[:, None],
+        )  # fmt: skip
+
+
+class CubeRenderer:
+    """The cube that paths leave in one radar, on the CPU; values as `dsp.cube.radar_cube` gives them."""
+
+    def __init__(self, config: RadarConfig):
+        self.config, self.clock = config, FrameClock(config)
+        self._array = ArrayPhases(config, torch.device("cpu"))
+        self._range_kernel = WindowKernel(hann(config.num_samples))
+        bins = config.first_range_bin + np.arange(config.num_range_bins)
+        self._range_bin = torch.from_numpy(bins).float()
+        # the kernel counts phase from the middle of the window, the transform from its beginning
+        self._range_sign = torch.from_numpy((-1.0) ** bins).float()
+        weight = torch.from_numpy(doppler_weight(config.num_loops))
+        compensation = torch.from_numpy(tdm_compensation(config))
+        static = torch.fft.fft(weight)[:, None] * compensation
+        self.static_bins = torch.nonzero(static.abs().amax(dim=1) > 1e-6)[:, 0]  # a Hann window has three
+        self._static_doppler = static[self.static_bins]
+        tx, rx = (torch.tensor(place, dtype=torch.float64) for place in (config.tx_position_m, config.rx_position_m))
+        self._tx_bin, self._rx_bin = (place / (2 * config.range_resolution_m) for place in (tx, rx))
+        fourier = torch.fft.fft(torch.eye(config.num_loops, dtype=torch.complex64)) * weight[:, None]  # (loop, doppler)
+        by_tx = fourier * compensation[:, :: config.num_rx].T[:, None]  # (tx, loop, doppler)
+        self._segments = [_SegmentDoppler.of(segment, by_tx) for segment in self.clock.segments]
+
+    def moving(self, paths: Paths) -> Tensor:
+        """Cube values of moving paths (frame * segment, path): complex64 (frame, range, doppler, antenna)."""
+        config, count = self.config, len(self._segments)
+        frames, paths = len(paths) // count, paths.one_way()
+        values = torch.empty(
+            frames, config.num_range_bins, config.num_loops, config.num_antennas, dtype=torch.complex64
+        )
+        flat = torch.view_as_real(values).flatten(2)  # (frame, range, 2 doppler antenna)
+        for index, segment in enumerate(self._segments):
+            self._add_segment(unpadded(paths[index::count]), segment, flat, is_first=index == 0)
+        return values
+
+    def _add_segment(self, paths: Paths, segment: "_SegmentDoppler", values: Tensor, *, is_first: bool) -> None:
+        """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
+        config = self.config
+        length_m, rate_mps = paths.length_m, paths.rate_mps
+        array = self._array(paths.departure.position_m, paths.arrival.position_m, paths.is_reciprocal)
+        array = (array * paths.amplitude[..., None, None])[:, :, None]  # (frame, path, 1, tx, rx)
+        plain, late = segment.spectra(self._cycles(paths, length_m, rate_mps, segment.time_s))
+        late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]
+        antenna_bins = self._antenna_bins(paths)[:, :, None]
+        shift_bin = rate_mps / config.wavelength_m * config.num_samples / config.sample_rate_hz  # by the Doppler shift
+        place = length_m / (2 * config.range_resolution_m) + shift_bin
+        kernel, slope = self._range_kernel(self._range_bin - place.float()[..., None])  # (frame, path, range)
+        kernel, slope = kernel * self._range_sign, slope * -self._range_sign
+        for first in range(0, len(values), FRAMES_AT_ONCE):
+            some = slice(first, first + FRAMES_AT_ONCE)
+            slow = plain[some, ..., None] * array[some]  # (frame, path, doppler, tx, rx)
+            tilted = torch.addcmul(late[some, ..., None] * array[some], slow, antenna_bins[some])
+            for part, cells, beta in ((kernel, slow, 0 if is_first else 1), (slope, tilted, 1)):
+                right = torch.view_as_real(cells).flatten(2)
+                torch.baddbmm(values[some], part[some].transpose(1, 2), right, beta=beta, out=values[some])
+
+    def _cycles(self, paths: Paths, length_m: Tensor, rate_mps: Tensor, time_s: Tensor) -> Tensor:
+        """Phase at each chirp, in cycles, (frame, path, tx * loop), at times (tx * loop,)."""
+        residual = self.config.chirp_slope_hz_per_s * (length_m / SPEED_OF_LIGHT_MPS) ** 2 / 2
+        motion = torch.stack([length_m, rate_mps, paths.acceleration_mps2 / 2], dim=-1) / self.config.wavelength_m
+        motion[..., 0] -= residual
+        return motion @ torch.stack([torch.ones_like(time_s), time_s, time_s**2])
+
+    def _antenna_bins(self, paths: Paths) -> Tensor:
+        """How many range bins a path is longer for each pair than from the array's centre: (frame, path, tx, rx)."""
+        departure, arrival = (end.direction for end in (paths.departure, paths.arrival))
+        return -((departure @ self._tx_bin.T)[..., :, None] + (arrival @ self._rx_bin.T)[..., None, :]).to(
+            torch.complex64
+        )
+
+    def static(self, paths: StaticPaths) -> StaticResponse:
+        """What static paths (path,) leave at zero Doppler."""
+        config = self.config
+        length_m = paths.length_m.flatten(1)  # (path, antenna)
+        mean_m = length_m.mean(dim=1)
+        delay_s = mean_m / SPEED_OF_LIGHT_MPS
+        cycles = length_m / config.wavelength_m - (config.chirp_slope_hz_per_s * delay_s**2 / 2)[:, None]
+        echo = phasor(cycles) * paths.amplitude.to(torch.complex64)[:, None]
+        off_bin = ((length_m - mean_m[:, None]) / (2 * config.range_resolution_m)).float()
+        kernel, slope = self._range_kernel(
+            self._range_bin - (mean_m / (2 * config.range_resolution_m)).float()[:, None]
+        )
+        at_range, range_slope = (part * self._range_sign + 0j for part in (kernel, slope))
+        return StaticResponse(at_range=at_range, range_slope=range_slope, echo=echo, tilted=-off_bin * echo)
+
+    def add_static(self, values: Tensor, layer: Tensor) -> None:
+        """Adds static layers (range, antenna) or (frame, range, antenna) to cube values, in place."""
+        values[:, :, self.static_bins] += layer[..., None, :] * self._static_doppler
+
+
+@dataclass(frozen=True, kw_only=True)
+class _SegmentDoppler(TensorRecord):
+    """The chirps of one time segment, and their windowed and TDM-compensated transform."""
+
+    time_s: Tensor  # (tx * loop,) since the segment's middle
+    transform: Tensor  # (tx, loop, 2 doppler): of values at the chirps, and of the same times their time
+
+    @classmethod
+    def of(cls, segment: Segment, by_tx: Tensor) -> "_SegmentDoppler":
+        """Of a segment of the clock and the whole frame's transform (tx, loop, doppler)."""
+        time_s = torch.from_numpy(np.ascontiguousarray(segment.chirp_s.T))  # (tx, loop)
+        own = by_tx[:, segment.loops]
+        return cls(time_s=time_s.flatten(), transform=torch.cat([own, own * time_s.float()[..., None]], dim=-1))
+
+    def spectra(self, cycles: Tensor) -> tuple[Tensor, Tensor]:
+        """Doppler spectra (frame, path, doppler, tx) of phases (frame, path, tx * loop), and of them times time."""
+        num_tx, loops, width = self.transform.shape
+        chirps = phasor(cycles).unflatten(-1, (num_tx, loops)).flatten(0, 1).transpose(0, 1)  # (tx, ..., loop)
+        both = (chirps @ self.transform).unflatten(1, cycles.shape[:2]).unflatten(-1, (2, width // 2))
+        plain, late = both.permute(3, 1, 2, 4, 0).contiguous()
+        return plain, late
