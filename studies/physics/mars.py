@@ -266,7 +266,7 @@ def _points(place_m: np.ndarray) -> PointCloud:
     )  # fmt: skip
 
 
-# the experiment -----------------------------------------------------------------------------------------------------
+# the study ----------------------------------------------------------------------------------------------------------
 def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) -> dict[str, CloudScores]:
     """Estimates on `validate`, scores everything on `test`, and writes results/mars/*.json. Returns the scores."""
     validate, test = read_mars(data, "validate"), read_mars(data, "test")

@@ -28,7 +28,7 @@ def point(response: PointResponse, range_m: float, velocity_mps: float, towards:
 def rendered(config: RadarConfig, range_m: float, velocity_mps: float, towards: np.ndarray) -> np.ndarray:
     response = PointResponse(config)
     axes = response.axes()
-    return (response.render(point(response, range_m, velocity_mps, towards), axes) * response.turn(axes)).numpy()
+    return (response.render(point(response, range_m, velocity_mps, towards), axes) * response.phasor(axes)).numpy()
 
 
 def mismatch_db(config: RadarConfig, velocity_mps: float, range_m: float = 2.1) -> tuple[float, complex]:
@@ -65,7 +65,7 @@ def test_the_residual_tdm_phase_matters():
     for known in (response.delay, 0 * response.delay):
         response.delay = known
         axes = response.axes()
-        ours = (response.render(point(response, 1.4, half_bin_mps, towards), axes) * response.turn(axes)).numpy()
+        ours = (response.render(point(response, 1.4, half_bin_mps, towards), axes) * response.phasor(axes)).numpy()
         errors.append(error_db(np.vdot(ours, truth) / np.vdot(ours, ours) * ours, truth))
     assert errors[0] < -45
     assert errors[1] > errors[0] + 15
@@ -88,13 +88,13 @@ def test_single_cells_equal_those_of_the_grid():
     response = PointResponse(SMALL)
     axes = response.axes()
     points = point(response, 1.4, 0.6, direction_of(-0.2, 0.1))
-    whole = response.render(points, axes) * response.turn(axes)
+    whole = response.render(points, axes) * response.phasor(axes)
     r, d, a = np.array([2, 9, 20]), np.array([1, 10, 15]), np.array([0, 5, 11])
     cells = replace(
         axes, range_bin=axes.range_bin[r], doppler_bin=axes.doppler_bin[d], place=axes.place[a],
         delay=axes.delay[a], parts=axes.parts[:, a],
     )  # fmt: skip
-    some = response.at_cells(points, cells) * response.turn_at_cells(cells)
+    some = response.at_cells(points, cells) * response.phasor_at_cells(cells)
     assert torch.allclose(some, whole[r, d, a], atol=1e-6)
 
 

@@ -68,7 +68,7 @@ def test_leaving_a_part_out_changes_what_it_is_about(
         network = WeaverNetwork(without=without).eval()
         with torch.inference_mode():
             code = network.encode_room(view)
-            echoes.append((code.resting.cross_section_m2, network.moving(code, *motion).cross_section_m2))
+            echoes.append((code.static.cross_section_m2, network.moving(code, *motion).cross_section_m2))
     (rest, moving), (other_rest, other_moving) = echoes
     assert torch.equal(rest, other_rest) is not rests
     assert torch.equal(moving, other_moving) is not moves

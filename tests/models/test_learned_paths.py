@@ -13,7 +13,7 @@ from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.paths.adc_synthesis import phasor
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.random_phases import sample_moving
 from mmweaver.scene.procedural.procedural_room import make_room
 from tests.rooms import back_wall, floor, scene_of, standing_person
@@ -61,7 +61,7 @@ def test_a_gliding_body_turns_the_phase_as_its_doppler_says(room: LearnedRoom):
     """Frame to frame: 4 pi v dt / wavelength, for a body that neither turns nor shadows itself anew."""
     step_s, velocity = AWR1843.frame_period_s, 0.7
     range_m = 2.0 + velocity * step_s * torch.arange(4)[:, None]
-    echoes = Echoes(
+    echoes = MeanEchoes(
         range_m=range_m, velocity_mps=torch.full_like(range_m, velocity), direction=torch.zeros(4, 1, 2),
         cross_section_m2=torch.full_like(range_m, 0.1),
     )  # fmt: skip

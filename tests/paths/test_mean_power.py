@@ -38,7 +38,7 @@ def test_they_are_the_mean_over_drawn_phases():
     total = [0.0, 0.0, 0.0]
     for _ in range(10):
         drawn = points(rng.random((draws // 10, count)))
-        values = (radar.response.render(drawn, radar.axes) * radar.response.turn(radar.axes)).numpy()
+        values = (radar.response.render(drawn, radar.axes) * radar.response.phasor(radar.axes)).numpy()
         cube = RadarCube(values=values, grid=CubeGrid.of(AWR1843, len(values)), config=AWR1843, scale=1.0)
         maps = (
             range_doppler_power(cube), range_azimuth_power(cube, azimuth_axis_rad()),

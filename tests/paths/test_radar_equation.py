@@ -1,4 +1,4 @@
-"""Echoes seen by a radar: the same radar equation and pattern as the simulator's."""
+"""Mean echoes seen by a radar: the same radar equation and pattern as the simulator's."""
 
 import numpy as np
 import torch
@@ -6,8 +6,8 @@ import torch
 from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.point_response import PointResponse
 from mmweaver.paths.antenna import pattern, scatterer_gain
-from mmweaver.paths.mean_paths import Echoes
-from mmweaver.paths.radar_equation import carrier, pattern_db, points_of
+from mmweaver.paths.mean_echoes import MeanEchoes
+from mmweaver.paths.radar_equation import carrier, pattern_towards_db, points_of
 
 
 def test_the_pattern_is_the_simulators():
@@ -15,12 +15,12 @@ def test_the_pattern_is_the_simulators():
     direction = rng.standard_normal((200, 3)) + np.array([0, 2.5, 0])
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     direction = direction[direction[:, 1] > 0.1]
-    loss = pattern_db(torch.tensor(direction[:, [0, 2]]), AWR1843).numpy()
+    loss = pattern_towards_db(torch.tensor(direction[:, [0, 2]]), AWR1843).numpy()
     assert np.allclose(10 ** (-loss / 20), pattern(direction, AWR1843), rtol=1e-4)
 
 
 def test_amplitudes_follow_the_radar_equation():
-    echoes = Echoes(
+    echoes = MeanEchoes(
         range_m=torch.tensor([1.0, 2.0]), velocity_mps=torch.tensor([0.0, 1.0]), direction=torch.zeros(2, 2),
         cross_section_m2=torch.tensor([1.0, 4.0]),
     )  # fmt: skip

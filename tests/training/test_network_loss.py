@@ -4,7 +4,7 @@ import numpy as np
 import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.training.network_loss import STEEPEST, Targets, itakura_saito, weaver_loss
@@ -26,8 +26,8 @@ def test_an_unpredicted_specular_lobe_weighs_by_its_decibels():
 def test_the_true_echoes_cost_less_than_others():
     radar = MeanPower(AWR1843)
 
-    def echoes(cross_section_m2: float, range_m: float, frames: tuple[int, ...]) -> Echoes:
-        return Echoes(
+    def echoes(cross_section_m2: float, range_m: float, frames: tuple[int, ...]) -> MeanEchoes:
+        return MeanEchoes(
             range_m=torch.full((*frames, 1), range_m), velocity_mps=torch.zeros(*frames, 1),
             direction=torch.zeros(*frames, 1, 2), cross_section_m2=torch.full((*frames, 1), cross_section_m2),
         )  # fmt: skip

@@ -41,7 +41,7 @@ def test_the_network_s_static_map_is_reflected():
     network, radar, view = WeaverNetwork().eval(), MeanPower(AWR1843), _view()
     with torch.inference_mode():
         maps = [
-            radar.maps(points_of(network.encode_room(one).resting, radar.response)).range_azimuth
+            radar.maps(points_of(network.encode_room(one).static, radar.response)).range_azimuth
             for one in (view, reflected_scene(view))
         ]
     gap_db = 10 * torch.log10(maps[1].flip(-1) / maps[0])

@@ -66,7 +66,7 @@ class MmwField(SignalField):
         out = np.empty(grid.shape, np.complex64)
         axes = coordinates_on(self.grid, grid)
         response = PointResponse(self.config)
-        phasor = response.turn(response.axes(grid)).numpy()
+        phasor = response.phasor(response.axes(grid)).numpy()
         for index, chosen in self._by_chunk(axes[0]):
             field, residual = self._part(index)
             values = field.on_grid(replace(grid, frame_time_s=grid.frame_time_s[chosen]))
@@ -108,7 +108,7 @@ def _centred_residual(chunk: DecodedChunk) -> np.ndarray | None:
         return None
     values = chunk.fit_window.cube_values(chunk.residual * chunk.peak)
     response = PointResponse(chunk.fit_window.config)
-    return values * response.turn(response.axes()).numpy().conj()
+    return values * response.phasor(response.axes()).numpy().conj()
 
 
 def _lines(cell: np.ndarray, num: int) -> np.ndarray:

@@ -77,7 +77,7 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
 
 
 def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
-    """One frame of what rests, of its value (range, antenna) at zero Doppler: a window's response fills few bins."""
+    """One frame of static clutter, of its value (range, antenna) at zero Doppler."""
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     response = _fft(weight, 0)[:, None] * tdm_compensation(config)
     values = still[:, None, :] * (response / response[config.num_loops // 2])

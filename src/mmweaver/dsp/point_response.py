@@ -1,10 +1,10 @@
 """What one point echo leaves in a radar's cube, as a product of three short factors.
 
-In a cube whose phase is counted from the middle of the chirp and of the frame (`PointResponse.turn` taken off), a
+In a cube whose phase is counted from the middle of the chirp and of the frame (`PointResponse.phasor` removed), a
 point of amplitude a at range bin b and Doppler bin f gives
 
     K_r(r - b) K_d(d - f) a S[antenna]                      (the point itself)
-    - j M/(2 pi) m K_r'(r - b) K_d'(d - f) a S[antenna]     (its way through range bins, m bins a loop)
+    - j M/(2 pi) m K_r'(r - b) K_d'(d - f) a S[antenna]     (its migration through range bins, m bins a loop)
     + q[antenna] K_r'(r - b) K_d(d - f) a S[antenna]        (an antenna off the middle is q bins nearer to it)
 
 with S = exp(-j 2 pi u.p / wavelength + j 2 pi f s + near field), s the delay of the antenna's transmitter over the
@@ -65,7 +65,7 @@ class PointResponse:
         length_s = self.num_loops * config.loop_period_s
         self.velocity_a_bin_mps = config.wavelength_m / (2 * length_s)
         self.range_a_bin_m = config.range_resolution_m
-        # way through range bins, in bins a loop for each Doppler bin
+        # migration through range bins, in bins a loop for each Doppler bin
         self.migration = self.velocity_a_bin_mps * config.loop_period_s / self.range_a_bin_m
         self.delay = np.repeat(config.tx_delay_s, config.num_rx) / length_s
         # a Doppler shift moves the beat frequency too
@@ -95,7 +95,7 @@ class PointResponse:
             parts=_tensor(parts_m[:, :, [0, 2]] / config.wavelength_m),
         )
 
-    def turn(self, axes: Axes) -> Tensor:
+    def phasor(self, axes: Axes) -> Tensor:
         """exp(-j pi (r + d) - j 2 pi d s), (range, doppler, antenna): centred, compensated phase -> the cube's."""
         bins = axes.range_bin[:, None].double() + axes.doppler_bin[None, :].double()
         turns = -0.5 * bins[..., None] - axes.doppler_bin[None, :, None].double() * axes.delay.double()
@@ -134,8 +134,8 @@ class PointResponse:
         echo = points.amplitude[..., None] * steer * torch.complex(real, -along * range_slope * doppler_slope)
         return echo.sum(dim=-2)
 
-    def turn_at_cells(self, axes: Axes) -> Tensor:
-        """`turn`, where the axes give one range, Doppler and antenna a cell."""
+    def phasor_at_cells(self, axes: Axes) -> Tensor:
+        """`phasor`, where the axes give one range, Doppler and antenna a cell."""
         turns = -0.5 * (axes.range_bin.double() + axes.doppler_bin.double()) - axes.doppler_bin * axes.delay.double()
         angle = 2 * math.pi * (turns - turns.round())
         return torch.polar(torch.ones_like(angle), angle).to(torch.complex64)

@@ -15,7 +15,7 @@ FLAT_M2, FLAT_OFFSET_M = 0.02, -0.06
 
 
 def uniform_surfaces(view: SceneTensors) -> SceneTensors:
-    """A room all of whose resting echoes are as strong as their mean: where they are is known, how strong is not."""
+    """A room whose static echoes all have their mean strength: where they are is known, how strong is not."""
     known = view.point_cross_section_m2
     there = known > 0
     mean = known.sum(-1, keepdim=True) / there.sum(-1, keepdim=True).clamp(min=1)
@@ -43,5 +43,5 @@ def joints_alone(body: Anchors, prior: BodyPrior) -> tuple[Anchors, BodyPrior]:
 
 
 def level_alone(said: Tensor) -> Tensor:
-    """Of what the network says of moving echoes, strengths without steps in place and velocity."""
+    """The network's output for moving echoes, with strengths but without steps in position and velocity."""
     return said * (torch.arange(said.shape[-1], device=said.device) == 0)

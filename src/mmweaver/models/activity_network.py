@@ -60,7 +60,7 @@ class ActivityNetwork(nn.Module):
 
 
 class MapFeatures(nn.Module):
-    """Three convolutions over (map, channel, range, other); each map is told where range and the other axis begin."""
+    """Three convolutions over (map, channel, range, other); each map also gets the coordinates of its axes."""
 
     def __init__(self, channels: int):
         super().__init__()

@@ -1,7 +1,7 @@
-"""Where on a body, and in which mirrors, the moving points of a field are anchored, and what is known of each.
+"""Where on a body, and over which reflecting faces, moving echoes are anchored, and the features of each.
 
 An anchor is a place between two joints. Its direct echo hangs there; its ghosts hang between it and its images in the
-room's faces: a wave that goes out directly and comes back over a face has the mean of both ways.
+room's faces: a path that departs directly and arrives over a face has the mean of both lengths.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ ANCHORS: tuple[tuple[int, int, float], ...] = (
     *((joint(a), joint(b), part) for a, b, part in _TORSO),
 )
 NUM_ANCHORS = len(ANCHORS)
-# the few anchors that stand for the body in mirrors, each for the anchors nearest to it
+# the few anchors that stand for the body in reflections, each for the anchors nearest to it
 MIRRORED = tuple(joint(name) for name in ("pelvis", "spine3", "head", "left_knee", "right_knee"))
 NUM_REFLECTORS = 5  # the floor and the next largest faces
 NUM_GHOSTS = len(MIRRORED) * NUM_REFLECTORS
@@ -40,7 +40,7 @@ _EDGE_M = 0.1  # about a Fresnel zone: how softly a face ends
 
 @dataclass(frozen=True, kw_only=True)
 class Anchors(TensorRecord):
-    """Echoes to be (..., echo): their places as range, velocity and direction cosines, and what is known of them."""
+    """Where echoes are expected (..., echo): range, velocity and direction cosines, and features of each."""
 
     range_m: Tensor
     velocity_mps: Tensor
@@ -158,7 +158,7 @@ def facing(joints_m: Tensor) -> Tensor:
 
 
 def _clearance(place: Tensor, distance: Tensor, room: SceneTensors) -> tuple[Tensor, Tensor]:
-    """How much farther than the anchor the photo's surface lies (at it, above, beside it), and whether in view."""
+    """How much farther than the anchor the photo's surface lies (at it, above, next to it), and whether in view."""
     seen, inside = [], torch.zeros_like(distance)
     for x, z in ((0.0, 0.0), (0.0, 0.1), (0.12, 0.0), (-0.12, 0.0)):
         camera = (place + place.new_tensor([x, 0.0, z])) @ room.camera_from_radar[:, None].transpose(-1, -2)

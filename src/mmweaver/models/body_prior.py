@@ -1,7 +1,7 @@
 """What physics says of a body's parts before the network does: how strongly each returns, and where its skin lies.
 
-The simulator's skin on a person of middle height, without rays: whatever faces the radar counts, nothing hides it. The
-network turns this up and down, as it does with what physics says of the room's surfaces. Reference: decisions 42, 100.
+The simulator's skin on a person of average height, without rays: whatever faces the radar counts, nothing occludes it.
+The network scales this, as it does with what physics says of the room's surfaces. Reference: decisions 42, 100.
 """
 
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ BOTH_WAYS = 1.0  # out directly and back over the face and the reverse, of which
 def ghost_section(joints_m: Tensor, prior: BodyPrior) -> Tensor:
     """Cross section (..., frame, ghost) of the body's images before a face takes its share, in square metres.
 
-    Each of the few anchors that stand for the body in mirrors has that of all anchors nearest to it.
+    Each of the few anchors that stand for the body in reflections has that of all anchors nearest to it.
     """
     places = anchor_places(joints_m)
     nearest = torch.cdist(places, places[..., MIRRORED, :]).argmin(dim=-1)

@@ -26,7 +26,7 @@ from mmweaver.paths.apparent_paths import signal_points
 from mmweaver.paths.background import BackgroundRecording
 from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.frame_clock import FrameClock
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths, ScenePaths
@@ -101,7 +101,7 @@ class LearnedRoom:
         view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)
         with torch.inference_mode(), one_thread():
             self.code: SceneEncoding = network.encode_room(view[None].to(device))
-            echoes = self.code.resting[0].to("cpu")
+            echoes = self.code.static[0].to("cpu")
             self.static = sample_static(echoes, config, room_seed)
             size = self.static.amplitude.abs()
             self._num_noticed = int((size > NOTICED * size[0]).sum())
@@ -139,7 +139,7 @@ class LearnedRoom:
         for index in range(count):  # each segment's frames are a sequence of the frame rate the network knows
             at = joints[None, :, index], velocity[None, :, index]
             each.append(self.network.moving(self.code, *(part.to(self.device) for part in at))[0].to("cpu"))
-        echoes = Echoes.stack(each).map(lambda tensor: tensor.transpose(0, 1))  # (frame, segment, echo)
+        echoes = MeanEchoes.stack(each).map(lambda tensor: tensor.transpose(0, 1))  # (frame, segment, echo)
         others_m = [other.segments(clock)[0] for other in others]
         shown = [
             self._shown(one, joints[:, index], [other[:, index] for other in others_m])
@@ -153,10 +153,10 @@ class LearnedRoom:
         middle_s = torch.from_numpy(clock.middle_s)
         return sample_moving_segments(echoes, sight, middle_s, self.config, motion.subject)
 
-    def _shown(self, echoes: Echoes, joints_m: Tensor, others_m: list[Tensor]) -> Tensor:
+    def _shown(self, echoes: MeanEchoes, joints_m: Tensor, others_m: list[Tensor]) -> Tensor:
         """1 where nobody else stands before an echo (frame, echo), 0 elsewhere; others' joints (frame, 22, 3) each.
 
-        A ghost is lost where its joint is occluded: one of its two ways, or both, leads straight there.
+        A ghost is lost where its joint is occluded: its departure or its arrival leads straight there.
         """
         place_m = place_of(echoes).float()[:, :NUM_ANCHORS]
         reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)

@@ -16,7 +16,7 @@ from mmweaver.dsp.windows import hann
 NUM_AZIMUTHS, WIDEST_DEG = 32, 60.0
 NUM_ANGLE_MAPS = 2  # all that is there, and what moves
 MIDDLE_DB, SPREAD_DB = 20.0, 15.0  # above the noise; these two turn decibels to numbers around 0
-RESTING_BINS = 1  # to either side of zero Doppler a Hann window leaves what rests
+STATIC_BINS = 1  # to either side of zero Doppler a Hann window spreads static clutter
 
 
 class LogMaps(nn.Module):
@@ -29,7 +29,7 @@ class LogMaps(nn.Module):
         row = azimuth_row(place, config.wavelength_m)
         sine = torch.linspace(-WIDEST_DEG, WIDEST_DEG, NUM_AZIMUTHS).deg2rad().sin()
         x = torch.tensor(2 * math.pi / config.wavelength_m * place[row, 0], dtype=torch.float32)
-        moving = (torch.arange(config.num_loops) - config.num_loops // 2).abs() > RESTING_BINS
+        moving = (torch.arange(config.num_loops) - config.num_loops // 2).abs() > STATIC_BINS
         self.noise_mw = config.noise_power_mw * _noise_share(config.num_samples) * _noise_share(config.num_loops)
         self.row: Tensor
         self.steering: Tensor

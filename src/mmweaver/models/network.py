@@ -1,11 +1,11 @@
 """The weaver: a network that writes the scatterer field of a person moving in a room.
 
-    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 5,000 resting points and faces
+    picture --EnvironmentEncoder--> z_env, map of places --+--> strength of 5,000 static points and faces
                                                            |
     joints ---PoseEncoder--------> z_pose -----------------+--> strength and place of moving points
-                                                                (anchored to the body and its mirror images)
+                                                                (anchored to the body and its images)
 
-The network says how strong each echo is on average and where it lies; phases are drawn when a signal is made, for
+The network says how strong each echo is on average and where it lies; phases are sampled when a signal is made, for
 nobody can know them. Geometry (where a joint is, how the radar equation falls with distance) is not learned.
 Reference: paper, section "Generalization via Hypernetworks"; decisions 90 and 91.
 """
@@ -36,7 +36,7 @@ from mmweaver.models.environment_encoder import DEFAULT_ENCODER, ENCODERS, MAP_C
 from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scene_tensors import PLANE_FEATURES, POINT_FEATURES, SceneTensors
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 
 WIDTH, HEADS, LAYERS = 128, 4, 2
 PARTS = (
@@ -54,7 +54,7 @@ class SceneEncoding(TensorRecord):
 
     view: SceneTensors
     z_env: Tensor
-    resting: Echoes
+    static: MeanEchoes
 
 
 class WeaverNetwork(nn.Module):
@@ -88,15 +88,15 @@ class WeaverNetwork(nn.Module):
             nn.init.zeros_(head.bias)
 
     def encode_room(self, view: SceneTensors) -> SceneEncoding:
-        """Rooms (room, ...) -> their code; resting echoes (room, echo)."""
+        """Rooms (room, ...) -> their code; static echoes (room, echo)."""
         z_env, places = self.environment(self._shown(view.image))
         view = uniform_surfaces(view) if "room prior" in self.without else view
         parts = [self._points(view, places), self._faces(view)]
-        return SceneEncoding(view=view, z_env=z_env, resting=Echoes.cat(parts, 1))
+        return SceneEncoding(view=view, z_env=z_env, static=MeanEchoes.cat(parts, 1))
 
     def moving(
         self, code: SceneEncoding, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None
-    ) -> Echoes:
+    ) -> MeanEchoes:
         """Joints and velocities (room, frame, 22, 3), one motion for each room -> echoes (room, frame, echo).
 
         `frames` (room, chosen) picks the frames whose echoes are wanted; the pose encoder sees all.
@@ -110,8 +110,8 @@ class WeaverNetwork(nn.Module):
         if "between joints" in self.without:
             body, prior = joints_alone(body, prior)
         ghosts = ghost_anchors(joints_m, velocity_mps, code.view)
-        told = torch.stack([torch.log10(prior.cross_section_m2 + FAINTEST_M2) / 2, 5 * prior.offset_m], dim=-1)
-        of_body = self.body_in(torch.cat([body.features, told], dim=-1))
+        physics = torch.stack([torch.log10(prior.cross_section_m2 + FAINTEST_M2) / 2, 5 * prior.offset_m], dim=-1)
+        of_body = self.body_in(torch.cat([body.features, physics], dim=-1))
         token = torch.cat([of_body, self.ghost_in(ghosts.features)], dim=-2) + self.part
         token = token + self.from_pose(z_pose)[..., None, :] + self.from_env(code.z_env)[:, None, None, :]
         mixed = self.mix(token.flatten(0, 1)).unflatten(0, token.shape[:2])
@@ -129,27 +129,27 @@ class WeaverNetwork(nn.Module):
             return torch.full_like(image, 0.5)
         return image * kept[:, None, None]
 
-    def _points(self, view: SceneTensors, places: Tensor) -> Echoes:
+    def _points(self, view: SceneTensors, places: Tensor) -> MeanEchoes:
         local = _looked_up(places, view.point_m, view)
         level = self.point(torch.cat([view.point_features, local], dim=-1))[..., 0]
         distance = view.point_m.norm(dim=-1).clamp(min=0.1)
         if "correction" in self.without:
             level = 0 * level
         cross_section = view.point_cross_section_m2 * torch.exp(_bounded(level, self._largest_correction))
-        return _resting(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
+        return _static(distance, (view.point_m / distance[..., None])[..., [0, 2]], cross_section)
 
     @property
     def _largest_correction(self) -> float:
         return LARGEST_STEP if "room prior" in self.without else LARGEST_CORRECTION
 
-    def _faces(self, view: SceneTensors) -> Echoes:
+    def _faces(self, view: SceneTensors) -> MeanEchoes:
         """The mirror image of the radar in each face: an echo from the foot of the perpendicular."""
         level = self.face(view.plane_features)[..., 0]
         normal = view.plane_axes[..., 2, :]
         distance = -(view.plane_centre_m * normal).sum(-1)
         there = (distance > 0.15) & (view.plane_half_m[..., 0] > 0) & ("faces" not in self.without)
         cross_section = there * torch.exp(_bounded(level) - 8.0)
-        return _resting(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
+        return _static(distance.clamp(min=0.15), -normal[..., [0, 2]], cross_section)
 
 
 @in_full_precision
@@ -169,19 +169,19 @@ def _picked(values: Tensor, frames: Tensor) -> Tensor:
     return values.gather(1, index)
 
 
-def _resting(distance: Tensor, direction: Tensor, cross_section: Tensor) -> Echoes:
-    return Echoes(
+def _static(distance: Tensor, direction: Tensor, cross_section: Tensor) -> MeanEchoes:
+    return MeanEchoes(
         range_m=distance, velocity_mps=torch.zeros_like(distance), direction=direction, cross_section_m2=cross_section
     )
 
 
-def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior, in_mirrors_m2: Tensor) -> Echoes:
+def _placed(out: Tensor, body: Anchors, ghosts: Anchors, prior: BodyPrior, of_ghosts_m2: Tensor) -> MeanEchoes:
     """Network's words: level, and small steps in range, velocity and direction."""
     level, step_r, step_v, step_x, step_z = out.unbind(-1)
     share = torch.cat([body.share, ghosts.share], -1)
-    known = torch.cat([prior.cross_section_m2, in_mirrors_m2], -1) + FAINTEST_M2
+    known = torch.cat([prior.cross_section_m2, of_ghosts_m2], -1) + FAINTEST_M2
     range_m = torch.cat([body.range_m + prior.offset_m, ghosts.range_m - 0.06], -1)
-    return Echoes(
+    return MeanEchoes(
         range_m=range_m + 0.2 * torch.tanh(step_r),
         velocity_mps=torch.cat([body.velocity_mps, ghosts.velocity_mps], -1) + 0.5 * torch.tanh(step_v),
         direction=torch.cat([body.direction, ghosts.direction], -2)

@@ -1,4 +1,4 @@
-"""What the networks see of a room: a small picture, the echoes of what it shows, and the flat faces."""
+"""What the networks see of a room: a small picture, the static paths of what it shows, and the flat faces."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from mmweaver.geometry.pinhole import resized
 from mmweaver.paths.antenna import scatterer_gain
 from mmweaver.paths.apparent_paths import apparent_direction
 from mmweaver.paths.image_method import SpecularReflector
-from mmweaver.paths.radar_equation import pattern_db
+from mmweaver.paths.radar_equation import pattern_towards_db
 from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
@@ -47,7 +47,7 @@ class SceneTensors(TensorRecord):
 
     @classmethod
     def of(cls, scene: Scene, config: RadarConfig, room: PreparedRoom | None = None) -> "SceneTensors":
-        """The view of a scene's photo, with the scene's faces and the echoes that this radar would have of them.
+        """The view of a scene's photo, with the scene's faces and the static paths that this radar would have.
 
         `room` is the scene made ready before, where no rays are to be cast.
         """
@@ -95,7 +95,7 @@ def _points(room: PreparedRoom, scene: Scene) -> dict[str, Tensor]:
     paths = room.paths[torch.from_numpy(order)]
     distance = np.maximum(paths.length_m.mean(dim=(1, 2)).numpy() / 2, 0.1)
     towards = apparent_direction(paths.departure_vertex_m, paths.arrival_vertex_m).numpy()
-    loss_db = pattern_db(_tensor(towards[:, [0, 2]]), config).numpy()
+    loss_db = pattern_towards_db(_tensor(towards[:, [0, 2]]), config).numpy()
     gain = scatterer_gain(config) * 10 ** (-loss_db / 10)  # as `radar_view.points_of` will apply it
     cross_section = (level[order] * distance**2 / gain) ** 2
     place = towards * distance[:, None]
@@ -129,8 +129,8 @@ def _planes(scene: Scene, config: RadarConfig) -> dict[str, Tensor]:
         centre[index], half[index] = plane.centre_m, plane.half_size_m
         axes[index] = np.stack([plane.axis_u, plane.axis_v, plane.normal])
         features[index] = _plane_features(plane)
-        mirror = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
-        reflection[index] = np.abs(mirror.coefficient(REFLECTION_COS, config.centre_frequency_hz)) ** 2
+        reflector = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
+        reflection[index] = np.abs(reflector.coefficient(REFLECTION_COS, config.centre_frequency_hz)) ** 2
     return {
         "plane_centre_m": _tensor(centre),
         "plane_axes": _tensor(axes),
@@ -141,7 +141,7 @@ def _planes(scene: Scene, config: RadarConfig) -> dict[str, Tensor]:
 
 
 def _plane_features(plane: Plane) -> np.ndarray:
-    """Which kind, how far, which way, and how far the foot of the radar's perpendicular lies inside."""
+    """Which kind, how far, in which direction, and how far the foot of the radar's perpendicular lies inside."""
     distance = float(plane.normal @ -plane.centre_m)
     foot = -distance * plane.normal - plane.centre_m
     inside = [

@@ -1,5 +1,7 @@
 """One antenna's pattern, and the radar equation."""
 
+from typing import Any
+
 import numpy as np
 
 from mmweaver.core.radar_config import RadarConfig
@@ -13,17 +15,27 @@ FLOOR_DB = -25.0  # side lobes
 
 def pattern(direction: Points, config: RadarConfig) -> PerPoint:
     """Amplitude of one antenna in unit directions (point, 3), relative to its peak straight ahead (+y)."""
-    azimuth_deg = np.degrees(np.arctan2(direction[:, 0], direction[:, 1]))
-    elevation_deg = np.degrees(np.arcsin(np.clip(direction[:, 2], -1, 1)))
-    loss_db = 3 * (np.abs(azimuth_deg) / (config.azimuth_beamwidth_deg / 2)) ** AZIMUTH_ROLL_OFF
-    loss_db += 3 * (np.abs(elevation_deg) / (config.elevation_beamwidth_deg / 2)) ** ELEVATION_ROLL_OFF
-    # Side lobes of a vertically polarised antenna vanish straight up and down: no wave has its field along its way.
-    side_lobes = 10 ** (FLOOR_DB / 20) * np.sqrt(np.clip(1 - direction[:, 2] ** 2, 0, 1))
-    return np.maximum(10 ** (-loss_db / 20), side_lobes)
+    return 10 ** (-pattern_db(direction, config) / 20)
+
+
+def pattern_db(direction: Any, config: RadarConfig) -> Any:
+    """Loss of one antenna in dB towards unit directions (..., 3), an array or a tensor; differentiable."""
+    if isinstance(direction, np.ndarray):
+        xp: Any = np
+    else:
+        import torch as xp
+    x, y, z = (direction[..., axis] for axis in range(3))
+    azimuth_deg = xp.abs(xp.rad2deg(xp.arctan2(x, y)))
+    elevation_deg = xp.abs(xp.rad2deg(xp.arcsin(xp.clip(z, -0.999, 0.999))))
+    loss_db = 3 * (azimuth_deg / (config.azimuth_beamwidth_deg / 2)) ** AZIMUTH_ROLL_OFF
+    loss_db = loss_db + 3 * (elevation_deg / (config.elevation_beamwidth_deg / 2)) ** ELEVATION_ROLL_OFF
+    # side lobes of a vertically polarised antenna vanish straight up and down, along its field
+    side_lobes_db = -FLOOR_DB - 10 * xp.log10(xp.clip(1 - z**2, 1e-12, 1.0))
+    return xp.minimum(loss_db, side_lobes_db)
 
 
 def scatterer_gain(config: RadarConfig) -> float:
-    """Amplitude in sqrt(mW) of a scatterer of 1 m2 with 1 m to go and 1 m to return, straight ahead.
+    """Amplitude in sqrt(mW) of a scatterer of 1 m2 at 1 m, straight ahead.
 
     Divide by both distances, multiply by sqrt(cross section) and by the pattern of both directions.
     Reference: the radar equation, docs/radar_primer.md, equation 10.
@@ -33,6 +45,6 @@ def scatterer_gain(config: RadarConfig) -> float:
 
 
 def specular_gain(config: RadarConfig) -> float:
-    """Amplitude in sqrt(mW) of a perfect mirror with a way of 1 m in all, straight ahead (Friis; equation 11)."""
+    """Amplitude in sqrt(mW) of a perfect specular reflector at a path length of 1 m, straight ahead (Friis; eq. 11)."""
     power_db = config.tx_power_dbm + 2 * config.antenna_gain_dbi
     return 10 ** (power_db / 20) * config.wavelength_m / (4 * np.pi)

@@ -29,7 +29,7 @@ class BodyAtFrames:
     motion: np.ndarray  # (frame, segment, point, 3, 3) position, velocity, acceleration of the skin; m, m/s, m/s2
     place_m: np.ndarray  # (frame, point, 3)
     normal: np.ndarray  # (frame, point, 3)
-    hulls: list[RayCaster]  # one a frame, of everybody who may stand in the way
+    hulls: list[RayCaster]  # one a frame, of everybody who may occlude
 
     @classmethod
     def of(
@@ -178,7 +178,7 @@ class BodyPaths:
         )
 
     def _ghosts(self, index: int, direct_power: np.ndarray) -> list["SkinPaths"]:
-        """Over a face on one way and directly on the other, and over the face both ways."""
+        """Over a face on departure or arrival, and over the face on both."""
         face, count, chosen = self.room.reflectors[index], len(self.body.micro_phase), ghost_points(self.body)
         place, normal = self.posed.place_m[:, chosen], self.posed.normal[:, chosen]
         area_m2 = self.body.area_m2 * self.body.brightness[chosen] * count / len(chosen)
@@ -281,6 +281,6 @@ class SkinPaths:
 
     @property
     def interaction(self) -> Interaction:
-        """By how many of the two ways lead over a face."""
+        """By whether the path leads over a face on departure and on arrival."""
         kinds = (Interaction.BODY, Interaction.BODY_WALL, Interaction.WALL_BODY_WALL)
         return kinds[sum(face is not None for face in self.faces)]

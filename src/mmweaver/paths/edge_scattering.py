@@ -51,8 +51,8 @@ def _free_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _reach(caster: RayCaster, target_m: np.ndarray) -> np.ndarray:
     """How far a ray from the radar towards each target goes."""
-    way = target_m / np.maximum(np.linalg.norm(target_m, axis=1, keepdims=True), 1e-9)
-    return caster.distance_m(np.zeros_like(way), way)
+    direction = target_m / np.maximum(np.linalg.norm(target_m, axis=1, keepdims=True), 1e-9)
+    return caster.distance_m(np.zeros_like(direction), direction)
 
 
 def _in_pieces(middle: np.ndarray, along: np.ndarray, length: np.ndarray, material: np.ndarray) -> Edges:

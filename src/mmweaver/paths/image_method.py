@@ -1,4 +1,4 @@
-"""The image method: flat faces as mirrors for the radar's waves.
+"""The image method: specular reflection of the radar's waves by flat faces.
 
 Reference: docs/radar_primer.md, section 5; reflection coefficients from `materials`.
 """
@@ -65,25 +65,25 @@ def specular_reflectors(planes: tuple[Plane, ...]) -> list[SpecularReflector]:
     """The largest planes that face the radar."""
     facing = []
     for plane in planes:
-        mirror = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
-        if mirror.side(np.zeros(3)) > 0.02:
-            facing.append(mirror)
-    facing.sort(key=lambda mirror: -mirror.plane.half_size_m[0] * mirror.plane.half_size_m[1])
+        face = SpecularReflector(plane=plane, offset_m=float(plane.normal @ plane.centre_m))
+        if face.side(np.zeros(3)) > 0.02:
+            facing.append(face)
+    facing.sort(key=lambda face: -face.plane.half_size_m[0] * face.plane.half_size_m[1])
     return facing[:MAX_REFLECTORS]
 
 
 def fresnel_radius_m(first_m: Values, second_m: Values, wavelength_m: float) -> Values:
-    """Radius of the first Fresnel zone between two ways."""
+    """Radius of the first Fresnel zone at a point between two path lengths, in m."""
     return np.sqrt(wavelength_m * np.maximum(first_m * second_m, 0) / np.maximum(first_m + second_m, 1e-9))
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpecularPath:
-    """A way from the radar over some faces back to it."""
+    """A path from the radar over some faces back to it."""
 
     corners_m: np.ndarray  # (bounce, 3)
-    turn: np.ndarray  # (3, 3) and
-    shift_m: np.ndarray  # (3,): image of a transmitter at x is turn @ x + shift
+    rotation: np.ndarray  # (3, 3) and
+    shift_m: np.ndarray  # (3,): image of a transmitter at x is rotation @ x + shift
     coefficient: complex  # product of the reflections and tapers
 
     @property
@@ -91,51 +91,53 @@ class SpecularPath:
         return float(np.linalg.norm(self.shift_m))
 
 
-def specular_paths(mirrors: list[SpecularReflector], wavelength_m: float, frequency_hz: float) -> list[SpecularPath]:
-    """All ways of one, two and three bounces from the radar to itself, each image once."""
+def specular_paths(reflectors: list[SpecularReflector], wavelength_m: float, frequency_hz: float) -> list[SpecularPath]:
+    """All paths of one, two and three bounces from the radar to itself, each image once."""
     paths: list[SpecularPath] = []
     seen: list[np.ndarray] = []
-    sequences = [[first] for first in mirrors]
+    sequences = [[first] for first in reflectors]
     for _ in range(3):
         for sequence in sequences:
             path = _path(sequence, wavelength_m, frequency_hz)
             if path and not any(np.linalg.norm(path.shift_m - other) < 1e-3 for other in seen):
                 seen.append(path.shift_m)
                 paths.append(path)
-        sequences = [[*sequence, more] for sequence in sequences for more in mirrors if more is not sequence[-1]]
+        sequences = [[*sequence, more] for sequence in sequences for more in reflectors if more is not sequence[-1]]
     return paths
 
 
 def _path(sequence: list[SpecularReflector], wavelength_m: float, frequency_hz: float) -> SpecularPath | None:
     images = [np.zeros(3)]
-    turn = np.eye(3)
-    for mirror in sequence:
-        if mirror.side(images[-1]) <= 0:
+    rotation = np.eye(3)
+    for face in sequence:
+        if face.side(images[-1]) <= 0:
             return None
-        images.append(mirror.image(images[-1]))
-        normal = mirror.plane.normal
-        turn = (np.eye(3) - 2 * np.outer(normal, normal)) @ turn
+        images.append(face.image(images[-1]))
+        normal = face.plane.normal
+        rotation = (np.eye(3) - 2 * np.outer(normal, normal)) @ rotation
     length = float(np.linalg.norm(images[-1]))
     corners, tapers, coefficient, end, gone = [], [], 1.0 + 0j, np.zeros(3), 0.0
-    for mirror, image in zip(reversed(sequence), reversed(images[1:]), strict=True):
-        if mirror.side(end) < -1e-6 or mirror.side(image) >= 0:
+    for face, image in zip(reversed(sequence), reversed(images[1:]), strict=True):
+        if face.side(end) < -1e-6 or face.side(image) >= 0:
             return None
-        corner = mirror.crossing(end, image)
+        corner = face.crossing(end, image)
         gone += float(np.linalg.norm(corner - end))
         fresnel_m = fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m)
-        tapers.append(float(mirror.inside(corner, fresnel_m)))
-        way = (image - end) / np.linalg.norm(image - end)
-        coefficient *= complex(mirror.coefficient(np.abs(way @ mirror.plane.normal), frequency_hz))
+        tapers.append(float(face.inside(corner, fresnel_m)))
+        direction = (image - end) / np.linalg.norm(image - end)
+        coefficient *= complex(face.coefficient(np.abs(direction @ face.plane.normal), frequency_hz))
         corners.append(corner)
         end = corner
     coefficient *= _share_of_wave(np.array(corners), min(tapers), length)
     if abs(coefficient) < 1e-5:
         return None
-    return SpecularPath(corners_m=np.array(corners[::-1]), turn=turn, shift_m=images[-1], coefficient=coefficient)
+    return SpecularPath(
+        corners_m=np.array(corners[::-1]), rotation=rotation, shift_m=images[-1], coefficient=coefficient
+    )
 
 
 def _share_of_wave(corners_m: np.ndarray, taper: float, length_m: float) -> float:
-    """How much of the wave goes this way.
+    """The share of the wave that takes this path.
 
     Where right-angled faces meet, the image lies straight through their common edge, and half of the wave meets one
     face first, half the other: all orders of such a corner make one image, counted once.

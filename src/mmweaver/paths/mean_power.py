@@ -1,4 +1,4 @@
-"""The power maps that echoes of unknown phase leave on average: what can be predicted of a radar signal.
+"""Mean power maps of echoes of unknown phase: what can be predicted of a radar signal.
 
 Echoes whose phases are independent add in power. Reference: speckle statistics (Goodman), decision 91.
 """

@@ -16,7 +16,7 @@ from mmweaver.paths.static_paths import RayTracedRoom
 class PeoplePaths:
     """Paths of all people in one room, frame by frame; nobody is an empty room.
 
-    With `mutual` occlusion everybody stands in everybody's way, and what two of them occlude of the room is taken away
+    With `mutual` occlusion everybody occludes everybody else, and what two of them occlude of the room is taken away
     once. Without it each is as if alone, so that the whole is the plain sum of the people.
     """
 

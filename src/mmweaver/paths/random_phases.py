@@ -15,7 +15,7 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.point_response import PointResponse
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
 from mmweaver.paths.radar_equation import carrier, points_of
 from mmweaver.paths.static_paths import scattered_paths
@@ -25,7 +25,7 @@ SPOT_SPREAD_M = 0.04
 FAINTEST = 1e-4  # of the strongest static path's amplitude: fainter ones are left out
 
 
-def sample_static(static: Echoes, config: RadarConfig, room_seed: int) -> StaticPaths:
+def sample_static(static: MeanEchoes, config: RadarConfig, room_seed: int) -> StaticPaths:
     """Static echoes (echo,) with sampled phases, the strongest first; those too faint to matter are left out."""
     rng = stream(room_seed, "weaver", "room")
     amplitude = points_of(static, PointResponse(config)).amplitude
@@ -40,7 +40,7 @@ def sample_static(static: Echoes, config: RadarConfig, room_seed: int) -> Static
     return scattered_paths(place_m, sampled, Interaction.DIFFUSE, config)
 
 
-def sample_moving(moving: Echoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:
+def sample_moving(moving: MeanEchoes, aspect: Tensor, config: RadarConfig, subject: int) -> Paths:
     """Moving echoes (frame, echo) with sampled phases. `aspect` (frame, 3): twice the line of sight the body sees."""
     offset_m, level = _spots(moving.range_m.shape[-1], subject)
     along_m = torch.einsum("fc,esc->fes", aspect, offset_m)
@@ -49,7 +49,9 @@ def sample_moving(moving: Echoes, aspect: Tensor, config: RadarConfig, subject: 
     return Paths.direct(amplitude, _scatterers(moving, moving.range_m, moving.velocity_mps, 0 * moving.range_m))
 
 
-def sample_moving_segments(moving: Echoes, aspect: Tensor, time_s: Tensor, config: RadarConfig, subject: int) -> Paths:
+def sample_moving_segments(
+    moving: MeanEchoes, aspect: Tensor, time_s: Tensor, config: RadarConfig, subject: int
+) -> Paths:
     """The same of frames with long chirps: echoes (frame, segment, echo), a path for each spot of skin.
 
     `aspect` (frame, segment, 3), `time_s` (segment,) the middles of the segments. Spots are paths of their own, whose
@@ -69,12 +71,12 @@ def sample_moving_segments(moving: Echoes, aspect: Tensor, time_s: Tensor, confi
     )
 
 
-def place_of(echoes: Echoes) -> Tensor:
+def place_of(echoes: MeanEchoes) -> Tensor:
     """Where echoes lie, (..., echo, 3) in metres, float64."""
     return echoes.range_m.double()[..., None] * _unit(echoes.direction)
 
 
-def _scatterers(echoes: Echoes, range_m: Tensor, velocity_mps: Tensor, acceleration_mps2: Tensor) -> ApparentPoint:
+def _scatterers(echoes: MeanEchoes, range_m: Tensor, velocity_mps: Tensor, acceleration_mps2: Tensor) -> ApparentPoint:
     """Points in the echoes' directions with radial motion (..., echo)."""
     unit = _unit(echoes.direction)
     return ApparentPoint(

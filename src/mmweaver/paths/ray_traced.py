@@ -33,14 +33,15 @@ CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
 _SENTENCES = (
     "amplitudes follow the radar equation with a transmit power, antenna gain and noise figure from memory of the"
     " makers' documents; they are not calibrated against a recording",
-    "the body is made of capsules with a wrinkled skin that glints where it faces the radar (reflectivity 0.14, slope"
+    "the body is made of capsules with a wrinkled skin with a specular lobe towards the radar (reflectivity 0.14, slope"
     " 0.10); clothes are in that figure and not modelled",
     "who stands or sits still sways, trembles and breathes by typical amounts",
     "nothing passes through furniture, and waves do not bend around edges",
 )
 ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
 SEVERAL_PEOPLE = (
-    "people hide each other, but no wave goes from one person over another to the radar (see docs/several_people.md)"
+    "people occlude each other, but there are no paths from one person over another to the radar"
+    " (see docs/several_people.md)"
 )
 
 

@@ -20,8 +20,8 @@ class Impairments:
     """What keeps a real receiver from the ideal; each can be switched off.
 
     Phase noise and the jitter of a chirp's start shift the beat signal in time by delta: s(t + delta). Phase noise of
-    L(1 MHz) that falls by 20 dB a decade is white in frequency, so delta is white; only the room's echoes, the
-    strongest, are shifted.
+    L(1 MHz) that falls by 20 dB a decade is white in frequency, so delta is white; only static
+    paths, the strongest, are shifted.
     """
 
     thermal_noise: bool = True
@@ -31,7 +31,7 @@ class Impairments:
     quantise: bool = True
     channel_gain_db: float = 0.0  # rms of each transmitter's and each receiver's gain error; a board keeps its own
     channel_phase_rad: float = 0.0
-    board: int = 0  # which board: draws these errors, whatever the seed
+    board: int = 0  # which board: determines these errors, whatever the seed
 
 
 IDEAL = Impairments(
@@ -142,8 +142,8 @@ class Receiver:
 def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
     """Factors (tx, rx), complex64, of an uncalibrated board: one of each transmitter times one of each receiver."""
     rng = stream(impairments.board, "channel errors")
-    drawn = rng.standard_normal((2, config.num_tx + config.num_rx))
-    gain_db, phase_rad = impairments.channel_gain_db * drawn[0], impairments.channel_phase_rad * drawn[1]
+    errors = rng.standard_normal((2, config.num_tx + config.num_rx))
+    gain_db, phase_rad = impairments.channel_gain_db * errors[0], impairments.channel_phase_rad * errors[1]
     each = 10 ** (gain_db / 20) * np.exp(1j * phase_rad)
     return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
 
@@ -155,7 +155,7 @@ def quantised(samples: Tensor, count: float) -> Tensor:
 
 
 def leakage(config: RadarConfig, impairments: Impairments) -> complex:
-    """Amplitude of the transmitter's direct way into the receiver, sqrt(mW)."""
+    """Amplitude of the transmitter's direct path into the receiver, sqrt(mW)."""
     if impairments.leakage_db is None:
         return 0j
     return complex(10 ** ((config.tx_power_dbm + impairments.leakage_db) / 20))

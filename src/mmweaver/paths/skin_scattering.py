@@ -1,8 +1,8 @@
 """How skin and clothes return a wave: large smooth surfaces that are wrinkled, with a little that is diffuse.
 
 A trunk or a limb is smooth against 4 mm and gives its echo where it faces the radar. Wrinkles tilt the surface by some
-degrees, which widens the glint to a lobe (the geometric-optics limit of Kirchhoff's approximation); fibres and edges
-return a weak part whatever the angle (Lambert). Reference: docs/radar_primer.md, section 4.
+degrees, which widens the specular reflection to a lobe (the geometric-optics limit of Kirchhoff's approximation);
+fibres and edges return a weak part whatever the angle (Lambert). Reference: docs/radar_primer.md, section 4.
 """
 
 import math

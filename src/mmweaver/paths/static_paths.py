@@ -70,21 +70,21 @@ class RayTracedRoom(PreparedRoom):
         step_az, step_el = 2 * AZIMUTH_LIMIT_RAD / AZIMUTH_CELLS, 2 * ELEVATION_LIMIT_RAD / ELEVATION_CELLS
         azimuth = (np.arange(AZIMUTH_CELLS)[None] + rng.random(shape)) * step_az - AZIMUTH_LIMIT_RAD
         elevation = (np.arange(ELEVATION_CELLS)[:, None] + rng.random(shape)) * step_el - ELEVATION_LIMIT_RAD
-        turns = rng.random(azimuth.size)
+        cycles = rng.random(azimuth.size)
         solid_angle = (np.cos(elevation) * step_az * step_el).ravel()
-        way = np.stack(
+        direction = np.stack(
             [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], -1
         ).reshape(-1, 3)  # fmt: skip
-        distance, face = self.caster.first_hit(np.zeros_like(way), way)
+        distance, face = self.caster.first_hit(np.zeros_like(direction), direction)
         hit = (face >= 0) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
-        way, distance, face = way[hit], distance[hit], face[hit]
+        direction, distance, face = direction[hit], distance[hit], face[hit]
         corners = scene.vertices_m[scene.faces[face]].astype(float)
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-        cos = np.abs((normal * way).sum(axis=1))
+        cos = np.abs((normal * direction).sum(axis=1))
         cross_section = 4 * cos * distance**2 * solid_angle[hit]
         cross_section *= self._diffuse_share(scene, scene.face_material[face], cos, np.abs(normal[:, 2]) > 0.7)
-        return self._scattered(way * distance[:, None], cross_section, turns[hit], Interaction.DIFFUSE)
+        return self._scattered(direction * distance[:, None], cross_section, cycles[hit], Interaction.DIFFUSE)
 
     def _diffuse_share(self, scene: Scene, kind: np.ndarray, cos: np.ndarray, flat: np.ndarray) -> np.ndarray:
         """|S Gamma|^2 of each patch (effective roughness)."""
@@ -105,7 +105,7 @@ class RayTracedRoom(PreparedRoom):
             stops = np.concatenate([np.zeros((1, 3)), path.corners_m, np.zeros((1, 3))])
             if path.length_m / 2 > self.config.max_range_m or not self.is_clear(stops[:-1], stops[1:], 0.12).all():
                 continue
-            image = tx @ path.turn.T + path.shift_m
+            image = tx @ path.rotation.T + path.shift_m
             lengths.append(np.linalg.norm(image[:, None] - rx[None], axis=-1))
             ends = np.stack([stops[1], stops[-2]])
             gains = pattern(ends / np.linalg.norm(ends, axis=1, keepdims=True), self.config)
@@ -132,9 +132,9 @@ class RayTracedRoom(PreparedRoom):
         wave_number = 2 * np.pi / self.config.wavelength_m
         cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * gamma[edges.material] ** 2
         cross_section *= np.exp(-2 * (cos / EDGE_LOBE) ** 2)
-        turns = rng.random(len(cos))
+        cycles = rng.random(len(cos))
         keep = (cross_section > 1e-7) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
-        return self._scattered(edges.place_m[keep], cross_section[keep], turns[keep], Interaction.EDGE)
+        return self._scattered(edges.place_m[keep], cross_section[keep], cycles[keep], Interaction.EDGE)
 
     def _scattered(
         self, place_m: np.ndarray, cross_section_m2: np.ndarray, cycles: np.ndarray, kind: Interaction

@@ -20,7 +20,7 @@ from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import sha256_of
 from mmweaver.paths.background import agreeing_gain
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import PowerMaps
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.recordings.captures import SPLIT, Capture, RecordedRoom, rooms_of
@@ -87,7 +87,7 @@ class CaptureLearner(NetworkLearner):
         for name, parameter in network.named_parameters():
             parameter.requires_grad_(everything or name.split(".")[0] in STATIC_HEADS)
 
-    def moving(self, code: Any, batch: NetworkBatch) -> Echoes:
+    def moving(self, code: Any, batch: NetworkBatch) -> MeanEchoes:
         echoes = super().moving(code, batch)
         if not isinstance(batch, CaptureBatch):
             return echoes
@@ -182,7 +182,7 @@ def estimate_gain(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> floa
         one = RoomExamples(room, SPLIT)
         with torch.inference_mode():
             scene = one.scene[None]
-            resting = learner.network.encode_room(scene).resting
+            resting = learner.network.encode_room(scene).static
             expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
         maps.append((expected, one.static.range_azimuth))
     return agreeing_gain(maps)

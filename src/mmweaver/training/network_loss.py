@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
 from mmweaver.paths.radar_equation import points_of
 
@@ -58,7 +58,7 @@ def difference(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
     return logs + LIKELIHOOD * itakura_saito(mean, power, least)
 
 
-def weaver_loss(radar: MeanPower, static: Echoes, moving: Echoes, targets: Targets) -> dict[str, Tensor]:
+def weaver_loss(radar: MeanPower, static: MeanEchoes, moving: MeanEchoes, targets: Targets) -> dict[str, Tensor]:
     """Terms of the loss by name; their sum is what is minimised."""
     static_maps = radar.maps(points_of(static, radar.response))
     person = radar.maps(points_of(moving, radar.response))

@@ -17,7 +17,7 @@ from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import SceneEncoding, WeaverNetwork
 from mmweaver.models.precision import exactly
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
-from mmweaver.paths.mean_paths import Echoes
+from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.mean_power import MeanPower, PowerMaps
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.training.device import ComputeDevice, moved
@@ -66,10 +66,10 @@ class NetworkLearner(Learner):
         code = self.network.encode_room(batch.scene)
         moving = self.moving(code, batch)
         with exactly(batch.joints_m):
-            return weaver_loss(self.radar, code.resting, moving, batch.targets)
+            return weaver_loss(self.radar, code.static, moving, batch.targets)
 
-    def moving(self, code: SceneEncoding, batch: NetworkBatch) -> Echoes:
-        """Echoes of the people in a batch."""
+    def moving(self, code: SceneEncoding, batch: NetworkBatch) -> MeanEchoes:
+        """Mean echoes of the people in a batch."""
         return self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
 
     def predict(self, batch: NetworkBatch) -> PowerMaps:
@@ -77,7 +77,7 @@ class NetworkLearner(Learner):
         code = self.network.encode_room(batch.scene)
         moving = self.moving(code, batch)
         with exactly(batch.joints_m):
-            static = self.radar.maps(points_of(code.resting, self.radar.response))
+            static = self.radar.maps(points_of(code.static, self.radar.response))
             person = self.radar.maps(points_of(moving, self.radar.response))
         names = ("range_doppler", "range_azimuth", "range_elevation")
         return PowerMaps(

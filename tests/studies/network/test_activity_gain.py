@@ -1,4 +1,4 @@
-"""The use experiment on a tiny data set: motions in the photographed room, the same for all; a gain that is one."""
+"""The gain study on a tiny data set: motions in the photographed room, the same for all; a gain that is one."""
 
 from pathlib import Path
 

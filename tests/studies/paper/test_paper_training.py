@@ -18,12 +18,12 @@ from studies.paper.paper_training import PaperLearner, PaperRecipe, train_paper
 from tests.training.tiny_data import StoppedError
 
 pytest.importorskip("zarr")
-RECIPE = PaperRecipe(steps=4, batch_size=2, validate_every=2, validation_batches=2)
+RECIPE = PaperRecipe(steps=2, batch_size=2, validate_every=1, validation_batches=1)
 
 
 @pytest.fixture(scope="module")
 def features(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    file = tmp_path_factory.mktemp("judge") / "weights.safetensors"
+    file = tmp_path_factory.mktemp("activity") / "weights.safetensors"
     torch.manual_seed(0)
     card = WeightsCard(recipe="activity", licence="MIT", dataset_sha256="", radar="awr1843", steps=0, seed=0,
                        validation_loss=0.0, mmweaver_version="0")  # fmt: skip
@@ -31,8 +31,8 @@ def features(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
-def stop_at_three(progress: Progress) -> None:
-    if progress.step == 3:
+def stop_at_one(progress: Progress) -> None:
+    if progress.step == 1:
         raise StoppedError
 
 
@@ -40,7 +40,7 @@ def test_it_goes_on_where_it_stopped(tiny_geometry: Path, features: Path, tmp_pa
     options = {"features": features, "save_every_s": 0.0}
     whole = train_paper(tiny_geometry, tmp_path / "whole", RECIPE, **options)
     with pytest.raises(StoppedError):
-        train_paper(tiny_geometry, tmp_path / "parts", RECIPE, listener=stop_at_three, **options)
+        train_paper(tiny_geometry, tmp_path / "parts", RECIPE, listener=stop_at_one, **options)
     parts = train_paper(tiny_geometry, tmp_path / "parts", RECIPE, **options)
     for (name, one), two in zip(whole.learner.state_dict().items(), parts.learner.state_dict().values(), strict=True):
         assert torch.equal(one, two), name
@@ -50,11 +50,14 @@ def test_it_goes_on_where_it_stopped(tiny_geometry: Path, features: Path, tmp_pa
     assert len(list((tmp_path / "whole" / "pictures").glob("*.png"))) == 2
 
 
+@pytest.mark.slow  # test_trainer.py does the same with a learner of two numbers
 def test_a_longer_run_goes_on_and_no_other_setting_may_change(tiny_geometry: Path, features: Path, tmp_path: Path):
     train_paper(tiny_geometry, tmp_path, replace(RECIPE, steps=1), features=features)
     steps: list[int] = []
     longer = replace(RECIPE, steps=2)
-    train_paper(tiny_geometry, tmp_path, longer, features=features, listener=lambda told: steps.append(told.step))
+    train_paper(
+        tiny_geometry, tmp_path, longer, features=features, listener=lambda progress: steps.append(progress.step)
+    )
     assert steps == [2]
     with pytest.raises(InputError, match="other settings"):
         train_paper(tiny_geometry, tmp_path, replace(RECIPE, steps=3, learning_rate=1e-3), features=features)

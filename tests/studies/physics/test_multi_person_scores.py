@@ -1,4 +1,4 @@
-"""The experiment on one pair of people."""
+"""The study on one pair of people."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The experiment's bookkeeping: which half a recording belongs to, and splits of generated windows."""
+"""Bookkeeping of the study: which half a recording belongs to, and splits of generated windows."""
 
 from dataclasses import replace
 

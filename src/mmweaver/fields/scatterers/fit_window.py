@@ -40,7 +40,7 @@ class FitWindow:
         response = PointResponse(config, window)
         axes = response.axes()
         return cls(
-            config=config, num_frames=num_frames, hop=hop, response=response, axes=axes, phasor=response.turn(axes)
+            config=config, num_frames=num_frames, hop=hop, response=response, axes=axes, phasor=response.phasor(axes)
         )
 
     @property

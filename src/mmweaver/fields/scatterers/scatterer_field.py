@@ -105,7 +105,7 @@ class ScattererField(SignalField):
             points = self._at(_frames_of(self.grid, frame), response)
             cells = torch.cat([response.render(part, axes) for part in _each(points)])
             cells += static[:, None] * response.doppler_kernel(axes.doppler_bin)[0][:, None]
-            return (cells * gains * response.turn(axes) * self.peak).numpy()
+            return (cells * gains * response.phasor(axes) * self.peak).numpy()
 
     def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
         """Values at any coordinates (point, 4), complex64; see `SignalField`."""
@@ -149,7 +149,7 @@ class ScattererField(SignalField):
             points = self._at(_frames_at(self.grid, time_s), response)
             static = _propagated(self._static_points(), self.fit_window.response, response, torch.zeros(1))
             cells = torch.cat([response.render(part, axes) for part in _each(points)]) + response.render(static, axes)
-            values = (cells * response.turn(axes) * self.peak).numpy()
+            values = (cells * response.phasor(axes) * self.peak).numpy()
         return RadarCube(values=values, grid=grid, config=config, scale=self.scale)
 
     def _at(self, frame: np.ndarray, response: PointResponse) -> Points:
@@ -188,7 +188,7 @@ class ScattererField(SignalField):
             static = interpolate_rows(static, coordinates[:, 3])
             total += static * response.doppler_kernel(axes.doppler_bin)[0]
             total *= interpolate(self.layers.calibration, coordinates[:, 3])
-            return (total * response.turn_at_cells(axes) * self.peak).numpy()
+            return (total * response.phasor_at_cells(axes) * self.peak).numpy()
 
     def _static_points(self) -> Points:
         """The static layer as points (1, point)."""
