@@ -253,7 +253,7 @@ def test_what_stops_it_halfway_leaves_nothing(
     def stop(*_: object) -> None:
         raise raised
 
-    monkeypatch.setattr(result_folder, "draw_animation", stop)
+    monkeypatch.setattr(result_folder, "draw_preview", stop)
     assert main(["generate", "--demo", "--frames", "1", "--text", WALK, "--out", str(tmp_path / "out")]) == status
     captured = capsys.readouterr()
     assert word in captured.err
