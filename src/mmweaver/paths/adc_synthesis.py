@@ -90,7 +90,7 @@ class AdcSynthesis:
         if paths.amplitude.shape[-1] == 0:
             adc.zero_()
             return
-        length_m = sum(end.at(segment.node_s).norm(dim=-1) for end in (paths.departure, paths.arrival))
+        length_m = paths.departure.at(segment.node_s).norm(dim=-1) + paths.arrival.at(segment.node_s).norm(dim=-1)
         shift_hz = length_m @ segment.slope_at_blocks / config.wavelength_m  # (frame, path, block)
         carrier = phasor(length_m @ segment.to_chirps / config.wavelength_m) * paths.amplitude[..., None]
         carrier = carrier.unflatten(-1, (-1, config.num_tx))  # (frame, path, loop, tx)

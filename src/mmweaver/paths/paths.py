@@ -99,8 +99,8 @@ class Paths(TensorRecord):
             interaction=torch.full(amplitude.shape, int(Interaction.BODY), dtype=torch.uint8),
         )  # fmt: skip
 
-    @classmethod
-    def padded(cls, segments: list["Paths"]) -> "Paths":
+    @staticmethod
+    def padded(segments: list["Paths"]) -> "Paths":
         """Paths (path,) of each segment as one record (segment, path), padded at the end with amplitudes of zero."""
         longest = max((len(one) for one in segments), default=0)
 
@@ -109,7 +109,7 @@ class Paths(TensorRecord):
             out[: len(tensor)] = tensor
             return out
 
-        return cls.stack([one.map(filled) for one in segments])
+        return Paths.stack([one.map(filled) for one in segments])
 
     @classmethod
     def none(cls) -> "Paths":
