@@ -34,7 +34,8 @@ class Room(ShownByFacts):
     def facts(self) -> dict[str, str]:
         """The photo's and the scene's."""
         size = self.scene.photo.facts()["size"]
-        return {"photo": size, **self.scene.facts(), "inputs": ", ".join(self.inputs)}
+        background = "none" if self.background is None else f"by {self.background.config.name}"
+        return {"photo": size, **self.scene.facts(), "background": background, "inputs": ", ".join(self.inputs)}
 
     def _repr_html_(self) -> str:
         return _with_picture(super()._repr_html_(), _png_of(self.scene.photo.rgb))

@@ -22,6 +22,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.assemble import assemble
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import Step
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
@@ -174,9 +175,9 @@ def ours(lower: str, seed: int, *, seconds: float, speed_mps: float = 0.0, count
             ),
         )  # fmt: skip
     pose = assemble(
-        (Step(lower=lower, end_s=seconds, count=count),),
+        (PlacedStep(step=Step(lower=lower, end_s=seconds, count=count), moves=moves),),
         RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=moves),
-        (moves,), (0.45,), SkeletonProportions(height), seed=seed, duration_s=seconds, floor_z_m=0.0,
+        SkeletonProportions(height), seed=seed, duration_s=seconds, floor_z_m=0.0,
     )  # fmt: skip
     return {name: _smooth(pose.joints_m[:, joint(name)]) for name in THEIRS}
 

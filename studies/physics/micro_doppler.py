@@ -29,6 +29,7 @@ from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.motion.animation.assemble import assemble
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import resampled_clip
@@ -125,8 +126,8 @@ def library(like: RecordedMotion, activity: str, seed: int) -> RecordedMotion:
             ),
         )  # fmt: skip
     pose = assemble(
-        (step,), RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=moves), (moves,), (0.45,), body_of(like),
-        seed=seed, duration_s=seconds, floor_z_m=0.0,
+        (PlacedStep(step=step, moves=moves),), RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=moves),
+        body_of(like), seed=seed, duration_s=seconds, floor_z_m=0.0,
     )  # fmt: skip
     inside = (pose.time_s >= -1e-9) & (pose.time_s < seconds - 1e-9)
     joints = pose.joints_m[inside]

@@ -1,5 +1,6 @@
 """mmweaver radar prints what people and --radar read."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,15 @@ def test_people_read_resolutions_and_limits(capsys: pytest.CaptureFixture[str]):
     text = capsys.readouterr().out
     for word in ("4.40 cm", "0.274 m/s", "4.39 m/s", "12 virtual antennas"):
         assert word in text
+
+
+def test_without_a_radar_every_preset_is_listed(capsys: pytest.CaptureFixture[str]):
+    assert main(["radar"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[1:]] == list(PRESETS)
+    assert main(["radar", "--json"]) == 0
+    presets = json.loads(capsys.readouterr().out)
+    assert {name: RadarConfig.from_json(json.dumps(one)) for name, one in presets.items()} == dict(PRESETS)
 
 
 def test_an_unknown_radar_lists_the_known(capsys: pytest.CaptureFixture[str]):

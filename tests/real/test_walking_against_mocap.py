@@ -10,6 +10,7 @@ from mmweaver.core.skeleton import joint
 from mmweaver.motion.animation.assemble import assemble
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import Step
 
 RATE_HZ = 120.0
@@ -87,10 +88,8 @@ def ours(speed_mps: float, seed: int) -> Gait:
         start_s=0.0, end_s=seconds, length_m=speed_mps * seconds, direction_rad=0.0, ramp_in_s=0.0, ramp_out_s=0.0
     )
     pose = assemble(
-        (Step(lower="walk", end_s=seconds),),
+        (PlacedStep(step=Step(lower="walk", end_s=seconds), moves=(move,)),),
         RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=(move,)),
-        ((move,),),
-        (0.45,),
         SkeletonProportions(1.75),
         seed=seed,
         duration_s=seconds,

@@ -52,4 +52,4 @@ def test_a_wall_does_not_count_as_body():
     with_wall = body_features(resting(wandering, ALWAYS, wall_m=2.6), STILL_MPS)
     for name, value in without.items():
         assert np.isclose(value, with_wall[name], equal_nan=True), name
-    assert not body_points(resting(wandering, np.zeros(FRAMES, bool), wall_m=2.6), STILL_MPS).rests.any()
+    assert not body_points(resting(wandering, np.zeros(FRAMES, bool), wall_m=2.6), STILL_MPS).is_static.any()

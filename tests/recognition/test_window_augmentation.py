@@ -21,7 +21,7 @@ def window() -> PointRecording:
 
 
 NOTHING = WindowAugmentation(
-    least_moving=1.0, least_resting=1.0, frames_lost=0.0, slow_at_rest=0.0, most_things=0, false_points=0.0,
+    least_moving=1.0, least_static=1.0, frames_lost=0.0, slow_to_static=0.0, most_objects=0, false_points=0.0,
     tilt_rad=0.0,
 )  # fmt: skip
 
@@ -54,8 +54,8 @@ def test_points_are_dropped_and_added_within_limits():
 
 
 def test_added_objects_are_static_and_copies_follow_the_stream():
-    things = WindowAugmentation(most_things=8, false_points=0.0, least_resting=1.0)
-    one, again = (augmented(window(), np.random.default_rng(3), things).cloud for _ in range(2))
+    objects = WindowAugmentation(most_objects=8, false_points=0.0, least_static=1.0)
+    one, again = (augmented(window(), np.random.default_rng(3), objects).cloud for _ in range(2))
     assert np.array_equal(one.y_m, again.y_m)
     far = np.hypot(one.x_m, one.y_m) > 2.6
     assert far.any()

@@ -40,6 +40,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     output = parser.add_argument_group("output")
     output.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     add_points_option(output)
+    output.add_argument("--no-pictures", action="store_true", help="leave out preview.png and preview.gif")
     add_output_options(output)
     parser.set_defaults(run=run)
     return parser
@@ -63,6 +64,8 @@ def run(arguments: argparse.Namespace) -> int:
             iq_order=arguments.iq_order, tx_order=arguments.tx_order, points=arguments.points, stages=Stages(bar),
         )  # fmt: skip
         written = {REQUEST_FILE: request_toml(arguments.parser, arguments)}
-        meta = recording.save(arguments.out, overwrite=arguments.overwrite, extra=written)
+        meta = recording.save(
+            arguments.out, overwrite=arguments.overwrite, extra=written, pictures=not arguments.no_pictures
+        )
     print_summary(arguments.out, meta, as_json=arguments.json, quiet=arguments.quiet, verbose=arguments.verbose)
     return 0

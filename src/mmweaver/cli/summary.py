@@ -37,7 +37,7 @@ def summary_lines(out: str | Path, meta: dict[str, Any], *, verbose: bool = Fals
     shown = [one for one in meta["assumed"] if verbose or not isinstance(one, UsualAssumption)]
     lines += [f"assumed: {sentence}" for sentence in shown]
     if hidden := len(meta["assumed"]) - len(shown):
-        lines.append(f"assumed: {hidden} usual things{' more' if shown else ''} (--verbose prints them)")
+        lines.append(f"assumed: {hidden} {'more ' if shown else ''}of the usual (--verbose prints them)")
     return lines
 
 

@@ -54,5 +54,5 @@ def _is_worthwhile(parts: np.ndarray) -> np.ndarray:
 
 
 def round_levels(values: np.ndarray, rounding: float = ROUNDING) -> np.ndarray:
-    """Integer levels with a dead zone: magnitudes are rounded up from 1 - `rounding`."""
+    """Integer levels (same shape) with a dead zone: magnitudes are rounded up from 1 - `rounding`."""
     return (np.sign(values) * np.floor(np.abs(values) + rounding)).astype(np.int64)

@@ -32,7 +32,7 @@ from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths, ScenePaths
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.paths.random_phases import place_of, sample_moving, sample_moving_segments, sample_static
-from mmweaver.paths.receiver import quantised
+from mmweaver.paths.receiver import quantise
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
 ADC_FRAMES_AT_ONCE = 20
@@ -232,7 +232,7 @@ class LearnedRoom:
             clean = clean.numpy() + self._sample_noise(noise.values[some], first, seed)
             samples[some] = clean if config.complex_samples else clean.real
         count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
-        samples = quantised(torch.from_numpy(samples), count_sqrt_mw).numpy()
+        quantise(torch.from_numpy(samples), count_sqrt_mw)
         return AdcCube(samples=samples, config=config, scale=1.0)
 
     def _static_adc(self, synthesis: AdcSynthesis) -> Tensor:

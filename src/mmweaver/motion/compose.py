@@ -64,9 +64,8 @@ def compose(
 
     def animate(placement: Placement) -> PoseSequence:
         return assemble(
-            plan.steps, placement.path, placement.moves, placement.seat_height_m, body,
-            seed=seed, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m,
-        )  # fmt: skip
+            placement.steps, placement.path, body, seed=seed, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m
+        )
 
     best = least_collision(candidates, animate, CollisionMap.of(scene))
     notes = plan.notes + jogging_notes + best.placement.assumptions + best.notes

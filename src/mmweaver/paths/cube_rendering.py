@@ -36,7 +36,9 @@ class StaticResponse(TensorRecord):
 
     def layer(self) -> Tensor:
         """The sum of all paths, complex (range, antenna)."""
-        return self.at_range.T @ self.echo + self.range_slope.T @ self.tilted
+        in_range = torch.cat([self.at_range, self.range_slope])
+        antennas = torch.view_as_real(torch.cat([self.echo, self.tilted])).flatten(1)
+        return torch.view_as_complex((in_range.T @ antennas).unflatten(1, (-1, 2)))
 
     def each(self) -> Tensor:
         """Every path's own, complex (range * antenna, path)."""
@@ -132,7 +134,7 @@ class CubeRenderer:
         kernel, slope = self._range_kernel(
             self._range_bin - (mean_m / (2 * config.range_resolution_m)).float()[:, None]
         )
-        at_range, range_slope = (part * self._range_sign + 0j for part in (kernel, slope))
+        at_range, range_slope = (part * self._range_sign for part in (kernel, slope))
         return StaticResponse(at_range=at_range, range_slope=range_slope, echo=echo, tilted=-off_bin * echo)
 
     def add_static(self, values: Tensor, layer: Tensor) -> None:

@@ -76,15 +76,17 @@ class Receiver:
         if not on_device and moving.device.type == "cpu":  # frame by frame: the caches hold it
             for index, frame in enumerate(frames):
                 one = slice(index, index + 1)
-                moving[one] = self._received(moving[one], static[one], static_rate, *self._streamed([frame], moving))
+                self._receive(moving[one], static[one], static_rate, *self._streamed([frame], moving))
             return moving
         impairments = self._sampled(frames, moving) if on_device else self._streamed(frames, moving)
-        return self._received(moving, static, static_rate, *impairments)
+        self._receive(moving, static, static_rate, *impairments)
+        return moving
 
-    def _received(
-        self, moving: Tensor, static: Tensor, static_rate: Tensor, delay_s: Tensor, noise: Tensor | None
-    ) -> Tensor:
-        samples = moving + static[:, None]
+    def _receive(
+        self, samples: Tensor, static: Tensor, static_rate: Tensor, delay_s: Tensor, noise: Tensor | None
+    ) -> None:
+        """Adds all of it to the samples of moving paths, in place."""
+        samples += static[:, None]
         if self._has_unstable_clock:
             samples += delay_s[..., None, :] * static_rate
         if self.impairments.channel_gain_db or self.impairments.channel_phase_rad:
@@ -92,8 +94,9 @@ class Receiver:
         if noise is not None:
             samples += noise
         if not self.config.complex_samples:
-            samples = torch.complex(samples.real, torch.zeros_like(samples.real))
-        return quantised(samples, self.count_sqrt_mw) if self.impairments.quantise else samples
+            torch.view_as_real(samples)[..., 1] = 0.0
+        if self.impairments.quantise:
+            quantise(samples, self.count_sqrt_mw)
 
     @property
     def _has_unstable_clock(self) -> bool:
@@ -101,10 +104,10 @@ class Receiver:
 
     def _streamed(self, frames: Sequence[int], samples: Tensor) -> tuple[Tensor, Tensor | None]:
         """Clock errors (frame, loop, tx, sample), thermal noise (frame, loop, tx, rx, sample) of the seed's streams."""
-        delay_s = torch.from_numpy(np.stack([self.shift(int(frame)) for frame in frames])).to(samples.device)
+        delay_s = torch.from_numpy(_stacked([self.shift(int(frame)) for frame in frames])).to(samples.device)
         if not self.impairments.thermal_noise:
             return delay_s, None
-        noise = np.stack([self.noise(tuple(samples.shape[1:]), int(frame)) for frame in frames])
+        noise = _stacked([self.noise(tuple(samples.shape[1:]), int(frame)) for frame in frames])
         return delay_s, torch.from_numpy(noise).to(samples.device)
 
     def _sampled(self, frames: Sequence[int], samples: Tensor) -> tuple[Tensor, Tensor]:
@@ -148,10 +151,14 @@ def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
     return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
 
 
-def quantised(samples: Tensor, count: float) -> Tensor:
-    """Samples as a 16-bit converter gives them: whole multiples of `count` in either part, clipped."""
-    parts = torch.view_as_real(samples)
-    return torch.view_as_complex((parts / count).round_().clamp_(-32768, 32767) * count)
+def _stacked(frames: list[np.ndarray]) -> np.ndarray:
+    """Frames along a new axis; one alone is not copied."""
+    return frames[0][None] if len(frames) == 1 else np.stack(frames)
+
+
+def quantise(samples: Tensor, count: float) -> None:
+    """Makes samples those of a 16-bit converter, in place: whole multiples of `count` in either part, clipped."""
+    torch.view_as_real(samples).div_(count).round_().clamp_(-32768, 32767).mul_(count)
 
 
 def leakage(config: RadarConfig, impairments: Impairments) -> complex:

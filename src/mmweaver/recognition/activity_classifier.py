@@ -42,7 +42,7 @@ class ActivityClassifier:
         self._used = np.zeros(0, bool)
 
     def fit(self, features: Features, labels: np.ndarray, weights: np.ndarray | None = None) -> "ActivityClassifier":
-        """Fits on one row per window (nan = unknown); weights default to 1. Returns itself.
+        """Fits on features (window, feature), nan = unknown; weights (window,) default to 1. Returns itself.
 
         Raises InputError where scikit-learn is missing.
         """

@@ -30,8 +30,8 @@ class BodyPoints:
 
     window: PointRecording
     range_m: Float[np.ndarray, " point"]
-    moves: Bool[np.ndarray, " point"]
-    rests: Bool[np.ndarray, " point"]
+    is_moving: Bool[np.ndarray, " point"]
+    is_static: Bool[np.ndarray, " point"]
     cells: Float[np.ndarray, "frame cell"]  # 1 where a cell of the body has a static point
 
     @property
@@ -57,7 +57,7 @@ def body_points(window: PointRecording, still_mps: float) -> BodyPoints:
     own = near & (share <= FIXED)
     kept = own & (share > SELDOM)
     return BodyPoints(
-        window=window, range_m=range_m, moves=moves & near[cell], rests=~moves & own[cell],
+        window=window, range_m=range_m, is_moving=moves & near[cell], is_static=~moves & own[cell],
         cells=full[:, kept].astype(float),
     )  # fmt: skip
 
@@ -66,9 +66,9 @@ def body_features(window: PointRecording, still_mps: float) -> Row:
     """Named features of one window; nan means too few points."""
     points = body_points(window, still_mps)
     row = _flicker(points)
-    row.update(_whereabouts(points, points.moves | points.rests, "body"))
-    row.update(_whereabouts(points, points.rests, "rest"))
-    row["moving_share"] = float(points.moves.sum() / max((points.moves | points.rests).sum(), 1))
+    row.update(_whereabouts(points, points.is_moving | points.is_static, "body"))
+    row.update(_whereabouts(points, points.is_static, "rest"))
+    row["moving_share"] = float(points.is_moving.sum() / max((points.is_moving | points.is_static).sum(), 1))
     return row
 
 
@@ -96,7 +96,7 @@ def _flicker(points: BodyPoints) -> Row:
     variance = float(centred.var(axis=0).sum()) if cells.size else 0.0
     return {
         "rest_cells": float(cells.shape[1]),
-        "rest_rate": float(np.log1p(points.rests.sum() / frames)),
+        "rest_rate": float(np.log1p(points.is_static.sum() / frames)),
         "rest_together": float(together.var() / variance) if variance > 0 else np.nan,
         **band_shares(power(centred).sum(axis=1), frequency_hz, "flicker"),
         **band_shares(power(together[:, None])[:, 0], frequency_hz, "flicker_together"),

@@ -18,16 +18,16 @@ class WindowAugmentation:
     """Limits of the augmentation; each copy samples its own values.
 
     Moving and static points are kept with a probability between the given minimum and 1, whole frames are dropped, and
-    some points of the slowest velocity are reported as static. Up to `most_things` static objects add up to three
+    some points of the slowest velocity are reported as static. Up to `most_objects` static objects add up to three
     neighbouring range cells each, detected always or intermittently; `false_points` is the largest mean number of
     moving false alarms. Half of the copies are reversed in time (with the sign of velocity), half are reflected.
     """
 
     least_moving: float = 0.35
-    least_resting: float = 0.2
+    least_static: float = 0.2
     frames_lost: float = 0.15
-    slow_at_rest: float = 0.3
-    most_things: int = 4
+    slow_to_static: float = 0.3
+    most_objects: int = 4
     false_points: float = 1.0
     tilt_rad: float = 0.05
     cell_m: float = 0.0436
@@ -65,11 +65,11 @@ def _thinned(
     """Drops points, frames, and the velocity of slow points; three copies in ten drop no single points."""
     speed = np.abs(columns[:, 3])
     spared = rng.random() < 0.3
-    moving, resting = (1.0 if spared else rng.uniform(least, 1.0) for least in (how.least_moving, how.least_resting))
-    kept = rng.random(len(frame)) < np.where(speed > STILL_MPS, moving, resting)
+    moving, static = (1.0 if spared else rng.uniform(least, 1.0) for least in (how.least_moving, how.least_static))
+    kept = rng.random(len(frame)) < np.where(speed > STILL_MPS, moving, static)
     kept &= (rng.random(frames) >= rng.uniform(0, how.frames_lost))[frame]
     columns = columns.copy()
-    stops = (speed < SPEED_EDGES_MPS[1]) & (rng.random(len(frame)) < rng.uniform(0, how.slow_at_rest))
+    stops = (speed < SPEED_EDGES_MPS[1]) & (rng.random(len(frame)) < rng.uniform(0, how.slow_to_static))
     columns[stops, 3] = 0.0
     return frame[kept], columns[kept]
 
@@ -85,7 +85,7 @@ def _reversed(points: Points, frames: int, rng: np.random.Generator) -> Points:
 def _static_objects(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> list[Points]:
     """Static objects at any range, detected always or intermittently."""
     found = []
-    for _ in range(int(rng.integers(how.most_things + 1))):
+    for _ in range(int(rng.integers(how.most_objects + 1))):
         nearest_m, aside = rng.uniform(0.9, 5.5), rng.normal(0, 0.3)
         share = float(rng.choice([1.0, 0.98, 0.9, 0.6, 0.3, 0.1]))
         for cell in range(int(rng.integers(1, 4))):

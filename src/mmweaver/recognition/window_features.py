@@ -64,6 +64,7 @@ class _Moving:
         return len(self.frame)
 
     def per_frame(self, weight: np.ndarray | None = None) -> Float[np.ndarray, " frame"]:
+        """Number of points, or sum of their weights (point,), of each frame (frame,)."""
         return np.bincount(self.frame, weight, minlength=self.num_frames).astype(float)
 
 

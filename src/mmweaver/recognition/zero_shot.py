@@ -65,7 +65,7 @@ def featurize(
 
 
 def rounded_to_digits(features: np.ndarray) -> np.ndarray:
-    """Features rounded to half precision as in a frozen file, so that training from it gives the same trees."""
+    """Features (window, feature) rounded to half precision as in a frozen file, which then gives the same trees."""
     return features.astype(np.float16).astype(np.float32)
 
 

@@ -33,15 +33,19 @@ class ProcessedRecording:
     meta: dict[str, Any]
     stages: Stages
 
-    def save(self, out: str | Path, *, overwrite: bool = False, extra: dict[str, str] | None = None) -> dict[str, Any]:
+    def save(
+        self, out: str | Path, *, overwrite: bool = False, extra: dict[str, str] | None = None, pictures: bool = True
+    ) -> dict[str, Any]:
         """Writes radar.npz, points.npz, radar.json, meta.json and the pictures into a folder; returns the meta.
 
-        `extra`: text files to add, by name.
+        `extra`: text files to add, by name. Without `pictures` the previews are left out.
         """
         view = FigureData(
             title=f"{Path(self.meta['inputs']['recording']['path']).name}", cube=self.cube, points=self.points
         )
-        return save_results(out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra)
+        return save_results(
+            out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra, pictures=pictures
+        )
 
 
 def process_recording(

@@ -116,7 +116,7 @@ def _write(file: Path, maps: tuple[Tensor, Tensor], mark: str) -> None:
 
 
 def augmented(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:
-    """Augments maps by random gain and by cyclic shifts in time and range."""
+    """Augments maps (sequence, frame, channel, range, other) by random gain and cyclic shifts in time and range."""
     from mmweaver.models.log_maps import SPREAD_DB
 
     gain = torch.from_numpy(rng.normal(0, GAIN_SPREAD_DB / SPREAD_DB, (len(doppler), 1, 1, 1, 1)).astype(np.float32))

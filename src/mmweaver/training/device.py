@@ -52,7 +52,7 @@ class ComputeDevice:
         return module if self.accelerator is None else self.accelerator.prepare_model(module)
 
     def mean(self, values: Tensor) -> Tensor:
-        """Mean over all processes, identical in each."""
+        """Mean of a tensor over all processes (same shape), identical in each."""
         return values if self.accelerator is None else self.accelerator.reduce(values, reduction="mean")
 
     def wait(self) -> None:

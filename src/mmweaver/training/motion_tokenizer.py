@@ -59,9 +59,9 @@ def train_tokenizer(
         codes = model.quantizer.nearest(flat.detach())
         chosen = model.quantizer.codebook[codes].reshape(latent.shape)
         commitment = functional.mse_loss(latent, chosen)
-        made = model.decoder((latent + (chosen - latent).detach()).transpose(1, 2)).transpose(1, 2)
-        loss = functional.smooth_l1_loss(made, batch) + recipe.commitment * commitment
-        loss = loss + recipe.joints_again * functional.smooth_l1_loss(made[..., JOINTS], batch[..., JOINTS])
+        decoded = model.decoder((latent + (chosen - latent).detach()).transpose(1, 2)).transpose(1, 2)
+        loss = functional.smooth_l1_loss(decoded, batch) + recipe.commitment * commitment
+        loss = loss + recipe.joints_again * functional.smooth_l1_loss(decoded[..., JOINTS], batch[..., JOINTS])
         optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(model.parameters(), 1.0)

@@ -53,7 +53,7 @@ def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
 
 
 def difference(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
-    """Mean absolute difference of logarithms plus the weighted divergence."""
+    """Mean absolute difference of logarithms plus the weighted divergence, of maps (sequence, ..., range, other)."""
     logs = ((power + least).log() - (mean + least).log()).abs().mean()
     return logs + LIKELIHOOD * itakura_saito(mean, power, least)
 

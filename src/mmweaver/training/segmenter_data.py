@@ -71,10 +71,10 @@ def _cached_example(kind: str, seed: int, folder: Path | None) -> SegmenterExamp
         return make_example(kind, seed)
     path = folder / f"{kind}-{seed}.npz"
     if not path.exists():
-        made = make_example(kind, seed)
+        example = make_example(kind, seed)
         folder.mkdir(parents=True, exist_ok=True)
         with atomic_file(path) as temporary, temporary.open("wb") as file:
-            np.savez(file, features=made.features.astype(np.float16), groups=made.groups.astype(np.uint8))
+            np.savez(file, features=example.features.astype(np.float16), groups=example.groups.astype(np.uint8))
     with np.load(path, allow_pickle=False) as stored:
         return SegmenterExample(
             kind=kind, features=stored["features"].astype(np.float32), groups=stored["groups"].astype(np.int64)
@@ -82,7 +82,8 @@ def _cached_example(kind: str, seed: int, folder: Path | None) -> SegmenterExamp
 
 
 def augmented(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """A random crop with reflection, other colours and light, and holes and errors in its depth."""
+    """Features (feature, row, column) and groups (row, column) of a random crop: reflected, recoloured, with holes
+    and errors in depth."""
     features, groups = _crop(example, rng)
     measured = features[MEASURED] > 0
     features[COLOURS] = _recoloured(features[COLOURS], groups, rng)

@@ -13,7 +13,7 @@ from mmweaver.training.segmenter_data import SegmenterExample
 
 
 def confusion(examples: list[SegmenterExample], guess: Callable[[np.ndarray], np.ndarray]) -> Int[Array, "truth guess"]:
-    """Cells by true and guessed group; `guess` maps features to groups."""
+    """Cells by true and predicted group; `guess` maps features (13, row, column) to groups (row, column)."""
     total = np.zeros((len(GROUP_NAMES),) * 2, np.int64)
     for example in examples:
         pair = example.groups * len(GROUP_NAMES) + guess(example.features)

@@ -222,7 +222,7 @@ class Trainer:
         return self._evaluate()[0]
 
     def _evaluate(self) -> tuple[float, dict[str, float]]:
-        """Means over the fixed batches, each judged by one of the processes."""
+        """Means over the fixed batches, each evaluated by one of the processes."""
         place, count = self.compute, self.recipe.validation_batches
         self.learner.eval()
         rows: list[dict[str, float]] = []

@@ -45,7 +45,7 @@ def _chosen(*penetration_m: list[float]):
 
 def _placement(penetration_m: float) -> Placement:
     path = RootPath(start_m=(0.0, 2.0), heading_rad=penetration_m, moves=(), turns=())
-    return Placement(path=path, moves=(), seat_height_m=(), seats_m=(), assumptions=())
+    return Placement(path=path, steps=(), seats_m=(), assumptions=())
 
 
 def test_the_first_that_keeps_the_margin_is_taken():

@@ -60,7 +60,7 @@ class FitWindow:
         return torch.from_numpy(np.ascontiguousarray(frames, np.complex64)) * self.phasor.conj()
 
     def cube_values(self, working: Tensor) -> CubeValues:
-        """The inverse: working frames -> values of the cube, complex64."""
+        """The inverse: working frames -> values of the cube (frame, range, doppler, antenna), complex64."""
         frames = (working * self.phasor).numpy()
         return _cut(frames[0], self.config, self.num_frames, self.hop) if self.hop else frames
 

@@ -47,7 +47,7 @@ def values_of_point(response: PointResponse) -> int:
 
 
 def static_values(active_beams: Tensor | None, num_cells: int) -> int:
-    """Number of real parameters of a static layer: two per active beam, and one per 32 bits of their mask."""
+    """Real parameters of a static layer: two per active beam, and one per 32 bits of the mask (range, beam)."""
     if active_beams is None:
         return 2 * num_cells
     return min(2 * num_cells, 2 * int(active_beams.sum()) + -(-num_cells // BITS_OF_VALUE))

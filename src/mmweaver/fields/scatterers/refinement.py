@@ -45,6 +45,7 @@ class Damping:
         return cls(torch.full((num_frames,), DAMPING_START))
 
     def learn(self, is_better: Tensor) -> None:
+        """Lowers the damping of frames (frame,) whose step was accepted, raises that of the others."""
         changed = torch.where(is_better, self.value / 4, self.value * 6)
         self.value = changed.clamp(DAMPING_LEAST, DAMPING_MOST)
 

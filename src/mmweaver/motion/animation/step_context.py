@@ -12,6 +12,18 @@ from mmweaver.motion.language.plan import Step
 Array = np.ndarray
 
 
+STOOL_HEIGHT_M = 0.45  # of a seat where the scene has none
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlacedStep:
+    """A step of a plan with its moves over the floor and the height of the seat that it uses."""
+
+    step: Step
+    moves: tuple[Move, ...] = ()
+    seat_height_m: float = STOOL_HEIGHT_M
+
+
 @dataclass(frozen=True, kw_only=True)
 class StepContext:
     """One step of the motion. `time_s` covers the whole motion, so that neighbouring steps can be blended."""
@@ -22,7 +34,7 @@ class StepContext:
     path: RootPath
     rng: np.random.Generator
     moves: tuple[Move, ...] = ()  # the moves of the path that belong to this step
-    seat_height_m: float = 0.45
+    seat_height_m: float = STOOL_HEIGHT_M
     first: bool = True  # no step before: the motion is already under way at its start
     last: bool = True  # no step after: the motion continues at its end
 

@@ -17,7 +17,8 @@ CLEAR = 0.8  # share of the body's length that must lie along one axis
 def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, source: str) -> tuple[float, str]:
     """Metres in one unit of the file, and a note ("" where the unit was given).
 
-    `said` is a name in UNITS_M or a number of metres. Guessed only where exactly one unit makes a body of 1.2 to 2.2 m.
+    `given` is a name in UNITS_M or a number of metres. Estimated only where exactly one unit makes the body 1.2 to
+    2.2 m tall. Raises InputError otherwise.
     """
     if given is not None:
         return metres_of(given), ""

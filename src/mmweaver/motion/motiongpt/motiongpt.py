@@ -82,7 +82,7 @@ class MotionGPT:
         if STD not in own:
             check_std(std_values, place)
         vocabulary = notes.get(VOCABULARY)
-        plain = wrapped(vocabulary) if vocabulary else load_words(_words_beside(place, words))
+        plain = wrapped(vocabulary) if vocabulary else load_words(_words_folder(place, words))
         first = add_motion_tokens(plain, tokenizer.config.codes)
         if first + tokenizer.config.codes + 3 > language.config.vocab_size:
             raise InputError(
@@ -223,8 +223,8 @@ def _statistic(given: str | Path | None, place: Path, name: str, features: int) 
     return values
 
 
-def _words_beside(place: Path, given: str | Path | None) -> Path | None:
+def _words_folder(place: Path, given: str | Path | None) -> Path | None:
     if given is not None:
         return Path(given)
-    beside = any((place.parent / name).is_file() for name in WORD_FILES)
-    return place.parent if beside else None
+    is_local = any((place.parent / name).is_file() for name in WORD_FILES)
+    return place.parent if is_local else None

@@ -107,7 +107,7 @@ class FloorMap:
         return np.asarray(inside)
 
     def _cells(self, positions_m: Positions) -> tuple[Array, Array, Array]:
-        """Row and column of each position, (0, 0) off the grid, and whether it is on the grid."""
+        """Row and column (*shape,) of each position, (0, 0) off the grid, and whether it is on the grid."""
         free = self.scene.free_space
         column = np.rint((positions_m[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
         row = np.rint((positions_m[..., 1] - free.y_m[0]) / self.cell_m).astype(int)

@@ -8,10 +8,10 @@ from jaxtyping import Float
 from mmweaver.core.records import Scene, Seat
 from mmweaver.motion.animation.library.sitting import pelvis_behind_feet_m
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import STOOL_HEIGHT_M
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
-STOOL_HEIGHT_M = 0.45
 LOWEST_M, HIGHEST_M = 0.3, 0.65  # seats that a person can use
 _COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
 _COUCH_M = 0.8  # a seat so wide is a couch, a narrower one a chair

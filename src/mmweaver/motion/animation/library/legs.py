@@ -82,6 +82,7 @@ def raising_leg(context: StepContext) -> Controls:
 
 
 def _lift_leg(controls: Controls, context: StepContext, side: int, share: np.ndarray, high: float) -> None:
+    """Raises a leg by `high` (of the body height) as `share` (n,) goes to 1, with the weight on the other."""
     h = context.body.height_m
     over = rise(np.clip(2.5 * share, 0, 1))
     shift_foot(controls, side, 0.13 * h * share * (high / 0.2), -0.01 * h * share, high * h * share)

@@ -1,0 +1,281 @@
+"""Samples candidate trajectories of a plan: a start, and every step laid out from there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.language.activities import CLEARANCE_M
+from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.planning.curved_and_lateral_paths import (
+    check_floor_space,
+    is_curved_or_lateral,
+    lay_curved_or_lateral,
+    turn_by,
+)
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.seating import (
+    STOOL_HEIGHT_M,
+    Sitting,
+    any_variation,
+    fitting,
+    preferred,
+    random_subset,
+    reachable,
+    stool_at,
+    stool_fits,
+    stool_note,
+    usable_seats,
+    usual_variation,
+)  # fmt: skip
+from mmweaver.motion.planning.targets import goes_to_target, start_for_target, walk_to_target
+from mmweaver.motion.planning.trajectory import (
+    NoTrajectory,
+    Trajectory,
+    face_along,
+    ramps_of,
+    signed_angle_rad,
+    walk_anywhere,
+    walk_circle,
+    walk_straight,
+)
+
+Array = np.ndarray
+CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who gets up
+_NEAR_START_M = 1.0  # a seat so near to the requested start is the one meant
+_SEAT_DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
+_SEAT_SPEED_MPS = {"jog": (0.45, 2.6)}  # natural speeds of a walk that ends at a seat
+_WALK_TO_SEAT_MPS = (0.45, 1.6)
+
+
+def starts_seated(plan: MotionPlan) -> bool:
+    """Whether the person sits at the start."""
+    return plan.steps[0].lower in ("sit", "sit_down", "stand_up")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CandidateSampler:
+    """Samples candidates for a plan on a floor; see `placement.place` for `start_m` and `attempt`."""
+
+    plan: MotionPlan
+    floor: FloorMap
+    body: SkeletonProportions
+    rng: np.random.Generator
+    start_m: tuple[float, float] | None
+    attempt: int
+
+    def sample(self) -> Trajectory:
+        """One candidate: a start, and every step laid out from there. Raises NoTrajectory."""
+        seats = self._seats()
+        trajectory, sitting = self._start(seats)
+        for k, step in enumerate(self.plan.steps):
+            trajectory.moves.append([])
+            following = self.plan.steps[k + 1] if k + 1 < len(self.plan.steps) else None
+            if step.moves:
+                wanted_seats = preferred(seats, following.seat if following else step.seat, self.floor.scene)
+                target = _seat_ahead(trajectory, step, following, wanted_seats)
+                _lay_move(trajectory, step, target, first=k == 0, last=following is None)
+                sitting = target if following is not None and following.lower == "sit_down" else None
+            elif step.lower == "turn" and step.turn_deg:
+                turn_by(trajectory, step)
+            elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
+                _lay_turn(trajectory, step, first=k == 0)
+            check_floor_space(trajectory, step, self.body)
+            trajectory.from_seat = trajectory.from_seat or step.lower == "stand_up"
+            if step.lower == "sit_down" and k:
+                sitting = sitting or _stool_at_end(trajectory, self.body, previous=self.plan.steps[k - 1])
+                trajectory.turn_to(sitting.facing_rad, step.start_s - 0.3)
+            trajectory.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
+            if sitting is not None:
+                trajectory.seats_m.append((float(sitting.seat_m[0]), float(sitting.seat_m[1])))
+                trajectory.cost += sitting.cost
+            if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
+                wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
+                trajectory.cost += 2.0 * max(0.0, wanted - float(self.floor.clearance_at(trajectory.position_m)))
+                trajectory.cost += float(self.floor.cost_at(trajectory.position_m))
+        trajectory.cost += float(self.rng.uniform(0, 0.5))
+        return trajectory
+
+    def _seats(self) -> list[Sitting]:
+        """The scene's seats with sampled ways to sit on them, as `attempt` allows."""
+        seats = usable_seats(self.floor, self.body)
+        if not self.attempt:
+            return [usual_variation(seat, self.rng) for seat in seats]
+        named = next((step.seat for step in self.plan.steps if step.seat), "")
+        if self.attempt > 1 and not (named and fitting(seats, named, self.floor.scene)):
+            return []
+        subset = random_subset(preferred(seats, named, self.floor.scene), self.rng)
+        return [any_variation(seat, self.rng) for seat in subset]
+
+    def _start(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting | None]:
+        """The start of the trajectory, and how the person sits there, if so."""
+        first = self.plan.steps[0]
+        if starts_seated(self.plan):
+            usable = preferred(seats, first.seat, self.floor.scene)
+            if any(step.lower not in ("sit", "sit_down") for step in self.plan.steps):
+                # Getting up needs room in front of the seat, where a table may stand.
+                usable = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+            return self._start_seated(usable)
+        spot = np.array(self.start_m, dtype=float) if self.start_m is not None else self._random_start(seats)
+        facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.2), -0.4, 0.4))
+        if any(step.posture in ("floor", "knees") for step in self.plan.steps):
+            facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
+        if first.facing and first.upper not in ("point", "look_around"):
+            facing = _facing_rad(first.facing, spot) + float(self.rng.normal(0, 0.05))
+        return Trajectory(floor=self.floor, rng=self.rng, position_m=spot, heading_rad=facing), None
+
+    def _random_start(self, seats: list[Sitting]) -> Float[Array, "2"]:
+        """A random position (x, y) in metres; for a walk to a seat often one from which it ends there."""
+        first = self.plan.steps[0]
+        if first.moves and goes_to_target(first) and self.rng.random() < 0.8:
+            spot = start_for_target(first, self.floor, self.rng)
+            if spot is not None:
+                return spot
+        to_seat = first.direction == "seat" or (len(self.plan.steps) > 1 and self.plan.steps[1].lower == "sit_down")
+        if first.moves and seats and to_seat and self.rng.random() < 0.7:
+            sitting = seats[int(self.rng.integers(len(seats)))]
+            length = (first.end_s - first.start_s) * self.rng.uniform(0.6, 1.3)
+            angle = self.rng.uniform(0, 2 * np.pi)
+            return sitting.feet_m - length * np.array([np.cos(angle), np.sin(angle)])
+        cells = self.floor.cell_centres_m[self.floor.walkable]
+        spot = cells[int(self.rng.integers(len(cells)))]
+        return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
+
+    def _start_seated(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting]:
+        """Starts on a seat of the scene, near the requested start; else on a stool, roughly facing the radar."""
+        cost, notes = 0.0, []
+        near = [s for s in seats if self.start_m is None or np.hypot(*(s.seat_m - self.start_m)) < _NEAR_START_M]
+        if near:
+            sitting = near[int(self.rng.integers(len(near)))]
+            is_blocked = not self.floor.clearance_at(sitting.feet_m) > 0
+            cost += float(self.floor.cost_at(sitting.seat_m)) + 2.0 * is_blocked
+        else:
+            cells = self.floor.cell_centres_m[self.floor.walkable]
+            if not len(cells):
+                raise NoTrajectory("no free floor")
+            spot = np.array(self.start_m, dtype=float) if self.start_m else cells[int(self.rng.integers(len(cells)))]
+            facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.3), -0.6, 0.6))
+            sitting = stool_at(spot, facing, self.body)
+            if not stool_fits(sitting, self.floor):
+                raise NoTrajectory("no room for a stool")
+            notes.append(stool_note(sitting, none_at_all=not self.floor.scene.seats))
+            cost += float(self.floor.cost_at(spot)) + 2.0 * max(0.0, 0.5 - float(self.floor.clearance_at(spot)))
+        trajectory = Trajectory(
+            floor=self.floor, rng=self.rng, position_m=sitting.feet_m, heading_rad=sitting.facing_rad, cost=cost,
+            notes=notes,
+        )  # fmt: skip
+        return trajectory, sitting
+
+
+def _seat_ahead(trajectory: Trajectory, step: Step, following: Step | None, seats: list[Sitting]) -> Sitting | None:
+    """The seat that a walk ends at: reachable, in the given direction, at a natural speed."""
+    if not (following is not None and following.lower == "sit_down") and step.direction != "seat":
+        return None
+    for sitting in seats:
+        gap = sitting.feet_m - trajectory.position_m
+        towards = float(np.arctan2(gap[1], gap[0]))
+        given_rad = _direction_rad(trajectory, step)
+        lasts = max(step.end_s - step.start_s - 0.35, 0.1)
+        speed = float(np.hypot(*gap)) / lasts
+        slowest, fastest = _SEAT_SPEED_MPS.get(step.lower, _WALK_TO_SEAT_MPS)
+        fits = slowest <= speed <= fastest
+        if (
+            fits
+            and (given_rad is None or abs(signed_angle_rad(given_rad, towards)) < _SEAT_DIRECTION_RAD)
+            and reachable(trajectory.floor, trajectory.position_m, sitting)
+        ):
+            return sitting
+    return None
+
+
+def _lay_move(trajectory: Trajectory, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
+    """Lays out a step that moves: to a seat (`target`), to a landmark, on a curve, straight, or anywhere."""
+    if target is None and goes_to_target(step):
+        walk_to_target(trajectory, step, first=first)
+        return
+    if target is None and is_curved_or_lateral(step):
+        lay_curved_or_lateral(trajectory, step, _direction_rad(trajectory, step), first=first, last=last)
+        return
+    if target is not None:
+        gap = target.feet_m - trajectory.position_m
+        direction = float(np.arctan2(gap[1], gap[0]))
+        begin = face_along(trajectory, step, direction, step.start_s, first=first)
+        ramps = (ramps_of(step.end_s - begin, first=first, last=False)[0], 0.45)
+        trajectory.go(step, direction, float(np.hypot(*gap)), (begin, step.end_s), ramps)
+        return
+    trajectory.cost += 3.0 * (step.direction == "seat")
+    direction = _direction_rad(trajectory, step)
+    if step.direction == "circle":
+        walk_circle(trajectory, step, first=first, last=last)
+    elif direction is None:
+        if step.direction == "seat" and not any("stool" in note or "no seat" in note for note in trajectory.notes):
+            trajectory.notes.append(
+                f"for {step.clause!r} no seat of the photo can be reached; the walk ends where there is room"
+            )
+        walk_anywhere(trajectory, step, first=first, last=last)
+    else:
+        walk_straight(trajectory, step, direction, first=first, last=last)
+
+
+def _direction_rad(trajectory: Trajectory, step: Step) -> float | None:
+    """The direction that the sentence gives, with a few degrees of variation; None where it gives none."""
+    x, y = trajectory.position_m
+    jitter = float(np.clip(trajectory.rng.normal(0, 0.06), -0.15, 0.15))
+    if step.direction in ("left", "right"):
+        return jitter + (np.pi if step.direction == "left" else 0.0)
+    if step.direction == "towards":
+        return float(np.arctan2(-y, -x)) + 0.3 * jitter
+    if step.direction == "away":
+        return float(np.arctan2(y, x)) + 0.3 * jitter
+    if step.direction == "forwards" and trajectory.moves[:-1]:
+        return trajectory.heading_rad
+    if step.direction == "backwards":
+        return trajectory.heading_rad + np.pi
+    if step.direction == "back":
+        back_to = trajectory.last_direction_rad
+        return back_to + np.pi if back_to is not None else trajectory.heading_rad + np.pi
+    return None
+
+
+def _facing_rad(facing: str, spot: Float[Array, "2"]) -> float:
+    """Heading of a body at `spot` (x, y) that faces left, right, towards or away from the radar."""
+    if facing in ("left", "right"):
+        return np.pi if facing == "left" else 0.0
+    away = float(np.arctan2(spot[1], spot[0]))
+    return away if facing == "away" else away + np.pi
+
+
+def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
+    """Turns to the left or right of the person, around, or to face something (`step.facing`)."""
+    if step.facing:
+        if first and step.lower != "turn":
+            return  # the start faces that direction already
+        if first:
+            trajectory.start_heading_rad = trajectory.heading_rad = trajectory.heading_rad + float(
+                trajectory.rng.choice([-1.0, 1.0]) * trajectory.rng.uniform(1.2, 2.2)
+            )
+        heading = _facing_rad(step.facing, trajectory.position_m)
+    else:
+        quarter = float(np.pi / 2 + trajectory.rng.normal(0, 0.08))
+        about = float(trajectory.rng.choice([-1.0, 1.0]) * (np.pi - abs(trajectory.rng.normal(0, 0.06)) - 0.01))
+        heading = trajectory.heading_rad + {"left": quarter, "right": -quarter}.get(step.direction, about)
+    trajectory.turn_to(heading, step.start_s)
+
+
+def _stool_at_end(trajectory: Trajectory, body: SkeletonProportions, *, previous: Step) -> Sitting:
+    """A stool at the end of a walk, a quarter turn away at most, or behind somebody who stands."""
+    to_radar = float(np.arctan2(-trajectory.position_m[1], -trajectory.position_m[0]))
+    options = (
+        [trajectory.heading_rad]
+        if not previous.moves
+        else [trajectory.heading_rad + np.pi / 2, trajectory.heading_rad - np.pi / 2]
+    )
+    options.sort(key=lambda angle: abs(signed_angle_rad(angle, to_radar)))
+    for facing in options:
+        stool = stool_at(trajectory.position_m, facing + float(trajectory.rng.normal(0, 0.08)), body)
+        if stool_fits(stool, trajectory.floor):
+            trajectory.cost += 3.0
+            trajectory.notes.append(stool_note(stool, none_at_all=not trajectory.floor.scene.seats))
+            return stool
+    raise NoTrajectory("no room for a stool")

@@ -1,0 +1,55 @@
+"""One candidate trajectory: its start, an entry for each step, and what the floor does not allow."""
+
+import numpy as np
+import pytest
+
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.planning.candidate import CandidateSampler, starts_seated
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
+from rooms import WINDOW_M, room, sofa_room
+
+
+def sampler(text: str, scene, *, start_m=None, attempt: int = 0, seed: int = 0) -> CandidateSampler:
+    return CandidateSampler(
+        plan=plan_motion(text, 4.0), floor=FloorMap(scene, WINDOW_M, 1.75), body=SkeletonProportions(1.75),
+        rng=np.random.default_rng(seed), start_m=start_m, attempt=attempt,
+    )  # fmt: skip
+
+
+def found_by(sampler: CandidateSampler) -> Trajectory:
+    """The first candidate that works out."""
+    for _ in range(50):
+        try:
+            return sampler.sample()
+        except NoTrajectory:
+            continue
+    raise AssertionError("no candidate")
+
+
+def test_a_given_start_is_kept_and_every_step_has_its_moves():
+    found = sampler("walks to the left, then waves", room(), start_m=(0.4, 2.0)).sample()
+    assert found.path().start_m == (0.4, 2.0)
+    assert [len(moves) for moves in found.moves] == [1, 0]
+    assert len(found.seat_height_m) == 2
+    assert found.position_m[0] < 0.0  # to the viewer's left
+
+
+def test_attempt_2_leaves_the_seats_unless_the_sentence_names_one():
+    usual, without = (found_by(sampler("sits", sofa_room(), attempt=attempt)) for attempt in (0, 2))
+    assert not any("stool" in note for note in usual.notes)
+    assert any("stool" in note for note in without.notes)
+    named = found_by(sampler("sits on the chair", sofa_room(), attempt=2))
+    assert not any("stool" in note for note in named.notes)
+
+
+def test_a_narrow_floor_gives_no_walk():
+    cell = room(boxes=((-3.0, -0.4, 0.0, 6.0), (0.4, 3.0, 0.0, 6.0), (-3.0, 3.0, 0.0, 1.6), (-3.0, 3.0, 2.4, 6.0)))
+    with pytest.raises(NoTrajectory, match="only"):
+        sampler("walks to the left", cell).sample()
+
+
+def test_who_starts_seated():
+    assert starts_seated(plan_motion("sits, then stands up", 4.0))
+    assert not starts_seated(plan_motion("walks", 4.0))
