@@ -27,10 +27,12 @@ SMALL = ClassifierSettings(num_trees=60, boosting_rounds=20)
 
 @pytest.fixture(scope="module")
 def made():
-    return training_set(RECIPE, each=12, seed=1)
+    return training_set(RECIPE, each=1, seed=1)
 
 
-def test_unseen_windows_are_recognised(made):
+@pytest.mark.slow  # test_activity_classifier.py recognises unseen rows, test_evaluate.py trains on stored features
+def test_unseen_windows_are_recognised():
+    made = training_set(RECIPE, each=12, seed=1)
     unseen = generate_windows(RECIPE, each=6, seed=2)
     found = report(evaluate_recogniser(made.train(SMALL), unseen, RECIPE.window_s))
     assert found["window"]["balanced_accuracy"] > 0.74

@@ -7,6 +7,8 @@ import pytest
 from studies.fields import super_resolution
 from studies.manifest import StudyRun
 
+pytestmark = pytest.mark.slow  # test_finer_radar.py tests what is compared here
+
 
 @pytest.fixture(scope="module")
 def baselines(tmp_path_factory) -> dict[str, dict[tuple[str, float], float]]:

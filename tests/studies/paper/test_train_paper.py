@@ -62,6 +62,7 @@ def test_weights_of_another_recipe_are_refused(
 
 
 @pytest.mark.slow
+@pytest.mark.slow  # tests/training/test_trainer.py does the same with a learner of two numbers
 def test_two_processes_train_it(tiny_geometry: Path, features: Path, tmp_path: Path):
     """The fast test of two processes is in tests/training/test_trainer.py, of the same loop."""
     pytest.importorskip("accelerate")
