@@ -44,7 +44,7 @@ def test_version_and_help_end_well(capsys: pytest.CaptureFixture[str]):
 
 
 @pytest.mark.parametrize(
-    "argv", [["fly"], ["radar"], ["radar", "awr1843", "--nope"], ["process", "x.bin"], ["generate", "--frames", "many"]]
+    "argv", [["fly"], ["info"], ["radar", "awr1843", "--nope"], ["process", "x.bin"], ["generate", "--frames", "many"]]
 )
 def test_a_bad_command_line_is_one_line(argv: list[str], capsys: pytest.CaptureFixture[str]):
     assert main(argv) == 2

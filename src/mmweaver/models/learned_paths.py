@@ -230,7 +230,7 @@ class LearnedRoom:
             here = replace(paths, moving=moving, occluded=paths.occluded[some])
             clean = synthesis.moving(moving) + (static - synthesis.occluded(here))[:, None]
             clean = clean.numpy() + self._sample_noise(noise.values[some], first, seed)
-            samples[some] = clean if config.complex_samples else clean.real
+            samples[some] = clean if config.complex_samples else np.real(clean)
         count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
         quantise(torch.from_numpy(samples), count_sqrt_mw)
         return AdcCube(samples=samples, config=config, scale=1.0)

@@ -8,6 +8,7 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.geometry.pinhole import unproject
+from mmweaver.paths.paths import Interaction
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.scene.procedural.arrangement import MIN_FREE_M2, MIN_WALKABLE_M2
 from mmweaver.scene.procedural.parts import Boxes
@@ -140,8 +141,8 @@ def test_the_simulator_accepts_the_true_scene():
     room = make_room("living_room", 0, 1)
     simulator = Simulator(room.scene(), AWR1843)
     assert np.isfinite(simulator.room_adc).all()
-    assert simulator.room.counts["diffuse"] > 3000
-    assert simulator.room.counts["edges"] > 5
+    assert simulator.room.counts[Interaction.DIFFUSE] > 3000
+    assert simulator.room.counts[Interaction.EDGE] > 5
 
 
 def test_a_room_with_its_photo_takes_at_most_a_second_of_one_core():

@@ -58,7 +58,7 @@ def correct_spelling(text: str) -> tuple[str, list[str]]:
 def corrected_word(word: str) -> str:
     """The known word that an unknown one is a misspelling of, or "".
 
-    >>> mended("forwads"), mended("walks"), mended("sings")
+    >>> corrected_word("forwads"), corrected_word("walks"), corrected_word("sings")
     ('forwards', '', '')
     """
     known = _known()
