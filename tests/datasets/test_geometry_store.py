@@ -12,6 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.datasets.dataset_store import read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset
+from mmweaver.datasets.geometry_store import StoredGeometry
 from tests.training.tiny_data import TINY_PLAN
 
 pytest.importorskip("zarr")
@@ -63,6 +64,15 @@ def test_geometry_of_another_body_surface_is_refused(folders: dict[bool, Path], 
     monkeypatch.setattr("mmweaver.datasets.geometry_store.skin_mark", lambda: "another")
     with pytest.raises(InputError, match="another version"):
         read_rooms(folders[True])[0].cube(0)
+
+
+def test_geometry_at_other_instants_of_the_frame_is_refused(folders: dict[bool, Path]):
+    """Longer chirps cut a frame into more segments: what is stored for another count of nodes cannot be used."""
+    stored = read_rooms(folders[True])[0].geometry
+    assert stored is not None
+    longer = replace(AWR1843, num_loops=4 * AWR1843.num_loops)
+    with pytest.raises(InputError, match="instants a frame"):
+        _ = StoredGeometry(folder=stored.folder, config=longer).node_joints_m
 
 
 def test_signals_and_geometry_are_not_mixed(folders: dict[bool, Path]):

@@ -22,6 +22,7 @@ from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points
+from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.static_paths_store import room_arrays, room_of, room_words
 from mmweaver.paths.visibility import Visibility
@@ -129,6 +130,12 @@ class StoredGeometry:
             raise InputError(
                 f"{self.folder} was made by another version of mmweaver, whose people have another skin; make the data"
                 " set again"
+            )
+        num_nodes = len(FrameClock(self.config).node_s)
+        if group["node_joints_m"].shape[2] != num_nodes:
+            raise InputError(
+                f"{self.folder} was made by another version of mmweaver, which kept joints at"
+                f" {group['node_joints_m'].shape[2]} instants a frame, not {num_nodes}; make the data set again"
             )
         return group
 
