@@ -125,7 +125,7 @@ class StoredGeometry:
     def _group(self) -> Any:
         import zarr
 
-        group = zarr.open_group(self.folder / GEOMETRY, mode="r")
+        group: Any = zarr.open_group(self.folder / GEOMETRY, mode="r")
         if group.attrs.get("skin") != skin_mark():
             raise InputError(
                 f"{self.folder} was made by another version of mmweaver, whose people have another skin; make the data"
