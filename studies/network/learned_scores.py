@@ -228,7 +228,7 @@ def cases_of(
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
-    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")

@@ -87,7 +87,7 @@ def rows_of(
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
-    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those that come along)")
+    parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
     parser.add_argument("--recogniser", type=Path, action=Reads, required=True, help="of recipe activity")
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper")
     parser.add_argument("--split", default="test_room")

@@ -21,7 +21,7 @@ pytest.importorskip("zarr")
 
 
 def test_train_then_generate(tiny_signals: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    data, run, out = str(tiny_signals), tmp_path / "run", tmp_path / "woven"
+    data, run, out = str(tiny_signals), tmp_path / "run", tmp_path / "generated"
     assert main(["train", "weaver", "--data", data, "--out", str(run), "--steps", "2", "--batch", "1", "--json"]) == 0
     weights = json.loads(capsys.readouterr().out)["weights"]
     words = ["generate", "--demo", "--method", "weaver", "--weights", weights, "--frames", "6", "--out", str(out)]
@@ -43,7 +43,7 @@ def test_train_then_generate(tiny_signals: Path, tmp_path: Path, capsys: pytest.
 
 
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    for words, told in (
+    for words, message in (
         (["train", "weaver", "--data", str(tmp_path), "--out", str(tmp_path / "o")], "no data set"),
         (["generate", "--demo", "--method", "physics", "--weights", "w", "--out", str(tmp_path / "g")],
          "weights are for the method"),
@@ -52,7 +52,7 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     ):  # fmt: skip
         assert main(words) == 2
         error = capsys.readouterr().err.strip()
-        assert told in error
+        assert message in error
         assert error.count("\n") == 0
     assert not (tmp_path / "g").exists()
 
@@ -121,7 +121,7 @@ def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.Ca
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         ([], "what to train on"), (["--captures", "a"], "give them with --from"),
         (["--data", "d", "--rgb", "p.png", "--depth", "d.png"], "photo of --captures"),
@@ -130,10 +130,10 @@ def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.Ca
     ],
 )  # fmt: skip
 def test_options_that_contradict_are_one_line(
-    words: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    words: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):
     assert main(["train", "weaver", "--out", str(tmp_path / "out"), *words]) == 2
     error = capsys.readouterr().err.strip()
-    assert told in error
+    assert message in error
     assert error.count("\n") == 0
     assert not (tmp_path / "out").exists()

@@ -34,12 +34,12 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_a_hub_name_is_taken_from_the_cache(cache: Path):
     commit = "0123456789abcdef0123456789abcdef01234567"
-    own = cache / "models--somebody--woven"
+    own = cache / "models--somebody--weights"
     (own / "snapshots" / commit).mkdir(parents=True)
     (own / "refs").mkdir()
     (own / "refs" / "main").write_text(commit)
     (own / "snapshots" / commit / "weights.safetensors").write_bytes(b"kept")
-    assert find_weights("somebody/woven").read_bytes() == b"kept"
+    assert find_weights("somebody/weights").read_bytes() == b"kept"
 
 
 def test_a_hub_name_that_cannot_be_had_is_one_line(cache: Path):

@@ -33,7 +33,7 @@ def recording(scene: Scene) -> RadarCube:
     return radar_cube(Simulator(scene, AWR1843, micro_seed=7).run((), num_frames=8, seed=1).adc)
 
 
-def _woven(scene: Scene, recording: RadarCube | None) -> LearnedRoom:
+def _learned_room(scene: Scene, recording: RadarCube | None) -> LearnedRoom:
     torch.manual_seed(0)
     return LearnedRoom(WeaverNetwork().eval(), scene, AWR1843, background=recording)
 
@@ -43,7 +43,7 @@ def _still(cube: RadarCube) -> np.ndarray:
 
 
 def test_what_rests_is_the_recordings_own(scene: Scene, recording: RadarCube):
-    known, sampled = (_woven(scene, one) for one in (recording, None))
+    known, sampled = (_learned_room(scene, one) for one in (recording, None))
     recorded = _still(recording)
     assert np.allclose(known.layer.numpy(), recorded, atol=1e-6 * np.abs(recorded).max())
     assert np.linalg.norm(sampled.layer.numpy() - recorded) > np.linalg.norm(recorded)
@@ -51,7 +51,7 @@ def test_what_rests_is_the_recordings_own(scene: Scene, recording: RadarCube):
 
 def test_counts_without_a_scale_come_out_as_counts(scene: Scene, recording: RadarCube):
     counts = replace(recording, values=(1e6 * recording.values).astype(np.complex64), scale=float("nan"))
-    with_scale, without = (_woven(scene, one) for one in (recording, counts))
+    with_scale, without = (_learned_room(scene, one) for one in (recording, counts))
     assert with_scale.background is not None
     assert without.background is not None
     assert with_scale.background.assumptions == ()
@@ -90,9 +90,9 @@ def test_occlusion_takes_away_what_was_recorded_and_not_what_was_sampled():
 def test_what_moves_in_the_recording_is_told(scene: Scene, recording: RadarCube):
     values = recording.values.copy()
     values[:, 30, 5] += 100 * np.abs(values[:, :, 5]).mean()
-    woven = _woven(scene, replace(recording, values=values))
-    assert woven.background is not None
-    assert any("moves" in sentence for sentence in woven.background.assumptions)
+    room = _learned_room(scene, replace(recording, values=values))
+    assert room.background is not None
+    assert any("moves" in sentence for sentence in room.background.assumptions)
 
 
 @pytest.mark.parametrize("harm", ["radar", "slower", "nan", "zeros", "none"])
@@ -106,7 +106,7 @@ def test_what_is_no_recording_of_this_radar_is_refused(scene: Scene, recording: 
         "none": replace(recording, values=values[:0]),
     }[harm]
     with pytest.raises(InputError, match="other settings" if harm in ("radar", "slower") else "no signal"):
-        _woven(scene, harmed)
+        _learned_room(scene, harmed)
 
 
 def test_a_recording_of_some_other_place_has_no_scale():

@@ -33,14 +33,14 @@ def test_list_names_every_study_with_its_question(capsys: pytest.CaptureFixture[
 
 
 def test_bad_input_is_one_line(capsys: pytest.CaptureFixture[str]):
-    for words, told in (
+    for words, message in (
         (["run", "no_such_study"], "no study is called"),
         (["run", "mars", "--data", "no/such/folder"], "does not exist"),
         (["run", "mars", "--data", ".", "--threads", "0"], "--threads"),
     ):
         assert main(words) == 2
         error = capsys.readouterr().err
-        assert told in error
+        assert message in error
         assert error.count("\n") == 1
 
 

@@ -1,6 +1,6 @@
 """Activity classifier: the averaged votes of two kinds of tree ensembles on window features."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,9 +23,6 @@ class ClassifierSettings:
     leaves: int = 15
     repetitions: int = 1  # ensembles of both kinds with different seeds, averaged
     seed: int = 0
-
-    def as_dict(self) -> dict[str, Any]:
-        return asdict(self)
 
 
 class ActivityClassifier:

@@ -4,7 +4,7 @@ import logging
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import torch
 
@@ -13,18 +13,6 @@ from mmweaver.core.errors import InputError
 
 SAVE_EVERY_S, REPORT_EVERY = 60.0, 50
 log = logging.getLogger(__name__)
-
-
-class Stateful(Protocol):
-    """Anything with a state to save."""
-
-    def state_dict(self) -> Any:
-        """Everything needed to resume."""
-        ...
-
-    def load_state_dict(self, state: Any, /) -> Any:
-        """Resumes from a state."""
-        ...
 
 
 class Resumable:

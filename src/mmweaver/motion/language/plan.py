@@ -4,8 +4,6 @@ from dataclasses import dataclass
 
 from mmweaver.motion.language.activities import BY_KEY
 
-ON_THE_SPOT = ("jog", "leap")  # moving, unless the direction is "spot"
-
 
 @dataclass(frozen=True, kw_only=True)
 class Step:

@@ -9,8 +9,6 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics
 from mmweaver.geometry.pinhole import resized
 
-DEFAULT_DEPTH_UNIT_M = 0.001
-
 # RealSense D455, colour: 1280 x 800 pixels, 90 degrees horizontally (Intel's data sheet of the D400 series). Its
 # smaller pictures are centred crops of that, scaled: 640 x 480 has a focal length of 384 pixels.
 _D455_WIDTH, _D455_HEIGHT, _D455_FOCAL = 1280, 800, 640.0

@@ -179,11 +179,6 @@ def sofa_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     return FurnitureGroup(items=tuple(items))
 
 
-def sofa_alone(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
-    """A sofa without a table."""
-    return FurnitureGroup(items=(at_wall(seat_furniture.sofa(palette, rng, 2)),))
-
-
 def armchair_place(palette: Palette, rng: np.random.Generator) -> FurnitureGroup:
     """An armchair at a small angle to the wall."""
     made = seat_furniture.armchair(palette, rng)

@@ -7,7 +7,6 @@ from jaxtyping import Float
 
 from mmweaver.motion.animation.arm_reach import reach
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.kinematics import ankle_from_foot
 from mmweaver.motion.animation.library.standing import STAND_STRETCH
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import StepContext
@@ -97,15 +96,6 @@ def lean_over(controls: Controls, body: SkeletonProportions, side: int, share: P
     left = OUTWARD[side] * 0.043 * body.height_m * share
     shift_pelvis(controls, 0.0, left, 0.0)
     controls.spine_rad[:, 0] += -OUTWARD[side] * 0.05 * share
-
-
-def set_ankle(
-    controls: Controls, body: SkeletonProportions, side: int, ankle_m: Float[Array, "n 3"], yaw: PerTime, pitch: PerTime
-) -> None:
-    """Puts an ankle at a position (n, 3) in metres (z from the floor) with the foot's yaw and pitch (n,)."""
-    controls.foot_rad[:, side, 0] = yaw
-    controls.foot_rad[:, side, 1] = pitch
-    controls.foot_m[:, side] = ankle_m - ankle_from_foot(body, yaw, pitch)
 
 
 def mix_arm(controls: Controls, side: int, arm: Float[Array, "n 4"], weight: PerTime) -> None:
