@@ -3,12 +3,13 @@
 python -m studies run kitml --sentences <folder of kitml_text>
 python -m studies run kitml --sentences <folder> --list        # the sentences to annotate, with their readings
 
-The sentences are split by motion into a half on which the lexicon was developed and a half for checking. 200 understood
-sentences of the checking half, sampled with a fixed seed, were annotated by hand: correct if every movement that the
-sentence names is shown in its order, with its side, direction, hand or foot where one is given. The verdicts are in
-results/kitml/judgements.json with the reading they were given for; a reading that has changed since makes its verdict
-void, and the result counts those. Three earlier samples (judgements_first.json and so on) are unchanged: their faults
-were fixed, so they no longer check anything.
+The sentences are split by motion into a half on which the lexicon was developed and a half for checking. The understood
+ones among 300 sentences of the checking half, drawn with a fixed seed after the grammar was frozen from those that no
+earlier sample had judged, were annotated by hand: correct if every movement that the sentence names is shown in its
+order, with its side, direction, hand or foot where one is given. The verdicts are in results/kitml/judgements.json
+with the reading they were given for; a reading that has changed since makes its verdict void, and the result counts
+those. Four earlier samples (judgements_first.json and so on) are unchanged: their faults were fixed, so they no longer
+check anything. docs/motion.md says what else limits the figures.
 """
 
 import argparse
@@ -29,10 +30,10 @@ from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.study import Reads
 
-JUDGED = 200
+DRAWN = 300  # sentences of the checking half that were never judged before
 Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | wrong), why
-SEED = 2026
-EARLIER = ("first", "second", "third")
+SEED, UNIFORM_SEED = 2027, 2028
+EARLIER = ("first", "second", "third", "fourth")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,9 +91,15 @@ def understood(sentences: list[Sentence]) -> dict[str, str]:
 
 
 def sampled(readings: dict[str, str], checking: list[Sentence], before: Collection[str]) -> list[str]:
-    """The names to annotate: the first 200 understood of the checking half in a fixed order, without earlier ones."""
-    order = stream(SEED, "kitml", "judged").permutation(len(checking))
-    return [checking[k].name for k in order if checking[k].name in readings and checking[k].name not in before][:JUDGED]
+    """The names to annotate: those understood of 300 of the checking half in a fixed order, without earlier ones."""
+    order = stream(SEED, "kitml", "fresh").permutation(len(checking))
+    drawn = [checking[k].name for k in order if checking[k].name not in before][:DRAWN]
+    return [name for name in drawn if name in readings]
+
+
+def uniform_draw(checking: list[Sentence]) -> list[str]:
+    """300 sentences of the checking half, understood or not, judged before or not."""
+    return [checking[k].name for k in stream(UNIFORM_SEED, "kitml", "uniform").permutation(len(checking))[:DRAWN]]
 
 
 def result_row(
@@ -110,6 +117,9 @@ def result_row(
         "understood": _share(len(readings), len(sentences), "sentences that give a plan, of all"),
         "understood_checking_half": _share(
             sum(s.name in readings for s in checking), len(checking), "the same, of the half not developed on"
+        ),
+        "understood_draw": _share(
+            sum(name in readings for name in uniform_draw(checking)), DRAWN, "the same, of 300 drawn from that half"
         ),
         "understood_new_sentences": _share(
             sum(s.name in readings for s in checking if _plain(s.text) not in seen),
@@ -162,7 +172,7 @@ def measure(run: StudyRun, folder: Path) -> Path:
     judgements, before = _judgements(run.out, "judgements"), _before(run.out)
     row = result_row(sentences_of(path), judgements, before, hashlib.sha256(path.read_bytes()).hexdigest())
     unknown = {"seconds": "see the manifest"}
-    return run.write("kitml", "reading", config={"judged": JUDGED}, rows=complete_rows([row], unknown=unknown))
+    return run.write("kitml", "reading", config={"drawn": DRAWN}, rows=complete_rows([row], unknown=unknown))
 
 
 def _judgements(out: Path, name: str) -> Judgements:

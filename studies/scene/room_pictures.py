@@ -122,7 +122,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     draw_sheet(options.out / "rooms_procedural.png")
     made = [(make_room(*key), f"{key[0]}, noisy depth alone") for key in SHOWN]
-    found = []
+    found: list[tuple[str, Scene, Scene | None]] = []
     for index, (room, name) in enumerate(made):
         photo = room.photo(list(LIGHTINGS)[index % 4], noise=True)
         unnamed = type(photo)(rgb=photo.rgb, depth_m=photo.depth_m, intrinsics=photo.intrinsics)

@@ -52,7 +52,7 @@ def test_the_first_is_what_it_would_be_alone_and_the_same_seed_the_same():
     alone = compose(PLANS[0], SCENE, seed=5, **REST)
     assert np.array_equal(people[0].pose.joints_m, alone.pose.joints_m)
     assert np.array_equal(people[1].pose.joints_m, again[1].pose.joints_m)
-    assert [person.pose.subject for person in people] == [0, 1]
+    assert people[0].pose.subject != people[1].pose.subject
 
 
 def test_equal_texts_are_different_people():
@@ -71,14 +71,21 @@ def test_a_crowd_is_refused_and_so_are_places_too_near():
 def test_heights_are_each_persons_own():
     one, two, three = compose_people(PLANS[:3], SCENE, seed=0, heights_m=[1.7, None, 1.9], **REST)
     assert (one.pose.height_m, three.pose.height_m) == (1.7, 1.9)
-    assert 1.6 < two.pose.height_m < 2.0
+    assert 1.4 < two.pose.height_m < 2.0
+
+
+def test_subjects_are_chosen_and_differ():
+    one, two = compose_people(PLANS[:2], SCENE, seed=0, subjects=[7, None], **REST)
+    assert one.pose.subject == 7 != two.pose.subject
+    with pytest.raises(InputError, match="must differ"):
+        compose_people(PLANS[:2], SCENE, seed=0, subjects=[7, 7], **REST)
 
 
 def test_who_is_there_already_stays_and_the_others_keep_clear():
     recorded = compose(PLANS[0], SCENE, seed=9, **REST)
     people = compose_people([None, *PLANS[1:3]], SCENE, seed=0, first=recorded, **REST)
     assert people[0] is recorded
-    assert [person.pose.subject for person in people] == [0, 1, 2]
+    assert len({person.pose.subject for person in people}) == 3
     for one, other in combinations(people, 2):
         assert separations_m(one.pose, other.pose)[0] >= 0.5
     assert compose_people([None], SCENE, seed=0, first=recorded, **REST) == (recorded,)

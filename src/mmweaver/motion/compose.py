@@ -3,15 +3,22 @@
 from dataclasses import dataclass, replace
 
 from mmweaver.core.records import PoseSequence, Scene
-from mmweaver.core.seeding import stream
-from mmweaver.motion.animation.assemble import assemble
-from mmweaver.motion.animation.skeleton_proportions import SHORTEST_M, TALLEST_M, SkeletonProportions
-from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.animation.assemble import assembled_controls, solved
+from mmweaver.motion.animation.controls import Controls
+from mmweaver.motion.animation.habits import NO_HABITS, habits_of
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.language.plan import APPROXIMATED, ClauseRecord, MotionPlan
+from mmweaver.motion.people import Person, person_of, subject_of, with_habits
+from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.collision import CollisionMap
-from mmweaver.motion.planning.collision_ranking import least_collision
+from mmweaver.motion.planning.collision_ranking import RankedPlacement, least_collision
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.more_room import with_more_room
+from mmweaver.motion.planning.named_places import settled
 from mmweaver.motion.planning.placement import Placement, place
 from mmweaver.motion.planning.targets import without_targets
+
+RUN_ROOM_M = 3.5  # straight free floor that running to and fro at 3 m/s needs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,6 +28,23 @@ class Motion:
     pose: PoseSequence  # 120 Hz, from two samples before 0 to two after the end, in the radar's frame
     plan: MotionPlan
     assumptions: tuple[str, ...]  # plain sentences
+    person: Person | None = None  # None of a recorded motion
+    end: BodyState | None = None  # how it ends; None of a recorded motion
+    controls: Controls | None = None  # at the times of the pose; None of a recorded motion
+
+    @property
+    def clauses(self) -> tuple[ClauseRecord, ...]:
+        """What became of every clause: the plan's records, and what the room made of them."""
+        records = self.plan.clauses
+        room = [note for note in self.assumptions if note not in self.plan.notes]
+        for step in self.plan.steps:
+            for note in room:
+                if step.clause and repr(step.clause) in note:
+                    records = tuple(
+                        record.lowered_to(APPROXIMATED, note) if number in step.clauses else record
+                        for number, record in enumerate(records)
+                    )
+        return records
 
 
 def compose(
@@ -31,8 +55,13 @@ def compose(
     range_window_m: tuple[float, float],
     start_m: tuple[float, float] | None = None,
     height_m: float | None = None,
+    subject: int | None = None,
+    person: Person | None = None,
+    heading_rad: float | None = None,
+    is_varied: bool = True,
     others: tuple[PoseSequence, ...] = (),
     has_photo: bool = True,
+    after: BodyState | None = None,
 ) -> Motion:
     """Finds a free trajectory on the scene's floor for a plan, and animates the body along it.
 
@@ -42,10 +71,15 @@ def compose(
         seed: decides everything that the sentence leaves open.
         range_window_m: nearest and farthest slant range that the radar keeps; the body stays inside.
         start_m: where the person starts, (x, y); chosen if None.
-        height_m: the body's height; if None sampled between 1.63 and 1.96 m.
+        height_m: the body's height; if None as the sentence describes the person, else of the population.
+        subject: who it is: surface, build, habits and usual height; drawn by the seed if None.
+        heading_rad: where the body faces first, from +x towards +y; chosen if None.
+        is_varied: False keeps people who stand facing the radar, where it sees them best, and gives them no habits.
+        person: instead of the two, a person made otherwise.
         others: people who are already in the scene; the trajectory keeps clear of them (see `multi_person`).
         has_photo: False where no photo stands behind the scene. Nobody can then walk to a door or a table of it; the
             walk leads where there is room, and an assumption says so.
+        after: how the motion before ended, which this one goes on from (see `continuous`).
 
     Raises InputError where the room has no place for the motion.
     """
@@ -53,32 +87,58 @@ def compose(
         raise ValueError("the plan is not scheduled; make it with plan_motion, or call schedule")
     if not has_photo:
         plan = without_targets(plan)
-    if height_m is None:
-        height_m = float(stream(seed, "motion", "height").uniform(SHORTEST_M, TALLEST_M))
-    body = SkeletonProportions(height_m)
-    floor = FloorMap(scene, range_window_m, height_m)
-    plan, jogging_notes = _jog_on_the_spot(plan)
+    plan = settled(plan)
+    if person is None:
+        person = person_of(subject_of(seed) if subject is None else subject, plan.person, height_m)
+    plan = with_habits(plan, person)
+    body = SkeletonProportions(person.height_m)
+    floor = FloorMap.of(scene, range_window_m, person.height_m)
+    plan, running_notes = _running(plan, floor)
 
-    def candidates(attempt: int) -> list[Placement]:
-        return place(plan, floor, body, seed=seed, start_m=start_m, others=others, attempt=attempt)
+    controls: dict[int, Controls] = {}
 
-    def animate(placement: Placement) -> PoseSequence:
-        return assemble(
-            placement.steps, placement.path, body, seed=seed, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m
-        )
+    def compose_on(plan: MotionPlan, floor: FloorMap) -> RankedPlacement:
+        def candidates(attempt: int) -> list[Placement]:
+            return place(
+                plan, floor, body, seed=seed, start_m=start_m, others=others, attempt=attempt,
+                heading_rad=heading_rad, is_varied=is_varied, after=after,
+            )  # fmt: skip
 
-    best = least_collision(candidates, animate, CollisionMap.of(scene))
-    notes = plan.notes + jogging_notes + best.placement.assumptions + best.notes
-    return Motion(pose=best.pose, plan=plan, assumptions=notes)
+        def animate(placement: Placement) -> PoseSequence:
+            made = assembled_controls(
+                placement.steps, placement.path, body, seed=seed, duration_s=plan.duration_s,
+                habits=habits_of(person.subject) if is_varied else NO_HABITS,
+                entry=None if after is None else after.controls,
+            )  # fmt: skip
+            controls[id(placement)] = made
+            pose = solved(made, body, duration_s=plan.duration_s, floor_z_m=scene.floor_z_m)
+            return replace(pose, subject=person.subject, girth=person.girth)
 
+        return least_collision(candidates, animate, CollisionMap.of(scene))
 
-def _jog_on_the_spot(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
-    """Jogging takes more room than most rooms have: without a direction it is on the spot, and a note says so."""
-    is_aimless = [step.lower == "jog" and step.direction == "" for step in plan.steps]
-    if not any(is_aimless):
-        return plan, ()
-    steps = tuple(
-        replace(step, direction="spot") if aimless else step
-        for step, aimless in zip(plan.steps, is_aimless, strict=True)
+    plan, best, room_notes = with_more_room(plan, floor, compose_on)
+    described = (person.note,) if person.described else ()
+    notes = plan.notes + described + running_notes + room_notes + best.placement.assumptions + best.notes
+    end = best.placement.end_state(plan, body)
+    return Motion(
+        pose=best.pose, plan=plan, assumptions=notes, person=person, end=end, controls=controls[id(best.placement)]
     )
-    return replace(plan, steps=steps), ("no direction is given for jogging: the person jogs on the spot",)
+
+
+def _running(plan: MotionPlan, floor: FloorMap) -> tuple[MotionPlan, tuple[str, ...]]:
+    """Running to and fro takes more room than most rooms have: without a direction it is then on the spot, and said."""
+    if not any(step.lower == "jog" and not (step.direction or step.target) for step in plan.steps):
+        return plan, ()
+    longest_m = floor.longest_free_m(RUN_ROOM_M)
+    if longest_m >= RUN_ROOM_M:
+        return plan, ()
+    steps, notes = [], []
+    for step in plan.steps:
+        aimless = step.lower == "jog" and not (step.direction or step.target or step.arc_deg)
+        steps.append(replace(step, direction="spot") if aimless else step)
+        if aimless:
+            notes.append(
+                f"for {step.clause!r} there are {longest_m:.1f} m of straight free floor, {RUN_ROOM_M:g} m are needed:"
+                " the person runs on the spot"
+            )
+    return replace(plan, steps=tuple(steps)), tuple(notes)

@@ -33,7 +33,10 @@ def empty_floor() -> Scene:
     )  # fmt: skip
 
 
-def act_out(text: str, *, duration_s: float | None = None, seed: int = 0, height_m: float | None = None) -> Motion:
+def act_out(
+    text: str, *, duration_s: float | None = None, seed: int = 0, height_m: float | None = None,
+    subject: int | None = None,
+) -> Motion:  # fmt: skip
     """The motion of a sentence on an empty floor; the radar stands at the origin, the floor lies 1.1 m below it.
 
     Seats are stools, as nothing else stands there, and a walk to a door leads where there is room. Without
@@ -46,5 +49,5 @@ def act_out(text: str, *, duration_s: float | None = None, seed: int = 0, height
     """
     return compose(
         plan_motion(text, duration_s), empty_floor(), seed=seed, range_window_m=WINDOW_M, height_m=height_m,
-        has_photo=False,
+        subject=subject, has_photo=False,
     )  # fmt: skip

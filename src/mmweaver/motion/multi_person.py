@@ -7,13 +7,13 @@ Clear means at all times: pelvises at least 0.5 m apart, and at least 2 cm betwe
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.seeding import stream
 from mmweaver.motion.compose import Motion, compose
 from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.people import MOST_SUBJECTS, check_subject, subject_of
 from mmweaver.motion.planning.separation import LEAST_PELVIS_DISTANCE_M, are_separate
 
 Place = tuple[float, float]
@@ -29,24 +29,32 @@ def compose_people(
     range_window_m: tuple[float, float],
     starts_m: Sequence[Place | None] | None = None,
     heights_m: Sequence[float | None] | None = None,
+    subjects: Sequence[int | None] | None = None,
     first: Motion | None = None,
+    heading_rad: float | None = None,
 ) -> tuple[Motion, ...]:
-    """One motion for each scheduled plan, in their order, as subjects 0, 1, 2 ...
+    """One motion for each scheduled plan, in their order; each is another subject.
 
-    `starts_m` and `heights_m` hold each person's start (x, y) and height, None where it is chosen. `first` is the first
+    `starts_m`, `heights_m` and `subjects` hold each person's start (x, y), height and number, None where it is chosen.
+    `heading_rad` is where the first faces first. `first` is the first
     person's motion where it exists already (a recorded one); it stays as it is, and `plans[0]` is not used. Otherwise
     the first person moves as they would alone, wherever that leaves room for the others. Raises InputError as
     `compose` does, and where the people cannot be kept separate.
     """
     starts = [None] * len(plans) if starts_m is None else list(starts_m)
     heights = [None] * len(plans) if heights_m is None else list(heights_m)
+    who = [None] * len(plans) if subjects is None else list(subjects)
+    if first is not None:
+        who[0] = first.pose.subject
+    numbers = _subjects(seed, who)
 
     def alone(index: int, own_seed: int, others: tuple[PoseSequence, ...]) -> Motion:
         plan = plans[index]
         assert plan is not None
         return compose(
             plan, scene, seed=own_seed, range_window_m=range_window_m, start_m=starts[index],
-            height_m=heights[index], others=others,
+            height_m=heights[index], subject=numbers[index], others=others,
+            heading_rad=None if index or first is not None else heading_rad,
         )  # fmt: skip
 
     if len(plans) == 1:
@@ -83,10 +91,23 @@ def _join(
     others = tuple(one.pose for one in people)
     for retry in range(TRIES_PER_PERSON):
         motion = alone(index, _seed_of(seed, index, attempt, retry), others)
-        motion = replace(motion, pose=replace(motion.pose, subject=index))
         if all(are_separate(motion.pose, other) for other in others):
             return motion
     raise InputError(f"person {index + 1} comes too near to somebody else; try another place")
+
+
+def _subjects(seed: int, given: list[int | None]) -> list[int]:
+    """Everybody's number: as given, else drawn by the seed, no number twice. Raises InputError for one given twice."""
+    fixed = [check_subject(subject) for subject in given if subject is not None]
+    if len(set(fixed)) < len(fixed):
+        raise InputError(f"nobody is there twice; the subjects {', '.join(map(str, fixed))} must differ")
+    numbers: list[int] = []
+    for index, subject in enumerate(given):
+        number = subject_of(seed, index) if subject is None else subject
+        while subject is None and (number in numbers or number in fixed):
+            number = (number + 1) % MOST_SUBJECTS
+        numbers.append(number)
+    return numbers
 
 
 def _seed_of(seed: int, index: int, attempt: int, retry: int) -> int:

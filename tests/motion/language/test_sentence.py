@@ -205,7 +205,7 @@ REFUSED = {
     "asdf qwer": "asdf",
     "flies": "flies",
     "walks and then flies": "'flies'",
-    "walks and sings": "'sings'",
+    "walks and teleports": "'teleports'",
     "lies down on the bed": "on the floor only",
     "does not walk": "not",
     "doesn't wave": "not",
@@ -244,13 +244,14 @@ def test_refused_with_the_reason(text: str):
 def test_an_unknown_activity_says_what_comes_nearest_and_where_all_are_listed():
     with pytest.raises(InputError, match=r"known are standing, walking and .* mmweaver motions|did you mean"):
         parse("the person teleports")
-    with pytest.raises(InputError, match="did you mean 'a person plays golf'"):
-        parse("a person swings a bat")
+    with pytest.raises(InputError, match="did you mean 'a person dances'"):
+        parse("a person grooves along")
 
 
 def test_what_is_left_aside_is_told():
     assert any("'zealously'" in note for note in parse("walks zealously").notes)
-    assert any("distance" in note for note in parse("walks 2 meters").notes)
+    assert any("distance" in note for note in parse("jumps 2 meters forward").notes)
+    assert parse("walks 2 meters").steps[0].distance_m == 2.0
     assert any("right in the photo" in note for note in parse("walks to her left").notes)
     assert parse("a person walks to the left, then sits down").notes == ()
 

@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.sentence import parse
-from mmweaver.motion.language.timing import schedule
+from mmweaver.motion.language.timing import plan_motion, schedule
 
 
 def spans(text: str, duration_s: float) -> list[float]:
@@ -33,7 +33,26 @@ def test_default_two_seconds_hold_a_walk_and_sitting_down():
     assert min(spans("walks to the left, then sits down", 2.0)) > 0.8
 
 
-def test_a_part_of_one_movement_is_fine_but_not_of_a_counted_one():
+def test_a_part_of_one_movement_is_shown():
     assert spans("squats", 0.4)[0] > 1.0
-    with pytest.raises(InputError, match="at least"):
-        spans("claps ten times", 1.0)
+
+
+def test_what_does_not_fit_is_cut_and_said():
+    plan = schedule(parse("claps ten times"), 2.0)
+    assert 3 <= plan.steps[0].count < 10
+    assert plan.clauses[0].status == "approximated"
+    assert f"{plan.steps[0].count} of 10 times" in plan.clauses[0].how
+    plan = schedule(parse("walks to the left, bows, then lies down"), 2.5)
+    assert [step.lower for step in plan.steps] == ["walk", "bow"]
+    assert [clause.status for clause in plan.clauses] == ["done", "done", "not done"]
+    assert "2.5 s are over" in plan.clauses[2].how
+    with pytest.raises(InputError, match=r"at least 0\.6 s"):
+        schedule(parse("squats, then waves"), 0.1)
+
+
+def test_a_short_sentence_is_repeated_in_a_long_time():
+    plan = plan_motion("bows", 10.0)
+    assert len(plan.steps) == 4
+    assert "4 times" in plan.notes[-1]
+    assert len(plan_motion("falls", 10.0).steps) == 1  # it would have to get up first
+    assert len(plan_motion("waves", 10.0).steps) == 1  # goes on

@@ -15,7 +15,7 @@ HERE = Path("poses.npz")
 
 
 def poses(frames: int = 5, numbers: int = 156) -> dict[str, np.ndarray]:
-    return {"poses": np.zeros((frames, numbers)), "trans": np.zeros((frames, 3)), "mocap_framerate": np.float64(100)}
+    return {"poses": np.zeros((frames, numbers)), "trans": np.zeros((frames, 3)), "mocap_framerate": np.array(100.0)}
 
 
 def test_at_rest_it_is_the_mean_body_in_a_t_pose():

@@ -86,7 +86,7 @@ def test_the_std_of_another_data_set_is_refused(tmp_path: Path):
     [
         (lambda folder: (folder / "std.npy").unlink(), r"std\.npy is missing"),
         (lambda folder: np.save(folder / "mean.npy", np.zeros(251)), r"shape \(251,\)"),
-        (lambda folder: np.save(folder / "mean.npy", np.array([{}], object), allow_pickle=True), "no .npy array"),
+        (lambda folder: np.save(folder / "mean.npy", np.array([{}], object), allow_pickle=True), "pickled objects"),
         (lambda folder: (folder / "tokenizer.json").write_text("{}"), "text tokenizer"),
         (lambda folder: (folder / "second.ckpt").write_text(""), "2 checkpoints"),
         (lambda folder: (folder / "motiongpt_s3_h3d.tar").unlink(), "no checkpoint"),

@@ -9,20 +9,23 @@ import pytest
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.motion.animation.root_path import RootPath
-from mmweaver.motion.planning.collision import CollisionMap
-from mmweaver.motion.planning.collision_ranking import MARGIN_M, least_collision
+from mmweaver.motion.planning.body_samples import BodySamples
+from mmweaver.motion.planning.collision import CollisionMap, Place
+from mmweaver.motion.planning.collision_ranking import MARGIN_M, RankedPlacement, least_collision
 from mmweaver.motion.planning.placement import Placement
 from tests.motion.rooms import room
 from tests.rooms import standing_person
 
-POSE = standing_person((0.0, 2.0, -1.1), seconds=0.2)
-
 
 class _Known(CollisionMap):
-    """Says what a pose's height says."""
+    """A wall's face at y = 2 m: a body is as deep in it as its pelvis is behind that."""
 
-    def penetration_m(self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0):
-        return max(pose.height_m - 1.0 + margin_m, 0.0)
+    def penetration_m(self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0):
+        assert isinstance(pose, BodySamples)
+        return max(float(pose.pelvis_m[1]) - 2.0 + margin_m, 0.0)
+
+    def estimates_m(self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float):
+        return np.array([self.penetration_m(body, margin_m=margin_m) for body in bodies])
 
 
 def _chosen(*penetration_m: list[float]):
@@ -35,22 +38,25 @@ def _chosen(*penetration_m: list[float]):
             raise InputError("no other")
         return [_placement(deep) for deep in penetration_m[again]]
 
-    def moved(placement: Placement) -> PoseSequence:
-        return PoseSequence(
-            joints_m=POSE.joints_m, time_s=POSE.time_s, height_m=1.0 + placement.path.heading_rad, subject=0
-        )
+    return least_collision(draw, _moved, _Known(room())), drawn
 
-    return least_collision(draw, moved, _Known(room())), drawn
+
+def _moved(placement: Placement) -> PoseSequence:
+    return standing_person((*placement.path.start_m, -1.1), seconds=0.2)
+
+
+def _depth_m(best: RankedPlacement) -> float:
+    return round(best.placement.path.start_m[1] - 2.0, 3)
 
 
 def _placement(penetration_m: float) -> Placement:
-    path = RootPath(start_m=(0.0, 2.0), heading_rad=penetration_m, moves=(), turns=())
+    path = RootPath(start_m=(0.0, 2.0 + penetration_m), heading_rad=-np.pi / 2, moves=(), turns=())
     return Placement(path=path, steps=(), seats_m=(), assumptions=())
 
 
 def test_the_first_that_keeps_the_margin_is_taken():
     best, drawn = _chosen([0.01, -MARGIN_M - 0.001, -0.3])
-    assert best.placement.path.heading_rad == -MARGIN_M - 0.001
+    assert _depth_m(best) == round(-MARGIN_M - 0.001, 3)
     assert drawn == [0]
     assert best.notes == ()
 
@@ -58,29 +64,31 @@ def test_the_first_that_keeps_the_margin_is_taken():
 def test_others_are_drawn_where_none_keeps_clear():
     best, drawn = _chosen([0.05, 0.02], [0.04, -0.2])
     assert drawn == [0, 1]
-    assert best.placement.path.heading_rad == -0.2
+    assert _depth_m(best) == -0.2
 
 
 def test_seats_are_left_only_where_one_gets_in_so_far_that_it_is_said():
     best, drawn = _chosen([0.02, 0.05], [0.015], [-0.2])
-    assert (best.placement.path.heading_rad, drawn) == (0.015, [0, 1])
+    assert (_depth_m(best), drawn) == (0.015, [0, 1])
     best, drawn = _chosen([0.05], [0.04], [-0.2])
-    assert (best.placement.path.heading_rad, drawn) == (-0.2, [0, 1, 2])
+    assert (_depth_m(best), drawn) == (-0.2, [0, 1, 2])
 
 
 def test_of_two_seats_the_one_where_the_trunk_is_seen_is_taken():
     """The camera sees something 3 m away: the first seat is behind it."""
-    seats = [dataclasses.replace(_placement(-0.2), seats_m=((0.0, y),)) for y in (3.8, 2.0)]
-    poses = {seat: standing_person((0.0, seat.seats_m[0][1], -1.1), seconds=0.2) for seat in seats}
-
-    def moved(placement: Placement) -> PoseSequence:
-        return dataclasses.replace(poses[placement], height_m=0.8)
-
-    best = least_collision(lambda _again: seats, moved, _Known(room()))
-    assert best.placement.seats_m == ((0.0, 2.0),)
-    hidden = least_collision(lambda _again: seats[:1], moved, _Known(room()))
+    seats = [dataclasses.replace(_placement(y - 2.0), seats_m=((0.0, y),)) for y in (3.8, 1.9)]
+    best = least_collision(lambda _again: seats, _moved, _Known(room()))
+    assert best.placement.seats_m == ((0.0, 1.9),)
+    hidden = least_collision(lambda _again: seats[:1], _moved, _Open(room()))
     assert hidden.trunk_cost_m > 0.03
     assert hidden.notes == ()  # nothing is known to be there
+
+
+class _Open(CollisionMap):
+    """Nothing stands there."""
+
+    def penetration_m(self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0):
+        return 0.0
 
 
 @pytest.mark.parametrize("others", [[], [[0.08]]])

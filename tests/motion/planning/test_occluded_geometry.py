@@ -95,9 +95,9 @@ def test_nothing_goes_on_where_the_camera_sees_farther():
 
 def test_what_is_behind_a_thing_is_hidden():
     scene = _with_table(2.0)
-    assert occluded_share(scene, np.array([[0.0, 2.5, 0.0], [0.0, 1.5, 0.0]])) == 0.5
-    assert occluded_share(scene, np.array([[9.0, 2.5, 0.0]])) == 0.0  # beside the picture
-    assert unseen_share(scene, np.array([[9.0, 2.5, 0.0], [0.0, 2.5, 0.0], [0.0, 1.5, 0.0]])) == pytest.approx(2 / 3)
+    assert occluded_share(scene, np.array([[[0.0, 2.5, 0.0], [0.0, 1.5, 0.0]]])) == 0.5
+    assert occluded_share(scene, np.array([[[9.0, 2.5, 0.0]]])) == 0.0  # beside the picture
+    assert unseen_share(scene, np.array([[[9.0, 2.5, 0.0], [0.0, 2.5, 0.0], [0.0, 1.5, 0.0]]])) == pytest.approx(2 / 3)
 
 
 def test_a_way_behind_a_thing_is_one_that_the_camera_does_not_see():

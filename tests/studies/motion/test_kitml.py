@@ -6,7 +6,7 @@ from studies.motion.kitml import Sentence, reading_of, result_row, sampled, sent
 
 
 def sentences(count: int) -> list[Sentence]:
-    texts = ("a person walks forward", "a person juggles")
+    texts = ("a person walks forward", "a person teleports")
     return [Sentence(name=f"{k:05d}_0", motion=f"{k:05d}", text=texts[k % 2]) for k in range(count)]
 
 

@@ -26,6 +26,7 @@ TINY = MotiongptRecipe(
 )  # fmt: skip
 
 
+@pytest.mark.slow  # a whole study; its parts: test_motion_tokenizer.py, _language.py and _classifier.py
 def test_the_recipe(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     made = train(tmp_path / "no data", tmp_path / "work", TINY)
     assert made["examples"] == {"library": 24, "cmu": 0}

@@ -1,16 +1,37 @@
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
+from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from studies.manifest import StudyRun
-from studies.scene.affordances import DEVELOP, REPORT, measure
+from studies.scene.affordances import DEVELOP, REPORT, Tally, measure, measure_scene
 
 
-def test_kinds_are_split_and_a_run_writes_shares(tmp_path: Path):
+def test_kinds_are_split():
     assert set(DEVELOP) | set(REPORT) == set(KINDS)
     assert not set(DEVELOP) & set(REPORT)
+
+
+def test_the_true_scene_of_a_room_has_no_errors():
+    room, tally = make_room("lab"), Tally()
+    scene = room.scene()
+    measure_scene(room, scene, tally)
+    assert tally.floor_error_m == [pytest.approx(0)]
+    assert all(tally.seats)
+    assert tally.false_seats
+    assert not any(tally.false_seats)
+    assert max(tally.facing_error_rad, default=0.0) == pytest.approx(0, abs=1e-6)
+    measure_scene(room, replace(scene, floor_z_m=scene.floor_z_m + 0.1, seats=()), tally)
+    assert tally.floor_error_m[1] == pytest.approx(0.1)
+    assert tally.seats.count(False) == len(tally.seats) / 2
+
+
+@pytest.mark.slow  # a whole study; what it counts: the test above
+def test_a_run_writes_shares(tmp_path: Path):
     (path,) = measure(StudyRun("affordances", tmp_path), [], 1, ("depth",))
     rows = json.loads(path.read_text())["rows"]
     assert [row["dataset"]["name"] for row in rows] == ["procedural, report", "procedural, develop"]

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES
@@ -29,6 +30,7 @@ def test_places_are_right_where_the_guess_is():
     assert marked_right(photo, guess, marked) == [True, False]
 
 
+@pytest.mark.slow  # a whole study; its scores: test_segmenter_scores.py and the test above
 def test_a_run_has_rows_of_cells_and_of_affordances(tmp_path: Path):
     path = measure(StudyRun("segmenter_study", tmp_path), [], 1, 1)
     rows = json.loads(path.read_text())["rows"]

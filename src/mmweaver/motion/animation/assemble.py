@@ -7,17 +7,21 @@ from jaxtyping import Float
 
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
-from mmweaver.motion.animation.controls import blended
+from mmweaver.motion.animation.carry_over import ControlsState, carried_over
+from mmweaver.motion.animation.controls import Controls, blended
+from mmweaver.motion.animation.habits import NO_HABITS, Habits
 from mmweaver.motion.animation.kinematics import solve
 from mmweaver.motion.animation.library.activity_registry import perform
 from mmweaver.motion.animation.root_path import RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import PlacedStep, StepContext
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.plan import Step
 
 RATE_HZ = 120.0
 MARGIN_SAMPLES = 2  # before the start and after the end, for interpolation
 LONGEST_BLEND_S = 0.45
+_IN_THE_AIR = ("jump", "leap", "hop", "hop_one_leg", "jumping_jacks", "jog", "turn")  # gravity sets their tempo
 
 
 def dense_times(duration_s: float) -> Float[np.ndarray, " n"]:
@@ -34,25 +38,48 @@ def assemble(
     seed: int,
     duration_s: float,
     floor_z_m: float,
+    habits: Habits = NO_HABITS,
 ) -> PoseSequence:
     """Animates every step along the path, blends neighbours and solves the joints, in the radar's frame."""
+    controls = assembled_controls(steps, path, body, seed=seed, duration_s=duration_s, habits=habits)
+    return solved(controls, body, duration_s=duration_s, floor_z_m=floor_z_m)
+
+
+def solved(controls: Controls, body: SkeletonProportions, *, duration_s: float, floor_z_m: float) -> PoseSequence:
+    """The joints of controls at `dense_times`, in the radar's frame."""
+    joints_m = solve(body, controls)
+    joints_m[..., 2] += floor_z_m
+    return PoseSequence(time_s=dense_times(duration_s), joints_m=joints_m, height_m=body.height_m)
+
+
+def assembled_controls(
+    steps: tuple[PlacedStep, ...],
+    path: RootPath,
+    body: SkeletonProportions,
+    *,
+    seed: int,
+    duration_s: float,
+    habits: Habits = NO_HABITS,
+    entry: ControlsState | None = None,
+) -> Controls:
+    """Controls at `dense_times` of every step along the path, neighbours blended; they begin in the state `entry`."""
     time_s = dense_times(duration_s)
     parts, starts, blends = [], [], []
     steps = _merge_gait(steps)
     for k, placed in enumerate(steps):
         step = placed.step
+        own_time_s = habits.warped(time_s, step.start_s, step.end_s) if _may_be_uneven(placed) else time_s
         context = StepContext(
-            time_s=time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
-            moves=placed.moves, seat_height_m=placed.seat_height_m, first=k == 0, last=k == len(steps) - 1,
+            time_s=own_time_s, step=step, body=body, path=path, rng=stream(seed, "motion", "step", k, step.name),
+            moves=placed.moves, seat_height_m=placed.seat_height_m, habits=habits, first=k == 0,
+            last=k == len(steps) - 1,
         )  # fmt: skip
         parts.append(perform(context))
         before = steps[k - 1].step.end_s - steps[k - 1].step.start_s if k else step.end_s
         blends.append(float(min(LONGEST_BLEND_S, 0.6 * min(context.duration_s, before))))
         starts.append(step.start_s + 0.5 * blends[-1] if k else step.start_s)
     controls = blended(parts, starts, blends, time_s)
-    joints_m = solve(body, controls)
-    joints_m[..., 2] += floor_z_m
-    return PoseSequence(time_s=time_s, joints_m=joints_m, height_m=body.height_m)
+    return controls if entry is None else carried_over(controls, time_s, entry)
 
 
 def _merge_gait(steps: tuple[PlacedStep, ...]) -> tuple[PlacedStep, ...]:
@@ -66,6 +93,12 @@ def _merge_gait(steps: tuple[PlacedStep, ...]) -> tuple[PlacedStep, ...]:
         else:
             merged.append(placed)
     return tuple(merged)
+
+
+def _may_be_uneven(placed: PlacedStep) -> bool:
+    """Whether the tempo of a step may change: on the spot, with the feet on the floor, and going on for a while."""
+    activity = BY_KEY[placed.step.lower]
+    return not (placed.moves or activity.once or activity.posture == "floor" or placed.step.lower in _IN_THE_AIR)
 
 
 def _is_plain_gait(step: Step) -> bool:

@@ -1,5 +1,7 @@
 """Resampling of a motion by cubic splines through the joints."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from mmweaver.core.errors import InputError
@@ -21,7 +23,7 @@ def resample(pose: PoseSequence, time_s: PerFrame) -> PoseSequence:
             " were requested; make the motion longer"
         )
     joints = np.asarray(CubicSpline(pose.time_s, pose.joints_m, axis=0)(time_s), dtype=float)
-    return PoseSequence(time_s=time_s, joints_m=joints, height_m=pose.height_m, subject=pose.subject)
+    return replace(pose, time_s=time_s, joints_m=joints)
 
 
 def joints_and_velocities(pose: PoseSequence, time_s: PerFrame) -> tuple[Joints, Joints]:

@@ -8,7 +8,6 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import NUM_JOINTS, joint
 
-SHORTEST_M, TALLEST_M = 1.63, 1.96  # range of sampled heights (the paper's participants)
 ALLOWED_M = (1.2, 2.2)
 
 # Fractions of the height, in the body's own frame: x forward, y to its left, z up; arms hang, feet point forward.

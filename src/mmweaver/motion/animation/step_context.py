@@ -1,10 +1,11 @@
 """What the function of an activity gets as input."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.motion.animation.habits import Habits
 from mmweaver.motion.animation.root_path import Move, RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import Step
@@ -36,6 +37,7 @@ class StepContext:
     moves: tuple[Move, ...] = ()  # the moves of the path that belong to this step
     seat_height_m: float = STOOL_HEIGHT_M
     first: bool = True  # no step before: the motion is already under way at its start
+    habits: Habits = field(default_factory=Habits)
     last: bool = True  # no step after: the motion continues at its end
 
     @property
@@ -52,5 +54,5 @@ class StepContext:
 
     def tempo(self, slow: float, usual: float, fast: float, spread: float = 0.1) -> float:
         """A sampled rate: `slow` for 'slowly', `fast` for 'quickly', else `usual`; log-normal with `spread`."""
-        chosen = (usual, fast, slow)[self.step.speed]
+        chosen = (usual, fast, slow)[self.step.speed] * self.step.pace
         return chosen * float(np.exp(self.rng.normal(0.0, spread / 2)))

@@ -77,6 +77,13 @@ BODY: tuple[Activity, ...] = (
     _body("fall", "falling", "a person falls down", 1.3, 1.7, once=True, posture="floor"),
     _body("lie", "lying", "a person lies on the floor", 0.4, 2.0, posture="floor"),
     _body("get_up", "getting up from the floor", "a person lying on the floor gets up", 2.6, 3.6, once=True),
+    _body("side_lunge", "lunging to the side", "a person does side lunges with the left leg", 1.4, 3.0,
+          counted_s=(1.4, 2.8, 0.1), clearance_m=0.9),
+    _body("limb_extension", "extending a leg and an arm", "a person extends the left arm and leg to the side", 1.3, 2.8,
+          counted_s=(1.3, 2.6, 0.1), clearance_m=0.9),
+    _body("push_ups", "push-ups", "a person does push-ups", 1.0, 4.0, counted_s=(0.9, 1.8, 0.2), clearance_m=0.6,
+          posture="floor"),
+    _body("crawl", "crawling", "a person crawls to the left", 1.0, 3.0, clearance_m=0.5, moves=True, posture="knees"),
 )  # fmt: skip
 
 HANDS: tuple[Activity, ...] = (
@@ -122,6 +129,28 @@ HANDS: tuple[Activity, ...] = (
            clearance_m=0.6),
     _hands("golf", "a golf swing", "a person plays golf", 1.6, 2.2, counted_s=(1.6, 2.2, 0.0), once=True,
            clearance_m=1.0),
+    _hands("raise_hold", "lifting an arm and keeping it up", "a person lifts the right arm straight up and keeps it up",
+           0.8, 2.0, once=True),
+    _hands("lower_arm", "lowering an arm", "a person lets the right arm fall straight down", 0.8, 2.0, once=True),
+    _hands("push_hand", "pushing a hand forward", "a person pushes the right hand forward from the chest", 0.8, 2.0,
+           once=True, clearance_m=0.7),
+    _hands("pull_hand", "pulling a hand to the chest", "a person pulls the right hand back to the chest", 0.8, 2.0,
+           once=True, clearance_m=0.7),
+    _hands("draw_circle", "drawing a circle in the air", "a person draws a large circle with the right arm", 1.0, 2.5,
+           counted_s=(0.9, 2.2, 0.2), clearance_m=0.8),
+    _hands("draw_z", "drawing a Z in the air", "a person draws a large Z with the right arm", 1.2, 2.5, once=True,
+           clearance_m=0.8),
+    _hands("yawn", "yawning", "a person yawns", 1.0, 2.4, once=True, clearance_m=0.45),
+    _hands("knock_elbow", "raising a forearm", "a person raises the right hand from the elbow twice", 0.6, 1.2,
+           counted_s=(0.45, 0.9, 0.1), clearance_m=0.5),
+    _hands("arm_extension", "extending an arm upwards at the side", "a person extends the left arm up at the side", 1.1,
+           2.6, counted_s=(1.1, 2.4, 0.1), clearance_m=0.8),
+    _hands("hands_up", "holding the hands up", "a person does squats with the hands up", 0.8, 2.0, clearance_m=0.6),
+    _hands("sweep", "sweeping", "a person sweeps the floor", 1.0, 3.0, clearance_m=0.7),
+    _hands("vacuum", "vacuuming", "a person vacuums", 1.0, 3.0, clearance_m=0.8),
+    _hands("jacket_off", "taking a jacket off", "a person takes off a jacket", 2.0, 3.6, once=True, clearance_m=0.7),
+    _hands("cough", "coughing", "a person sits and coughs", 0.9, 2.2, counted_s=(0.9, 2.0, 0.2), clearance_m=0.4),
+    _hands("breathe", "breathing deeply", "a person sits and breathes deeply", 1.0, 5.0, clearance_m=0.35),
 )  # fmt: skip
 
 BY_KEY: dict[str, Activity] = {activity.key: activity for activity in (*BODY, *HANDS)}

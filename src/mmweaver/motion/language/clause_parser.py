@@ -4,6 +4,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.approximations import MARK, how_of
 from mmweaver.motion.language.clauses import Clause
 from mmweaver.motion.language.lexicon import (
     ARMS,
@@ -29,6 +30,8 @@ from mmweaver.motion.language.lexicon import (
     THINGS,
 )
 from mmweaver.motion.language.modifiers import modifiers
+from mmweaver.motion.language.places import MARK as PLACE
+from mmweaver.motion.language.places import Place, place_of
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verb_steps import LEGS, step_of
@@ -47,7 +50,13 @@ class ParsedClause:
     forms: list[str] = field(default_factory=list)  # of each step's verb
     about: Step = field(default_factory=Step)  # direction, hand, speed, ... of a clause without a verb
     notes: list[str] = field(default_factory=list)
+    approximations: list[str] = field(default_factory=list)  # what is not shown as it was said; also in `notes`
     unknown: list[str] = field(default_factory=list)
+    number: int = 0  # of the clause in the sentence
+
+    def approximate(self, how: str) -> None:
+        self.notes.append(how)
+        self.approximations.append(how)
 
     @property
     def adds_nothing(self) -> bool:
@@ -75,6 +84,9 @@ class ParsedClause:
             count=last.count or about.count,
             seat=last.seat or about.seat,
             seconds=last.seconds or about.seconds,
+            clauses=(*last.clauses, more.number),
+            place=last.place or about.place,
+            distance_m=last.distance_m or about.distance_m,
         )
 
     def _leads_back(self, last: Step, about: Step) -> bool:
@@ -97,11 +109,21 @@ class ParsedClause:
 def parse_clause(clause: Clause) -> ParsedClause:
     """Parses verbs and modifiers; raises InputError for what would be acted out as something else."""
     words = clause.words
-    parsed = ParsedClause(clause.link, clause.text)
+    parsed = ParsedClause(clause.link, clause.text, number=clause.number)
+    marked = [word.text for word in words if word.text.startswith(MARK)]
+    clause.words = words = [word for word in words if word.text not in marked]
+    for token in dict.fromkeys(marked):
+        how = how_of(token)
+        parsed.approximations.append(how)
+        parsed.notes.append(f"of {clause.text!r}, {how}")
+    places = [word.text for word in words if word.text.startswith(PLACE)]
+    clause.words = words = [word for word in words if word.text not in places]
     _refuse(clause)
     verbs = _verbs(words)
     if not verbs:
-        parsed.about = modifiers(words, clause.text, parsed.notes)
+        parsed.about = replace(
+            modifiers(words, clause.text, parsed.notes), place=place_of(places[0]) if places else None
+        )
         _note_unknown(words, clause, parsed, has_verb=False)
         return parsed
     for one, other in pairwise(verbs):  # "a hopping walk"
@@ -122,9 +144,28 @@ def parse_clause(clause: Clause) -> ParsedClause:
         begin = starts[k]
         own = words[begin:end]
         about = modifiers(own, clause.text, parsed.notes)
-        parsed.steps.append(step_of(own, at - begin, about, clause.text))
+        parsed.steps.append(replace(step_of(own, at - begin, about, clause.text), clauses=(clause.number,)))
         parsed.forms.append(_form(words[starts[k] :], at - starts[k]) if k else parsed.form)
+    for token in places:
+        _put_at(parsed, place_of(token))
+    kept = any(step.distance_m and step.lower in ("walk", "jog") for step in parsed.steps)
+    if {word.text for word in words} & DISTANCES and not kept:
+        parsed.approximate(f"the distance in {clause.text!r} is not kept: it follows from time and speed")
     return parsed
+
+
+def _put_at(parsed: ParsedClause, place: Place) -> None:
+    """Gives a place to the clause's last step: where it is done, or where or how far a walk goes."""
+    last = parsed.steps[-1]
+    if last.moves and place.relation == "range":
+        last = replace(last, distance_m=place.distance_m)
+    elif last.moves and last.lower not in ("walk", "jog"):
+        parsed.approximate(f"{place.words!r} is left open for {last.name}")
+    else:
+        last = replace(last, place=place, target="" if place.landmark else last.target)
+        if place.landmark and last.direction in ("towards", "forwards", "seat"):
+            last = replace(last, direction="")
+    parsed.steps[-1] = last
 
 
 def _start_of(words: list[Word], before: int, at: int) -> int:
@@ -241,6 +282,8 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
     if moved is not None and any(not _is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
+    if {word.text for word in words} & {"uppercut", "uppercuts", "hook", "hooks"}:
+        parsed.approximate(f"the kind of punch in {clause.text!r} is not distinguished")
     odd = _unknown_manner(words)
     if odd:
         raise InputError(not_known(clause.text, odd))
@@ -248,11 +291,9 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
         if doing and text not in NOUNS_LIKE_VERBS:
             raise InputError(not_known(clause.text, text))
-    if {word.text for word in words} & DISTANCES:
-        parsed.notes.append(f"the distance in {clause.text!r} is not kept: it follows from time and speed")
     if unknown:
         listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
-        parsed.notes.append(f"of the text, {listed} says nothing that can be acted out and was ignored")
+        parsed.approximate(f"of the text, {listed} says nothing that can be acted out and was ignored")
 
 
 def _unknown_manner(words: list[Word]) -> str:

@@ -3,7 +3,10 @@
 import re
 from dataclasses import dataclass, field
 
+from mmweaver.motion.language.approximations import MARK
 from mmweaver.motion.language.lexicon import MANY, PRONOUNS
+from mmweaver.motion.language.places import MARK as PLACE
+from mmweaver.motion.language.places import place_of
 from mmweaver.motion.language.words import Word
 
 STOPS = frozenset({".", ";", "!", "?", ":"})
@@ -18,16 +21,22 @@ class Clause:
 
     link: str
     words: list[Word] = field(default_factory=list)
+    number: int = 0  # in the sentence's own order
 
     @property
     def text(self) -> str:
-        text = " ".join(word.text for word in self.words).replace("_", " ")
+        shown = [word.text for word in self.words if not word.text.startswith(MARK)]
+        shown = [place_of(text).words if text.startswith(PLACE) else text for text in shown]
+        text = " ".join(shown).replace("_", " ")
         return re.sub(r"\b(?:arc|deg)(\d+)", r"\1 degrees", text)
 
 
 def split_clauses(words: list[Word]) -> list[Clause]:
     """Splits at connectives and puts clauses into temporal order ("Before B, A" and "B after A" are reordered)."""
-    return _in_order(_split(words))
+    clauses = _split(words)
+    for number, clause in enumerate(clauses):
+        clause.number = number
+    return _in_order(clauses)
 
 
 def _split(words: list[Word]) -> list[Clause]:

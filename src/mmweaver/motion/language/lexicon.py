@@ -1,5 +1,6 @@
 """The lexicon: words that a sentence may contain, by their function."""
 
+from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.verbs import words_in
 
@@ -32,6 +33,7 @@ IRREGULAR = {
 BASE_VERB_SPEED = {"stroll": -1, "amble": -1, "saunter": -1, "sprint": 1, "march": 0}
 
 PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anything is looked up
+    *GESTURE_PHRASES,
     *ACTIVITY_PHRASES,
     (r"\bjumping[- ]?jacks?\b|\bstar[- ]?jumps?\b|\bjump(?:s|ed)?[- ]jacks?\b", " jumping_jack "),
     (r"\bshadow[- ]box", "shadowbox"),
@@ -177,8 +179,8 @@ OTHER_MOVEMENT = words_in(
     rectangle swings head shoulder shoulders elbow elbows hips hip thigh sit-ups push-ups plank tennis racket
     upward downward platform edge curb log bridge bent hunched crouched against reacts shuffle scooter skateboard
     grapevine waltz circle circles tango salsa waltzing ballet backflip kata karate fight fighting drums drum
-    piano trumpet flute conductor conducts skiing skating surfing climbing climbs climb vault vaults crawl crawls
-    crawling dog partner someone_else sits_up leap-frog zombie stork sneaks sneaking sneak injured drags dragging
+    piano trumpet flute conductor conducts skiing skating surfing climbing climbs climb vault vaults
+    dog partner someone_else sits_up leap-frog zombie stork sneaks sneaking sneak injured drags dragging
     half-circle guitar violin golf tightrope toes heel heels heel-toe obstacles hole puddle stones steps_up
     side_flip headstand diagonal yoga basketball baskeball football soccer volleyball juggles kickboxing air-plane
     scared

@@ -9,6 +9,8 @@ _BODY = r"(?:person|man|woman|human|user|guy|girl|boy|subject|somebody|someone|f
 
 # Replaced in this order, before lexicon.PHRASES: several words that mean one activity become one token.
 ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
+    (r"\b((?:drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|clapping|types?|typing|writes?|phones?)(?: [a-z]+){0,4}?)"
+     r" (?:while )?standing up\b", r"\1 while standing "),
     (r"\bninety\b", " 90 "), (r"\bforty[- ]five\b", " 45 "), (r"\b(?:one |a )?hundred (?:and )?eighty\b", " 180 "),
     (r"\bform (?=(?:the |his |her )?(?:back|behind|front|left|right)\b)", " from "),
     (r"\b(?:a|an|one|two|three|four|five|some|few|\d+)(?: (?:few|short))? (?:steps?|seconds?|moments?|meters?|metres?) later\b",

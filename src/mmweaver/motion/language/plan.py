@@ -1,8 +1,10 @@
 """The parsed sentence: steps one after the other, each a body activity and possibly a hand activity over it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.described_person import DescribedPerson
+from mmweaver.motion.language.places import Place
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,10 +25,16 @@ class Step:
     count: int = 0  # repetitions; 0: as many as the time allows
     seat: str = ""  # the word of the sentence: sofa, chair, ...
     target: str = ""  # the Landmark.kind to go to: door, table, ...
+    place: Place | None = None  # where it is done, or the walk goes
+    distance_m: float = 0.0  # how far a walk goes, where the sentence says so
+    route_m: tuple[tuple[float, float], ...] = ()  # the corners (x, y) of a path that is given
     facing: str = ""  # left | right | towards | away | ""
     seconds: float = 0.0  # the duration that the sentence gives
+    pace: float = 1.0  # the person's tempo, relative to the usual one
+    usual_hand: str = ""  # left | right: mostly used where the sentence names none
     on_feet: bool = False  # the sentence says "stands"
     clause: str = ""  # the words of the sentence
+    clauses: tuple[int, ...] = ()  # which of MotionPlan.clauses it carries out
     start_s: float = 0.0
     end_s: float = 0.0
 
@@ -56,6 +64,24 @@ class Step:
         return BY_KEY[self.lower].posture
 
 
+DONE, APPROXIMATED, NOT_DONE = "done", "approximated", "not done"
+
+
+@dataclass(frozen=True)
+class ClauseRecord:
+    """What became of one clause of the sentence; `how` says it where it was not simply done."""
+
+    clause: str
+    status: str = DONE  # done | approximated | not done
+    how: str = ""
+
+    def lowered_to(self, status: str, how: str) -> "ClauseRecord":
+        """The record with a worse status, or the same one with one more reason."""
+        order = (DONE, APPROXIMATED, NOT_DONE)
+        worse = max(self.status, status, key=order.index)
+        return replace(self, status=worse, how="; ".join(dict.fromkeys(filter(None, (self.how, how)))))
+
+
 @dataclass(frozen=True, kw_only=True)
 class MotionPlan:
     """The steps of a sentence in temporal order; `notes` are sentences on what the parser assumed."""
@@ -63,4 +89,6 @@ class MotionPlan:
     text: str
     steps: tuple[Step, ...]
     notes: tuple[str, ...] = ()
+    clauses: tuple[ClauseRecord, ...] = ()
+    person: DescribedPerson = field(default_factory=DescribedPerson)
     duration_s: float = 0.0  # 0 until the plan is scheduled

@@ -4,10 +4,14 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
 from mmweaver.motion.language.clauses import split_clauses
+from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.modifiers import OPPOSITE
-from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.normal_forms import in_normal_form
+from mmweaver.motion.language.places import room_of
+from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
@@ -23,6 +27,9 @@ LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "
 def parse(text: str) -> MotionPlan:
     """Parses what a person does into steps in temporal order, not scheduled yet.
 
+    What is not understood as it is, is tried in other words (`normal_forms`), then with similar movements instead of
+    unknown ones (`approximations`), which the clause's record says.
+
     Left and right of a direction are the viewer's (as in the photo), of a hand or a turn the person's own. Raises
     InputError for an empty or overlong text, a negation, several people, or a clause that names no known activity:
     nothing is left out silently. See docs/decisions/0010.
@@ -32,21 +39,23 @@ def parse(text: str) -> MotionPlan:
         raise InputError(f"the text is empty; say what the person does, for example {EXAMPLE!r}")
     if len(text) > LONGEST_TEXT:
         raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
+    try:
+        return _parsed(with_approximations(text, only_always=True), text)
+    except InputError as error:
+        for other in (in_normal_form(text), with_approximations(in_normal_form(text))):
+            try:
+                return _parsed(other, given_text)
+            except InputError:
+                continue
+        raise error from None
+
+
+def _parsed(text: str, given_text: str) -> MotionPlan:
+    """The plan of one wording of a sentence."""
     text, notes = correct_spelling(text)
     words = words_of(text)
     _check_turning_jumps(text, words)
-    parsed_clauses: list[ParsedClause] = []
-    for clause in split_clauses(words):
-        parsed = parse_clause(clause)
-        notes += parsed.notes
-        if parsed.adds_nothing and parsed_clauses and parsed.link in ("and", "comma", "then", "while"):
-            parsed_clauses[-1].absorb(parsed)
-        elif parsed.steps and not _is_its_end(parsed_clauses, parsed):
-            parsed_clauses.append(parsed)
-        elif parsed.steps or (parsed_clauses and _needs_no_step(parsed_clauses[-1].steps[-1], parsed)):
-            continue
-        elif not parsed.is_empty:
-            raise InputError(not_known(clause.text))
+    parsed_clauses, records = _parsed_clauses(words, notes)
     if not parsed_clauses:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
     sequence = _in_sequence(parsed_clauses)
@@ -56,7 +65,63 @@ def parse(text: str) -> MotionPlan:
     steps = carried_over(with_postures(sequence))
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
-    return MotionPlan(text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)))
+    room = room_of(given_text)
+    if room:
+        notes.append(f"the room of the photo is taken as the {room} of the sentence")
+    clauses = tuple(records[number] for number in sorted(records))
+    return MotionPlan(
+        text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)), clauses=clauses,
+        person=described_person(given_text),
+    )  # fmt: skip
+
+
+def _parsed_clauses(words: list[Word], notes: list[str]) -> tuple[list[ParsedClause], dict[int, ClauseRecord]]:
+    """The clauses that name an activity, and a record of every clause by its number."""
+    found: list[ParsedClause] = []
+    records: dict[int, ClauseRecord] = {}
+    ahead: ParsedClause | None = None  # modifiers before the first verb: "is carefully and slowly walking"
+    for clause in split_clauses(words):
+        parsed = parse_clause(clause)
+        if not parsed.steps and not parsed.unknown and parsed.approximations and not found:
+            parsed.steps, parsed.forms = [Step(clause=clause.text, clauses=(clause.number,))], ["s"]
+        notes += parsed.notes
+        status = APPROXIMATED if parsed.approximations else DONE
+        records[clause.number] = ClauseRecord(clause.text, status, "; ".join(parsed.approximations))
+        if parsed.adds_nothing and not parsed.is_empty and not found and not parsed.approximations:
+            ahead = parsed
+        else:
+            _take(parsed, found)
+        if ahead is not None and found:
+            found[0].absorb(ahead)
+            ahead = None
+    return found, records
+
+
+def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
+    """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
+    if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
+        other = _other_limb(found[-1].steps[-1], parsed)
+        if other is None:
+            found[-1].absorb(parsed)
+        else:
+            found[-1].steps[-1] = overlay(found[-1].steps[-1], other)
+    elif parsed.steps and not _is_its_end(found, parsed):
+        found.append(parsed)
+    elif parsed.steps or (found and _needs_no_step(found[-1].steps[-1], parsed)):
+        last = found[-1].steps[-1]
+        found[-1].steps[-1] = replace(last, clauses=(*last.clauses, parsed.number))
+    elif not parsed.is_empty:
+        raise InputError(not_known(parsed.text))
+
+
+def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
+    """The step of a clause that names one more limb to raise: 'raises the left arm and the right leg'."""
+    about = replace(parsed.about, clause=parsed.text, clauses=(parsed.number,), direction="")
+    if last.upper in ("raise", "arms_out") and last.lower == "stand" and about.foot:
+        return replace(about, lower="raise_leg", hand="")
+    if last.lower == "raise_leg" and not last.upper and about.hand:
+        return replace(about, lower="stand", upper="raise", foot="")
+    return None
 
 
 def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> bool:
@@ -113,7 +178,7 @@ def _merged_walk(one: Step, other: Step) -> list[Step]:
     return [
         replace(
             more, count=one.count or other.count, speed=one.speed or other.speed, upper=one.upper or other.upper,
-            hand=one.hand or other.hand, target=one.target or other.target,
+            hand=one.hand or other.hand, target=one.target or other.target, clauses=(*one.clauses, *other.clauses),
         )
     ]  # fmt: skip
 
@@ -178,5 +243,7 @@ def overlay(one: Step, other: Step) -> Step:
         speed=lower.speed or upper.speed,
         seconds=lower.seconds or upper.seconds,
         facing=lower.facing or upper.facing,
+        place=lower.place or upper.place,
         clause=f"{one.clause}, {other.clause}",
+        clauses=(*one.clauses, *other.clauses),
     )

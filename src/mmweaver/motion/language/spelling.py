@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable
 from functools import lru_cache
 
+from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
 from mmweaver.motion.language.lexicon import ALL_WORDS, GOING, IRREGULAR, LIGHT
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA, RECOVERING, words_in
@@ -83,7 +84,7 @@ def _one_edit_apart(one: str, other: str) -> bool:
 def _known() -> frozenset[str]:
     """Every word that the parser knows in some form."""
     known = _forms({*ACTIVITY_OF_LEMMA, *GOING, *LIGHT}) | ALL_WORDS | set(IRREGULAR) | RECOVERING | words_in(_MORE)
-    for pattern, _ in ACTIVITY_PHRASES:
+    for pattern, _ in (*GESTURE_PHRASES, *ACTIVITY_PHRASES):
         known |= set(_WORD.findall(re.sub(r"\\[a-z]|\(\?[:=!<]*", " ", pattern)))
     return frozenset(word for word in known if word.isalpha() and word.islower())
 

@@ -1,46 +1,44 @@
-"""Scheduling of a plan: natural durations, stretched or compressed into the given time."""
+"""Scheduling of a plan: natural durations, stretched or compressed into the given time, repeated or cut by it."""
 
 import math
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.plan import APPROXIMATED, NOT_DONE, MotionPlan, Step
 from mmweaver.motion.language.sentence import parse
 
 LONGEST_S = 600.0
+SHORTEST_SHARE = 0.5  # of a movement's least time: what is shorter does not look like it
+REPEATED_FROM = 2  # a sentence that fits so often into the time is repeated
 
 
-def plan_motion(text: str, duration_s: float | None = None, fps: float = 10.0) -> MotionPlan:
+def plan_motion(text: str, duration_s: float | None = None) -> MotionPlan:
     """Parses a sentence and schedules its steps; without a duration they take as long as is natural.
 
-    This is the plan that `compose` takes. Raises InputError as `parse` and `schedule` do.
+    In a duration that is much longer than the sentence needs it is repeated where it can be; see `schedule` for
+    shorter ones. This is the plan that `compose` takes. Raises InputError as `parse` and `schedule` do.
 
     >>> plan = plan_motion("a person bows, then waves", 4.0)
     >>> [(step.name, round(step.start_s, 2), round(step.end_s, 2)) for step in plan.steps]
     [('bowing', 0.0, 2.2), ('waving', 2.2, 4.0)]
     """
     plan = parse(text)
-    return schedule(plan, natural_s(plan) if duration_s is None else duration_s, fps)
+    if duration_s is None:
+        return schedule(plan, natural_s(plan))
+    return schedule(repeated(plan, duration_s), duration_s)
 
 
-def schedule(plan: MotionPlan, duration_s: float, fps: float = 10.0) -> MotionPlan:
-    """Gives every step of a plan its start and end; `fps` is only used in the text of an error.
+def schedule(plan: MotionPlan, duration_s: float) -> MotionPlan:
+    """Gives every step of a plan its start and end.
 
-    A single movement without a count may be cut short: a part of it is shown. Raises InputError for a duration that
-    is not positive or above `LONGEST_S`, and where several movements, or a number of repetitions, do not fit into it.
+    What does not fit is cut at the end: fewer repetitions, the beginning of a movement, no more movements after it;
+    notes and `clauses` say so. Raises InputError for a duration that is not positive or above `LONGEST_S`, and for one
+    of which nothing sensible would be left of several movements.
     """
-    if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
-        raise InputError(f"a duration of {duration_s:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
-    first = plan.steps[0]
-    least: list[float] = [limits[0] for limits in map(_limits, plan.steps)]
-    if sum(least) > duration_s + 1e-9 and (len(plan.steps) > 1 or first.count or first.seconds):
-        needed = sum(least)
-        raise InputError(
-            f"{len(plan.steps)} movement(s) need at least {needed:.1f} s, there are {duration_s:.1f} s; ask for more"
-            f" frames (at {fps:.3g} a second {int(needed * fps + 0.999)} of them) or say less"
-        )
-    spans = _spans(plan.steps, max(duration_s, sum(least)))
+    _check(duration_s)
+    plan = _cut(plan, duration_s)
+    spans = _spans(plan.steps, max(duration_s, least_s(plan)))
     steps: list[Step] = []
     start = 0.0
     for step, span in zip(plan.steps, spans, strict=True):
@@ -49,9 +47,100 @@ def schedule(plan: MotionPlan, duration_s: float, fps: float = 10.0) -> MotionPl
     return replace(plan, steps=tuple(steps), duration_s=duration_s)
 
 
+def _check(duration_s: float) -> None:
+    if not (math.isfinite(duration_s) and 0 < duration_s <= LONGEST_S):
+        raise InputError(f"a duration of {duration_s:g} s is not possible; choose above 0 and up to {LONGEST_S:g} s")
+
+
 def natural_s(plan: MotionPlan) -> float:
     """How long a plan takes when no duration is given, in seconds."""
-    return sum(_limits(step)[1] for step in plan.steps)
+    return sum(max(_limits(step)[1] / step.pace, _limits(step)[0]) for step in plan.steps)
+
+
+def least_s(plan: MotionPlan) -> float:
+    """The shortest time in which a plan can be shown, in seconds."""
+    return sum(_limits(step)[0] for step in plan.steps)
+
+
+def repeated(plan: MotionPlan, duration_s: float) -> MotionPlan:
+    """The plan as often as it fits into a duration, where every step has an end and the last leads to the first."""
+    _check(duration_s)
+    natural = natural_s(plan)
+    times = int(duration_s / natural + 1e-6)
+    held = any(step.count or step.seconds or step.lower == "turn" or is_elastic(step) for step in plan.steps)
+    if held or times < REPEATED_FROM or plan.steps[-1].posture != _posture_before(plan.steps[0]):
+        return plan
+    note = f"the sentence takes {natural:.1f} s and is done {times} times in {duration_s:.1f} s"
+    return replace(plan, steps=plan.steps * times, notes=(*plan.notes, note))
+
+
+def _posture_before(step: Step) -> str:
+    """The posture in which a step begins."""
+    rising = {"stand_up": "seat", "kneel_up": "knees", "get_up": "floor"}
+    held = {"sit": "seat", "kneel": "knees", "lie": "floor"}
+    return rising.get(step.lower) or held.get(step.lower, "feet")
+
+
+def _cut(plan: MotionPlan, duration_s: float) -> MotionPlan:
+    """The steps that fit into a duration in their least times; the last of them perhaps in part."""
+    first = plan.steps[0]
+    alone = len(plan.steps) == 1 and not (first.count or first.seconds)
+    if alone or least_s(plan) <= duration_s + 1e-9:
+        return plan
+    kept: list[Step] = []
+    left = duration_s
+    for step in plan.steps:
+        fitting = _fitting(step, left)
+        if fitting is None:
+            break
+        kept.append(fitting)
+        left -= _limits(fitting)[0]
+    if not kept:
+        needed = math.ceil(10 * SHORTEST_SHARE * _limits(first)[0]) / 10
+        raise InputError(
+            f"nothing of {plan.text.strip()!r} can be shown in {duration_s:.3g} s; {first.name} alone takes at least"
+            f" {needed:.1f} s: ask for more --seconds or --frames, or leave them out"
+        )
+    return _with_cut_recorded(replace(plan, steps=tuple(kept)), plan.steps, duration_s)
+
+
+def _fitting(step: Step, left_s: float) -> Step | None:
+    """The step as it fits into the time that is left: fewer times, shorter, only its beginning, or not at all."""
+    least = _limits(step)[0]
+    if least <= left_s + 1e-9:
+        return step
+    if step.seconds:
+        return replace(step, seconds=left_s) if left_s >= 0.3 else None
+    counted_s = BY_KEY[step.upper or step.lower].counted_s
+    if step.count and counted_s:
+        count = int((left_s - counted_s[2]) / counted_s[0] + 1e-6)
+        if count >= 1:
+            return replace(step, count=count)
+        step = replace(step, count=1)
+        least = _limits(step)[0]
+    return step if left_s >= SHORTEST_SHARE * least else None
+
+
+def _with_cut_recorded(plan: MotionPlan, wanted: tuple[Step, ...], duration_s: float) -> MotionPlan:
+    """Says in notes and clause records what a cut left out."""
+    notes, clauses = list(plan.notes), list(plan.clauses)
+
+    def record(step: Step, status: str, how: str) -> None:
+        notes.append(f"{how}: {step.clause or step.name!r}")
+        for number in step.clauses:
+            clauses[number] = clauses[number].lowered_to(status, how)
+
+    kept = plan.steps
+    for k, (before, now) in enumerate(zip(wanted, kept, strict=False)):
+        if now.count < before.count:
+            record(before, APPROXIMATED, f"{now.count} of {before.count} times in {duration_s:.1f} s")
+        elif now.seconds < before.seconds:
+            record(before, APPROXIMATED, f"{now.seconds:.1f} of {before.seconds:.1f} s")
+        elif k == len(kept) - 1 and least_s(plan) > duration_s + 1e-9:
+            record(before, APPROXIMATED, f"only its beginning is shown in {duration_s:.1f} s")
+    for step in wanted[len(kept) :]:
+        record(step, NOT_DONE, f"the {duration_s:.1f} s are over before it")
+    return replace(plan, notes=tuple(notes), clauses=tuple(clauses))
 
 
 def _limits(step: Step) -> tuple[float, float]:
@@ -61,6 +150,9 @@ def _limits(step: Step) -> tuple[float, float]:
     if step.lower == "turn" and step.turn_deg:
         lasts = 0.3 + abs(step.turn_deg) / 185
         return lasts, lasts + 0.2
+    if step.distance_m and step.moves:
+        usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
+        return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
     doing = BY_KEY[step.upper or step.lower]
     if step.count and doing.counted_s:
         least, natural, edges = doing.counted_s
@@ -75,6 +167,11 @@ def _is_done_once(step: Step) -> bool:
     return BY_KEY[step.lower].once or (step.lower == "stand" and bool(step.upper) and BY_KEY[step.upper].once)
 
 
+def is_elastic(step: Step) -> bool:
+    """Whether a step can go on for as long as there is time."""
+    return not (_is_done_once(step) or step.count or step.seconds or step.distance_m)
+
+
 def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:
     """Seconds of each step: between least and natural if time is short, else spare time goes to elastic steps."""
     limits: list[tuple[float, float]] = [_limits(step) for step in steps]
@@ -82,7 +179,7 @@ def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:
     if duration_s <= natural:
         share = (duration_s - least) / (natural - least) if natural > least else 0.0
         return [low + share * (high - low) for low, high in limits]
-    elastic = [not (_is_done_once(step) or step.count or step.seconds) for step in steps]
+    elastic = [is_elastic(step) for step in steps]
     if not any(elastic):
         elastic = [k == len(steps) - 1 for k in range(len(steps))]  # the last pose is held
     weight = sum(limit[1] for limit, free in zip(limits, elastic, strict=True) if free)

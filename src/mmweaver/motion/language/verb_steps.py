@@ -22,6 +22,8 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     step = replace(about, lower=lower or "stand", upper=upper, clause=clause_text)
     if word.lemma in BASE_VERB_SPEED:
         step = replace(step, speed=step.speed or BASE_VERB_SPEED[word.lemma])
+    if word.lemma in ("jog", "trot"):
+        step = replace(step, style="jog")
     step = _arms_step(step, texts)
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
         step = replace(step, lower="sit")  # "reads a book on the sofa"
@@ -126,8 +128,10 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     if facing:
         return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)
     angle = step.turn_deg or step.arc_deg or (360.0 if step.direction == "circle" or word.lemma == "spin" else 0.0)
-    side = SIDES.get(step.direction, 0.0)
+    side, times = SIDES.get(step.direction, 0.0), step.count
     step = replace(step, count=0, arc_deg=0.0, turn_deg=0.0)
+    if times > 1:  # "turns around twice"
+        angle = times * (angle or (90.0 if side and "around" not in texts else 180.0))
     if angle in (0.0, 180.0):
         about = "around" in texts or angle == 180.0 or not side
         return replace(step, direction="around" if about else step.direction)
@@ -161,11 +165,12 @@ def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _floor_step(step: Step, words: list[Word], at: int) -> Step:
-    """Lying and falling: on the back unless the clause says forwards or belly; on the floor, not on furniture."""
+    """Lying and falling: on the back unless the clause says forwards, belly or one's own side; not on furniture."""
     if step.seat:
         raise InputError(f"{step.clause!r}: lying and falling are known on the floor only; leave out the {step.seat}")
-    if step.lower == "fall" and step.direction in SIDES:
-        raise InputError(f"{step.clause!r}: falling is known forwards and backwards only; leave the side out")
+    if step.lower == "fall" and (step.direction in SIDES or "sideways" in {word.text for word in words}):
+        own_side = step.direction if step.direction in SIDES else "right"
+        return replace(step, style=own_side, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
     style = step.style or ("front" if step.direction in ("forwards", "towards") else "back")
     return replace(step, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
 
@@ -203,7 +208,7 @@ def _facing(words: list[Word]) -> str:
 
 
 _BY_LOWER = {
-    **dict.fromkeys(("walk", "jog", "limp", "stagger"), _going_step),
+    **dict.fromkeys(("walk", "jog", "limp", "stagger", "crawl"), _going_step),
     "turn": _turning_step,
     **dict.fromkeys(("jump", "hop"), _jumping_step),
     "stumble": _stumbling_step,

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from mmweaver.motion.language.lexicon import GOING, IRREGULAR, LIGHT, PHRASES
+from mmweaver.motion.language.places import mark_places
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 
 _TOKEN = re.compile(r"[a-z_']+[0-9_]*(?:-[a-z]+)*|\d+(?:\.\d+)?|[,;:.!?]")
@@ -34,6 +35,7 @@ class Word:
 def words_of(text: str) -> list[Word]:
     """Words and punctuation marks of a sentence in lower case, known phrases as one token."""
     folded = text.lower().replace("\u2019", "'").replace("n't", " not")
+    folded = mark_places(folded)
     for pattern, replacement in PHRASES:
         folded = " ".join(re.sub(pattern, replacement, folded).split())
     return [word_of(token) for token in _TOKEN.findall(folded)]

@@ -9,7 +9,8 @@ from mmweaver.motion.animation.skeleton_proportions import ALLOWED_M
 from mmweaver.motion.mocap.clip import body_height
 
 Array = np.ndarray
-UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+# "cmu": that of the CMU collection, whose skeletons are in inches scaled by 0.45 (its FAQ; asf files say length 0.45)
+UNITS_M = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254, "cmu": 0.0254 / 0.45}
 UPS = ("y", "z", "-y", "-z", "x", "-x")
 CLEAR = 0.8  # share of the body's length that must lie along one axis
 
@@ -27,10 +28,11 @@ def unit_of(joints: Float[Array, "frame 22 3"], given: str | float | None, sourc
     fits = [name for name, metres in UNITS_M.items() if low <= size * metres <= high]
     if len(fits) == 1:
         metres = UNITS_M[fits[0]]
-        return metres, f"lengths of {source} are taken as {fits[0]}: the body is then {size * metres:.2f} m tall"
+        name = "the CMU collection's unit of 0.05644 m" if fits[0] == "cmu" else fits[0]
+        return metres, f"lengths of {source} are taken as {name}: the body is then {size * metres:.2f} m tall"
     raise InputError(
-        f"{source}: the body is {size:.4g} units tall, which in no unit (m, cm, mm, inch) is a person of {low:g} to"
-        f" {high:g} m; give --motion-unit, a name or the metres in one unit"
+        f"{source}: the body is {size:.4g} units tall, which in no unit ({', '.join(UNITS_M)}) is a person of"
+        f" {low:g} to {high:g} m; give --motion-unit, a name or the metres in one unit"
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.motion.mocap.clip import RawMotion
 
 Array = np.ndarray
@@ -31,8 +32,8 @@ class Node:
 
 def read_bvh(path: Path) -> RawMotion:
     """Joints of all frames (frame, joint, 3) in the file's unit, by forward kinematics. Raises InputError."""
-    text = path.read_text(encoding="utf-8", errors="replace").replace("{", "\n{\n").replace("}", "\n}\n")
-    lines = [line.strip() for line in text.lstrip("\ufeff").splitlines() if line.strip()]
+    text = read_text(path, errors="replace").replace("{", "\n{\n").replace("}", "\n}\n")
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
     if not lines or lines[0].upper() != "HIERARCHY":
         raise InputError(f"{path} is no BVH file: it does not begin with HIERARCHY")
     motion = next((k for k, line in enumerate(lines) if line.upper() == "MOTION"), None)
@@ -66,7 +67,7 @@ def _hierarchy(lines: list[str], path: Path) -> list[Node]:
             nodes[-1].offset = _numbers(rest.split(), path, line)
             if len(nodes[-1].offset) != 3:
                 raise InputError(f"{path}: {line!r} is no offset of three numbers; the file is damaged")
-        elif word == "CHANNELS" and nodes:
+        elif word == "CHANNELS" and nodes and not nodes[-1].channels:
             nodes[-1].channels = _channels(rest.split(), path, line)
             nodes[-1].first_channel = channels
             channels += len(nodes[-1].channels)
@@ -80,8 +81,8 @@ def _hierarchy(lines: list[str], path: Path) -> list[Node]:
 def _channels(words: list[str], path: Path, line: str) -> tuple[str, ...]:
     names = tuple(words[1:])
     known = all(name in POSITIONS or name in ROTATIONS for name in names)
-    if not words or not words[0].isdigit() or int(words[0]) != len(names) or not known:
-        raise InputError(f"{path}: {line[:80]!r} names no channels that are known; the file is damaged")
+    if not words or not words[0].isdigit() or int(words[0]) != len(names) or not known or len(set(names)) < len(names):
+        raise InputError(f"{path}: {line[:80]!r} names no channels that are known, or one twice; the file is damaged")
     return names
 
 

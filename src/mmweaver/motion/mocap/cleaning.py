@@ -64,6 +64,8 @@ def _bridge(joints: Float[Array, "frame 22 3"], missing: Bool[Array, "frame 22"]
     frame = np.arange(len(joints), dtype=float)
     for k in np.flatnonzero(missing.any(axis=0)):
         there = ~missing[:, k]
+        if np.count_nonzero(there) < 2:
+            raise InputError(f"{JOINT_NAMES[k]} is missing from all frames but one; give a more complete recording")
         joints[~there, k] = CubicSpline(frame[there], joints[there, k], axis=0)(frame[~there])
 
 

@@ -23,8 +23,8 @@ def check_lasts(clip: MotionClip, duration_s: float) -> None:
     """Raises InputError where a clip is shorter than `duration_s`."""
     if clip.duration_s < duration_s - 1e-6:
         raise InputError(
-            f"{clip.label} lasts {clip.duration_s:.2f} s, {duration_s:.2f} s are needed; use fewer --frames or"
-            " give a longer motion"
+            f"{clip.label} lasts {clip.duration_s:.3g} s, {duration_s:.3g} s are asked for; leave out --frames and"
+            " --seconds, then it sets the length, or give a longer motion"
         )
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files import safe_arrays
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS
-from mmweaver.motion.mocap.archives import open_npy, open_npz
 from mmweaver.motion.mocap.clip import RawMotion
 from mmweaver.motion.mocap.humanml3d import FPS, NUM_FEATURES, joints_from_features
 from mmweaver.motion.mocap.smpl import is_smpl, rate_of, read_smpl
@@ -27,7 +27,10 @@ NORMALISED_BELOW_M = 0.25  # mean height of the root below which features must b
 
 def read_npy(path: Path) -> RawMotion:
     """Joints (frame, 22, 3) or (frame, 66), or HumanML3D features (frame, 263). Raises InputError for other shapes."""
-    values = open_npy(path)
+    values = safe_arrays.read_npy(path)
+    if values.dtype.kind not in "fiu":
+        raise InputError(f"{path} holds values of type {values.dtype}; a motion has real numbers, saved alone")
+    values = values.astype(float)
     if values.shape[:1] == (1,) and (values.ndim == 4 or values.shape[2:] == (NUM_FEATURES,)):
         values = values[0]  # a batch of one
     if values.ndim == 2 and values.shape[1] == NUM_FEATURES:
@@ -37,7 +40,7 @@ def read_npy(path: Path) -> RawMotion:
 
 def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None) -> RawMotion:
     """SMPL poses, CMU clips (`clip` names one), or joints under a known key. Raises InputError for anything else."""
-    arrays = open_npz(path)
+    arrays = dict(safe_arrays.read_npz(path, skip_unreadable=True))
     if {"names", "lengths", "pos", "parents"} <= set(arrays):
         return _of_cmu(arrays, path, clip)
     if clip is not None:
@@ -67,7 +70,7 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
 
 def clips_of(path: Path) -> tuple[str, ...]:
     """Names of the motions of a file, where it holds several; else ()."""
-    arrays = open_npz(path, only=("names", "lengths")) if path.suffix.lower() == ".npz" else {}
+    arrays = safe_arrays.read_npz(path, only=("names", "lengths")) if path.suffix.lower() == ".npz" else {}
     return tuple(map(str, arrays["names"])) if {"names", "lengths"} <= set(arrays) else ()
 
 

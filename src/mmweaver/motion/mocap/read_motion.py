@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.motion.mocap.axes import is_reflected, unit_of, up_of, with_z_up
 from mmweaver.motion.mocap.bvh import read_bvh
 from mmweaver.motion.mocap.cleaning import check_bones, without_gaps, without_t_pose
@@ -21,6 +22,7 @@ from mmweaver.motion.mocap.joint_names import to_22
 
 FPS_LIMITS = (1.0, 2000.0)
 MOST_FRAMES = 1_000_000
+MOST_UNITS = 1e7  # 10 km in millimetres
 KINDS = ".bvh, .npy (22 joints or HumanML3D features) or .npz (AMASS, SMPL, CMU, joints)"
 
 
@@ -67,6 +69,7 @@ def to_clip(
     up: str | None = None,
 ) -> MotionClip:
     """Converts a RawMotion to our joints, metres and axes, without gaps; see `read_motion`."""
+    ArrayChecks(label).numbers("the motion", np.asarray(raw.positions), low=-MOST_UNITS, high=MOST_UNITS, nan=True)
     if not 2 <= len(raw.positions) <= MOST_FRAMES:
         raise InputError(f"{label} has {len(raw.positions)} frames; a motion has 2 to {MOST_FRAMES}")
     rate = _rate(fps if fps is not None else raw.fps, label)

@@ -12,8 +12,8 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS
-from mmweaver.motion.mocap.archives import open_npz
 from mmweaver.motion.mocap.clip import RawMotion
 
 Array = np.ndarray
@@ -106,7 +106,7 @@ def _own_offsets(body_model: Path, betas: Array | None) -> Float[Array, "22 3"]:
     """Joint offsets (22, 3) in metres of a body model's .npz with the recording's shape coefficients."""
     if body_model.suffix != ".npz":
         raise InputError(f"{body_model}: the body model must be an .npz (pickles are not opened); SMPL-H has model.npz")
-    model = open_npz(body_model, only=("v_template", "shapedirs", "J_regressor"))
+    model = read_npz(body_model, only=("v_template", "shapedirs", "J_regressor"))
     if set(model) != {"v_template", "shapedirs", "J_regressor"}:
         raise InputError(f"{body_model} is no body model: v_template, shapedirs and J_regressor are needed")
     template, shapes, regressor = model["v_template"], model["shapedirs"], model["J_regressor"]

@@ -4,17 +4,20 @@ Reference: MotionGPT's checkpoint `motiongpt_s3_h3d.tar`: a torch archive whose 
 `lm.language_model.*` (docs/motiongpt.md).
 """
 
-import warnings
 from pathlib import Path
 
-import torch
 from torch import Tensor
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files import safe_tensors
 from mmweaver.motion.motiongpt.tokenizer import TokenizerConfig
 
 VAE, LANGUAGE = "vae.", "lm.language_model."
 MEAN, STD, VOCABULARY = "meta.mean", "meta.std", "vocabulary"  # only in this project's own files
+NO_CHECKPOINT = (
+    "cut short, damaged, or no torch checkpoint of tensors alone ({reason}); if you trust it, save its state_dict alone"
+    " with torch.save and give that file"
+)
 State = dict[str, Tensor]
 
 
@@ -23,39 +26,14 @@ def read_checkpoint(path: Path) -> tuple[State, dict[str, str]]:
     if not path.is_file():
         raise InputError(f"there is no checkpoint {path}; give the file of MotionGPT, or a folder that holds it")
     if path.suffix == ".safetensors":
-        return _read_safetensors(path)
-    try:
-        # The published file was written by torch's own saving; weights_only runs nothing that it might hold.
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about pickles that are refused anyway
-            content = torch.load(path, map_location="cpu", weights_only=True)
-    except Exception as error:
-        raise InputError(_why_unread(path, error)) from None
+        return safe_tensors.read_tensors(path)
+    # The published file was written by torch's own saving, of which tensors and plain values alone are read.
+    content = safe_tensors.read_checkpoint(path, what=NO_CHECKPOINT)
     state = content.get("state_dict", content) if isinstance(content, dict) else content
     if not isinstance(state, dict) or not all(isinstance(value, Tensor) for value in state.values()):
         raise InputError(f"{path} holds no state_dict of tensors; it is no MotionGPT checkpoint")
+    safe_tensors.check_finite(path, state)
     return {str(name): value for name, value in state.items()}, {}
-
-
-def _read_safetensors(path: Path) -> tuple[State, dict[str, str]]:
-    from safetensors import SafetensorError, safe_open
-
-    try:
-        with safe_open(path, framework="pt") as file:
-            return {name: file.get_tensor(name) for name in file.keys()}, dict(file.metadata() or {})  # noqa: SIM118
-    except (SafetensorError, OSError) as error:
-        raise InputError(f"{path} is damaged or no safetensors file ({str(error).splitlines()[0][:100]})") from None
-
-
-def _why_unread(path: Path, error: Exception) -> str:
-    text = " ".join(str(error).split())
-    if "GLOBAL" in text or "Unsupported" in text or "weights_only" in text.lower():
-        what = text.split("GLOBAL ")[-1].split(" ")[0] if "GLOBAL " in text else "something"
-        return (
-            f"{path} holds {what} in addition to tensors, which is not opened (it could run code); if you trust it,"
-            " save its state_dict alone with torch.save and give that file"
-        )
-    return f"{path} cannot be read: cut short, damaged, or no torch checkpoint ({text[:80]})"
 
 
 def parts_of(state: State, path: Path) -> tuple[State, State]:

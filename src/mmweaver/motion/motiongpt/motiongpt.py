@@ -12,6 +12,8 @@ import torch
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.array_checks import ArrayChecks
+from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.humanml3d import CONTACTS, FPS, NUM_FEATURES, joints_from_features
 from mmweaver.motion.motiongpt.bone_lengths import with_constant_bone_lengths
@@ -209,16 +211,13 @@ def _language(spoken: dict[str, torch.Tensor], place: Path) -> "T5ForConditional
 def _statistic(given: str | Path | None, place: Path, name: str, features: int) -> Array:
     """mean.npy or std.npy, as given or next to the checkpoint; (feature,)."""
     path = Path(given) if given is not None else place.with_name(f"{name}.npy")
-    try:
-        values = np.load(path, allow_pickle=False)
-    except OSError:
+    if not path.exists():
         raise InputError(
             f"{path} is missing: the checkpoint needs MotionGPT's own {name}.npy (assets/meta of its repository) next"
             " to it"
-        ) from None
-    except ValueError:
-        raise InputError(f"{path} is no .npy array of numbers") from None
-    if values.shape != (features,) or not np.isfinite(values).all() or features != NUM_FEATURES:
+        )
+    values = ArrayChecks(path).numbers(name, read_npy(path))
+    if values.shape != (features,) or features != NUM_FEATURES:
         raise InputError(f"{path} has shape {values.shape}, ({features},) features are needed")
     return values
 

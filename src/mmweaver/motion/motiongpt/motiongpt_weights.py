@@ -9,6 +9,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.tensor_files import write_tensors
 from mmweaver.motion.motiongpt.checkpoint import LANGUAGE, MEAN, STD, VAE, VOCABULARY
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer
 
@@ -35,13 +36,10 @@ def save_weights(
     half: bool = False,
 ) -> None:
     """One safetensors file with weights, mean, std and vocabulary; with `half` the weights as float16."""
-    from safetensors.torch import save_file
-
     state = {name: value for name, value in state_of(tokenizer, language).items() if not name.endswith(SAME)}
     state = {name: (value.half() if half else value).contiguous().clone() for name, value in state.items()}
     state |= {MEAN: torch.from_numpy(mean.astype(np.float32)), STD: torch.from_numpy(std.astype(np.float32))}
-    with atomic_file(path) as temporary:
-        save_file(state, temporary, metadata={VOCABULARY: vocabulary})
+    write_tensors(path, state, {VOCABULARY: vocabulary})
 
 
 def save_published(path: Path, tokenizer: MotionTokenizer, language: "T5ForConditionalGeneration") -> None:

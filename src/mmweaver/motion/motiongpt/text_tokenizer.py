@@ -21,7 +21,8 @@ def load_words(folder: Path | None) -> "PreTrainedTokenizerBase":
     except ImportError:
         raise InputError(EXTRA) from None
     try:
-        return AutoTokenizer.from_pretrained(str(folder) if folder is not None else HUB_WORDS)
+        words: Any = AutoTokenizer.from_pretrained(str(folder) if folder is not None else HUB_WORDS)
+        return words
     except Exception:
         where = folder if folder is not None else f"the Hub ({HUB_WORDS})"
         raise InputError(

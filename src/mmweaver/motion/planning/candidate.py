@@ -1,6 +1,7 @@
 """Samples candidate trajectories of a plan: a start, and every step laid out from there."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
@@ -8,6 +9,7 @@ from jaxtyping import Float
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.activities import CLEARANCE_M
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.curved_and_lateral_paths import (
     check_floor_space,
     is_curved_or_lateral,
@@ -29,7 +31,7 @@ from mmweaver.motion.planning.seating import (
     usable_seats,
     usual_variation,
 )  # fmt: skip
-from mmweaver.motion.planning.targets import goes_to_target, start_for_target, walk_to_target
+from mmweaver.motion.planning.targets import goes_to_target, start_for_target, walk_along, walk_to_target
 from mmweaver.motion.planning.trajectory import (
     NoTrajectory,
     Trajectory,
@@ -42,10 +44,13 @@ from mmweaver.motion.planning.trajectory import (
 )
 
 Array = np.ndarray
+FAVOURITE_COST_PER_M = 0.7
 CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who gets up
+_SAME_PLACE_M = 0.1
 _NEAR_START_M = 1.0  # a seat so near to the requested start is the one meant
+_SEAT_AT_PLACE_M = 0.7  # from the free floor of a place
 _SEAT_DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
-_SEAT_SPEED_MPS = {"jog": (0.45, 2.6)}  # natural speeds of a walk that ends at a seat
+_SEAT_SPEED_MPS = {"jog": (1.2, 3.6)}  # natural speeds of a walk that ends at a seat
 _WALK_TO_SEAT_MPS = (0.45, 1.6)
 
 
@@ -64,6 +69,10 @@ class CandidateSampler:
     rng: np.random.Generator
     start_m: tuple[float, float] | None
     attempt: int
+    heading_rad: float | None = None  # given: where the body faces first
+    off_radar_rad: float | None = None  # drawn: how far a standing body turns from the radar
+    favourite_m: Float[Array, "2"] | None = None  # drawn: near it a start costs least
+    after: BodyState | None = None  # how the motion before ended, where there was one
 
     def sample(self) -> Trajectory:
         """One candidate: a start, and every step laid out from there. Raises NoTrajectory."""
@@ -84,6 +93,7 @@ class CandidateSampler:
             check_floor_space(trajectory, step, self.body)
             trajectory.from_seat = trajectory.from_seat or step.lower == "stand_up"
             if step.lower == "sit_down" and k:
+                sitting = sitting or self._seat_behind(trajectory)
                 sitting = sitting or _stool_at_end(trajectory, self.body, previous=self.plan.steps[k - 1])
                 trajectory.turn_to(sitting.facing_rad, step.start_s - 0.3)
             trajectory.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
@@ -95,11 +105,18 @@ class CandidateSampler:
                 trajectory.cost += 2.0 * max(0.0, wanted - float(self.floor.clearance_at(trajectory.position_m)))
                 trajectory.cost += float(self.floor.cost_at(trajectory.position_m))
         trajectory.cost += float(self.rng.uniform(0, 0.5))
+        if self.favourite_m is not None and self.start_m is None:
+            gap_m = float(np.hypot(*(np.array(trajectory.start_m) - self.favourite_m)))
+            trajectory.cost += FAVOURITE_COST_PER_M * min(gap_m, 2.0)
         return trajectory
+
+    @cached_property
+    def _usable_seats(self) -> list[Sitting]:
+        return usable_seats(self.floor, self.body)
 
     def _seats(self) -> list[Sitting]:
         """The scene's seats with sampled ways to sit on them, as `attempt` allows."""
-        seats = usable_seats(self.floor, self.body)
+        seats = self._usable_seats
         if not self.attempt:
             return [usual_variation(seat, self.rng) for seat in seats]
         named = next((step.seat for step in self.plan.steps if step.seat), "")
@@ -111,23 +128,51 @@ class CandidateSampler:
     def _start(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting | None]:
         """The start of the trajectory, and how the person sits there, if so."""
         first = self.plan.steps[0]
+        if self.after is not None:
+            spot = np.array(self.after.position_m)
+            is_before_seat = self.after.sitting is not None or not bool(self.floor.can_stand(spot))
+            going_on = Trajectory(
+                floor=self.floor, rng=self.rng, position_m=spot, heading_rad=self.after.heading_rad,
+                from_seat=is_before_seat,
+            )  # fmt: skip
+            return going_on, self.after.sitting if starts_seated(self.plan) else None
         if starts_seated(self.plan):
             usable = preferred(seats, first.seat, self.floor.scene)
+            if first.place is not None:
+                cells = self.floor.place_cells[first.place]
+                usable = [seat for seat in usable if np.hypot(*(cells - seat.seat_m).T).min() < _SEAT_AT_PLACE_M]
             if any(step.lower not in ("sit", "sit_down") for step in self.plan.steps):
                 # Getting up needs room in front of the seat, where a table may stand.
                 usable = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
             return self._start_seated(usable)
         spot = np.array(self.start_m, dtype=float) if self.start_m is not None else self._random_start(seats)
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.2), -0.4, 0.4))
+        if self.off_radar_rad is not None and not first.moves:
+            facing = float(np.arctan2(-spot[1], -spot[0])) + self.off_radar_rad
         if any(step.posture in ("floor", "knees") for step in self.plan.steps):
             facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
         if first.facing and first.upper not in ("point", "look_around"):
             facing = _facing_rad(first.facing, spot) + float(self.rng.normal(0, 0.05))
+        if self.heading_rad is not None:
+            facing = self.heading_rad
         return Trajectory(floor=self.floor, rng=self.rng, position_m=spot, heading_rad=facing), None
+
+    def _seat_behind(self, trajectory: Trajectory) -> Sitting | None:
+        """The seat of the motion before, where the body still stands in front of it."""
+        sitting = None if self.after is None else self.after.sitting
+        if sitting is None or np.hypot(*(sitting.feet_m - trajectory.position_m)) > _SAME_PLACE_M:
+            return None
+        return sitting
 
     def _random_start(self, seats: list[Sitting]) -> Float[Array, "2"]:
         """A random position (x, y) in metres; for a walk to a seat often one from which it ends there."""
         first = self.plan.steps[0]
+        route_m = next((step.route_m for step in self.plan.steps if step.route_m), ())
+        if route_m:
+            return np.array(route_m[0], float)
+        if first.place is not None and not (first.moves and first.place.landmark):
+            cells = self.floor.place_cells[first.place]
+            return cells[int(self.rng.integers(len(cells)))]
         if first.moves and goes_to_target(first) and self.rng.random() < 0.8:
             spot = start_for_target(first, self.floor, self.rng)
             if spot is not None:
@@ -138,7 +183,7 @@ class CandidateSampler:
             length = (first.end_s - first.start_s) * self.rng.uniform(0.6, 1.3)
             angle = self.rng.uniform(0, 2 * np.pi)
             return sitting.feet_m - length * np.array([np.cos(angle), np.sin(angle)])
-        cells = self.floor.cell_centres_m[self.floor.walkable]
+        cells = self.floor.walkable_m
         spot = cells[int(self.rng.integers(len(cells)))]
         return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
 
@@ -151,7 +196,8 @@ class CandidateSampler:
             is_blocked = not self.floor.clearance_at(sitting.feet_m) > 0
             cost += float(self.floor.cost_at(sitting.seat_m)) + 2.0 * is_blocked
         else:
-            cells = self.floor.cell_centres_m[self.floor.walkable]
+            first = self.plan.steps[0]
+            cells = self.floor.walkable_m if first.place is None else self.floor.place_cells[first.place]
             if not len(cells):
                 raise NoTrajectory("no free floor")
             spot = np.array(self.start_m, dtype=float) if self.start_m else cells[int(self.rng.integers(len(cells)))]
@@ -191,6 +237,9 @@ def _seat_ahead(trajectory: Trajectory, step: Step, following: Step | None, seat
 
 def _lay_move(trajectory: Trajectory, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
     """Lays out a step that moves: to a seat (`target`), to a landmark, on a curve, straight, or anywhere."""
+    if step.route_m:
+        walk_along(trajectory, step, first=first)
+        return
     if target is None and goes_to_target(step):
         walk_to_target(trajectory, step, first=first)
         return

@@ -1,75 +1,39 @@
 """Collision test of a moving body with the photographed room: its limbs against measured points and walls."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
-from mmweaver.core.records import PoseSequence, Scene
-from mmweaver.core.skeleton import JOINT_NAMES, PARENTS, joint
+from mmweaver.core.records import Plane, PoseSequence, Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
-from mmweaver.geometry.body_capsules import capsule_between, part_of, scale_of
+from mmweaver.motion.planning.body_samples import BodySamples
+from mmweaver.motion.planning.distance_field import CELL_M, FARTHEST_M, DistanceField, distance_field, interior, thinned
 from mmweaver.motion.planning.occluded_geometry import (
     below_tops,
     extended_to_floor,
-    occluded_share,
     table_legs,
     table_tops,
-    unseen_share,
     upright_structures,
 )
 
 Array = np.ndarray
-# Limbs are tested as cylinders between two joints; each has one radius.
-_LIMB_ENDS = (
-    ("pelvis", "spine3"), ("spine3", "neck"), ("neck", "head"), ("left_hip", "right_hip"),
-    ("left_collar", "left_shoulder"), ("right_collar", "right_shoulder"),
-    ("left_hip", "left_knee"), ("right_hip", "right_knee"), ("left_knee", "left_ankle"), ("right_knee", "right_ankle"),
-    ("left_ankle", "left_foot"), ("right_ankle", "right_foot"),
-    ("left_shoulder", "left_elbow"), ("right_shoulder", "right_elbow"),
-    ("left_elbow", "left_wrist"), ("right_elbow", "right_wrist"),
-)  # fmt: skip
-# Where a mean of the capsules is too thin: the shoulder blades, and a head wider than the neck that carries it.
-_THICKER_M = {"neck": 0.02, "head": 0.015, "shoulder": 0.005}
-_RADIUS_STEP_M = 0.005  # mean radii are rounded up to it
-
-
-def _limb_radius_m(start: str, end: str) -> float:
-    """The mean radius of the capsules from joint to joint, at reference height, rounded up."""
-    if part_of(start) == part_of(end) == "hip":
-        return capsule_between(start, start).start_radius_m
-    radii_m = []
-    child = joint(end)
-    while child != joint(start):
-        capsule = capsule_between(JOINT_NAMES[PARENTS[child]], JOINT_NAMES[child])
-        radii_m += [capsule.start_radius_m, capsule.end_radius_m]
-        child = PARENTS[child]
-    mean_m = float(np.mean(radii_m)) + _THICKER_M.get(part_of(end), 0.0)
-    return round(float(np.ceil(round(mean_m / _RADIUS_STEP_M, 6))) * _RADIUS_STEP_M, 3)
-
-
-_LIMBS = tuple((start, end, _limb_radius_m(start, end)) for start, end in _LIMB_ENDS)
-_HAND_M = capsule_between("left_wrist", "left_wrist").extend_m + 0.03  # beyond the wrist, most of its round tip too
-_SEATED = ("pelvis", "spine3", "left_hip", "right_hip", "left_collar", "right_collar")
-_SHARES = np.array([0.0, 0.33, 0.67, 1.0])  # where along a limb it is tested
-_STEP_S = 0.1  # how often it is tested
+Place = tuple[float, float]
 _ALLOWED_M, _ON_SEAT_M = 0.01, 0.16  # tolerated penetration, and that of trunk and thighs into the seat they sit on
 _SEAT_REACH_M = 0.65  # horizontal distance from a seat's centre within which a limb belongs to the sitter
 _SEAT_AHEAD_M, _SEAT_BELOW_M = 0.12, 0.05  # points farther ahead of the pelvis and no lower are not the seat itself
 _TABLE_BEHIND_M = 0.03  # extra distance to a table behind a sitter, whose edge may have been taken for a backrest
 _ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk are not the seat's there
-_FARTHEST_M = 0.3  # thicker than any limb: points farther away need no distance
-_FOOT_M, _WITHIN_M = 0.24, 0.01  # height of a foot; a point so near to a limb's axis lies within it
+_FOOT_M = 0.24  # height of a foot
 _LOWEST_M = 0.09  # points lower above the floor are floor: soles touch it
 _MOST_POINTS = 34_000
-_VOXEL_M, _VOXEL_KEYS = 0.015, np.array([1, 10_000, 100_000_000])  # one point is kept per voxel
 _LOW_M, _LOW_DOWN_M = 0.64, (0.1, 0.17, 0.24)  # beds and low tables are solid: points are added at these depths below
 _WALL_BEYOND_M, _WALL_DEPTH_M = 0.3, 0.6  # walls continue beyond what is seen of them; how deep one counts
 _THICK_M = 0.04  # least thickness: of a table's top below its seen points, of a cupboard's front behind them
-
+# The part of the room that is tabulated: what lies farther is out of any radar's window that the floor map covers.
+_SIDE_M, _AWAY_M, _HIGHEST_M = 3.4, (-0.3, 5.4), 2.5
 
 _latest: list["CollisionMap"] = []
 
@@ -108,8 +72,13 @@ class CollisionMap:
         return np.concatenate([upright_structures(self.scene, self._measured_m), table_legs(self.scene)])
 
     @cached_property
-    def _solid_m(self) -> Float[Array, "point 3"]:
-        """Measured points, and what must lie just behind and below them, one point per voxel."""
+    def _hard_m(self) -> tuple[Float[Array, "solid 3"], Float[Array, "top 3"], Float[Array, "leg 3"]]:
+        """Everything solid, table tops and upright structures, one point in each cell."""
+        return self._solid.points_m, thinned(self._tops_m), thinned(self._legs_m)
+
+    @cached_property
+    def _solid(self) -> DistanceField:
+        """Distance to measured points, and to what must lie just behind and below them."""
         points = self._measured_m
         behind = points * (1 + _THICK_M / np.maximum(np.linalg.norm(points, axis=1, keepdims=True), 1e-6))
         low = points[points[:, 2] < self.scene.floor_z_m + _LOW_M]
@@ -117,122 +86,107 @@ class CollisionMap:
         below += [low - np.array([0.0, 0.0, down]) for down in _LOW_DOWN_M]
         solid = np.concatenate([points, behind, self._tops_m, *below])
         solid = solid[solid[:, 2] > self.scene.floor_z_m + _LOWEST_M]
-        solid = np.concatenate(
-            [solid, extended_to_floor(np.concatenate([points, behind]), self.scene.floor_z_m), table_legs(self.scene)]
-        )
-        _, one_each = np.unique(np.rint(solid / _VOXEL_M).astype(int) @ _VOXEL_KEYS, return_index=True)
-        return solid[one_each]
+        reaching_down = extended_to_floor(np.concatenate([points, behind]), self.scene.floor_z_m)
+        field = self._field(np.concatenate([solid, reaching_down, table_legs(self.scene)]))
+        # Low furniture is filled with points, so the nearest one is near even deep inside: a foot there is within.
+        within = interior(field)
+        within[..., int(_FOOT_M / CELL_M) :] = False
+        return replace(field, distance_m=np.where(within, np.float32(0.0), field.distance_m))
 
     @cached_property
-    def _tree(self) -> Any:
-        """k-d tree of `_solid_m`."""
-        from scipy.spatial import KDTree
+    def _standing(self) -> DistanceField:
+        """The same with the space below table tops, which is closed to everybody who does not sit there."""
+        below = self._field(below_tops(self.scene, self._tops_m))
+        return replace(below, distance_m=np.minimum(below.distance_m, self._solid.distance_m))
 
-        return KDTree(self._solid_m)
-
-    @cached_property
-    def _below_tops(self) -> Any:
-        """k-d tree of the space below table tops, closed to everybody who does not sit there."""
-        from scipy.spatial import KDTree
-
-        return KDTree(below_tops(self.scene, self._tops_m))
-
-    def _not_of_seat(self, pose: PoseSequence, seat: tuple[float, float]) -> tuple[tuple[Any, float], ...]:
-        """k-d trees of points around a seat that are not the seat itself, each with an extra distance to keep.
-
-        The first holds what lies ahead of the seat and above its surface, the second tables behind it.
-        """
-        from scipy.spatial import KDTree
-
-        lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
-        knees = lowest[joint("left_knee")] + lowest[joint("right_knee")]
-        ahead = (knees - lowest[joint("left_hip")] - lowest[joint("right_hip")])[:2]
-        ahead = ahead / max(float(np.hypot(*ahead)), 1e-6)
-        solid, tops, legs = (_about(points, seat) for points in (self._solid_m, self._tops_m, self._legs_m))
-        along, height = (solid[:, :2] - np.array(seat)) @ ahead, solid[:, 2] - lowest[joint("pelvis"), 2]
-        ahead_of = (along > _SEAT_AHEAD_M) & (height > -_SEAT_BELOW_M)
-        next_to = (along > 0.0) & (height > _ABOVE_ARMRESTS_M)
-        tops = tops[tops[:, 2] > lowest[joint("pelvis"), 2]]
-        behind = (tops[:, :2] - np.array(seat)) @ ahead <= _SEAT_AHEAD_M
-        legs = legs[(legs[:, :2] - np.array(seat)) @ ahead > _SEAT_AHEAD_M]
-        hard = np.concatenate([solid[ahead_of | next_to], tops[~behind], legs])
-        quick = {"balanced_tree": False, "compact_nodes": False}  # each tree is queried only once
-        return (KDTree(hard, **quick), 0.0), (KDTree(tops[behind], **quick), _TABLE_BEHIND_M)
-
-    def occluded_shares(self, pose: PoseSequence) -> tuple[float, float]:
-        """With the pelvis lowest: the shares of the trunk occluded, and of the legs occluded or outside the photo."""
-        lowest = pose.joints_m[int(np.argmin(pose.joints_m[:, joint("pelvis"), 2]))].astype(float)
-        trunk = _along(lowest, "pelvis", "spine3", "neck")
-        legs = [_along(lowest, f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side in ("left", "right")]
-        return occluded_share(self.scene, trunk), unseen_share(self.scene, np.concatenate(legs))
+    def _field(self, points_m: Float[Array, "point 3"]) -> DistanceField:
+        floor = self.scene.floor_z_m
+        low, high = np.array([-_SIDE_M, _AWAY_M[0], floor]), np.array([_SIDE_M, _AWAY_M[1], floor + _HIGHEST_M])
+        return distance_field(points_m, low, high)
 
     def penetration_m(
-        self, pose: PoseSequence, seats_m: Sequence[tuple[float, float]] = (), *, margin_m: float = 0.0
+        self, pose: PoseSequence | BodySamples, seats_m: Sequence[Place] = (), *, margin_m: float = 0.0
     ) -> float:
         """Greatest penetration depth in metres of the body, thickened by a margin, into anything; 0 where it is clear.
 
         Around the seats at `seats_m` trunk and thighs may sink into the surface, but not into a table ahead.
         """
-        rows = np.unique(np.searchsorted(pose.time_s, np.arange(max(pose.time_s[0], 0.0), pose.time_s[-1], _STEP_S)))
-        joints = pose.joints_m[np.minimum(rows, len(pose.time_s) - 1)].astype(float)
-        scale = scale_of(pose.height_m)
-        points, radius, soft = [], [], []
-        for start, end, limb_radius_m in _LIMBS:
-            first, last = joints[:, joint(start)], joints[:, joint(end)]
-            if end.endswith("wrist"):
-                along = last - first
-                last = last + _HAND_M * along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-6)
-            limb = first[None] * (1 - _SHARES[:, None, None]) + last[None] * _SHARES[:, None, None]
-            points.append(limb.reshape(-1, 3))
-            radius.append(np.full(limb.shape[0] * limb.shape[1], limb_radius_m * scale))
-            soft.append(np.full(limb.shape[0] * limb.shape[1], start in _SEATED))
-        limbs = np.concatenate(points), np.concatenate(radius), np.concatenate(soft)
-        tables = [(seat, *near) for seat in dict.fromkeys(seats_m) for near in self._not_of_seat(pose, seat)]
-        return self._worst(*limbs, tables, margin_m)
-
-    def _worst(
-        self,
-        points: Float[Array, "point 3"],
-        radius: Float[Array, " point"],
-        soft: np.ndarray,
-        tables: Sequence[tuple[tuple[float, float], Any, float]],
-        margin_m: float,
-    ) -> float:
-        """`penetration_m` of limb points (point, 3) with their radii in metres; `soft` ones may sink into seats."""
-        allowed, worst = np.full(len(points), _ALLOWED_M - margin_m), 0.0
-        sits = np.zeros(len(points), bool)
-        for seat, tree, extra_m in tables:
-            at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
-            before, _ = tree.query(points[at_seat], distance_upper_bound=_FARTHEST_M)
-            worst = max(worst, float((radius[at_seat] + extra_m - before - allowed[at_seat]).max(initial=0.0)))
-            sits |= at_seat
-        unknown, _ = self._below_tops.query(points[~sits], distance_upper_bound=_FARTHEST_M)
-        worst = max(worst, float((radius[~sits] - unknown - allowed[~sits]).max(initial=0.0)))
-        for seat, *_ in tables:
-            at_seat = np.hypot(points[:, 0] - seat[0], points[:, 1] - seat[1]) < _SEAT_REACH_M
-            allowed[at_seat] = np.where(soft[at_seat], _ON_SEAT_M, _ALLOWED_M - margin_m)
-        distance, _ = self._tree.query(points, distance_upper_bound=_FARTHEST_M)
-        worst = max(worst, float((radius - distance - allowed).max()))
-        # Low furniture is filled with points, so the nearest one is near even deep inside: count the whole radius.
-        within = (points[:, 2] < self.scene.floor_z_m + _FOOT_M) & (distance < _WITHIN_M)
-        worst = max(worst, float((radius - allowed)[within].max(initial=0.0)) + _WITHIN_M if within.any() else 0.0)
-        for plane in self.scene.planes:
-            if plane.kind == "wall":
-                away = points - plane.centre_m
-                inside = np.abs(away @ plane.axis_u) < plane.half_size_m[0] + _WALL_BEYOND_M
-                into = np.where(inside, radius - away @ plane.normal - allowed, 0.0)
-                # Farther behind a wall is another room, seen through a door.
-                worst = max(worst, float(into[into < _WALL_DEPTH_M].max(initial=0.0)))
+        samples = (pose if isinstance(pose, BodySamples) else BodySamples.of(pose)).without_repeats()
+        worst = float(self.estimates_m([samples], [seats_m], margin_m=margin_m)[0])
+        for seat in dict.fromkeys(seats_m):
+            worst = max(worst, self._beyond_seat_m(samples, seat, margin_m))
         return worst
 
+    def estimates_m(
+        self, bodies: Sequence[BodySamples], seats_m: Sequence[Sequence[Place]], *, margin_m: float
+    ) -> Float[Array, " body"]:
+        """`penetration_m` of many bodies at once, where what is ahead of a sitter counts as part of the seat."""
+        points = np.concatenate([body.points_m for body in bodies])
+        radius = np.concatenate([body.radius_m for body in bodies])
+        at_seat = np.concatenate([_near(body, seats) for body, seats in zip(bodies, seats_m, strict=True)])
+        soft = at_seat & np.concatenate([body.is_soft for body in bodies])
+        allowed = np.where(soft, _ON_SEAT_M, _ALLOWED_M - margin_m)
+        distance = np.where(at_seat, self._solid.at(points), self._standing.at(points)) if at_seat.any() else (
+            self._standing.at(points)
+        )  # fmt: skip
+        depth = radius - distance - allowed
+        for plane in self._walls:
+            depth = np.maximum(depth, _into_wall_m(plane, points, radius - allowed))
+        ends = np.cumsum([len(body.points_m) for body in bodies])
+        return np.maximum(np.maximum.reduceat(depth, np.concatenate([[0], ends[:-1]])), 0.0)
 
-def _about(points: Float[Array, "point 3"], seat: tuple[float, float]) -> Float[Array, "near 3"]:
+    @cached_property
+    def _walls(self) -> tuple[Plane, ...]:
+        return tuple(plane for plane in self.scene.planes if plane.kind == "wall")
+
+    def _beyond_seat_m(self, body: BodySamples, seat: Place, margin_m: float) -> float:
+        """How deep a sitter is in what is near the seat but no part of it.
+
+        That is what lies ahead of the seat and above its surface, and tables behind it.
+        """
+        solid, tops, legs = (_about(points, seat) for points in self._hard_m)
+        along, height = (solid[:, :2] - np.array(seat)) @ body.ahead, solid[:, 2] - body.pelvis_m[2]
+        ahead_of = (along > _SEAT_AHEAD_M) & (height > -_SEAT_BELOW_M)
+        next_to = (along > 0.0) & (height > _ABOVE_ARMRESTS_M)
+        tops = tops[tops[:, 2] > body.pelvis_m[2]]
+        behind = (tops[:, :2] - np.array(seat)) @ body.ahead <= _SEAT_AHEAD_M
+        legs = legs[(legs[:, :2] - np.array(seat)) @ body.ahead > _SEAT_AHEAD_M]
+        at_seat = _near(body, (seat,))
+        points, radius = body.points_m[at_seat], body.radius_m[at_seat]
+        depth = 0.0
+        hard = np.concatenate([solid[ahead_of | next_to], tops[~behind], legs])
+        for obstacle, extra_m in ((hard, 0.0), (tops[behind], _TABLE_BEHIND_M)):
+            nearest = _distances_m(points, obstacle)
+            depth = max(depth, float((radius + extra_m - nearest - _ALLOWED_M + margin_m).max(initial=0.0)))
+        return depth
+
+
+def _near(body: BodySamples, seats_m: Sequence[Place]) -> Bool[Array, " point"]:
+    """Which points of a body belong to a sitter on one of the seats."""
+    is_near = np.zeros(len(body.points_m), bool)
+    for seat in dict.fromkeys(seats_m):
+        is_near |= np.hypot(body.points_m[:, 0] - seat[0], body.points_m[:, 1] - seat[1]) < _SEAT_REACH_M
+    return is_near
+
+
+def _distances_m(points: Float[Array, "point 3"], obstacle: Float[Array, "other 3"]) -> Float[Array, " point"]:
+    from scipy.spatial import KDTree
+
+    tree = KDTree(obstacle, balanced_tree=False, compact_nodes=False)  # queried only once
+    return np.asarray(tree.query(points, distance_upper_bound=FARTHEST_M)[0])
+
+
+def _into_wall_m(
+    plane: Plane, points: Float[Array, "point 3"], reach_m: Float[Array, " point"]
+) -> Float[Array, " point"]:
+    """How deep limbs of a thickness are in a wall; farther behind it is another room, seen through a door."""
+    away = points - plane.centre_m
+    inside = np.abs(away @ plane.axis_u) < plane.half_size_m[0] + _WALL_BEYOND_M
+    into = np.where(inside, reach_m - away @ plane.normal, 0.0)
+    return np.where(into < _WALL_DEPTH_M, into, 0.0)
+
+
+def _about(points: Float[Array, "point 3"], seat: Place) -> Float[Array, "near 3"]:
     """Points near enough to a seat to matter to a person sitting there."""
-    points = points[np.abs(points[:, 0] - seat[0]) < _SEAT_REACH_M + _FARTHEST_M]
-    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + _FARTHEST_M]
-
-
-def _along(joints: Float[Array, "joint 3"], *names: str) -> Float[Array, "position 3"]:
-    """Positions in metres along the bones between the named joints."""
-    ends = np.stack([joints[joint(name)] for name in names])
-    return np.concatenate([ends[:-1] + share * (ends[1:] - ends[:-1]) for share in _SHARES])
+    points = points[np.abs(points[:, 0] - seat[0]) < _SEAT_REACH_M + FARTHEST_M]
+    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + FARTHEST_M]

@@ -1,22 +1,31 @@
-"""Chooses, among many placements of a motion, the one whose body collides least with the room."""
+"""Chooses, among many placements of a motion, the one whose body collides least with the room.
 
-from collections import Counter
-from collections.abc import Callable, Sequence
+The placement that costs least is animated and tested. Only where it collides, all others are compared, without
+animating them: their bodies are estimated by moving the first one along their paths.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
+from mmweaver.motion.planning.body_samples import BodySamples
 from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.occluded_geometry import occluded_share, unseen_share
 from mmweaver.motion.planning.placement import Placement
 
-MOST_ANIMATED = 40  # placements that are animated and tested, of those that an attempt gives
 REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
 MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
+MOST_TESTED, MOST_ANIMATED = 12, 3  # of an attempt's placements: compared closely, and of those that move animated
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
+_SAME_SEAT_M = 0.02  # seats whose heights differ less are sat on alike
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,11 +39,6 @@ class RankedPlacement:
     legs_cost_m: float = 0.0  # for occluded legs, which those under a table often are
 
     @property
-    def cost_m(self) -> float:
-        """What placements are ranked by."""
-        return self.penetration_m + self.trunk_cost_m + self.legs_cost_m
-
-    @property
     def notes(self) -> tuple[str, ...]:
         """What is reported to the user where the body collides."""
         if self.penetration_m <= REPORTED_PENETRATION_M:
@@ -43,6 +47,27 @@ class RankedPlacement:
         return (
             f"the body gets {penetration_cm:.0f} cm into furniture or a wall, because the room leaves no better place",
         )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Tested:
+    """A placement whose body was tested, or estimated; see `RankedPlacement`."""
+
+    placement: Placement
+    penetration_m: float
+    trunk_cost_m: float
+    legs_cost_m: float
+    pose: PoseSequence | None = None  # where it was animated
+
+    @property
+    def cost_m(self) -> float:
+        """What placements are ranked by."""
+        return self.penetration_m + self.trunk_cost_m + self.legs_cost_m
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether there is no reason to look for another placement."""
+        return self.penetration_m <= -MARGIN_M and self.trunk_cost_m + self.legs_cost_m <= _NEGLIGIBLE_M
 
 
 def least_collision(
@@ -55,47 +80,123 @@ def least_collision(
     `candidates(attempt)` gives placements, the best first. Attempt 1 is made where none of attempt 0 is clear, attempt
     2, which leaves the room's seats, where the collision is so deep that it would be reported.
     """
-    best = _best(candidates(0), animate, obstacles)
+    ranking = _Ranking(animate, obstacles)
+    best = ranking.best_of(candidates(0))
     for attempt in (1, 2):
         # Occluded legs alone are no reason to leave the room's seats.
         cost_m = best.cost_m if attempt == 1 else best.penetration_m + best.trunk_cost_m
-        if cost_m <= _ENOUGH_M[attempt]:
+        if best.is_clear or cost_m <= _ENOUGH_M[attempt]:
             break
         try:
-            other = _best(candidates(attempt), animate, obstacles)
+            others = candidates(attempt)
         except InputError:  # this attempt finds no placement
             continue
-        best = other if other.cost_m < best.cost_m else best
-    return best
+        best = ranking.best_of(others, better_than=best)
+    return RankedPlacement(
+        placement=best.placement, pose=best.pose or animate(best.placement), penetration_m=best.penetration_m,
+        trunk_cost_m=best.trunk_cost_m, legs_cost_m=best.legs_cost_m,
+    )  # fmt: skip
 
 
-def _best(
-    placements: Sequence[Placement], animate: Callable[[Placement], PoseSequence], obstacles: CollisionMap
-) -> RankedPlacement:
-    best: RankedPlacement | None = None
-    for placement in _seats_varied(placements)[:MOST_ANIMATED]:
-        pose = animate(placement)
+class _Ranking:
+    """Tests and compares placements of one motion."""
+
+    def __init__(self, animate: Callable[[Placement], PoseSequence], obstacles: CollisionMap) -> None:
+        self._animate, self._obstacles = animate, obstacles
+        self._sketches: dict[tuple[int, ...] | None, BodySamples] = {}  # relative to the root, by `_key`
+
+    def best_of(self, placements: Sequence[Placement], *, better_than: _Tested | None = None) -> _Tested:
+        """The first clear one, else the one of least cost, `better_than` included."""
+        best = better_than
+        if best is None:
+            best = self._animated(placements[0])
+            if best.is_clear:
+                return best
+            placements = placements[1:]
+        animations = MOST_ANIMATED
+        for estimate in self._refined(self._estimated(placements)[:MOST_TESTED]):
+            if estimate.cost_m >= best.cost_m and not estimate.is_clear:
+                continue
+            tested = estimate
+            if not estimate.placement.is_still:
+                if not animations:
+                    break
+                animations -= 1
+                tested = self._animated(estimate.placement)
+            best = tested if tested.cost_m < best.cost_m or tested.is_clear else best
+            if tested.is_clear:
+                break
+        return best
+
+    def _refined(self, estimates: Sequence[_Tested]) -> Iterator[_Tested]:
+        """Estimates with what is ahead of a sitter: as they come where they stay, the best first where they move."""
+        refined = (self._moved(estimate.placement) for estimate in estimates)
+        if all(estimate.placement.is_still for estimate in estimates):
+            return refined
+        return iter(_sorted(list(refined)))
+
+    def _estimated(self, placements: Sequence[Placement]) -> list[_Tested]:
+        """All placements with estimated collisions: first the clear ones in the given order, then by their cost."""
+        if not placements:
+            return []
+        bodies = [self._sketch(placement).along(placement.path) for placement in placements]
+        seats = [placement.seats_m for placement in placements]
+        depths_m = self._obstacles.estimates_m(bodies, seats, margin_m=MARGIN_M) - MARGIN_M
+        trunk_m, legs_m = self._occlusion_costs_m(bodies, seats)
+        costs = zip(placements, depths_m, trunk_m, legs_m, strict=True)
+        estimates = [
+            _Tested(placement=each, penetration_m=float(depth), trunk_cost_m=float(trunk), legs_cost_m=float(legs))
+            for each, depth, trunk, legs in costs
+        ]
+        return _sorted(estimates)
+
+    def _sketch(self, placement: Placement) -> BodySamples:
+        """The body relative to its root, as animated for a placement with seats of the same height."""
+        key = _key(placement)
+        if key not in self._sketches:
+            self._animated(placement)
+        return self._sketches[key]
+
+    def _animated(self, placement: Placement) -> _Tested:
+        pose = self._animate(placement)
+        samples = BodySamples.of(pose)
+        if _key(placement) not in self._sketches:
+            sketch = samples.relative_to(placement.path)
+            is_still = placement.is_still
+            self._sketches[_key(placement)] = sketch.without_repeats() if is_still else sketch.every_second_time()
+        return self._tested(placement, samples, pose)
+
+    def _moved(self, placement: Placement) -> _Tested:
+        """The body estimated for a placement, tested in full."""
+        return self._tested(placement, self._sketch(placement).along(placement.path), None)
+
+    def _tested(self, placement: Placement, samples: BodySamples, pose: PoseSequence | None) -> _Tested:
         # Beyond the margin all are equally good.
-        penetration_m = obstacles.penetration_m(pose, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
-        trunk, legs = obstacles.occluded_shares(pose) if placement.seats_m else (0.0, 0.0)
-        ranked = RankedPlacement(
-            placement=placement, pose=pose, penetration_m=penetration_m, trunk_cost_m=_OCCLUDED_TRUNK_M * trunk,
-            legs_cost_m=_OCCLUDED_LEGS_M * legs,
+        penetration_m = self._obstacles.penetration_m(samples, placement.seats_m, margin_m=MARGIN_M) - MARGIN_M
+        trunk_m, legs_m = self._occlusion_costs_m([samples], [placement.seats_m])
+        return _Tested(
+            placement=placement, penetration_m=penetration_m, trunk_cost_m=float(trunk_m[0]),
+            legs_cost_m=float(legs_m[0]), pose=pose,
         )  # fmt: skip
-        if best is None or ranked.cost_m < best.cost_m:
-            best = ranked
-        if ranked.penetration_m <= -MARGIN_M and ranked.trunk_cost_m + ranked.legs_cost_m <= _NEGLIGIBLE_M:
-            break
-    assert best is not None
-    return best
+
+    def _occlusion_costs_m(
+        self, bodies: Sequence[BodySamples], seats: Sequence[Sequence[tuple[float, float]]]
+    ) -> tuple[Float[np.ndarray, " body"], Float[np.ndarray, " body"]]:
+        """What the occluded trunks and legs of sitters cost."""
+        sits = np.array([bool(each) for each in seats])
+        if not sits.any():
+            return np.zeros(len(bodies)), np.zeros(len(bodies))
+        scene = self._obstacles.scene
+        trunk = occluded_share(scene, np.stack([body.trunk_m for body in bodies]))
+        legs = unseen_share(scene, np.stack([body.legs_m for body in bodies]))
+        return sits * _OCCLUDED_TRUNK_M * trunk, sits * _OCCLUDED_LEGS_M * legs
 
 
-def _seats_varied(placements: Sequence[Placement]) -> list[Placement]:
-    """In the same order, but all beyond the first two of each way to sit come last."""
-    count: Counter[tuple[object, ...]] = Counter()
-    first, later = [], []
-    for placement in placements:
-        sitting = (*placement.seats_m, round(placement.path.heading_rad, 2))
-        count[sitting] += 1
-        (later if placement.seats_m and count[sitting] > 2 else first).append(placement)
-    return first + later
+def _sorted(estimates: Sequence[_Tested]) -> list[_Tested]:
+    """The clear ones as they come, then the others by their cost."""
+    return sorted(estimates, key=lambda one: (not one.is_clear, 0.0 if one.is_clear else one.cost_m))
+
+
+def _key(placement: Placement) -> tuple[int, ...] | None:
+    """Which placements share one estimate of the body: on the spot those with seats of one height, else all."""
+    return placement.seat_heights(_SAME_SEAT_M) if placement.is_still else None

@@ -3,7 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_AHEAD_M
+from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_AHEAD_M, SIDE_AWAY_M
 from mmweaver.motion.animation.root_path import Move, Turn
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.plan import Step
@@ -145,15 +145,19 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
     if step.posture not in ("floor", "knees") and step.lower not in ("kneel_up", "get_up"):
         return
     h = body.height_m
-    if step.posture == "knees" or step.lower == "kneel_up":
+    if step.lower == "crawl":
+        low, high = -0.4 * h, 0.55 * h
+    elif step.posture == "knees" or step.lower == "kneel_up":
         low, high = -0.4 * h, 0.15 * h
-    elif step.style == "front":
+    elif step.style == "front" or step.lower == "push_ups":
         low, high = 0.0, (BELLY_AHEAD_M + 0.8) * h  # the arms are stretched out ahead
     else:
         low, high = -(BACK_BEHIND_M + 0.5) * h, 0.15 * h
-    along = np.linspace(low, high, 24)[:, None] * np.array(
-        [np.cos(trajectory.heading_rad), np.sin(trajectory.heading_rad)]
-    )
+    heading_rad = trajectory.heading_rad
+    if step.style in ("left", "right") and step.posture == "floor":
+        heading_rad += 0.5 * np.pi * (1 if step.style == "left" else -1)
+        low, high = -0.1 * h, (SIDE_AWAY_M + 0.55) * h
+    along = np.linspace(low, high, 24)[:, None] * np.array([np.cos(heading_rad), np.sin(heading_rad)])
     places = trajectory.position_m + along
     if float(trajectory.floor.clearance_at(places).min()) < LYING_ROOM_M:
         raise NoTrajectory("no floor to lie on")

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -9,6 +10,7 @@ from jaxtyping import Bool, Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import Scene
 from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.motion.language.places import Place
 
 Array = np.ndarray
 Positions = Float[Array, "*shape 2"]
@@ -19,7 +21,11 @@ TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
 _UNSEEN_COST = 1.5  # of a position whose floor is assumed, not seen
 _OFF_GRID_COST = 3.0
+_STEP_M = 0.04  # between the positions at which a path is tested
+_SEAT_EDGE_M = 0.05  # clearance next to the seat just left
 _AHEAD_DEG = 12.0  # azimuths up to this cost nothing: the antennas' beam is strongest straight ahead
+HEIGHT_STEP_M, _MOST_CACHED = 0.05, 12
+_latest: list["FloorMap"] = []
 
 
 @dataclass(frozen=True)
@@ -29,11 +35,35 @@ class FloorMap:
     scene: Scene
     range_window_m: tuple[float, float]
     height_m: float
+    with_assumed: bool = False  # whether floor that was only assumed counts as free
+
+    @classmethod
+    def of(
+        cls, scene: Scene, range_window_m: tuple[float, float], height_m: float, *, with_assumed: bool = False
+    ) -> "FloorMap":
+        """The map for a body of about this height; the last ones are cached, as many motions are placed in one scene.
+
+        A step in height of `HEIGHT_STEP_M` moves what is in view by less than a cell.
+        """
+        height_m = round(height_m / HEIGHT_STEP_M) * HEIGHT_STEP_M
+        key = (range_window_m, height_m, with_assumed)
+        for floor in _latest:
+            if floor.scene is scene and (floor.range_window_m, floor.height_m, floor.with_assumed) == key:
+                return floor
+        floor = cls(scene, *key)
+        _latest[:] = [floor, *(other for other in _latest if other.scene is scene)][:_MOST_CACHED]
+        return floor
 
     @cached_property
     def cell_m(self) -> float:
         x = self.scene.free_space.x_m
         return float(x[1] - x[0]) if len(x) > 1 else 0.1
+
+    @cached_property
+    def is_free(self) -> Bool[Array, "y x"]:
+        """Free cells, those whose floor was only assumed included where `with_assumed`."""
+        free = self.scene.free_space
+        return free.is_free if not self.with_assumed or free.is_assumed is None else free.is_free | free.is_assumed
 
     @cached_property
     def cell_centres_m(self) -> Float[Array, "y x 2"]:
@@ -46,9 +76,14 @@ class FloorMap:
         """Distance in metres to the nearest cell that is not free; outside the grid nothing is free."""
         from scipy.ndimage import distance_transform_edt
 
-        padded = np.pad(self.scene.free_space.is_free, 1)
+        padded = np.pad(self.is_free, 1)
         cells = np.asarray(distance_transform_edt(padded), dtype=float)[1:-1, 1:-1]
         return np.maximum(cells - 0.5, 0.0) * self.cell_m
+
+    @cached_property
+    def place_cells(self) -> dict[Place, Float[Array, "cell 2"]]:
+        """Walkable cells (x, y) in metres of the places that a plan names; filled by `placement`."""
+        return {}
 
     @cached_property
     def in_view(self) -> Bool[Array, "y x"]:
@@ -59,6 +94,11 @@ class FloorMap:
     def walkable(self) -> Bool[Array, "y x"]:
         """Whether a body can stand in a cell: enough clearance, and in view."""
         return (self.clearance_m >= BODY_RADIUS_M) & self.in_view
+
+    @cached_property
+    def walkable_m(self) -> Float[Array, "cell 2"]:
+        """Centres (x, y) of the walkable cells in metres."""
+        return self.cell_centres_m[self.walkable]
 
     @cached_property
     def cell_cost(self) -> Float[Array, "y x"]:
@@ -106,28 +146,39 @@ class FloorMap:
             inside &= (v >= margin) & (v <= 1 - margin)
         return np.asarray(inside)
 
-    def _cells(self, positions_m: Positions) -> tuple[Array, Array, Array]:
-        """Row and column (*shape,) of each position, (0, 0) off the grid, and whether it is on the grid."""
+    def _cells(self, positions_m: Positions) -> tuple[Any, Any]:
+        """Row and column (*shape,) of each position in a table with a border of one cell around the grid."""
+        rows, columns = self.scene.free_space.is_free.shape
+        scaled = positions_m * (1.0 / self.cell_m) + self._first_cell
+        column = np.minimum(np.maximum(scaled[..., 0], 0.0), columns + 1).astype(np.intp)
+        row = np.minimum(np.maximum(scaled[..., 1], 0.0), rows + 1).astype(np.intp)
+        return row, column
+
+    @cached_property
+    def _first_cell(self) -> Float[Array, "2"]:
         free = self.scene.free_space
-        column = np.rint((positions_m[..., 0] - free.x_m[0]) / self.cell_m).astype(int)
-        row = np.rint((positions_m[..., 1] - free.y_m[0]) / self.cell_m).astype(int)
-        inside = (column >= 0) & (column < len(free.x_m)) & (row >= 0) & (row < len(free.y_m))
-        return np.where(inside, row, 0), np.where(inside, column, 0), np.asarray(inside)
+        return 1.5 - np.array([free.x_m[0], free.y_m[0]], dtype=float) / self.cell_m
+
+    @cached_property
+    def _bordered(self) -> tuple[Bool[Array, "y x"], Float[Array, "y x"], Float[Array, "y x"]]:
+        """`walkable`, `clearance_m` and `cell_cost` with their values off the grid around them."""
+        return (
+            np.pad(self.walkable, 1),
+            np.pad(self.clearance_m, 1),
+            np.pad(self.cell_cost, 1, constant_values=_OFF_GRID_COST),
+        )
 
     def can_stand(self, positions_m: Positions) -> Bool[Array, "*shape"]:
         """Whether each position is walkable."""
-        row, column, inside = self._cells(positions_m)
-        return np.asarray(inside & self.walkable[row, column])
+        return np.asarray(self._bordered[0][self._cells(positions_m)])
 
     def clearance_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
         """Distance in metres to the nearest cell that is not free, 0 off the grid."""
-        row, column, inside = self._cells(positions_m)
-        return np.where(inside, self.clearance_m[row, column], 0.0)
+        return np.asarray(self._bordered[1][self._cells(positions_m)])
 
     def cost_at(self, positions_m: Positions) -> Float[Array, "*shape"]:
         """`cell_cost` at each position."""
-        row, column, inside = self._cells(positions_m)
-        return np.where(inside, self.cell_cost[row, column], _OFF_GRID_COST)
+        return np.asarray(self._bordered[2][self._cells(positions_m)])
 
     def free_length_m(
         self, position_m: Float[Array, "2"], direction_rad: float, wanted_m: float, excused_m: float = 0.0
@@ -136,19 +187,35 @@ class FloorMap:
 
         Within `excused_m` of the position it may be closer to furniture than a body's radius (the seat just left).
         """
-        steps = np.append(np.arange(0.0, wanted_m, 0.04), wanted_m)
-        line_m = position_m + steps[:, None] * np.array([np.cos(direction_rad), np.sin(direction_rad)])
-        excused = (steps < excused_m) & (self.clearance_at(line_m) > 0.05)
-        blocked = np.flatnonzero(~(self.can_stand(line_m) | excused))
-        if not len(blocked):
-            return float(wanted_m)
-        return float(steps[blocked[0] - 1]) if blocked[0] else 0.0
+        return float(self.free_lengths_m(position_m, np.array([direction_rad]), wanted_m, excused_m)[0])
+
+    def free_lengths_m(
+        self, position_m: Float[Array, "2"], directions_rad: Float[Array, " way"], wanted_m: float,
+        excused_m: float = 0.0,
+    ) -> Float[Array, " way"]:  # fmt: skip
+        """`free_length_m` in several directions."""
+        steps = np.append(np.arange(0.0, wanted_m, _STEP_M), wanted_m)
+        ways = np.stack([np.cos(directions_rad), np.sin(directions_rad)], axis=-1)
+        lines_m = position_m + steps[:, None] * ways[:, None]
+        is_free = self.can_stand(lines_m)
+        if excused_m:
+            is_free |= (steps < excused_m) & (self.clearance_at(lines_m) > _SEAT_EDGE_M)
+        first = np.argmin(is_free, axis=1)  # the first that is not, 0 where all are
+        reached = steps[np.maximum(first - 1, 0)]
+        return np.where(is_free.all(axis=1), wanted_m, reached)
+
+    def longest_free_m(self, wanted_m: float) -> float:
+        """The longest straight path in metres, at most `wanted_m`, from some places in eight directions."""
+        cells = self.walkable_m
+        some = cells[:: max(1, len(cells) // 40)]
+        angles = np.arange(8) * np.pi / 4
+        return max((float(self.free_lengths_m(place, angles, wanted_m).max()) for place in some), default=0.0)
 
     def nearest_walkable_m(self, position_m: Float[Array, "2"]) -> Float[Array, "2"] | None:
         """Centre (x, y) of the walkable cell nearest to a position, in metres; None where none is walkable."""
-        if not self.walkable.any():
+        positions_m = self.walkable_m
+        if not len(positions_m):
             return None
-        positions_m = self.cell_centres_m[self.walkable]
         return positions_m[np.argmin(np.hypot(*(positions_m - position_m).T))]
 
     def check_start(self, start_m: tuple[float, float]) -> None:

@@ -135,15 +135,15 @@ def _seen_through(scene: Scene, points: Points) -> np.ndarray:
     return _behind_m(scene, points) > _BEHIND_M + _BEHIND_PER_M2 * np.square(seen.depth_m)
 
 
-def occluded_share(scene: Scene, points: Points) -> float:
-    """Share of the points that are occluded: something was measured well in front of them."""
-    return float((_behind_m(scene, points) < -_OCCLUDING_M).mean())
+def occluded_share(scene: Scene, points: Float[np.ndarray, "body point 3"]) -> Float[np.ndarray, " body"]:
+    """Share of each body's points that are occluded: something was measured well in front of them."""
+    return (_behind_m(scene, points) < -_OCCLUDING_M).mean(axis=-1)
 
 
-def unseen_share(scene: Scene, points: Points) -> float:
-    """Share of the points that are occluded or outside the picture."""
+def unseen_share(scene: Scene, points: Float[np.ndarray, "body point 3"]) -> Float[np.ndarray, " body"]:
+    """Share of each body's points that are occluded or outside the picture."""
     outside = ~AlignedPhoto.of(scene).look_up(points).in_picture
-    return float(((_behind_m(scene, points) < -_OCCLUDING_M) | outside).mean())
+    return ((_behind_m(scene, points) < -_OCCLUDING_M) | outside).mean(axis=-1)
 
 
 def occluded_along(
@@ -189,7 +189,7 @@ def below_tops(scene: Scene, tops: Points) -> Float[np.ndarray, "under 3"]:
     return below[~_seen_through(scene, below)]
 
 
-def _behind_m(scene: Scene, points: Points) -> Float[np.ndarray, " point"]:
+def _behind_m(scene: Scene, points: Float[np.ndarray, "*points 3"]) -> Float[np.ndarray, "*points"]:
     """How far in metres behind each point something was measured, negative in front of it; nan where nothing was."""
     seen = AlignedPhoto.of(scene).look_up(points)
     return np.where(seen.in_picture, scene.photo.depth_m[seen.row, seen.column] - seen.depth_m, np.nan)

@@ -1,27 +1,31 @@
 """Placement of a plan in the room: many start positions are tried, and their trajectories sorted by cost."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import NoRoomError
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
+from mmweaver.motion.animation.library.sitting import pelvis_behind_feet_m
 from mmweaver.motion.animation.root_path import RootPath
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.animation.step_context import PlacedStep
 from mmweaver.motion.language.plan import MotionPlan
+from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.candidate import CandidateSampler, starts_seated
 from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.named_places import cells_of
 from mmweaver.motion.planning.occluded_geometry import occluded_along
-from mmweaver.motion.planning.seating import usable_seats
+from mmweaver.motion.planning.seating import Sitting, usable_seats
 from mmweaver.motion.planning.separation import is_clear_of
 from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 
 Array = np.ndarray
-TRIES, ENOUGH = 500, 60  # candidates tried, and found, at most
+MOST_TRIES, TRIES, ENOUGH = 500, 160, 32  # candidates tried for the first, for all, and found, at most
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
 _SEAT_RADIUS_M = 0.65  # within it a position counts as sitting
@@ -36,26 +40,74 @@ class Placement:
     seats_m: tuple[tuple[float, float], ...]  # where the person sits
     assumptions: tuple[str, ...]
 
+    @property
+    def is_still(self) -> bool:
+        """Whether the body stays where it is, facing as it does: its placements differ by a rigid motion alone."""
+        return not self.path.moves and not self.path.turns
+
+    def end_state(self, plan: MotionPlan, body: SkeletonProportions) -> BodyState:
+        """Of the body after the last step of the plan that was placed."""
+        end_s, last = np.array([plan.duration_s]), plan.steps[-1]
+        feet_m = self.path.position_m(end_s)[0]
+        heading_rad = float(self.path.facing_rad(end_s)[0])
+        sitting, height_m = None, self._last_seat_height_m()
+        if height_m is not None:
+            behind_m = pelvis_behind_feet_m(body, height_m) * np.array([np.cos(heading_rad), np.sin(heading_rad)])
+            sitting = Sitting(feet_m=feet_m, facing_rad=heading_rad, height_m=height_m, seat_m=feet_m - behind_m)
+        return BodyState(
+            position_m=(float(feet_m[0]), float(feet_m[1])), heading_rad=heading_rad, posture=last.posture,
+            style=last.style, foot=last.foot, sitting=sitting,
+        )  # fmt: skip
+
+    def _last_seat_height_m(self) -> float | None:
+        """Of the seat on which the body sits at the end, or from which it has just got up; None without one."""
+        for placed in reversed(self.steps):
+            if placed.step.lower in ("sit", "sit_down", "stand_up"):
+                return placed.seat_height_m
+            if placed.moves or placed.step.lower == "turn":
+                return None
+        return None
+
+    def seat_heights(self, step_m: float) -> tuple[int, ...]:
+        """The heights of the seats that the steps use, in multiples of a step in metres."""
+        return tuple(round(placed.seat_height_m / step_m) for placed in self.steps)
+
 
 def place(
     plan: MotionPlan, floor: FloorMap, body: SkeletonProportions, *, seed: int, start_m: tuple[float, float] | None,
-    others: tuple[PoseSequence, ...] = (), attempt: int = 0,
+    others: tuple[PoseSequence, ...] = (), attempt: int = 0, heading_rad: float | None = None, is_varied: bool = True,
+    after: BodyState | None = None,
 ) -> list[Placement]:  # fmt: skip
     """Placements of the whole plan that are free and in view all along, and clear of `others`; the best first.
 
     `start_m` fixes where the person starts, (x, y). Attempts 1 and 2 sample other placements, with more ways to sit: 1
-    leaves out some of the seats, 2 all of them unless the sentence names one that the room has. Raises InputError where
-    the start is not free or out of view, where there is no room, or where the room lacks what a step goes to.
+    leaves out some of the seats, 2 all of them unless the sentence names one that the room has. `after`: how the motion
+    before ended, which this one goes on from. Raises InputError where the start is not free
+    or out of view, where there is no room, or where the room lacks what a step goes to.
     """
     check_targets(plan, floor.scene)
-    if not floor.walkable.any() and not (usable_seats(floor, body) and starts_seated(plan)):
-        raise InputError(_no_floor(floor))
+    for step in plan.steps:
+        if step.place is not None:
+            floor.place_cells[step.place] = cells_of(step.place, floor)
+    if after is None and not floor.walkable.any() and not (usable_seats(floor, body) and starts_seated(plan)):
+        raise NoRoomError(_no_floor(floor))
     if start_m is not None:
         floor.check_start(start_m)
     rng = stream(seed, "motion", f"placement {attempt}" if attempt else "placement")
-    sampler = CandidateSampler(plan=plan, floor=floor, body=body, rng=rng, start_m=start_m, attempt=attempt)
+    sampler = CandidateSampler(
+        plan=plan,
+        floor=floor,
+        body=body,
+        rng=rng,
+        start_m=start_m,
+        attempt=attempt,
+        after=after,
+        **_open_choices(floor, seed, heading_rad, is_varied),
+    )
     trajectories: list[Trajectory] = []
-    for _ in range(TRIES):
+    for tried in range(MOST_TRIES):
+        if len(trajectories) >= ENOUGH or (trajectories and tried >= TRIES):
+            break
         try:
             trajectory = sampler.sample()
         except NoTrajectory:
@@ -63,14 +115,25 @@ def place(
         if others and not _is_clear_of(trajectory, plan, others):
             continue
         trajectories.append(trajectory)
-        if len(trajectories) >= ENOUGH:
-            break
     if not trajectories:
-        raise InputError(_no_room(plan, floor, start_m))
+        raise NoRoomError(_no_room(plan, floor, start_m))
     order = np.argsort(
         [trajectory.cost for trajectory in trajectories] + _occlusion_costs(trajectories, plan, floor), kind="stable"
     )
     return [_placement(trajectories[k], plan) for k in order]
+
+
+def _open_choices(floor: FloorMap, seed: int, heading_rad: float | None, is_varied: bool) -> dict[str, Any]:
+    """What the sentence leaves open and the seed decides once for all candidates: where about, and facing where."""
+    cells = floor.walkable_m
+    rng = stream(seed, "motion", "open choices")
+    facing_rad = float(rng.normal(0, 0.35)) if rng.random() < 0.5 else float(rng.uniform(-np.pi, np.pi))
+    spot = cells[int(rng.integers(len(cells)))] if len(cells) else None
+    return {
+        "heading_rad": heading_rad,
+        "off_radar_rad": facing_rad if is_varied else None,
+        "favourite_m": spot if is_varied else None,
+    }
 
 
 def _occlusion_costs(trajectories: list[Trajectory], plan: MotionPlan, floor: FloorMap) -> Float[Array, " trajectory"]:
@@ -104,7 +167,7 @@ def _no_floor(floor: FloorMap) -> str:
     low, high = floor.range_window_m
     return (
         f"there is no room for a person: no free floor is in the picture between {low:.2f} and {high:.2f} m from the"
-        " radar; take a radar with a longer range window (--radar) or a photo with more floor"
+        " radar; keep more range bins (--range), take another radar (--radar) or a photo with more floor"
     )
 
 
@@ -112,12 +175,8 @@ def _no_room(plan: MotionPlan, floor: FloorMap, start_m: tuple[float, float] | N
     from_there = f" from {start_m[0]:g},{start_m[1]:g}" if start_m else ""
     going = [step.clause for step in plan.steps if step.moves]
     what = f" for {going[0]!r}" if going else ""
-    cells = floor.cell_centres_m[floor.walkable]
-    some = cells[:: max(1, len(cells) // 40)]
-    longest = max(
-        (floor.free_length_m(place, float(angle), 4.0) for place in some for angle in np.arange(8) * np.pi / 4),
-        default=0.0,
-    )
+    cells = floor.walkable_m
+    longest = floor.longest_free_m(4.0)
     return (
         f"there is no room{what}{from_there}: in the picture and the radar's window {len(cells) * floor.cell_m**2:.1f}"
         f" m2 of floor are free, the longest straight path is about {longest:.1f} m; try fewer frames, 'slowly',"

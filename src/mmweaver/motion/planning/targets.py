@@ -25,10 +25,11 @@ Array = np.ndarray
 SEATS = ("couch", "chair", "bench", "stool", "seat")  # handled by `seating`
 # In a sentence, one of these words stands for several kinds of landmarks.
 ALIKE = {"table": ("table", "counter"), "desk": ("table",), "counter": ("counter", "table")}
-_FASTEST_MPS = {"jog": 2.4}  # walking: 1.6
+_FASTEST_MPS = {"jog": 3.5}  # walking: 1.6
 _SHORTEST_M = 0.35  # a shorter path is no walk
 _NEAR_M = 0.45  # a walkable position so near to the approach still is at the landmark
 _NUM_CORNERS = 24  # corners tried
+_NUM_GOALS = 6  # positions tried in a place
 
 
 def kinds_of(target: str) -> tuple[str, ...]:
@@ -38,35 +39,39 @@ def kinds_of(target: str) -> tuple[str, ...]:
 
 def goes_to_target(step: Step) -> bool:
     """Whether a step goes to a landmark other than a seat."""
-    return bool(step.target) and step.target not in SEATS
+    return (bool(step.target) and step.target not in SEATS) or (step.place is not None and bool(step.place.landmark))
 
 
 def check_targets(plan: MotionPlan, scene: Scene) -> None:
     """Raises InputError, naming what the room has, where a step goes to something that was not found in it."""
     for step in plan.steps:
-        if step.moves and goes_to_target(step) and not _landmarks(scene, step):
+        if step.moves and not step.place and goes_to_target(step) and not _landmarks(scene, step):
             raise InputError(
                 f"for {step.clause or step.target!r}: no {step.target} was found in the photo;"
-                f" {_what_was_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
+                f" {what_was_found(scene)}; give its position with --landmark {kinds_of(step.target)[0]}=X,Y (metres"
                 " right of and ahead of the radar) or a class mask (--classes)"
             )
 
 
 def without_targets(plan: MotionPlan) -> MotionPlan:
     """The plan for a scene without a photo: walks to landmarks lead anywhere instead, and notes say so."""
-    lost = [step for step in plan.steps if step.moves and goes_to_target(step)]
+    lost = [step for step in plan.steps if _goes_to_landmark(step)]
     notes = tuple(
-        f"for {step.clause or step.target!r}: without a photo there is no {step.target};"
-        " the walk leads where there is room"
+        f"for {step.clause or step.target!r}: without a photo there is no"
+        f" {step.target if step.place is None else step.place.landmark}; the walk leads where there is room"
         for step in lost
     )
-    steps = tuple(replace(step, target="") if step in lost else step for step in plan.steps)
+    steps = tuple(replace(step, target="", place=None) if step in lost else step for step in plan.steps)
     return replace(plan, steps=steps, notes=plan.notes + notes)
+
+
+def _goes_to_landmark(step: Step) -> bool:
+    return (step.place is not None and bool(step.place.landmark)) or (step.moves and goes_to_target(step))
 
 
 def start_for_target(step: Step, floor: FloorMap, rng: np.random.Generator) -> Float[Array, "2"] | None:
     """A position (x, y) in metres from which a walk of the step's time ends at its target; None without a target."""
-    marks = _landmarks(floor.scene, step)
+    marks = _goals(floor, step, rng)
     if not marks:
         return None
     mark = marks[int(rng.integers(len(marks)))]
@@ -80,7 +85,7 @@ def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
     Raises NoTrajectory where there is none from here.
     """
     marks = sorted(
-        _landmarks(trajectory.floor.scene, step),
+        _goals(trajectory.floor, step, trajectory.rng),
         key=lambda mark: float(np.hypot(*(mark.approach_m - trajectory.position_m))),
     )
     for mark in marks:
@@ -88,7 +93,50 @@ def walk_to_target(trajectory: Trajectory, step: Step, *, first: bool) -> None:
         corners = None if goal is None else _corners(trajectory, goal)
         if corners is not None and _lay_legs(trajectory, step, corners, mark, first=first):
             return
-    raise NoTrajectory(f"no path to the {step.target}")
+    raise NoTrajectory(f"no path to the {step.target or 'place'}")
+
+
+def walk_along(trajectory: Trajectory, step: Step, *, first: bool) -> None:
+    """Walks a given route. Raises InputError where it is not free, NoTrajectory where the time is too short for it."""
+    corners = [np.array(corner, float) for corner in step.route_m]
+    if not first:
+        corners = corners if float(np.hypot(*(corners[0] - trajectory.position_m))) > 0.05 else corners[1:]
+    else:
+        corners = corners[1:]
+    position = trajectory.position_m
+    for corner in corners:
+        gap = corner - position
+        length = float(np.hypot(*gap))
+        free = trajectory.floor.free_length_m(position, float(np.arctan2(gap[1], gap[0])), length)
+        if free < length - 1e-6:
+            stop = position + gap * free / max(length, 1e-9)
+            raise InputError(
+                f"the path is not free between {position[0]:g},{position[1]:g} and {corner[0]:g},{corner[1]:g}: a body"
+                f" gets as far as {stop[0]:.2f},{stop[1]:.2f}; choose other points, on free floor in the picture"
+                " and the radar's window"
+            )
+        position = corner
+    last = corners[-1] - (corners[-2] if len(corners) > 1 else trajectory.position_m)
+    x, y = corners[-1].tolist()
+    end = Landmark(
+        kind="path", position_m=np.array([x, y, 0.0]), approach_m=(x, y), facing_rad=float(np.arctan2(last[1], last[0]))
+    )
+    if not _lay_legs(trajectory, step, corners, end, first=first):
+        raise NoTrajectory("no time for the path")
+
+
+def _goals(floor: FloorMap, step: Step, rng: np.random.Generator) -> list[Landmark]:
+    """The landmarks that a step may go to; for a place some positions there, facing the radar."""
+    if step.place is None:
+        return _landmarks(floor.scene, step)
+    cells = floor.place_cells[step.place]
+    some = cells[rng.integers(len(cells), size=_NUM_GOALS)]
+    return [
+        Landmark(
+            kind="place", position_m=np.array([x, y, 0.0]), approach_m=(x, y), facing_rad=float(np.arctan2(-y, -x))
+        )
+        for x, y in some.tolist()
+    ]
 
 
 def _landmarks(scene: Scene, step: Step) -> list[Landmark]:
@@ -109,7 +157,7 @@ def _corners(trajectory: Trajectory, goal: Float[Array, "2"]) -> list[Float[Arra
     """The goal, with one corner before it where the straight path is blocked; None where that is not enough."""
     if _is_free(trajectory.floor, trajectory.position_m, goal):
         return [goal]
-    places = trajectory.floor.cell_centres_m[trajectory.floor.walkable]
+    places = trajectory.floor.walkable_m
     if not len(places):
         return None
     some = places[trajectory.rng.integers(len(places), size=_NUM_CORNERS)]
@@ -158,7 +206,7 @@ def _lay_legs(
     return True
 
 
-def _what_was_found(scene: Scene) -> str:
+def what_was_found(scene: Scene) -> str:
     counts = Counter(mark.kind for mark in scene.landmarks)
     if scene.seats:
         counts["seat"] = len(scene.seats)

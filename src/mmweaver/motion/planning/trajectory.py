@@ -10,13 +10,14 @@ from mmweaver.motion.language.plan import Step
 from mmweaver.motion.planning.floor_map import FloorMap
 
 Array = np.ndarray
-SLOWEST_MPS = {"walk": 0.5, "jog": 1.2, "limp": 0.4, "stagger": 0.4}
+SLOWEST_MPS = {"walk": 0.5, "jog": 1.6, "limp": 0.4, "stagger": 0.4, "crawl": 0.15}
 RAMP_S = 0.45  # acceleration from standing to walking, and back
+RUN_RAMP_S = 0.8  # to running
 TURN_RATE_RADPS = 3.6
 TURN_OVERHEAD_S = 0.25  # of a turn on the spot, whatever its angle
 SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
-PACING_LEG_M = 0.8  # shortest leg of walking to and fro
+PACING_LEG_M = {"walk": 0.8, "jog": 2.0}  # shortest leg of walking or running to and fro
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
 
 
@@ -31,13 +32,17 @@ def signed_angle_rad(one: float, other: float) -> float:
 
 def preferred_speed_mps(step: Step, rng: np.random.Generator) -> float:
     """A sampled walking speed in m/s for a step's gait and for 'slowly' or 'quickly'."""
-    if step.lower == "jog":
-        low, high = ((1.3, 1.5), (1.5, 1.9), (1.9, 2.2))[step.speed + 1]
+    if step.lower == "jog" and step.style == "jog":  # "jogs", "trots"; else "runs", "sprints"
+        low, high = ((1.8, 2.1), (2.1, 2.7), (2.7, 3.2))[step.speed + 1]
+    elif step.lower == "jog":
+        low, high = ((2.1, 2.6), (2.7, 3.3), (3.5, 4.2))[step.speed + 1]
+    elif step.lower == "crawl":
+        low, high = ((0.2, 0.25), (0.28, 0.45), (0.5, 0.7))[step.speed + 1]
     elif step.lower in ("limp", "stagger"):
         low, high = ((0.45, 0.6), (0.6, 0.9), (0.9, 1.1))[step.speed + 1]
     else:
         low, high = ((0.6, 0.8), (1.0, 1.3), (1.4, 1.6))[step.speed + 1]
-    return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0)
+    return float(rng.uniform(low, high)) * (0.7 if step.direction == "backwards" else 1.0) * step.pace
 
 
 @dataclass
@@ -74,8 +79,12 @@ class Trajectory:
 
     def free_length_m(self, direction_rad: float, wanted_m: float) -> float:
         """How far the body can go straight from here, at most `wanted_m`."""
-        return self.floor.free_length_m(
-            self.position_m, direction_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0
+        return float(self.free_lengths_m(np.array([direction_rad]), wanted_m)[0])
+
+    def free_lengths_m(self, directions_rad: Float[Array, " way"], wanted_m: float) -> Float[Array, " way"]:
+        """`free_length_m` in several directions."""
+        return self.floor.free_lengths_m(
+            self.position_m, directions_rad, wanted_m, excused_m=1.2 if self.from_seat else 0.0
         )
 
     def turn_to(self, heading_rad: float, start_s: float) -> float:
@@ -126,18 +135,21 @@ def walk_straight(trajectory: Trajectory, step: Step, direction_rad: float, *, f
     """
     begin = face_along(trajectory, step, direction_rad, step.start_s, first=first)
     end = _stop_s(step, begin)
-    ramps = ramps_of(end - begin, first=first, last=last and end >= step.end_s - 1e-9)
+    ramps = ramps_of(end - begin, first=first, last=last and end >= step.end_s - 1e-9, ramp_s=_ramp_s(step))
     effective = end - begin - sum(ramps) / 2
     speed = preferred_speed_mps(step, trajectory.rng)
     wanted = speed * effective
+    if step.distance_m:
+        speed = min(max(step.distance_m / max(effective, 0.2), SLOWEST_MPS[step.lower]), 1.6 * speed)
+        wanted = step.distance_m
     free = trajectory.free_length_m(direction_rad, wanted)
-    if free >= max(SLOWEST_MPS[step.lower], 0.6 * speed) * effective:
+    if free >= min(max(SLOWEST_MPS[step.lower], 0.6 * speed) * effective, step.distance_m or np.inf):
         trajectory.cost += 2.0 * (1 - free / wanted)
         trajectory.go(step, direction_rad, free, (begin, end), ramps)
         return
     if free < SHORTEST_WALK_M * SLOWEST_MPS[step.lower] / SLOWEST_MPS["walk"]:
         raise NoTrajectory(f"only {free:.1f} m")
-    stop_ramps = (ramps[0], RAMP_S)
+    stop_ramps = (ramps[0], _ramp_s(step))
     speed = max(0.85 * speed, SLOWEST_MPS[step.lower])
     lasts = free / speed + sum(stop_ramps) / 2
     trajectory.cost += 1.5 + 2.0 * (1 - free / wanted)
@@ -152,38 +164,42 @@ def _stop_s(step: Step, begin: float) -> float:
     """When the last of a counted number of paces is done, else the end of the step, in seconds."""
     if not step.count or step.upper:
         return step.end_s
-    each = 0.4 if step.lower == "jog" else (0.72, 0.58, 0.5)[step.speed + 1]
+    each = 0.38 if step.lower == "jog" else (0.72, 0.58, 0.5)[step.speed + 1]
     return min(step.end_s, begin + each * step.count + 0.3)
 
 
-def ramps_of(span_s: float, *, first: bool, last: bool) -> tuple[float, float]:
+def _ramp_s(step: Step) -> float:
+    return RUN_RAMP_S if step.lower == "jog" else RAMP_S
+
+
+def ramps_of(span_s: float, *, first: bool, last: bool, ramp_s: float = RAMP_S) -> tuple[float, float]:
     """Seconds of acceleration and deceleration; none where the motion is under way already, or goes on."""
     if span_s < 0.45:
         raise NoTrajectory("no time left to walk after turning")
-    ramp = min(RAMP_S, 0.42 * span_s)
+    ramp = min(ramp_s, 0.42 * span_s)
     return (0.0 if first else ramp), (0.0 if last else ramp)
 
 
 def walk_anywhere(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
     """Without a given direction: goes straight as long as there is room, then turns and goes on, to and fro."""
     speed = preferred_speed_mps(step, trajectory.rng)
-    time, begun = step.start_s, first
+    time, begun, ramp_s = step.start_s, first, _ramp_s(step)
     for _ in range(40):
         left = step.end_s - time
         direction, free = _open_direction(trajectory, speed * left, keep_heading=not first and time == step.start_s)
         begin = face_along(trajectory, step, direction, time, first=begun)
         left = step.end_s - begin
-        final = free >= 0.75 * speed * (left - RAMP_S / 2)
+        final = free >= 0.75 * speed * (left - ramp_s / 2)
         if final:
-            ramps = ramps_of(left, first=begun, last=last)
+            ramps = ramps_of(left, first=begun, last=last, ramp_s=ramp_s)
             length = min(free, speed * (left - sum(ramps) / 2))
             if length < SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2):
                 raise NoTrajectory(f"only {free:.1f} m")
             trajectory.go(step, direction, length, (begin, step.end_s), ramps)
             return
-        if free < PACING_LEG_M:
+        if free < PACING_LEG_M.get(step.lower, PACING_LEG_M["walk"]):
             raise NoTrajectory(f"only {free:.1f} m")
-        ramps = (0.0 if begun else RAMP_S, RAMP_S)
+        ramps = (0.0 if begun else ramp_s, ramp_s)
         lasts = free / speed + sum(ramps) / 2
         if left - lasts < 1.3:  # leave time enough to turn and go back, or take the whole time for this one
             lasts = left if free >= SLOWEST_MPS[step.lower] * (left - sum(ramps) / 2) else left - 1.3
@@ -206,7 +222,7 @@ def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bo
         if free >= 0.8 * wanted_m:
             return trajectory.heading_rad, free
     directions = trajectory.rng.uniform(0, 2 * np.pi) + np.arange(12) * np.pi / 6
-    free = np.array([trajectory.free_length_m(float(angle), wanted_m) for angle in directions])
+    free = trajectory.free_lengths_m(directions, wanted_m)
     pick = int(np.argmax(free * trajectory.rng.uniform(0.6, 1.0, len(free))))
     return float(directions[pick]), float(free[pick])
 

@@ -10,7 +10,7 @@ from mmweaver.scene.layout.height_map import CELL_M, HeightMap
 _EDGE_ON_M, _TABLE_DEPTH_M = 0.13, 0.85
 _TABLE_HEIGHTS_M = (0.3, 1.1)
 _MIN_CLEARANCE_M, _MIN_LENGTH_M = 0.4, 0.6  # below a table's rim, and along it: chairs are not as wide
-_MIN_DISTANCE_M = 0.5  # of a body from the radar
+MIN_DISTANCE_M = 0.5  # of a body from the radar
 
 
 def find_free_space(height_map: HeightMap) -> FreeSpace:
@@ -22,7 +22,7 @@ def find_free_space(height_map: HeightMap) -> FreeSpace:
     """
     distance_m = np.hypot(height_map.x_m[None, :], height_map.y_m[:, None])
     is_open = height_map.is_floor_seen | height_map.is_seen_through | height_map.is_below_picture
-    is_free = is_open & ~height_map.is_blocked & ~behind_edges(height_map) & (distance_m >= _MIN_DISTANCE_M)
+    is_free = is_open & ~height_map.is_blocked & ~behind_edges(height_map) & (distance_m >= MIN_DISTANCE_M)
     return FreeSpace(
         x_m=height_map.x_m,
         y_m=height_map.y_m,

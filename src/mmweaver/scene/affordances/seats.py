@@ -28,6 +28,7 @@ _BED_HEIGHTS_M, _MIN_BED_M2 = (0.38, 0.66), 1.0
 _MIN_SIZE_M = 0.25  # visible size of a seat
 _STOOL_SIZE_M = (0.30, 0.60)
 _MAX_STOOL_HEIGHT_M = 0.52
+_TABLE_SQUARES = np.ones((7, 7), bool)
 
 # Sample places around a sitter, in metres: forward, leftward.
 _ACROSS = np.arange(-0.20, 0.201, 0.05)
@@ -50,26 +51,6 @@ class _Candidates:
     facing_rad: PerCandidate
     height_m: PerCandidate
 
-    def heights_at(self, height_map: HeightMap, offsets: Offsets) -> Float[Array, "candidate a b"]:
-        """Height above the seat of what stands at the offsets from each place, metres; nan where nothing does."""
-        inside, row, column = self._squares(height_map, offsets)
-        return np.where(inside, height_map.top_m[row, column], np.nan) - self.height_m[:, None, None]
-
-    def mask_at(self, height_map: HeightMap, mask: GridMask, offsets: Offsets) -> SampleMask:
-        """The mask at the offsets from each place; False outside the map."""
-        inside, row, column = self._squares(height_map, offsets)
-        return inside & mask[row, column]
-
-    def clear_at(self, height_map: HeightMap, offsets: Offsets) -> SampleMask:
-        """Whether lines of sight pass at, or just below, the seat's height: no surface lies there."""
-        inside, row, column = self._squares(height_map, offsets)
-        level = np.argmin(np.abs(SEAT_LEVELS_M - (self.height_m[:, None] - _SAG_M)), axis=1)[:, None, None]
-        return inside & height_map.is_clear_at[level, row, column]
-
-    def mask_here(self, height_map: HeightMap, mask: GridMask) -> CandidateMask:
-        """The mask at the places themselves."""
-        return self.mask_at(height_map, mask, np.zeros((1, 1, 2)))[:, 0, 0]
-
     def select(self, chosen: CandidateMask) -> "_Candidates":
         return _Candidates(
             x_m=self.x_m[chosen],
@@ -78,10 +59,8 @@ class _Candidates:
             height_m=self.height_m[chosen],
         )
 
-    def _squares(
-        self, height_map: HeightMap, offsets: Offsets
-    ) -> tuple[SampleMask, Int[Array, "candidate a b"], Int[Array, "candidate a b"]]:
-        """Whether the offset places lie on the map, and their rows and columns (0 where not)."""
+    def at(self, height_map: HeightMap, offsets: Offsets) -> "_Squares":
+        """The squares of the map at the offsets from each place."""
         forward, left = offsets[..., 0], offsets[..., 1]
         cosine, sine = np.cos(self.facing_rad)[:, None, None], np.sin(self.facing_rad)[:, None, None]
         x = self.x_m[:, None, None] + cosine * forward - sine * left
@@ -90,7 +69,36 @@ class _Candidates:
         row = np.floor((y - height_map.y_m[0]) / CELL_M + 0.5).astype(int)
         rows, columns = height_map.top_m.shape
         inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
-        return inside, np.where(inside, row, 0), np.where(inside, column, 0)
+        return _Squares(
+            height_map=height_map, seat_m=self.height_m[:, None, None], inside=inside,
+            row=np.where(inside, row, 0), column=np.where(inside, column, 0),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Squares:
+    """Squares of a height map around each candidate."""
+
+    height_map: HeightMap
+    seat_m: Float[Array, "candidate 1 1"]  # the seat's height
+    inside: SampleMask  # whether the place lies on the map
+    row: Int[Array, "candidate a b"]  # 0 where it does not
+    column: Int[Array, "candidate a b"]
+
+    @property
+    def height_m(self) -> Float[Array, "candidate a b"]:
+        """Height above the seat of what stands there, metres; nan where nothing does."""
+        return np.where(self.inside, self.height_map.top_m[self.row, self.column], np.nan) - self.seat_m
+
+    @property
+    def is_clear(self) -> SampleMask:
+        """Whether lines of sight pass at, or just below, the seat's height: no surface lies there."""
+        level = np.argmin(np.abs(SEAT_LEVELS_M - (self.seat_m[:, 0] - _SAG_M)), axis=1)[:, None, None]
+        return self.inside & self.height_map.is_clear_at[level, self.row, self.column]
+
+    def of(self, mask: GridMask) -> SampleMask:
+        """A mask of the map there; False outside the map."""
+        return self.inside & mask[self.row, self.column]
 
 
 def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tuple[Seat, ...]:
@@ -106,11 +114,13 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
     if len(candidates.x_m) == 0:
         return ()
     # 1. The surface is flat where one sits.
-    on_seat = candidates.heights_at(height_map, _ON_SEAT)
+    seat_squares = candidates.at(height_map, _ON_SEAT)
+    on_seat = seat_squares.height_m
     is_flat = np.abs(on_seat) < _FLATNESS_M
     # A lower surface counts against a seat only where the seat would have been visible: not below a chair seen edge-on.
-    is_contrary = (on_seat >= _FLATNESS_M) | (~is_flat & candidates.clear_at(height_map, _ON_SEAT))
-    is_labelled = candidates.mask_here(height_map, bed_squares(height_map) if evidence is None else evidence > 0)
+    is_contrary = (on_seat >= _FLATNESS_M) | (~is_flat & seat_squares.is_clear)
+    labelled = bed_squares(height_map) if evidence is None else evidence > 0
+    is_labelled = candidates.at(height_map, np.zeros((1, 1, 2))).of(labelled)[:, 0, 0]
     on_stool = _on_stool(height_map, is_seat_height, candidates)
     inner = slice(2, -2)  # a stool is smaller than the area that a sitter covers
     is_flat_stool = on_stool & (is_contrary[:, inner, inner].mean(axis=(1, 2)) < _MAX_CONTRARY)
@@ -123,9 +133,10 @@ def find_seats(height_map: HeightMap, evidence: GridClass | None = None) -> tupl
     # 2. A backrest stands behind, and legs have room in front: nothing above the seat, except a table top that is high
     # enough for the thighs.
     back_share = _back_share(height_map, candidates)
-    front = candidates.heights_at(height_map, _IN_FRONT)
+    front_squares = candidates.at(height_map, _IN_FRONT)
+    front = front_squares.height_m
     obstructed = ((front > 0.08) & (front < _THIGH_M)).mean(axis=(1, 2))
-    is_drop = (front < -0.12) | (np.isnan(front) & candidates.mask_at(height_map, _is_open(height_map), _IN_FRONT))
+    is_drop = (front < -0.12) | (np.isnan(front) & front_squares.of(_is_open(height_map)))
     drop, under_table = is_drop.mean(axis=(1, 2)), (front >= _THIGH_M).mean(axis=(1, 2))
     # 3. Score, and keep what is a seat with a backrest, a stool, or labelled as a seat (one sits at its edge).
     score = 2 * back_share + (0.5 + 1.5 * is_flat_stool) * flat_share + drop + 0.7 * under_table - 2 * obstructed
@@ -154,7 +165,9 @@ def table_squares(height_map: HeightMap) -> GridMask:
     found = np.zeros(height_map.top_m.shape, bool)
     for height_m in np.arange(_TABLE_HEIGHTS_M[0], _TABLE_HEIGHTS_M[1], 0.02):
         near = np.abs(height_map.top_m - height_m) < 0.02
-        found |= np.asarray(ndimage.binary_opening(near, structure=np.ones((7, 7), bool)), bool)
+        if np.count_nonzero(near) < _TABLE_SQUARES.size:
+            continue
+        found |= np.asarray(ndimage.binary_opening(near, structure=_TABLE_SQUARES), bool)
     return found
 
 
@@ -191,12 +204,13 @@ def _candidates(height_map: HeightMap, squares: GridMask) -> _Candidates:
 
 def _back_share(height_map: HeightMap, candidates: _Candidates) -> PerCandidate:
     """Share of the width behind the sitter at which a backrest stands."""
-    behind = candidates.heights_at(height_map, _BEHIND)
+    squares = candidates.at(height_map, _BEHIND)
+    behind = squares.height_m
     is_back = (behind > _BACK_M[0]) & (behind < _BACK_M[1])
     # An armrest is lower than a backrest and counts for less.
     highest = np.where(is_back, behind, 0.0).max(axis=1)
     share = np.minimum(highest / _FULL_BACK_M, 1.0).mean(axis=1)
-    is_back &= ~candidates.mask_at(height_map, table_squares(height_map), _BEHIND)
+    is_back &= ~squares.of(table_squares(height_map))
     # A table top is as high as a low backrest, but horizontal: a backrest is thin, or slopes.
     height = np.where(is_back, behind, -1.0)
     quarter = height[0].size // 4
@@ -231,7 +245,7 @@ def _best_seats(height_map: HeightMap, candidates: _Candidates, score: PerCandid
         size_m = _size_m(height_map, one)
         if min(size_m) < _MIN_SIZE_M:
             continue
-        heights = one.heights_at(height_map, _ON_SEAT)[0]
+        heights = one.at(height_map, _ON_SEAT).height_m[0]
         height_m = one.height_m[0] + float(np.median(heights[np.abs(heights) < _FLATNESS_M]))
         seats.append(
             Seat(
@@ -249,7 +263,7 @@ def _size_m(height_map: HeightMap, one: _Candidates) -> tuple[float, float]:
     lengths = []
     for forward, left in ((0, 1), (0, -1), (1, 0), (-1, 0)):
         offsets = np.stack([forward * reach_m, left * reach_m], axis=-1)[None]
-        on_seat = np.abs(one.heights_at(height_map, offsets)[0, 0]) < _FLATNESS_M
+        on_seat = np.abs(one.at(height_map, offsets).height_m[0, 0]) < _FLATNESS_M
         # One missing square is a gap in the measurement, two are the edge.
         is_edge = ~(on_seat | np.append(on_seat[1:], False))
         lengths.append(reach_m[np.argmax(is_edge)] if is_edge.any() else reach_m[-1])

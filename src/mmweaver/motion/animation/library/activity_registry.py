@@ -7,15 +7,19 @@ import numpy as np
 from mmweaver.core.registry import Registry
 from mmweaver.motion.animation.controls import Controls
 from mmweaver.motion.animation.library import (
+    arm_gestures,
     bending,
     dancing,
+    floor_exercises,
     gait,
     gestures,
     hand_activities,
+    household,
     jumping,
     legs,
     on_the_floor,
     pointing_and_nodding,
+    rehabilitation,
     sitting,
     standing,
     throwing_and_carrying,
@@ -62,6 +66,10 @@ POSTURES: Registry[Callable[[StepContext], Controls]] = Registry(
         ("fall", on_the_floor.falling),
         ("lie", on_the_floor.lying),
         ("get_up", on_the_floor.getting_up),
+        ("side_lunge", rehabilitation.side_lunging),
+        ("limb_extension", rehabilitation.limb_extension),
+        ("push_ups", floor_exercises.push_ups),
+        ("crawl", floor_exercises.crawling),
     ],
 )
 GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
@@ -102,6 +110,21 @@ GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(
         ("carry", throwing_and_carrying.carrying),
         ("reach", throwing_and_carrying.reaching),
         ("golf", throwing_and_carrying.golf_swing),
+        ("raise_hold", arm_gestures.raising_and_holding),
+        ("lower_arm", arm_gestures.lowering),
+        ("push_hand", arm_gestures.pushing_hand),
+        ("pull_hand", arm_gestures.pulling_hand),
+        ("draw_circle", arm_gestures.drawing_circle),
+        ("draw_z", arm_gestures.drawing_z),
+        ("yawn", arm_gestures.yawning),
+        ("knock_elbow", arm_gestures.knocking_from_elbow),
+        ("arm_extension", rehabilitation.arm_extension),
+        ("hands_up", rehabilitation.hands_up),
+        ("sweep", household.sweeping),
+        ("vacuum", household.vacuuming),
+        ("jacket_off", household.taking_jacket_off),
+        ("cough", household.coughing),
+        ("breathe", household.breathing_deeply),
     ],
 )
 

@@ -26,8 +26,9 @@ def spline_through(time_s: PerTime, times: Sequence[float], values: Sequence[flo
 
 
 def sides(context: StepContext) -> tuple[int, ...]:
-    """The arms that move: as the sentence says, else by the seed (five of six people are right-handed)."""
-    chosen = context.step.hand or ("right" if context.rng.random() < 5 / 6 else "left")
+    """The arms that move: as the sentence says, else five times out of six the one that the person usually uses."""
+    usual = context.step.usual_hand or "right"
+    chosen = context.step.hand or (usual if context.rng.random() < 5 / 6 else {"right": "left"}.get(usual, "right"))
     return {"left": (LEFT,), "right": (RIGHT,), "both": (LEFT, RIGHT)}[chosen]
 
 
@@ -46,7 +47,7 @@ def repeats(context: StepContext, natural_s: float, least_s: float, most_s: floa
     """(start, duration) in seconds of each repetition: as many as the sentence asks for, else one."""
     count = max(context.step.count, 1)
     slower = (1.35, 1.0, 0.8)[context.step.speed + 1]
-    wanted = natural_s * slower * float(np.exp(context.rng.normal(0, 0.07)))
+    wanted = natural_s / context.step.pace * slower * float(np.exp(context.rng.normal(0, 0.07)))
     each = float(np.clip(min(wanted, context.duration_s / count), least_s, most_s))
     spare = 0.0 if count > 1 else max(context.duration_s - each, 0.0)
     begin = context.start_s + min(0.1, 0.3 * spare)
@@ -62,8 +63,12 @@ def cycles(context: StepContext, rate_hz: float, low_hz: float, high_hz: float) 
 
 
 def vary(context: StepContext, value: float, spread: float = 0.12) -> float:
-    """A value with log-normal variation, clipped at twice the spread."""
-    return value * float(np.exp(np.clip(context.rng.normal(0, spread), -2 * spread, 2 * spread)))
+    """A size with log-normal variation, clipped at twice the spread, and with the person's habit."""
+    return (
+        value
+        * context.habits.amplitude
+        * float(np.exp(np.clip(context.rng.normal(0, spread), -2 * spread, 2 * spread)))
+    )
 
 
 def shift_pelvis(controls: Controls, ahead: PerTime | float, left: PerTime | float, up: PerTime | float) -> None:

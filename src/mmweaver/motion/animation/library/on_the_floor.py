@@ -18,6 +18,7 @@ PerTime = Float[Array, " n"]
 KNEELING_M = 0.316  # of the height: of the pelvis above the floor, thighs vertical
 LYING_M = 0.075  # of the height: of the pelvis above the floor
 BACK_BEHIND_M = 0.36  # of the height: from the root back to the pelvis, lying on the back
+SIDE_AWAY_M = 0.34  # of the height: from the root sideways to the pelvis, lying on the side
 BELLY_AHEAD_M = 0.648  # of the height: from the root ahead to the pelvis, lying on the belly
 
 
@@ -77,7 +78,32 @@ def getting_up(context: StepContext) -> Controls:
 
 
 def _down(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
+    if context.step.style in ("left", "right"):
+        return _on_side(context, u)
     return _on_belly(context, u, falls=falls) if context.step.style == "front" else _on_back(context, u, falls=falls)
+
+
+def _on_side(context: StepContext, u: PerTime) -> Controls:
+    """To one's own left or right: that knee gives way, the hip and then the trunk land, knees bent, an arm ahead."""
+    controls, body, h = upright(context), context.body, context.body.height_m
+    side = LEFT if context.step.style == "left" else RIGHT
+    left = 1.0 if side == LEFT else -1.0
+    stand = body.pelvis_height_m(STAND_STRETCH)
+    at, u = [0.0, 0.3, 0.6, 0.8, 1.0], np.clip(u, 0.0, 1.0)
+    heights = [stand, stand - 0.1 * h, 0.17 * h, 0.115 * h, LYING_M * h + 0.025 * h]
+    controls.pelvis_m[:, 2] += spline_through(u, at, heights) - stand
+    shift_pelvis(controls, 0.0, left * spline_through(u, at, [0.0, 0.08, 0.27, 0.32, SIDE_AWAY_M]) * h, 0.0)
+    controls.pelvis_rad[:, 0] -= left * spline_through(u, at, [0.0, 0.3, 0.85, 1.25, 1.45])
+    controls.spine_rad[:, 0] -= left * spline_through(u, at, [0.0, 0.25, 0.1, 0.1, 0.05])
+    controls.spine_rad[:, 1] += spline_through(u, at, [0.0, 0.2, 0.35, 0.25, 0.2])
+    controls.head_rad[:, 0] += spline_through(u, at, [0.0, 0.0, 0.25, 0.2, 0.1])
+    controls.knee_room[:] = np.maximum(controls.knee_room, rise(3 * u))
+    controls.knee_out_rad[:] *= 1 - rise(u / 0.6)[:, None]
+    controls.arm_rad[:, side, 0] += spline_through(u, at, [0.0, 0.3, 1.0, 1.4, 1.5])
+    controls.arm_rad[:, side, 1] += spline_through(u, at, [0.0, 0.7, 0.5, 0.1, 0.0])
+    controls.arm_rad[:, 1 - side, 0] += spline_through(u, at, [0.0, 0.5, 0.8, 0.7, 0.6])
+    controls.arm_rad[:, :, 3] += spline_through(u, at, [0.0, 0.3, 0.5, 0.5, 0.5])[:, None]
+    return controls
 
 
 def _on_back(context: StepContext, u: PerTime, *, falls: bool) -> Controls:

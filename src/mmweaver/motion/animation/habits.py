@@ -1,0 +1,70 @@
+"""How a person does things: larger or smaller, and over tens of seconds not evenly. The pace is `people.Person`'s.
+
+The same person has the same habits in every movement, so twenty seconds of one person resemble each other more than
+those of two. Without it a recogniser that is trained on generated motions learns one tempo.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.seeding import stream
+from mmweaver.motion.animation.profiles import bump, plateau
+
+Array = np.ndarray
+_SPREAD = 0.06  # of amplitude between people, log-normal
+_UNEVEN, _SLOW_HZ = (0.03, 0.14), (0.06, 0.2)  # how much the tempo drifts, and how often it goes to and fro
+_PAUSE_EVERY_S, _PAUSE_S, _SHORTEST_S = (5.0, 25.0), (0.5, 1.1), 4.0
+_EDGE_S = 0.6  # at the ends of a step the tempo is even
+_RATE_HZ = 60.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Habits:
+    """One person's habits; the default has none."""
+
+    amplitude: float = 1.0  # relative to the usual
+    unevenness: float = 0.0  # relative change of the tempo over time
+    drift_hz: float = 0.1
+    phase_rad: float = 0.0
+    pause_every_s: float = np.inf  # of a movement that goes on
+    pause_s: float = 0.8
+
+    def warped(self, time_s: Float[Array, " n"], start_s: float, end_s: float) -> Float[Array, " n"]:
+        """The times of an even movement that this person reaches at `time_s`; a step still starts and ends as planned.
+
+        The tempo drifts, and now and then the person pauses. C2; the same as `time_s` outside the step.
+        """
+        lasts = end_s - start_s
+        if lasts < _SHORTEST_S or not (self.unevenness or np.isfinite(self.pause_every_s)):
+            return time_s
+        fine_s = np.linspace(start_s, end_s, max(int(lasts * _RATE_HZ), 2))
+        inside = plateau(fine_s, start_s, end_s, _EDGE_S, _EDGE_S)
+        rate = 1 + self.unevenness * inside * np.sin(2 * np.pi * self.drift_hz * (fine_s - start_s) + self.phase_rad)
+        pauses_s = np.arange(start_s + 0.6 * self.pause_every_s, end_s - 2 * _EDGE_S, self.pause_every_s)
+        for pause_s in pauses_s:
+            rate = rate * (1 - 0.9 * bump((fine_s - pause_s) / (2 * self.pause_s)))
+        gone_s = np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]))]) * (fine_s[1] - fine_s[0])
+        # What drift and pauses leave over is made up for where the tempo is not held at the ends.
+        share = np.concatenate([[0.0], np.cumsum(0.5 * (inside[1:] + inside[:-1]))]) * (fine_s[1] - fine_s[0])
+        gone_s += (lasts - gone_s[-1]) * share / share[-1]
+        from scipy.interpolate import CubicSpline
+
+        within = np.clip(time_s, start_s, end_s)
+        reached_s = start_s + np.asarray(CubicSpline(fine_s, gone_s, bc_type=((1, 1.0), (1, 1.0)))(within))
+        return reached_s + (time_s - within)
+
+
+NO_HABITS = Habits()
+
+
+def habits_of(subject: int) -> Habits:
+    """The habits of a person; the same number, the same habits."""
+    rng = stream(subject, "motion", "habits")
+    amplitude = np.exp(np.clip(rng.normal(0.0, _SPREAD), -2 * _SPREAD, 2 * _SPREAD))
+    return Habits(
+        amplitude=float(amplitude), unevenness=float(rng.uniform(*_UNEVEN)),
+        drift_hz=float(rng.uniform(*_SLOW_HZ)), phase_rad=float(rng.uniform(0, 2 * np.pi)),
+        pause_every_s=float(rng.uniform(*_PAUSE_EVERY_S)), pause_s=float(rng.uniform(*_PAUSE_S)),
+    )  # fmt: skip

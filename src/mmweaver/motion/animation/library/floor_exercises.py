@@ -1,0 +1,67 @@
+"""On hands and feet: push-ups and crawling. On the floor already, as in the middle of the exercise."""
+
+import numpy as np
+
+from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
+from mmweaver.motion.animation.kinematics import ankle_from_foot
+from mmweaver.motion.animation.library.gait import cruise_mps
+from mmweaver.motion.animation.library.movement_primitives import cycles, mix_arm, shift_foot, shift_pelvis, vary
+from mmweaver.motion.animation.library.on_the_floor import KNEELING_M
+from mmweaver.motion.animation.library.standing import ANKLE_BEHIND, STAND_STRETCH, upright
+from mmweaver.motion.animation.profiles import rise
+from mmweaver.motion.animation.step_context import StepContext
+
+_UP_RAD, _DOWN_RAD = 0.32, 0.06  # of the straight body over the floor, arms stretched and bent
+_ON_TOES_RAD = 1.35  # pitch of the feet
+_STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; from the knee back to the ankle, of the height
+
+
+def push_ups(context: StepContext) -> Controls:
+    """The body stays straight from the heels to the head and goes down and up on the arms; the root is at the feet."""
+    controls, body, h = upright(context), context.body, context.body.height_m
+    rate, end = cycles(context, context.tempo(0.35, 0.55, 0.8), 0.3, 1.1)
+    phase = 2 * np.pi * rate * (np.minimum(context.time_s, end) - context.start_s)
+    down = 0.5 - 0.5 * np.cos(phase)
+    depth = vary(context, 0.92, 0.05)
+    slope = _UP_RAD + np.minimum(depth, 1.0) * down * (_DOWN_RAD - _UP_RAD)
+    leg, pitch = 0.995 * (body.leg_m + body.hip_below_pelvis_m), np.array([_ON_TOES_RAD])
+    ankle = ankle_from_foot(body, np.zeros(1), pitch)[0]
+    stand = body.pelvis_height_m(STAND_STRETCH)
+    ahead = ankle[0] - ANKLE_BEHIND * h + leg * np.cos(slope)
+    shift_pelvis(controls, ahead, 0.0, ankle[2] + leg * np.sin(slope) - stand)
+    controls.pelvis_rad[:, 1] += 0.5 * np.pi - slope
+    controls.spine_rad[:] = 0.0
+    controls.head_rad[:, 0] -= 0.35
+    for side in (LEFT, RIGHT):
+        controls.foot_rad[:, side, 1] += _ON_TOES_RAD
+    controls.knee_up_rad[:] -= 1.45
+    controls.knee_room[:] = 1.0
+    straight = np.tile([1.57 - 0.3, 0.15, 0.0, 0.1], (len(down), 1))
+    bent = np.tile([-0.25, 0.45, 0.0, 1.95], (len(down), 1))
+    for side in (LEFT, RIGHT):
+        mix_arm(controls, side, straight + down[:, None] * (bent - straight), np.ones_like(down))
+    return controls
+
+
+def crawling(context: StepContext) -> Controls:
+    """On hands and knees; a knee and the opposite hand go ahead together."""
+    controls, body, h = upright(context), context.body, context.body.height_m
+    speed = max(cruise_mps(context), 0.15)
+    phase = 2 * np.pi * speed / vary(context, _STRIDE_M, 0.08) * (context.time_s - context.start_s)
+    stand = body.pelvis_height_m(STAND_STRETCH)
+    shift_pelvis(controls, 0.0, 0.0, 0.95 * KNEELING_M * h - stand + 0.008 * h * np.cos(2 * phase))
+    controls.pelvis_rad[:, 1] += 1.25
+    controls.pelvis_rad[:, 2] += 0.08 * np.sin(phase)
+    controls.head_rad[:, 0] -= 0.7
+    controls.knee_room[:] = 1.0
+    for side, sign in ((LEFT, 1.0), (RIGHT, -1.0)):
+        ahead = 0.5 * _STRIDE_M * np.sin(phase) * sign
+        air = rise(sign * np.cos(phase) + 0.3)
+        shift_foot(controls, side, ahead - _SHIN * h, -0.01 * h, 0.02 * h * air)
+        controls.foot_rad[:, side, 1] += 1.42
+        swing = -sign * np.sin(phase)  # the opposite hand
+        arm = np.tile([1.3, 0.08, 0.0, 0.15], (len(phase), 1))
+        arm[:, 0] += 0.28 * swing
+        arm[:, 3] += 0.35 * rise(-sign * np.cos(phase) + 0.3)
+        mix_arm(controls, side, arm, np.ones_like(phase))
+    return controls

@@ -1,0 +1,178 @@
+"""One sentence after the other without a break: each motion begins where, how and as fast as the last one is.
+
+Motions are composed one by one, each from the place, heading and posture in which the last one ends. What is left
+between the two (where a hand hangs, how the feet stand) fades, see `animation.carry_over`. Reference: decision 205.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError, NoRoomError
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.motion.animation.assemble import RATE_HZ, dense_times
+from mmweaver.motion.animation.carry_over import ControlsState
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.compose import Motion, compose
+from mmweaver.motion.language.continued import HELD_FIRST_S, continued, goes_on, posture_held
+from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.timing import natural_s, schedule
+from mmweaver.motion.people import Person, person_of, subject_of, with_habits
+from mmweaver.motion.planning.body_state import BodyState
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.seating import preferred, usable_seats
+
+IDLE_S = 10.0  # of a motion in which nothing new happens
+HISTORY_S = 2.5  # of the motion before, kept for whoever looks back in time
+WALK_ON_S = 2.5
+WALKS_ON = "there is no room for this where the person is: they walk on first"
+_NOTHING_SAID = "a person stands"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionPart:
+    """The motion of one sentence, or of waiting for the next: its frames, and the pose in time of the whole stream."""
+
+    pose: PoseSequence  # 120 Hz, time since the stream's first frame; begins HISTORY_S before the part
+    first_frame: int
+    num_frames: int
+    text: str  # the sentence in force
+    motion: Motion
+    refused: str = ""  # why the sentence could not be carried out
+
+    @property
+    def end_frame(self) -> int:
+        return self.first_frame + self.num_frames
+
+
+class ContinuousMotion:
+    """Composes part after part for one person in one room. The same seed and sentences give the same motion."""
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        frame_period_s: float,
+        range_window_m: tuple[float, float],
+        seed: int,
+        start_m: tuple[float, float] | None = None,
+        heading_rad: float | None = None,
+        height_m: float | None = None,
+        subject: int | None = None,
+    ) -> None:
+        self.scene, self.frame_period_s, self.range_window_m, self.seed = scene, frame_period_s, range_window_m, seed
+        self._start_m, self._heading_rad = start_m, heading_rad
+        self._height_m, self._subject = height_m, subject_of(seed) if subject is None else subject
+        self._person: Person | None = None
+        self._parts = 0
+        self._last: MotionPart | None = None
+        self._end: BodyState | None = None
+        self._said: MotionPlan | None = None  # the last plan of a sentence
+
+    def act(self, plan: MotionPlan) -> MotionPart:
+        """The motion of a parsed sentence, from how the last part ends. Raises InputError where there is no room."""
+        person = self._person or person_of(self._subject, plan.person, self._height_m)
+        before = None if self._end is None else _held(self._end, HELD_FIRST_S)
+        usual = with_habits(plan, person)
+        try:
+            whole = continued(usual, before, seat_m=self._way_to_seat_m(plan, person))
+            part = self._compose(whole, person, plan.text)
+        except NoRoomError:
+            if before is None or before.posture != "feet" or plan.steps[0].moves:
+                raise
+            walk = replace(plan.steps[0], lower="walk", upper="", direction="", seconds=WALK_ON_S)
+            walked = replace(usual, steps=(walk, *usual.steps), notes=(*usual.notes, WALKS_ON))
+            part = self._compose(continued(walked, before), person, plan.text)
+        self._said = plan
+        return part
+
+    def go_on(self, refused: str = "") -> MotionPart:
+        """Nothing new: the last activity goes on, or the posture is held. Never raises after the first sentence."""
+        person = self._person or person_of(self._subject, None, self._height_m)
+        if self._end is None or self._last is None:
+            return self._compose(_lasting(parse(_NOTHING_SAID), IDLE_S), person, "")
+        step = None if refused or self._said is None else goes_on(self._said, IDLE_S)
+        if step is not None and step.posture == self._end.posture:
+            try:
+                return self._compose(replace(self._base(), steps=(step,)), person, self._last.text)
+            except InputError:
+                pass
+        held = replace(self._base(), steps=(_held(self._end, IDLE_S),))
+        return replace(self._compose(held, person, self._last.text), refused=refused)
+
+    def cut(self, end_frame: int) -> None:
+        """The last part ends at this frame already, because something new is said."""
+        assert self._last is not None
+        self._last = replace(self._last, num_frames=end_frame - self._last.first_frame)
+
+    def _base(self) -> MotionPlan:
+        return parse(_NOTHING_SAID) if self._said is None else replace(self._said, notes=(), clauses=())
+
+    def _compose(self, plan: MotionPlan, person: Person, text: str) -> MotionPart:
+        number = self._parts
+        frames = max(1, math.ceil(natural_s(plan) / self.frame_period_s - 1e-6))
+        scheduled = schedule(plan, frames * self.frame_period_s)
+        seed = self.seed if number == 0 else int(stream(self.seed, "stream", number).integers(2**31))
+        is_first = self._end is None
+        motion = compose(
+            scheduled, self.scene, seed=seed, range_window_m=self.range_window_m, person=person, after=self._state(),
+            start_m=self._start_m if is_first else None, heading_rad=self._heading_rad if is_first else None,
+        )  # fmt: skip
+        begins = 0 if self._last is None else self._last.end_frame
+        begin_s = begins * self.frame_period_s
+        before = None if self._last is None else self._last.pose
+        pose = joined(before, motion.pose, begin_s)
+        part = MotionPart(pose=pose, first_frame=begins, num_frames=frames, text=text, motion=motion)
+        end = motion.end
+        if end is not None and end.sitting is None and self._end is not None and _stays(motion):
+            end = replace(end, sitting=self._end.sitting)
+        self._parts, self._last, self._end, self._person = number + 1, part, end, person
+        return part
+
+    def _state(self) -> BodyState | None:
+        """How the last part ends, at the frame at which it really does."""
+        if self._last is None or self._end is None:
+            return None
+        motion, ended_s = self._last.motion, self._last.num_frames * self.frame_period_s
+        assert motion.controls is not None
+        state = ControlsState.at(motion.controls, dense_times(motion.plan.duration_s), ended_s)
+        return replace(self._end, controls=state)
+
+    def _way_to_seat_m(self, plan: MotionPlan, person: Person) -> float | None:
+        """How far it is to the nearest seat that the sentence means; None where the body stands before one."""
+        if self._end is None or self._end.posture != "feet" or self._end.sitting is not None:
+            return None
+        floor = FloorMap.of(self.scene, self.range_window_m, person.height_m)
+        seats = usable_seats(floor, SkeletonProportions(person.height_m))
+        meant = preferred(seats, plan.steps[0].seat, self.scene)
+        if not meant:
+            return None
+        return float(min(np.hypot(*(seat.feet_m - np.array(self._end.position_m))) for seat in meant))
+
+
+def _held(state: BodyState, seconds: float) -> Step:
+    return posture_held(state.posture, seconds=seconds, style=state.style, foot=state.foot)
+
+
+def _lasting(plan: MotionPlan, seconds: float) -> MotionPlan:
+    return replace(plan, steps=tuple(replace(step, seconds=seconds) for step in plan.steps))
+
+
+def _stays(motion: Motion) -> bool:
+    return not any(step.moves or step.lower == "turn" or step.turn_deg for step in motion.plan.steps)
+
+
+def joined(before: PoseSequence | None, pose: PoseSequence, begin_s: float) -> PoseSequence:
+    """A motion that begins at `begin_s` after the end of the one before it, in the same time."""
+    if before is None:
+        return replace(pose, time_s=pose.time_s + begin_s)
+    new = pose.time_s > -1e-9
+    old = (before.time_s > begin_s - HISTORY_S) & (before.time_s < begin_s - 0.5 / RATE_HZ)
+    return replace(
+        pose,
+        time_s=np.concatenate([before.time_s[old], begin_s + pose.time_s[new]]),
+        joints_m=np.concatenate([before.joints_m[old], pose.joints_m[new]]),
+    )

@@ -1,0 +1,240 @@
+"""Movements that are shown as similar ones: tried where a sentence is not understood, and said as approximated.
+
+A replacement has the same part of the body move in a similar way. An empty one stands for something that moves
+nothing a radar sees.
+"""
+
+import re
+from dataclasses import dataclass
+
+_OWN = r"(?:(?:his|her|its|their|the|both|a|an|some|one|my|own) )*"
+_SIDE = r"(?:left|right)"
+MARK = "approx_"
+
+
+@dataclass(frozen=True)
+class Approximation:
+    """A pattern of the sentence, the words that are acted out instead, and how that is said."""
+
+    pattern: str
+    instead: str
+    how: str
+    always: bool = False  # also where the sentence would be understood, but as something else
+
+
+def _verb(stem: str, end: str = "") -> str:
+    """All forms of a verb given by its stem: 'ir' + 'on' as 'iron'."""
+    return rf"\b{stem}(?:e?s|ing|ed|e)?\b{end}"
+
+
+_THING = r"(?: +(?!and\b|then\b|while\b|with\b|before\b|after\b|,)[a-z'-]+){0,4}"
+_AS = "is shown as"
+
+APPROXIMATIONS: tuple[Approximation, ...] = (
+    *(Approximation(pattern, instead, how, always=True) for pattern, instead, how in (
+        (r"\b(?:turn|switch)(?:s|es|ing|ed)? (?:on|off) (?:the |a |his |her )?(?:[a-z]+ )?(?:light|lights|lamp|tv|television|radio|stove|computer|music|heating|fan)\b"
+         r"|\b(?:turn|switch)(?:s|es|ing|ed)? (?:the |a )?(?:light|lights|lamp|tv|radio|stove|computer) (?:on|off)\b",
+         "reaches for something", f"{_AS} reaching out with a hand"),
+        (r"\bbounc(?:es|ing) (?:a|the) (?:[a-z]+ )?ball\b|\bdribbl(?:es|ing)\b(?: (?:a|the) [a-z]+)?", "knocks", "is shown as a hand beating"),
+        (r"\bmov(?:es|ing) (?:a|an|the|some) (?:heavy |big |small )?(?:chair|table|sofa|couch|bed|desk|box|boxes|furniture|stool|objects?)\b(?: around| aside)?",
+         "pushes something", f"{_AS} pushing it"),
+        (r"\b(?:turn|flip)(?:s|ing)? (?:the )?pages?\b", "reads", f"{_AS} reading"),
+    )),
+    *(Approximation(pattern, instead, how) for pattern, instead, how in (
+        # at home
+        (r"\b(?:iron(?:s|ing)?|polish(?:es|ing)?|dust(?:s|ing)?|paint(?:s|ing)?|sand(?:s|ing)?|rub(?:s|bing)? (?!(?:his|her|the|their|two|both) ?hands))"
+         rf"{_THING}", "wipes", f"{_AS} wiping"),
+        (r"\b(?:mop|sweep|vacuum|hoover|rake)(?:s|ping|ing)?\b" + _THING, "wipes", f"{_AS} wiping"),
+        (r"\b(?:wash|rins|dri|scrub|soap)(?:es|ing|s|bing)? (?:up )?(?:the |some )?(?:dishes|plates?|cups?|windows?|car|floor|table)\b",
+         "wipes", f"{_AS} wiping"),
+        (r"\b(?:does|doing) the (?:dishes|washing[- ]up|cleaning|housework)\b", "wipes", f"{_AS} wiping"),
+        (r"\b(?:wash(?:es|ing)?|rub(?:s|bing)?|dr(?:ies|ying)|soap(?:s|ing)?|applies cream on|creams?) (?:his |her |the |their |its |two |both )*hands(?: together)?\b",
+         "claps", "hands rubbed against each other are shown as clapping"),
+        (r"\b(?:wip(?:es?|ing)|wash(?:es|ing)?|shav(?:es?|ing)|powder(?:s|ing)?|(?:applies|applying|puts on|putting on) (?:cream|makeup|lotion)(?: on)?)"
+         rf"(?: {_OWN}(?:face|nose|cheeks?|mouth|beard))?(?! (?:the|a|his|her) (?:table|floor|window|wall))(?=$|[ ,.])(?: in front of the mirror)?",
+         "brushes the teeth", "a hand at the face is shown as brushing teeth"),
+        (rf"\b(?:blow(?:s|ing)?|clean(?:s|ing)?) {_OWN}nose\b", "brushes the teeth", "a hand at the face is shown as brushing teeth"),
+        (rf"\b(?:wash(?:es|ing)?|scratch(?:es|ing)?|touch(?:es|ing)?|flicks?|strok(?:es|ing)) {_OWN}(?:hair|head|neck)\b(?: because of [a-z ]+)?",
+         "combs the hair", "a hand at the head is shown as combing"),
+        (rf"\b(?:puts?|putting|tak(?:es|ing)|adjusts?|lifts?) (?:on|off) {_OWN}(?:glasses|sunglasses|hat|cap|headphones|helmet|earphones|mask)\b",
+         "combs the hair", "hands at the head are shown as combing"),
+        (r"\b(?:cook|bak|mix|knead|fry)(?:s|es|ing)?\b" + _THING + r"|\bprepar(?:es|ing) (?:the |a |some )?(?:food|dinner|lunch|breakfast|meal|tea|coffee)\b", "stirs the soup", f"{_AS} stirring"),
+        (r"\b(?:chop|cut|slic|peel|saw|grat)(?:s|es|ing|ping|ting)?\b(?! (?:across|through))" + _THING, "stirs the soup",
+         "is shown as stirring, a hand to and fro in front of the body"),
+        (r"\b(?:water|pour)(?:s|ing)? " + _OWN + _THING, "reaches for something", f"{_AS} reaching out with a hand"),
+        (r"\b(?:set|lay|clear)(?:s|ting|ing)? the table\b", "reaches for something twice", f"{_AS} reaching out with a hand"),
+        (r"\b(?:press|push)(?:es|ing)? (?:a |an |some |the )?(?:[a-z]+ )?(?:buttons?|switch|key|bell)\b", "reaches for something",
+         f"{_AS} reaching out with a hand"),
+        (r"\b(?:turn|switch)(?:s|es|ing)? (?:on|off) (?:the |a )?(?:light|lamp|tv|television|radio|stove|computer)s?\b"
+         r"|\b(?:turn|switch)(?:s|es|ing)? the (?:light|lamp|tv|radio|stove) (?:on|off)\b",
+         "reaches for something", f"{_AS} reaching out with a hand"),
+        (r"\b(?:hang|fold|unfold|stack|sort|arrang|pack|unpack|collect|tear|wrap|open|clos|shut|screw|plug|feed|touch|light)(?:s|es|ing|ting)?"
+         r"(?: up| out| down)? (?!(?:his|her|its|their|the|both) (?:arms?|hands?|eyes|legs?)\b|(?:the |a )?(?:[a-z]+ )?door)"
+         rf"{_OWN}[a-z]+{_THING}", "reaches for something twice", f"{_AS} reaching out with the hands"),
+        (r"\b(?:does|doing) (?:the |some )?laundry\b", "reaches for something twice", f"{_AS} reaching out with the hands"),
+        (r"\bclos(?:es?|ing) (?:the |a )?(?:[a-z]+ )?(?:door|fridge|cupboard|window|drawer|curtains?|blinds)\b", "opens the door", f"{_AS} opening it"),
+        (r"\b(?:knit|sew|typ|play(?:s|ing)? (?:with )?(?:the |a |some )?(?:piano|keyboard|video games?|computer games?|cards|games?|magic cube)|"
+         r"count(?:s|ing)? money)(?:s|ing|ting)?\b" + r"(?: on)?(?: the)?(?= sofa|$|[ ,.])", "types", f"{_AS} typing, small movements of both hands"),
+        (r"\b(?:draw|paint|sketch|sign)(?:s|ing)? (?:an? |the |some )?(?:imaginary )?(?:horizontal |vertical )?(?:lines?|picture|something|shapes?)"
+         r"(?: in the air)?\b", "writes on a board", f"{_AS} writing"),
+        (r"\b(?:hammer|drum|nail|tap|rap)(?:s|ming|ping|ing)?\b(?! (?:his|her|its) (?:left|right))" + _THING, "knocks", f"{_AS} knocking"),
+        (r"\bplay(?:s|ing)? (?:the |on the |some )?drums?\b", "knocks with both hands", f"{_AS} knocking"),
+        (r"\bplay(?:s|ing)? (?:the |a )?(?:flute|trumpet|clarinet|saxophone|harmonica)\b", "phones", "hands at the mouth are shown as phoning"),
+        (r"\bplay(?:s|ing)? (?:the |a )?(?:cello|harp|banjo|lute)\b", "plays the guitar", f"{_AS} playing the guitar"),
+        (r"\b(?:tak(?:es|ing)) (?:an? |some |the )?(?:photos?|pictures?|selfies?)(?: of [a-z ]+)?(?: with (?:a|his|her|the) (?:phone|camera))?\b",
+         "looks at the phone", f"{_AS} using a phone"),
+        (r"\b(?:check|look)(?:s|ing)? (?:at )?(?:the time(?: on)?|his watch|her watch|(?:a|the|his|her) (?:watch|wrist))(?: (?:a|the|his|her) watch)?\b",
+         "looks at the phone", "a look at the wrist is shown as one at a phone"),
+        # gestures
+        (r"\b(?:shak(?:es?|ing)) hands?\b(?: with [a-z ]+)?|\bhandshake\b", "reaches for something", f"{_AS} reaching out with a hand"),
+        (r"\bgiv(?:es|ing) (?:an? |the )?thumbs? (?:up|down)\b|\b(?:makes|making|shows|showing) (?:an? |the )?(?:ok|victory|peace|stop)[- ]?(?:sign|gesture)?\b",
+         "points ahead", f"{_AS} pointing"),
+        (r"\bbeckon(?:s|ing)?\b|\bgestur(?:es|ing)\b|\bgesticulat(?:es|ing)\b|\bswip(?:es|ing)\b(?: [a-z]+){0,3}|\bfans? (?:himself|herself|itself)\b|\bflutters?(?:ing)?\b|\bwiggles?\b",
+         "waves", f"{_AS} waving"),
+        (r"\bsalut(?:es|ing)\b|\b(?:blow(?:s|ing)? (?:a )?kiss(?:es)?)\b|\bhush(?:es|ing)\b", "raises the right hand", f"{_AS} a raised hand"),
+        (r"\b(?:cheers?|cheering)(?: up)?\b|\bcelebrates?\b", "raises both hands", f"{_AS} raising both hands"),
+        (r"\b(?:beg|pray)(?:s|ging|ing)?\b|\b(?:puts?|putting) (?:the |his |her )?palms together\b|\bfolds? (?:the |his |her )?hands\b",
+         "claps once", "hands put together are shown as a clap"),
+        (r"\bhug(?:s|ging)?\b" + _THING + r"|\bembrac(?:es|ing)\b" + _THING, "stretches both arms forwards", f"{_AS} arms held out"),
+        (r"\bcurts(?:ies|ys|eys)\b", "squats once", f"{_AS} a squat"),
+        (rf"\b(?:cover(?:s|ing)?|hid(?:es|ing)) {_OWN}(?:face|eyes|ears)(?: with (?:both|his|her) hands)?\b", "phones",
+         "hands at the head are shown as phoning"),
+        (rf"\b(?:hold(?:s|ing)?|clutch(?:es|ing)?|touch(?:es|ing)?) {_OWN}(?:chest|heart|stomach|belly|shoulder)\b(?: in pain| because of [a-z]+)?",
+         "crosses the arms", "hands at the chest are shown as crossed arms"),
+        (rf"\bput(?:s|ting)? {_OWN}hands? (?:in|into) {_OWN}pockets?\b|\bwith {_OWN}hands in {_OWN}pockets?\b", "",
+         "hands in the pockets are not shown"),
+        (rf"\bmov(?:es|ing) {_OWN}({_SIDE} )?(hands?|arms?)(?: [a-z]+){{0,3}}? (?:in )?(?:an? |the )?(?:[a-z]+ )?(?:circles?|circular (?:motion|path|movement))\b"
+         r"(?: in front of (?:him|her|it|his belly|her belly|the body|his body))?", r"stirs the soup with the \1 hand", "a circling hand is shown as stirring"),
+        (rf"\b(?:performs?|performing|makes|making|doing|does) (?:an? )?(?:circular|circling) (?:motion|movement)s? with {_OWN}({_SIDE}) (?:hand|arm)\b",
+         r"stirs the soup with the \1 hand", "a circling hand is shown as stirring"),
+        (rf"\bmov(?:es|ing) {_OWN}({_SIDE} )?(hands?|arms?) (?:quickly |slowly )?(?:up and down|from (?:up|top) to (?:down|bottom)|from (?:down|bottom) to (?:up|top)|upwards?)\b",
+         r"raises the \1\2", "is shown as raising it"),
+        (rf"\b(?:swing|rotat|shak)(?:s|es|ing) {_OWN}({_SIDE} )?(?:arms?|shoulders?)\b(?: around)?", r"circles the \1 arms", f"{_AS} circling the arms"),
+        (r"\bcircl(?:es|ing) (?:the |his |her )?shoulders\b", "circles the arms", f"{_AS} circling the arms"),
+        (rf"\b(?:roll|tilt|mov|rotat)(?:s|es|ing) {_OWN}head\b", "shakes the head", f"{_AS} shaking the head"),
+        (rf"\blean(?:s|ing)? back(?:wards?)?(?: in {_OWN}chair)?\b", "stretches", "leaning back is shown as stretching"),
+        (r"\byawn(?:s|ing)?\b", "stretches", f"{_AS} stretching"),
+        # sport
+        (r"\b(?:exercises|works? out|training|(?:warm(?:ing|s)?[- ]?up|fitness|floor|gym(?:nastic)?s?) (?:exercises?|training)|"
+         r"does (?:some )?(?:warm[- ]?ups?|exercises?|gymnastics|yoga|pilates)|gymnastics|yoga|pilates)\b", "circles the arms", f"{_AS} circling the arms"),
+        (r"\b(?:skip|jump)(?:s|ping|ing)? (?:with a |the )?(?:skipping )?rope\b", "hops", f"{_AS} hopping on the spot"),
+        (r"\bburpees?\b", "squats, jumps", f"{_AS} a squat and a jump"),
+        (r"\b(?:lift|us|exercis|train)(?:s|es|ing) (?:with )?(?:the |some )?(?:dumb-?bells?|weights|barbells?)\b|\bwith (?:weights|dumb-?bells)\b",
+         "raises both hands", f"{_AS} raising both hands"),
+        (r"\b(?:swing|hit)(?:s|ting|ing)? (?:an? |the |with an? )?(?:[a-z-]+ )?(?:bat|racket|racquet|stick|sword|paddle)\b|"
+         r"\bplay(?:s|ing)? (?:table )?(?:tennis|baseball|badminton|hockey|ping-?pong|cricket|squash)\b"
+         r"|\b(?:performs?|does) (?:an? )?(?:tennis|baseball|badminton) (?:serve|swing|stroke|smash|hit|pitch)\b|\btennis (?:serve|smash|swing)\b",
+         "plays golf", "a swing with racket or bat is shown as a golf swing"),
+        (r"\bplay(?:s|ing)? (?:some )?(?:soccer|football)\b", "kicks a ball", f"{_AS} kicking a ball"),
+        (r"\bplay(?:s|ing)? (?:some )?(?:basketball|handball|volleyball|dodgeball|bowling)\b|\bshoots? (?:at|into) the basket\b|\bbowls\b|"
+         r"\bjuggl(?:es|ing)\b" + _THING + r"|\bplay(?:s|ing)? with (?:a|the) ball\b|\btoss(?:es|ing)? a coin\b", "throws a ball", f"{_AS} throwing a ball"),
+        (r"\bcatch(?:es|ing)? (?:an? |the )?(?:ball|something|object)\b", "reaches for something", f"{_AS} reaching out with a hand"),
+        (r"\bbounc(?:es|ing) (?:a|the) ball\b|\bdribbl(?:es|ing)\b" + _THING, "knocks", "is shown as a hand beating"),
+        (rf"\b(?:hit|beat|strik)(?:s|es|ting|ing) (?:at |against )?(?:something|someone|somebody|an? [a-z]+|the [a-z]+|it)? ?(?=with {_OWN}{_SIDE} (?:foot|leg))",
+         "kicks ", f"{_AS} kicking"),
+        (r"\b(?:fight|spar|box)(?:s|ing|es)?(?: (?:against|with) (?:something|someone|somebody|an? [a-z]+))?(?: or someone)?\b(?! position)|"
+         r"\b(?:hit|beat|strik)(?:s|es|ting|ing) (?:at |against )?(?:something|someone|somebody|an? (?:person|bag|object|opponent|wall)|the (?:air|wall|bag))\b",
+         "punches", f"{_AS} punching"),
+        (r"\b(?:does |doing |performs |some )?(?:kick-?boxing|karate|kung[- ]?fu|taekwondo|martial arts?)\b", "punches, then kicks", f"{_AS} a punch and a kick"),
+        (r"\b(?:karate |kung[- ]fu |martial arts? |kick-?)(?=fighter|boxer|man|woman|person)", " ", "the kind of fighting is not shown"),
+        (r"\b(?:dodg|evad|avoid|duck)(?:es|s|ing) (?:an? |the |something|some )?(?:(?:punch|hit|blow|attack|kick|ball)(?:es|s)?)?(?: to (?:his|the) (?:head|face|body))?"
+         r"|\b(?:does|makes|performs) (?:an? )?(?:dodg(?:e|ing)|evasive) (?:move(?:ment)?|motion)\b", "crouches ", f"{_AS} crouching"),
+        (r"\bhold(?:s|ing)? (?:an? |the )?squat(?:ted)?(?:ting)? position\b", "crouches", f"{_AS} crouching"),
+        (r"\b(?:danc(?:es|ing)|moves?|moving|does|doing|performs?|performing|practi[cs]es?|steps?)? ?(?:the |an? |some )?(?:basic |standard )?"
+         r"(?:steps? |movements? |motions? )?(?:of |in )?(?:the |an? )?(?:slow |fast |viennese |latin )?[- ]?"
+         r"(?:waltz(?:es|ing)?|tango|salsa|ballet|cha-?cha-?(?:cha)?|rumba|samba|foxtrot|fox trot|quickstep|hip-?hop|polka|swing dance|ballroom)"
+         r"(?: dance| dancing| steps?| moves?| motion| pirouette)*(?: basic steps?)?\b", " dances ", "the kind of dance is not shown"),
+        (r"\b(?:danc(?:es|ing)) (?:with (?:an?|his|her|the|another|a imaginary) (?:[a-z]+ )?(?:partner|person|human|woman|man))\b", "dances",
+         "the partner is not shown"),
+        (r"\bdodg(?:es?|ing)\b", "crouches", f"{_AS} crouching"),
+        (rf"\bmov(?:es|ing) {_OWN}({_SIDE} )?(hands?|arms?)\b(?: around| quickly| slowly| back and forth| horizontally| to (?:the|its|his) (?:left|right)| clockwise| in front of [a-z ]+)*(?=$|[.,])",
+         r"waves with the \1\2", f"{_AS} waving"),
+        (r"\b(?:over|around|into|onto) (?:an? |the |some )?(?:[a-z]+ )?(?:obstacles?|objects?|hurdles?)\b", "", "the obstacle is not shown"),
+        # gaits
+        (r"\b(?:tip-?toe(?:s|ing)?|walk(?:s|ing)? on (?:his |her |the |their )?(?:tip-?)?toes|walk(?:s|ing)? on tip-?toes?)\b", "walks slowly", "tiptoes are not shown"),
+        (r"\b(?:sneak|creep|lurk|prowl|tiptoe)(?:s|ing)?\b(?: around)?", "walks slowly", f"{_AS} walking slowly"),
+        (r"\b(?:shuffl|trudg|dawdl|plod|waddl|toddl)(?:s|es|ing)\b", "walks slowly", f"{_AS} walking slowly"),
+        (r"\b(?:hurr(?:ies|ying)|rush(?:es|ing)?|storms|dash(?:es|ing)?)\b", "walks quickly", f"{_AS} walking quickly"),
+        (r"\b(?:leav(?:es|ing)|exits?|exiting|walks? (?:off|out))(?: (?:the )?(?:room|scene|house))?\b", "walks away", f"{_AS} walking away"),
+        (r"\b(?:enter(?:s|ing)?|comes? in(?:to)?)(?: (?:the |a )?(?:room|house|kitchen|scene))?\b", "walks", "coming in is shown as walking"),
+        (rf"\b(?:with|has|having) (?:an? |the )?(?:injured|hurt|broken|stiff|sore|bad) (?:{_SIDE} )?(?:leg|foot|knee|ankle)s?\b|\bdragg?(?:s|ing) {_OWN}(?:{_SIDE} )?(?:leg|foot)(?: behind)?\b",
+         "limping", f"{_AS} a limp"),
+        (r"\b(?:shaky|unsteady|unstable|zombie|dizzy)[- a-z]*?(?=(?: walk| and | to |$|[.,]))", "drunk", "an unsteady gait is shown as staggering"),
+        (r"\blike (?:an? )?(?:zombie|drunk(?:ard)?|monster)\b", "drunk", "is shown as staggering"),
+        (r"\b(?:bent (?:over|forwards?|down)|hunched(?: over)?|stooped|stooping|with (?:an? )?(?:stoop|bent back|hunched back|hunch)|crouched|in (?:an? )?(?:crouch|bent)[a-z ]*?position)\b",
+         "", "the bent back is not shown"),
+        (r"\b(?:on|over|along|across) (?:an? |the )?(?:[a-z]+ )?(?:beam|line|plank|rope|tightrope|rail|bridge|rough terrain|uneven ground|flat ground)\b", "", "what is walked on is not shown"),
+        (r"\b(?:high|raised|lifted) knees\b|\bwith high steps?\b", "", "how high the knees go is not shown"),
+        (r"\bdiagonal(?:ly)?\b(?: across the room)?", "", "a diagonal is shown as some direction"),
+        (r"\b(?:in |along )?(?:an? )?zig-?zag(?:s| line)?\b|\bslalom\b|\bin (?:random |some |several )?curves\b|\bin an? (?:non-straight|wavy) line\b",
+         "in a 60 degree curve to the left, then walks in a 60 degree curve to the right", "is shown as two curves"),
+        (r"\b(?:in |along )?(?:an? )?(?:square|rectangle|rectangular path|triangle)\b", "in a circle", "is shown as a circle"),
+        (r"\b(?:changes?|changing) (?:his |her |its |the )?(?:walking )?direction\b", "turns around", f"{_AS} turning around"),
+        (r"\b(?:accelerat(?:es|ing)|decelerat(?:es|ing)|slow(?:s|ing) down|speed(?:s|ing) up|getting faster|gets faster)(?: again| slightly| a bit)?\b", "",
+         "a change of speed is not shown"),
+        (r"\b(?:as if|like|as though) (?:(?:he|she|it|they|a|the) )?(?:person )?(?:is |was |were |got |gets |had )?(?:been |being )?"
+         r"(?:pushed|shoved|hit|puched)[a-z ]*", "", "what it looks like is not shown"),
+        (r"\blike (?:an? )?(?:crab|robot|model|soldier|bodybuilder|wings?|bird|plane|airplane|duck|penguin|ape|monkey|old man)s?\b|\bcrab-?wise\b", "",
+         "whom it resembles is not shown"),
+        (r"\b(?:jump|hop)(s|ing)? (?:up )?(?:and |while )(?:turn(?:s|ing)?|rotat(?:es|ing)|spin(?:s|ning)?)\b", "jumps, then turns",
+         "jump and turn are shown one after the other"),
+        # nothing that moves
+        (r"\b(?:laugh|sing|smil|grin|cr(?:y|i)|whistl|shout|scream|talk|speak|chat|listen|think|hum|snor|blink|wink|sneez|cough|sniff|breath|rest|relax|"
+         r"worr(?:y|i)|dream|hesitat|concentrat|meditat)(?:s|es|ing|ning)?\b(?: (?:about|to|with|at|of) [a-z ]+?(?=$|[,.]| and | then | while ))?(?: (?:loudly|quietly|calmly|softly))?",
+         "", "has no movement that is shown"),
+        (r"\b(?:do(?:es|ing)) nothing\b|\b(?:does|doing) (?:some )?breathing exercises\b", "stands still", "is shown as standing still"),
+        (r"\b(?:watch(?:es|ing)?|looks? at|looking at|looks? out of|observ(?:es|ing)|star(?:es|ing) at|glanc(?:es|ing) (?:at|occasionally at)|examin(?:es|ing)|inspect(?:s|ing)?)"
+         r" (?:it|him|her|them|(?:the |a |an |his |her |their |its )?[a-z]+(?: mirror| window)?)\b", "", "a look is not shown"),
+        (r"\b(?:look(?:s|ing)? for|search(?:es|ing)?(?: for)?|seek(?:s|ing)?)\b" + _THING, "looks around", f"{_AS} looking around"),
+        (rf"\b(?:with )?{_OWN}eyes (?:closed|shut|open)\b|\bclos(?:es|ing) {_OWN}eyes\b", "", "eyes are not shown"),
+        (r"\bfalls? asleep(?: on the (?:sofa|couch|chair|bed))?\b|\b(?:sleep|nap|snooz)(?:s|es|ing|ping)?\b", "lies on the floor", f"{_AS} lying"),
+        (r"\bwak(?:es|ing) up\b", "lying on the floor, gets up", f"{_AS} getting up"),
+        (r"\b(?:against|on) the wall\b", "", "the wall is not touched"),
+        (r"\blean(?:s|ing) (?:against|on)\b" + _THING, "stands", "is shown as standing"),
+        (r"\b(?:feels?|is|being|looks?) (?:sick|ill|tired|dizzy|happy|sad|bored|nervous|angry|afraid|confused)\b", "", "how it feels is not shown"),
+        (r"\bvomit(?:s|ing)?\b|\bthrows? up\b(?= *$| because)", "bends down", f"{_AS} bending down"),
+        (r"\b(?:gets?|getting) (?:dressed|undressed|changed)\b", "reaches for something twice", f"{_AS} reaching out with the hands"),
+        (r"\b(?:put|tak|get|plac)(?:s|es|ting|ing)? (?:on |off |out )?(?!(?:a )?(?:step|seat|steps|turn|few|one|two|three|four)\b|(?:his|her|the|both|its) (?:left |right )?(?:arms?|hands?|legs?|foot|feet|knees?)\b|up\b|back\b|down\b)"
+         rf"{_OWN}(?:jacket|coat|shoes?|boots?|shirt|sweater|pullover|trousers|pants|dress|bag|backpack|gloves|scarf|apron|something|things?|clothes|toys?|books?|bottle|glass|plates?|groceries|keys?)\b{_THING}",
+         "reaches for something twice", f"{_AS} reaching out with the hands"),
+        (r"\b(?:snap|flick)(?:s|ping|ing)? (?:his |her |the )?fingers?\b|\bshak(?:es|ing) (?:a|his|her|the) fist\b", "waves", "a moving hand is shown as waving"),
+        (r"\b(?:staple|load|unload|assembl|repair|fix|examin|handl)(?:s|es|ing)\b" + _THING, "reaches for something twice", f"{_AS} reaching out with the hands"),
+        (r"\bdrops? (?:a |an |the |his |her |something|some )[a-z ]*?(?=$|[,.]| and| then)", "reaches for something", "letting go is shown as reaching out"),
+        (r"\bcross(?:es|ing) (?:the |his |her )?hands(?: in front(?: of (?:him|her|the body))?)?", "crosses the arms", f"{_AS} crossing the arms"),
+        (r"\bcross(?:es|ing) the (?:room|street|floor|hall)\b", "walks", f"{_AS} walking"),
+        (r"\b(?:swim|swimming|swims)\b(?: [a-z]*stroke| breaststroke| the crawl)?", "circles the arms", f"{_AS} circling the arms, standing"),
+        (r"\bdriv(?:es|ing) (?:a |the |his |her )?(?:car|bus|truck)\b", "sits", "driving is shown as sitting"),
+        (r"\brid(?:es|ing) (?:a |the |his |her )?(?:bike|bicycle|horse|motorbike)\b", "sits", "riding is shown as sitting"),
+        (r"\blower(?:s|ing) (?:his |her |the |both |its )?(?:arms?|hands?)\b(?=$|[,.])", "stands", "arms that go down are shown as hanging"),
+    )),
+)  # fmt: skip
+_COMPILED: list[re.Pattern[str]] = []
+_HELD = re.compile(r"<(\d+)>")
+
+
+def with_approximations(text: str, *, only_always: bool = False) -> str:
+    """The sentence with what is known instead of what is not; a token after each replacement says which it was."""
+    if not _COMPILED:
+        _COMPILED.extend(re.compile(one.pattern) for one in APPROXIMATIONS)
+    folded = text.lower()
+    held: list[str] = []  # replacements, kept out of the text until all patterns have been tried
+    for number, (pattern, one) in enumerate(zip(_COMPILED, APPROXIMATIONS, strict=True)):
+        if only_always and not one.always:
+            continue
+
+        def hold(found: re.Match[str], number: int = number, one: Approximation = one) -> str:
+            held.append(f"{_filled(found, one.instead)} {MARK}{number}")
+            return f" <{len(held) - 1}> "
+
+        folded = pattern.sub(hold, folded)
+    return " ".join(_HELD.sub(lambda found: held[int(found[1])], folded).split()) if held else text
+
+
+def _filled(found: re.Match[str], instead: str) -> str:
+    """The replacement with the groups of the match in it."""
+    return re.sub(r"\\(\d)", lambda group: found[int(group[1])] or "", instead)
+
+
+def how_of(token: str) -> str:
+    """What a token of `with_approximations` says."""
+    return APPROXIMATIONS[int(token.removeprefix(MARK))].how

@@ -1,0 +1,74 @@
+"""Phrases of exercises and arm gestures, as instructions word them, replaced by one token each.
+
+The gestures are those of mHomeGes, the exercises those of MARS; both are worded in many ways.
+"""
+
+_OWN = r"(?:(?:his|her|its|their|the|both|straight|stretched|own|an?|one) )*"
+_SIDE = r"((?:left |right )?)"
+_ARM = r"(arms?|hands?)"
+_UP = r"(?:straight up|all the way up|up(?:wards?)?)"
+_STAYS = (
+    r"(?:,? (?:and|then) (?:it |they |(?:keeps|holds|leaves) (?:it|them) )?(?:stays?|there|up|up there|raised|in place)?"
+    r"(?: ?(?:straight )?(?:above|over) (?:the|his|her|their) heads?)?)"
+)
+_OF_LEG = r"(?:with|on|to|onto) (?:the |his |her |their )?(left|right)(?: leg| foot| side)?"
+_LUNGE = r"(?:side|lateral|sideways?)[- ]?lunge"
+
+# Replaced in this order, before `phrases.ACTIVITY_PHRASES`.
+GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
+    # Exercises
+    (rf"\b{_LUNGE}(?:s|d|ing)? {_OF_LEG}\b", r" side_lunge \1_leg "),
+    (rf"\b(left|right) {_LUNGE}(?:s|d|ing)?\b", r" side_lunge \1_leg "),
+    (rf"\b{_LUNGE}(?:s|d|ing)?\b", " side_lunge "),
+    (r"\blung(?:es?|ing) (?:sideways|to (?:the |his |her |their )?(left|right|side)s?(?: side)?)\b", r" side_lunge \1 leg "),
+    (r"\b(left|right) front(?:al)?[- ]lunges?\b|\bfront(?:al)?[- ]lunges? (?:with (?:the )?)?(left|right)(?: leg)?\b",
+     r" lunges \1\2_leg "),
+    (r"\bfront(?:al)?[- ]lunges?\b", " lunges "),
+    (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) arm and {_OWN}(?:same |left |right )?leg"
+     r"(?: (?:out )?(?:to the side|sideways))?\b", r" limb_extension \1_leg "),
+    (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) leg and {_OWN}(?:same |left |right )?arm"
+     r"(?: (?:out )?(?:to the side|sideways))?\b", r" limb_extension \1_leg "),
+    (r"\b(left|right) limb extensions?\b", r" limb_extension \1_leg "),
+    (r"\b(left|right|both) upper[- ]limbs? extensions?\b", r" arm_extension \1 arm "),
+    (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) ({_OWN}){_SIDE}arms? (?:up (?:at|to|along)|up from) "
+     r"(?:the |his |her |their |its |both )*sides?\b", r" arm_extension \1 \2 arm "),
+    (rf"\bwith {_OWN}hands (?:held |raised )?up\b", " while hands_up "),
+    (r"\b(?:push|press)[- ]?ups?\b", " push_up "),
+    (r"\bcrawl(s|ing|ed)? (?:on|around on) (?:his |her |the |all )*(?:hands and knees|fours)\b|\bcreeps?\b", " crawls "),
+    # Gestures of one arm; the arm may be what acts: "the right arm falls straight down"
+    (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (arm|hand) (?:is lifted|is raised|rises|goes) straight up"
+     r"(?:,? (?:and )?stays (?:up|there|above the head))?\b", r" raise_and_hold \1 \2 "),
+    (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (arm|hand) (?:falls|sinks|drops|goes) (?:straight )?down"
+     r"(?:,? (?:and )?stays down)?\b", r" lower_arm \1 \2 "),
+    (r"\b(?:the |his |her |its )?(left|right) (?:hand|palm) (?:is (?:stretched|pushed) )(?:straight )?(?:forwards?|ahead)\b",
+     r" push_hand \1 hand "),
+    (r"\b(?:the |his |her |its )?(left|right) (?:hand|palm) (?:returns|comes back|goes back) to (?:the|his|her) chest\b",
+     r" pull_hand \1 hand "),
+    (r"\b(?:the |his |her |its )?(left|right) (?:hand|palm) covers (?:the|his|her) mouth\b", r" yawns \1 hand "),
+    (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (?:arm|hand) draws ([^,.;]*\b(?:circle|z))\b",
+     r" draws \2 with the \1 arm "),
+    (rf"\b(?:lifts?|lifting|rais(?:es|ing)) {_OWN}{_SIDE}{_ARM} {_UP}(?:{_STAYS})\b", r" raise_and_hold \1 \2 "),
+    (rf"\b(?:lifts?|lifting|rais(?:es|ing)) {_OWN}{_SIDE}{_ARM} straight up(?! and down)\b", r" raise_and_hold \1 \2 "),
+    (rf"\b(?:lowers?|lowering|drops|lets) {_OWN}{_SIDE}{_ARM} (?:from above (?:the|his|her) head )?(?:fall |drop |sink )?"
+     r"(?:straight )?down(?: and (?:it|they) stays? down)?\b", r" lower_arm \1 \2 "),
+    (rf"\b(?:push(?:es|ing)?|stretch(?:es|ing)?|moves?) {_OWN}{_SIDE}(hand|palm) (?:straight )?(?:forwards?|ahead|out)"
+     r"(?: from (?:the|his|her) chest)?\b", r" push_hand \1 hand "),
+    (rf"\b(?:pull(?:s|ing)?|draws?|drawing|brings|moves?|returns?) {_OWN}{_SIDE}(hand|palm) (?:back )?to "
+     r"(?:the|his|her|their) chest\b", r" pull_hand \1 hand "),
+    (rf"\b(?:draw(?:s|ing)?|makes?|traces?|paints?) (?:an? |one )?(?:large |big |clockwise )*circles?"
+     rf"(?: in the air| before (?:the|his|her) body| in front of (?:the|his|her) body)*(?: with {_OWN}{_SIDE}(?:arm|hand))?\b",
+     r" draw_circle \1 hand "),
+    (rf"\b(?:draw(?:s|ing)?|writes?|makes?|traces?|paints?) (?:an? |the |one )?(?:large |big |letter )*[\"']?z[\"']?"
+     rf"(?: in the air| before (?:the|his|her) body| in front of (?:the|his|her) body)*(?: with {_OWN}{_SIDE}(?:arm|hand))?(?!\w)",
+     r" draw_letter_z \1 hand "),
+    (rf"\bcovers? {_OWN}mouth(?: with {_OWN}{_SIDE}hand)?\b", r" yawns \1 hand "),
+    (rf"\b(?:rais(?:es|ing)|lifts?) {_OWN}{_SIDE}(?:hand|forearm) from {_OWN}elbow(?: and (?:lowers|puts) it(?: down)?)?\b",
+     r" knock_elbow \1 hand "),
+    # Housework and breath
+    (r"\b(?:takes?|taking|pulls?|puts?) (?:off )?(?:his |her |its |their |the |an? )?(?:jacket|coat|sweater|pullover)(?: off)?\b",
+     " jacket_off "),
+    (r"\b(?:sweep(?:s|ing)?|mop(?:s|ping)?|rak(?:es|ing)) (?:up )?(?:the )?(?:floor|room|kitchen|leaves)\b", " sweeps "),
+    (r"\b(?:vacuum(?:s|ing)?|hoover(?:s|ing)?)(?: cleans?)?(?: the)?(?: floor| carpet| room| rug)?\b", " vacuums "),
+    (r"\bbreath(?:es|ing) (?:deeply|heavily|slowly|calmly|in and out)\b|\btakes? (?:a )?deep breaths?\b|\bbreath(?:es|ing)\b",
+     " breathe_deeply "),
+)  # fmt: skip

@@ -1,0 +1,101 @@
+"""Other ways to say what the grammar knows, tried where a sentence is not understood as it is."""
+
+import re
+
+_OWN = r"(?:(?:his|her|its|their|the|both|a|an|one|my) )*"
+_SIDE = r"(?:left|right)"
+_CLOCK = r"(?:(?:counter|anti)[- ]?)?clock[- ]?wise"
+_WALK = r"(?:walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging)"
+_HOLDING = r"drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|clapping|types?|typing|writes?|phones?"
+_MOTION = r"(?:motions?|movements?|gestures?|moves?|exercises?)"
+
+NORMAL_FORMS: tuple[tuple[str, str], ...] = (
+    (r"\ba persons\b|\ban man\b", "a person"),
+    (r"\b(?:tries|trying|attempts|seems|begins|wants|appears|prepar\w+) to (?:be )?(?=[a-z])", ""),
+    (r"\ba couple of (?:[a-z]+ )?steps\b", "two steps"),
+    (r"\b(\w+) and (?:a )?half steps\b", r"\1 steps"),
+    (r"\b(\w+ )?(large|big|small|quick|short|long) and (large|big|small|quick|short|long|slow|fast) step\b", r"step"),
+    (rf"\busing {_OWN}(left|right|both) (hands?|arms?|foot|leg)\b", r"with the \1 \2"),
+    (r"\b(?:is |are )?(?:holding|holds) (?:a |the )?(guitar|violin)[a-z ]*?(?:and )?(?:playing|strok|plays)[a-z]*(?: it)?\b", r"plays the \1"),
+    (r"\b(?:performs?|making|doing|makes?) (?:[a-z]+ ){0,3}(?:strokes?|tones?|notes?) on (?:an? |the )(guitar|violin)e?\b|\b(guitar|violin) (?:stroke|playing)s?\b",
+     r"plays the \1\2"),
+    (r"\bback(?:s|ing) (?:slowly )?(?:away|off|up)\b(?: from [a-z]+)?", "walks backwards"),
+    (r"\b(?:starts?|performs?|makes?|does) (?:an? )?circular movement\b", "walks in a circle"),
+    (r"\bbend(?:ing|ed)? (walk|walking)(?: (?:motion|movement))?\b", r"walks in a curve"),
+    (r"\bgets? (?:down )?(?:to|on) (?:his|her|its|their) knees\b", "kneels down"),
+    (r"\bstay(?:s|ing) on (?:both |his |her )*knees\b|\bstands? on (?:his|her) knees\b", "is kneeling"),
+    (r"\ba whole turn\b", "a full turn"),
+    (r"\b(?:brush|comb)(es|ing|s)? (teeth|hair)\b", r"brushes the \2"),
+    (r"\b(left|right) (u-?[ ]?turn)\b", r"\2 to the \1"),
+    (r"\bperfoms?\b|\bpeforms?\b", "performs"),
+    (r"\bsquads?\b", "squats"),
+    (r"\bwhip(es|ing)\b(?! cream)", r"wip\1"),
+    (r"\btruns?\b|\btrurns\b", "turns"),
+    (r"\bturing\b", "turning"),
+    (r"\bcirles?\b", "circle"),
+    (r"\b(left|right|forward|backward) food\b", r"\1 foot"),
+    (r"\bsidewared\b", "sideways"),
+    # circles and curves
+    (rf"\b(?:in |along |around )?(?:an? |the )?((?:(?:small|big|large|wide|tight|full|whole|slow|complete) )*)({_CLOCK}|"
+     r"left|right|leftwards?|rightwards?|left-sided|right-sided)[- ,]*(?:circles?|round)\b", r" in a \1 circle \2 "),
+    (r"\b(walks?|goes|walking|runs?)((?: slowly| fast| quickly)?) an? (full|whole|complete|small|big|three quarter|quarter|half) circle\b", r"\1\2 in a \3 circle"),
+    (r"\b(circle) to (?:its|his|her) (left|right)\b", r"\1 to the \2"),
+    (r"\b(?:performs?|performing|makes?|making|takes?|taking|does|doing) (?:an? )?(?:tight |wide |slight )*(\d+)[- ]degrees? (left |right )?(curve|bend)\b",
+     r"walks in a \1 degree \3 to the \2"),
+    (rf"\b(?:a )?(?:quarter|fourth)(?: of an?)?,? ({_SIDE})(?:wards?|[- ]sided)? circle\b", r" a quarter circle to the \1 "),
+    (r"\b(circle \w*-?sided)\b", r"\1"),
+    (r"\b(left|right)[- ]sided\b", r"to the \1"),
+    (r"\bin circles?\b(?! of)", "in a circle"),
+    (r"\b(?:makes?|making|does|doing|performs?|performing|takes?|taking) (?:an? |the )?u-?[ ]?turn\b", "walks in a half circle"),
+    (r"\b(?:performs?|performing|makes?|making|takes?|taking|does|doing) (?:an? )?(\d+)[- ]degrees? (curve|bend)\b",
+     r"walks in a \1 degree \2"),
+    (r"\b(?:performs?|performing|makes?|making|takes?|taking|does|doing) (?:an? )?(quarter|half)(?: of an?)? circle\b",
+     r"walks a \1 circle"),
+    (r"\b(?:in )?(?:an? |the )?(?:shape of an? )?figure[- ](?:of[- ])?(?:an? )?(?:eight|8)\b|\bin an? (?:eight|8)\b",
+     "in a circle to the left, then walks in a circle to the right"),
+    (r"\b(?:in |along )?(?:an? )?s[- ](?:shaped? ?(?:line|curve|path)?|curve|line)\b",
+     "in a 90 degree curve to the left, then walks in a 90 degree curve to the right"),
+    # turns
+    (r"\bturns? (?:himself |herself |itself )?(?:all the way |completely |fully )(?:around|round)\b", "turns 360 degrees"),
+    (r"\b(jump|hop)(s|ing)? (?:\w+ ){0,3}?(\d+)[- ]?degrees?(?: turn| rotation)?\b", r"\1\2, then turns \3 degrees"),
+    # the foot that goes first, the standing at the start
+    (rf"\b(?:and |while )?(?:is |are )?(?:starting|beginning|starts?|begins?|staring|leading)(?: it| first)? (?:with|by|on|of with) "
+     rf"{_OWN}{_SIDE}(?: (?:leg|foot|food|feet|one))?(?: first)?\b", " "),
+    (rf"\b{_SIDE} (?:foot|leg) first\b", " "),
+    (r"\bfrom (?:a )?(?:standing(?: still)?|rest)(?: position| posture)?\b|\bwhile standing\b(?= *$|[.,])", " "),
+    (rf"\b({_HOLDING})((?: [a-z]+){{0,4}}?) (?:while )?standing up\b", r"\1\2 while standing"),
+    (r"\bon (?:his |her |its |their )?knees (?=(?:is |and )?(?:standing|stands|gets|rises))", " kneeling "),
+    (r"\b(?:starts|was|is|sits|sitting|starting) on (?:his |her |its |their )?(?:both )?knees\b", "is kneeling"),
+    (r"\bcomes? to (?:an? )?(?:rest|stop|halt|standstill)\b|\bcoming to (?:an? )?(?:rest|stop|halt|standstill)\b|\bbrakes\b", "stops"),
+    (r"\b(?:slows?|slowing) down (?:and )?stops\b", "stops"),
+    # two verbs of one object
+    (rf"\b(rais|lift)(es|ing|s) and (?:lower|drop)(?:s|ing) ({_OWN}(?:{_SIDE} )?(?:arms?|hands?|legs?|foot|feet|knees?))\b",
+     r"\1\2 \3"),
+    (r"\b(lower|drop|put)s?(?:ing)? (?:it|them|both|his \w+|her \w+|the \w+) (?:back )?(?:down )?(?:again)\b", r"\1s them down"),
+    # after a push
+    (r"\b(?:gains?|regains?|maintains?|maintaining|keeps?|keeping|finds?|catches) (?:his |her |its |their |the )?balance(?: again)?\b",
+     "recovers"),
+    (r"\bgets? back (?:on|to|in) (?:his|her|its|their|the) (?:original )?(?:way|track|path|course)\b", "recovers"),
+    (r"\bbeeing\b", "being"), (r"\b(?:geht|gests) (?=hit|pushed)", "gets "),
+    # what a motion resembles
+    (rf"\b(?:makes?|making|does|doing|performs?|performing) (?:an? |some |the )?(?:[a-z]+ ){{0,2}}?{_MOTION} (?:which (?:looks|is|resembles) )?"
+     r"(?:like|similar to|as if|as though|resembling|of)(?: (?:he|she|it|they)(?: is| was| were|'s)?)?(?: to)? (?=[a-z]+ing\b)", " "),
+    (rf"\b(?:performs?|performing|does|doing|makes?|making) (?:an? |the |some )?([a-z]+ing) {_MOTION}\b", r"\1"),
+    (r"\bthe (?:own )?arms? (?=(?:hanging|swinging))", "the arms "),
+    (r"\bwith (?:both |his |her |its )*arms (?:hanging|at (?:the|his|her) sides?)(?: down)?\b", " "),
+)  # fmt: skip
+_COMPILED: list[tuple[re.Pattern[str], str]] = []
+
+
+def in_normal_form(text: str) -> str:
+    """The sentence in words of the grammar, in lower case; the same one where there is nothing to put otherwise.
+
+    >>> in_normal_form("a person walks in a clockwise circle")
+    'a person walks in a circle clockwise'
+    """
+    if not _COMPILED:
+        _COMPILED.extend((re.compile(pattern), replacement) for pattern, replacement in NORMAL_FORMS)
+    folded = text.lower()
+    for pattern, replacement in _COMPILED:
+        folded = pattern.sub(replacement, folded)
+    return " ".join(folded.split())

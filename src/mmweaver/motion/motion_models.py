@@ -1,0 +1,94 @@
+"""Motion models: whatever turns a sentence into moving joints, for sentences that the library does not know.
+
+A model is a callable that follows `MotionModel`. It is named by `--motion-model`: a MotionGPT checkpoint, an entry
+point of the group mmweaver.motion_models, or "module:attribute" of a module that can be imported.
+"""
+
+import importlib
+from dataclasses import dataclass
+from functools import partial
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.registry import load_plugin, plugins
+from mmweaver.motion.mocap.clip import MotionClip
+
+GROUP = "mmweaver.motion_models"
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionTask:
+    """What a motion model is asked for."""
+
+    sentence: str
+    start_m: Place | None = None  # (x, y) of the pelvis at time 0, in the radar's frame; None where it is open
+    path_m: tuple[Place, ...] = ()  # corners (x, y) that the pelvis passes, from the start on; empty where it is open
+    seconds: float | None = None  # None: as long as the model finds natural
+    seed: int = 0
+
+
+@runtime_checkable
+class MotionModel(Protocol):
+    """A motion model: 22 joints in SMPL order at an even rate, in metres, z up; anywhere on its floor.
+
+    A model that follows `path_m` returns the motion in those coordinates; one that does not may ignore it, and says so
+    in the clip's notes. It raises InputError for what it cannot do.
+    """
+
+    def __call__(self, task: MotionTask) -> MotionClip: ...
+
+
+def load_motion_model(name: str) -> MotionModel:
+    """The model of that name; see above. Raises InputError where there is none."""
+    found = plugins(GROUP)
+    if name in found:
+        return load_plugin(found[name])
+    module, colon, attribute = name.partition(":")
+    if colon and all(part.isidentifier() for part in (*module.split("."), attribute)):
+        return _imported(module, attribute)
+    return partial(_of_motiongpt, name)
+
+
+def clip_of(model: MotionModel, task: MotionTask) -> MotionClip:
+    """What a model makes of a task, checked. Raises InputError for what is no motion of 22 joints."""
+    clip = model(task)
+    joints = getattr(clip, "joints_m", None)
+    if not (isinstance(joints, np.ndarray) and joints.ndim == 3 and joints.shape[1:] == (22, 3) and len(joints) > 1):
+        raise InputError("the motion model gave no joints of shape (frame, 22, 3); it must return a MotionClip")
+    if not (np.isfinite(joints).all() and 0 < clip.fps <= 1000):
+        raise InputError("the motion model gave joints that are not finite, or a rate outside 0 to 1000 Hz")
+    return clip
+
+
+def heading_of(path_m: tuple[Place, ...]) -> float | None:
+    """The direction in radians, from +x towards +y, in which a path begins; None without a path."""
+    if len(path_m) < 2:
+        return None
+    gap: Float[np.ndarray, 2] = np.subtract(path_m[1], path_m[0])
+    return float(np.arctan2(gap[1], gap[0]))
+
+
+def _imported(module: str, attribute: str) -> MotionModel:
+    try:
+        model = getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError) as error:
+        raise InputError(f"the motion model {module}:{attribute} cannot be imported ({error})") from None
+    if not callable(model):
+        raise InputError(f"the motion model {module}:{attribute} is no callable; see docs/extend.md")
+    return model
+
+
+def _of_motiongpt(name: str, task: MotionTask) -> MotionClip:
+    """MotionGPT; it knows neither start nor path, which the placement in the room supplies as far as it can."""
+    from dataclasses import replace
+
+    from mmweaver.motion.motiongpt.motiongpt import MotionGPT
+
+    clip = MotionGPT.load(name).generate(task.sentence, seconds=task.seconds, seed=task.seed)
+    if task.path_m:
+        clip = replace(clip, notes=(*clip.notes, "MotionGPT knows no path: only the start and its direction are kept"))
+    return clip

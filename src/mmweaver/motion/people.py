@@ -1,0 +1,102 @@
+"""The person who moves: height, build, pace and handedness, drawn from a population or as the sentence says.
+
+Adults: stature and girth after the 2012 anthropometric survey of US Army personnel (Gordon et al., NATICK/TR-15/007).
+The old are 4 cm shorter (Sorkin et al., Am. J. Epidemiol. 150, 1999: 3 cm of men and 5 cm of women are lost from 30 to
+70 years) and walk at three quarters of the pace (after Bohannon and Andrews, Physiotherapy 97, 2011: means from 1.43
+m/s, men of 40 to 49 years, to 0.94 m/s, women of 80 to 99). Children are those of about 7 to 11 years, after the CDC
+growth charts of 2000. One person in ten is left-handed (Papadatou-Pastou et al., Psychol. Bull. 2020: 10.6 %).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.seeding import stream
+from mmweaver.motion.animation.skeleton_proportions import ALLOWED_M
+from mmweaver.motion.language.described_person import DescribedPerson
+from mmweaver.motion.language.plan import MotionPlan
+
+MOST_SUBJECTS = 10_000
+ADULT_M = {"male": (1.756, 0.069), "female": (1.629, 0.064)}  # mean, standard deviation
+CHILD_M = (1.33, 0.07)
+OLD_SHORTER_M, OLD_PACE = 0.04, 0.75
+MOST_SDS = 2.5  # nobody is farther from the mean
+TALL_SDS = (1.0, 2.0)  # of "tall", and the other way of "short"
+GIRTH = {"male": 1.0, "female": 0.96, "child": 0.84}  # relative to the average man's, at equal height
+GIRTH_SPREAD = 0.07
+HEAVY, SLIM = (1.14, 1.3), (0.8, 0.9)
+PACE_SPREAD = 0.05
+LEFT_HANDED = 0.1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Person:
+    """One person. The default is the average man of his height, at the usual pace, with no habit of either hand."""
+
+    height_m: float
+    subject: int = 0  # identifies skin and micro-motion
+    sex: str = ""  # female | male | "": not drawn
+    age: str = "adult"  # child | adult | old
+    girth: float = 1.0  # thickness of trunk and limbs relative to an average body of this height
+    pace: float = 1.0  # tempo relative to the usual one
+    hand: str = ""  # left | right: the one that is used mostly
+    described: str = ""  # the words of the sentence that say so
+
+    @property
+    def note(self) -> str:
+        """What is reported of a person whom the sentence describes."""
+        build = "slim" if self.girth < 0.91 else "heavy" if self.girth > 1.1 else "of average build"
+        who = f"a {self.sex} {self.age}".replace(" old", " old person").replace("  ", " ")
+        pace = "" if 0.9 < self.pace < 1.1 else f", at {self.pace:.2f} of the usual pace"
+        return f"{self.described!r} is taken as {who} {self.height_m:.2f} m tall, {build}{pace}"
+
+
+def subject_of(seed: int, index: int = 0) -> int:
+    """The subject that a seed draws for the person `index` of a sequence."""
+    return int(stream(seed, "motion", "subject", *([index] if index else [])).integers(MOST_SUBJECTS))
+
+
+def check_subject(subject: int) -> int:
+    """Raises InputError for a number that is no subject."""
+    if not 0 <= subject < MOST_SUBJECTS:
+        raise InputError(f"a subject is a number from 0 to {MOST_SUBJECTS - 1}, not {subject}")
+    return subject
+
+
+def person_of(subject: int, described: DescribedPerson | None = None, height_m: float | None = None) -> Person:
+    """The person with this number: always the same one, as far as the sentence or a given height do not say otherwise.
+
+    Raises InputError for a height that no body has.
+    """
+    said = described or DescribedPerson()
+    rng = stream(check_subject(subject), "motion", "person")
+    draws = rng.random(3)  # sex, hand, build: drawn always, so that a description changes nothing else
+    sds, pace_sds, girth_sds = np.clip(rng.normal(size=3), -MOST_SDS, MOST_SDS)
+    sex = said.sex or ("male" if draws[0] < 0.5 else "female")
+    if said.stature:
+        sds = said.stature * float(np.interp(draws[2], (0, 1), TALL_SDS))
+    mean, spread = CHILD_M if said.age == "child" else ADULT_M[sex]
+    if said.age == "old":
+        mean -= OLD_SHORTER_M
+    low, high = ALLOWED_M
+    drawn_m = float(np.clip(mean + spread * sds, low + 0.02, high))
+    girth = GIRTH["child" if said.age == "child" else sex] * float(np.exp(GIRTH_SPREAD * girth_sds))
+    if said.build:
+        girth = float(np.interp(draws[2], (0, 1), HEAVY if said.build > 0 else SLIM))
+    return Person(
+        height_m=drawn_m if height_m is None else height_m, subject=subject, sex=sex, age=said.age or "adult",
+        girth=round(girth, 4), pace=float(np.exp(PACE_SPREAD * pace_sds)) * usual_pace(said),
+        hand="left" if draws[1] < LEFT_HANDED else "right", described=said.words if said.is_described else "",
+    )  # fmt: skip
+
+
+def usual_pace(said: DescribedPerson) -> float:
+    """The tempo of people as described, relative to the usual one."""
+    return OLD_PACE if said.age == "old" else 1.0
+
+
+def with_habits(plan: MotionPlan, person: Person) -> MotionPlan:
+    """The plan as this person carries it out: at their pace, mostly with their usual hand."""
+    steps = tuple(replace(step, pace=person.pace, usual_hand=person.hand) for step in plan.steps)
+    return replace(plan, steps=steps)

@@ -1,0 +1,19 @@
+"""How a motion ends, so that the next can begin there: place, heading, posture and seat."""
+
+from dataclasses import dataclass
+
+from mmweaver.motion.animation.carry_over import ControlsState
+from mmweaver.motion.planning.seating import Sitting
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyState:
+    """Where a body's root stands, (x, y) in metres, where it faces, and in which posture; in the radar's frame."""
+
+    position_m: tuple[float, float]
+    heading_rad: float  # from +x towards +y
+    posture: str = "feet"  # feet | seat | knees | floor
+    style: str = ""  # of lying: back | front
+    foot: str = ""  # of kneeling on one knee
+    sitting: Sitting | None = None  # the seat that is used, or that is right behind
+    controls: ControlsState | None = None  # how the body moves there

@@ -1,0 +1,127 @@
+"""A recording that grows: folders of some frames each, written one after the other, readable at any time.
+
+    OUT/radar.json, meta.json        the radar, and what all parts share; meta.json counts the frames at the end
+    OUT/parts/00000000/              radar.npz, points.npz, pose.npz, radar.json, SHA256SUMS of the frames from 0 on
+    OUT/parts.jsonl                  a line a part: first frame, frames, sentence, what was assumed
+    OUT/adc_data.bin                 raw samples of all frames, where they are asked for
+
+A part gets its name when all of it is on the disk, so that a kill leaves whole parts. Memory does not grow with the
+length. Reference: decision 207.
+"""
+
+import json
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.atomic_files import append_line, atomic_file, staged_folder
+from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import cannot_write
+from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube
+from mmweaver.formats.dca1000 import words_of
+from mmweaver.formats.npz_files import read_radar_npz, write_points_npz, write_pose_npz, write_radar_npz
+from mmweaver.result_folder import plain
+
+PARTS, LIST, BIN, META = "parts", "parts.jsonl", "adc_data.bin", "meta.json"
+LARGEST_BYTES = 8_000_000_000  # of a cube that is read at once
+
+
+def is_stream(folder: Path) -> bool:
+    """Whether a folder holds a recording in parts."""
+    return (folder / PARTS).is_dir() and (folder / LIST).is_file()
+
+
+def parts_of(folder: Path) -> list[Path]:
+    """The whole parts of a recording in their order. Raises InputError where there is none, or one is missing."""
+    found = sorted(part for part in (folder / PARTS).iterdir() if part.is_dir() and part.name.isdigit())
+    if not found:
+        raise InputError(f"{folder} holds no whole part yet; let the stream run longer")
+    return found
+
+
+def read_stream_cube(folder: Path) -> RadarCube:
+    """All whole parts as one cube. Raises InputError where a part is missing or damaged, or memory does not hold it."""
+    parts = parts_of(folder)
+    size = sum((part / "radar.npz").stat().st_size for part in parts)
+    if size > LARGEST_BYTES:
+        raise InputError(f"{folder} holds {size / 1e9:.0f} GB; read its parts one by one, such as {parts[0]}")
+    cubes, frames = [], 0
+    for part in parts:
+        if int(part.name) != frames:
+            raise InputError(f"{folder}: the part that begins with frame {frames} is missing")
+        cubes.append(read_radar_npz(part / "radar.npz"))
+        frames += len(cubes[-1].values)
+    first = cubes[0]
+    grid = first.grid.of(first.config, frames)
+    return RadarCube(
+        values=np.concatenate([cube.values for cube in cubes]), grid=grid, config=first.config, scale=first.scale
+    )
+
+
+class StreamFolder:
+    """Writes a recording in parts; `add` one after the other, then `finish`."""
+
+    def __init__(self, out: Path, meta: dict[str, Any], *, iq_order: str = "iq") -> None:
+        self.out, self.meta, self.iq_order = out, meta, iq_order
+        self.frames, self.parts, self.skipped = 0, 0, 0
+        self._counts: float | None = None
+
+    def add(
+        self, cube: RadarCube, points: PointCloud, poses: tuple[PoseSequence, ...], adc: AdcCube | None,
+        said: dict[str, Any],
+    ) -> None:  # fmt: skip
+        """Writes one more part. Raises InputError where it cannot be written."""
+        if not self.parts:
+            self.out.mkdir(parents=True, exist_ok=True)
+            self._write_text("radar.json", cube.config.to_json())
+            self._write_meta()
+        with staged_folder(self.out / PARTS / f"{self.frames:08d}") as stage:
+            write_radar_npz(stage / "radar.npz", cube)
+            write_points_npz(stage / "points.npz", points)
+            write_pose_npz(stage / "pose.npz", *poses)
+            (stage / "radar.json").write_text(cube.config.to_json(), encoding="utf-8")
+        if adc is not None:
+            self._append_samples(adc)
+        line = {"first_frame": self.frames, "frames": len(cube.values), **plain(said)}
+        append_line(self.out / LIST, json.dumps(line, ensure_ascii=False, allow_nan=False))
+        self.frames, self.parts = self.frames + len(cube.values), self.parts + 1
+
+    def finish(self) -> dict[str, Any]:
+        """Writes how long it became; returns the content of meta.json."""
+        self._write_meta()
+        return plain(self._meta())
+
+    def _append_samples(self, adc: AdcCube) -> None:
+        own = adc.scale / adc.config.adc_count_sqrt_mw
+        words, self._counts = words_of(adc, iq_order=self.iq_order, counts_per_unit=own)
+        try:
+            with (self.out / BIN).open("ab") as file:
+                file.write(words.tobytes())
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise cannot_write(self.out / BIN, error) from error
+
+    def _meta(self) -> dict[str, Any]:
+        samples = {}
+        if self._counts is not None:
+            samples = {"adc_data_bin": {"iq_order": self.iq_order, "counts_per_unit": self._counts}}
+        return {**self.meta, "frames": self.frames, "parts": self.parts, **samples}
+
+    def _write_meta(self) -> None:
+        self._write_text(META, json.dumps(plain(self._meta()), indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+    def _write_text(self, name: str, text: str) -> None:
+        with atomic_file(self.out / name) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+
+
+def sentences_of(lines: Iterable[str]) -> Iterable[str]:
+    """The sentences of lines as they come: empty ones and those that begin with # are left out."""
+    for line in lines:
+        text = line.strip()
+        if text and not text.startswith("#"):
+            yield text

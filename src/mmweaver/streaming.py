@@ -1,0 +1,198 @@
+"""Signals without end: sentences come one after the other, chunks of cube, points and poses go. See `Weaver.stream`.
+
+    sentences --ContinuousMotion--> motion of each --method, BLOCK_FRAMES at a time--> signal --> StreamChunk
+
+Every sentence's frames are made in blocks of the same size, wherever chunks end, so that the chunk size changes no bit.
+Reference: decisions 205 and 206.
+"""
+
+import inspect
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.default_precision import single_precision
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.record_display import ShownByFacts
+from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, RadarCube
+from mmweaver.core.stages import Stages
+from mmweaver.dsp.detection import detect
+from mmweaver.generation import Room
+from mmweaver.methods import Method, Signal
+from mmweaver.motion.animation.resample import resample
+from mmweaver.motion.continuous import ContinuousMotion, MotionPart
+from mmweaver.request import parsed_text
+
+BLOCK_FRAMES = 10
+CHUNK_FRAMES = 10
+_MARGIN_S = 0.05  # of the dense motion around a chunk
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class StreamChunk(ShownByFacts):
+    """Some frames of a stream. All times are since the stream's first frame; frames of points count within the chunk.
+
+    `meta` says of the sentence in force: its plan, what became of its clauses, what was assumed; `refused`, why the
+    last sentence could not be carried out ("" where it could): the person then stays as they are.
+    """
+
+    cube: RadarCube
+    points: PointCloud
+    adc: AdcCube | None
+    poses: tuple[PoseSequence, ...]  # at the radar's frames
+    motions: tuple[PoseSequence, ...]  # 120 Hz, from just before the chunk to just after it
+    first_frame: int
+    text: str
+    refused: str
+    meta: dict[str, Any]
+
+    @property
+    def num_frames(self) -> int:
+        return len(self.cube.values)
+
+    @property
+    def pose(self) -> PoseSequence:
+        """The person's joints at the radar's frames."""
+        return self.poses[0]
+
+    @property
+    def motion(self) -> PoseSequence:
+        """The person's joints densely in time."""
+        return self.motions[0]
+
+    def facts(self) -> dict[str, str]:
+        """Which frames, and what happens in them."""
+        return {
+            "frames": f"{self.first_frame} to {self.first_frame + self.num_frames - 1}",
+            "text": self.text, "points": str(len(self.points.frame)), "radar": self.cube.config.name,
+        }  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class Streamer:
+    """What a stream is made with; `chunks` runs it."""
+
+    room: Room
+    config: RadarConfig
+    method: Method
+    method_name: str
+    detect_points: Callable[[RadarCube, AdcCube | None], PointCloud]
+    motion: ContinuousMotion
+    seed: int
+    chunk_frames: int
+    needs_adc: bool  # for the point cloud
+    keep_adc: bool
+    meta: dict[str, Any]
+
+    def chunks(self, sentences: Iterable[str | None]) -> Iterator[StreamChunk]:
+        """Chunks for as long as sentences come. Raises InputError where the first sentence cannot be carried out."""
+        waiting: Iterator[StreamChunk] = iter(())  # the rest of a motion that the next sentence may end
+        has_begun = False
+        for sentence in sentences:
+            text = (sentence or "").strip()
+            refused = ""
+            if text:
+                waiting = iter(())
+                try:
+                    acted = self.motion.act(parsed_text(text))
+                except InputError as error:
+                    if not has_begun:
+                        raise
+                    refused = str(error)
+                else:
+                    has_begun = True
+                    yield from self._of_part(acted)
+                    continue
+            has_begun = True
+            chunk = next(waiting, None)
+            if chunk is None:
+                waiting = self._of_part(self.motion.go_on(refused))
+                chunk = next(waiting)
+            self.motion.cut(chunk.first_frame + chunk.num_frames)
+            yield chunk
+
+    def _of_part(self, part: MotionPart) -> Iterator[StreamChunk]:
+        """The chunks of one motion; the last may be shorter."""
+        blocks = self._blocks(part)
+        ready: list[Signal] = []
+        for first in range(part.first_frame, part.end_frame, self.chunk_frames):
+            count = min(self.chunk_frames, part.end_frame - first)
+            while sum(len(one.cube.values) for one in ready) < count:
+                ready.append(next(blocks))
+            whole = ready[0] if len(ready) == 1 else _together(ready)
+            yield self._chunk(part, _some(whole, 0, count), first)
+            ready = [_some(whole, count, None)] if len(whole.cube.values) > count else []
+
+    def _blocks(self, part: MotionPart) -> Iterator[Signal]:
+        for first in range(part.first_frame, part.end_frame, BLOCK_FRAMES):
+            yield self._block(part, first, min(BLOCK_FRAMES, part.end_frame - first))
+
+    @single_precision()
+    def _block(self, part: MotionPart, first: int, count: int) -> Signal:
+        return self.method(
+            self.room.scene, (part.pose,), self.config, num_frames=count, seed=self.seed,
+            keep_adc=self.keep_adc or self.needs_adc, stages=Stages(), background=self.room.background,
+            first_frame=first,
+        )  # fmt: skip
+
+    def _chunk(self, part: MotionPart, signal: Signal, first: int) -> StreamChunk:
+        time_s = signal.cube.grid.frame_time_s
+        pose, period_s = part.pose, self.config.frame_period_s
+        shown = (pose.time_s > time_s[0] - _MARGIN_S) & (pose.time_s < time_s[-1] + period_s + _MARGIN_S)
+        dense = replace(pose, time_s=pose.time_s[shown], joints_m=pose.joints_m[shown])
+        motion = part.motion
+        refused = part.refused if first == part.first_frame else ""
+        notes = (*self.room.scene.assumptions, *motion.assumptions, *signal.assumptions)
+        meta = {
+            **self.meta, "text": part.text, "refused": refused, "method": signal.method or self.method_name,
+            "plan": motion.plan, "clauses": motion.clauses, "assumed": list(dict.fromkeys(notes)),
+        }  # fmt: skip
+        return StreamChunk(
+            cube=signal.cube, points=self.detect_points(signal.cube, signal.adc),
+            adc=signal.adc if self.keep_adc else None, poses=(resample(pose, time_s),), motions=(dense,),
+            first_frame=first, text=part.text, refused=refused, meta=meta,
+        )  # fmt: skip
+
+
+def check_streams(method: Method, name: str) -> None:
+    """Raises InputError for a method that cannot make a part of a longer signal."""
+    call = method if inspect.isfunction(method) else type(method).__call__
+    parameters = inspect.signature(call).parameters
+    if "first_frame" not in parameters and not any(one.kind is one.VAR_KEYWORD for one in parameters.values()):
+        raise InputError(
+            f"method {name!r} makes no streams, for it has no argument 'first_frame' (docs/extend.md); take weaver or"
+            " physics"
+        )
+
+
+def check_chunk_frames(chunk_frames: int) -> int:
+    """Raises InputError for what is no number of frames."""
+    if not (isinstance(chunk_frames, int | np.integer) and 1 <= chunk_frames <= 1000):
+        raise InputError(f"chunk_frames must be 1 to 1000, not {chunk_frames}")
+    return int(chunk_frames)
+
+
+def point_detector(points: str, firmware: Any) -> Callable[[RadarCube, AdcCube | None], PointCloud]:
+    """The detector of a weaver as a function of cube and samples."""
+    return lambda cube, adc: detect(cube, adc, points, firmware)
+
+
+def _some(signal: Signal, begin: int, end: int | None) -> Signal:
+    some = slice(begin, end)
+    cube = signal.cube
+    grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[some])
+    adc = None if signal.adc is None else replace(signal.adc, samples=signal.adc.samples[some])
+    return replace(signal, cube=replace(cube, values=cube.values[some], grid=grid), adc=adc)
+
+
+def _together(signals: list[Signal]) -> Signal:
+    first = signals[0]
+    time_s = np.concatenate([one.cube.grid.frame_time_s for one in signals])
+    grid: CubeGrid = replace(first.cube.grid, frame_time_s=time_s)
+    cube = replace(first.cube, values=np.concatenate([one.cube.values for one in signals]), grid=grid)
+    samples = [one.adc.samples for one in signals if one.adc is not None]
+    adc = None if first.adc is None else replace(first.adc, samples=np.concatenate(samples))
+    return replace(first, cube=cube, adc=adc)

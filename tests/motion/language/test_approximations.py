@@ -1,0 +1,61 @@
+"""Other words and similar movements: what is said of them, and that known sentences stay as they are."""
+
+import re
+
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.approximations import APPROXIMATIONS, with_approximations
+from mmweaver.motion.language.normal_forms import NORMAL_FORMS, in_normal_form
+from mmweaver.motion.language.sentence import parse
+
+
+def test_every_pattern_compiles_and_every_replacement_is_understood():
+    for pattern, _ in NORMAL_FORMS:
+        re.compile(pattern)
+    for one in APPROXIMATIONS:
+        instead = re.sub(r"\\\d", "", one.instead).strip()
+        if (
+            instead
+            and re.match(r"[a-z]+s\b", instead)
+            and not instead.startswith(("in ", "limping"))
+            and one.instead == instead
+        ):
+            assert parse(f"a person {instead}").steps, one.instead
+
+
+@pytest.mark.parametrize(
+    ("text", "keys", "status"),
+    [
+        ("a person irons a shirt", ["wipe"], "approximated"),
+        ("a woman plays the piano", ["type"], "approximated"),
+        ("a man sneaks to the door", ["walk"], "approximated"),
+        ("a person turns on the light", ["reach"], "approximated"),
+        ("a person walks in a clockwise circle", ["walk"], "done"),
+        ("a person walks and sings", ["walk"], "approximated"),
+        ("a person dances the waltz", ["dance"], "approximated"),
+        ("a jab and an uppercut", ["punch", "punch"], "approximated"),
+        ("a person drinks coffee standing up", ["drink"], "done"),
+    ],
+)
+def test_what_is_shown_and_how_it_is_recorded(text: str, keys: list[str], status: str):
+    plan = parse(text)
+    assert [step.upper or step.lower for step in plan.steps] == keys
+    assert {clause.status for clause in plan.clauses} | {"done"} == {status, "done"}
+    assert all(clause.how for clause in plan.clauses if clause.status != "done")
+
+
+def test_each_limb_is_raised_and_each_turn_turned():
+    step = parse("raises the left arm to the side and the right leg").steps[0]
+    assert (step.lower, step.upper, step.hand, step.foot) == ("raise_leg", "arms_out", "left", "right")
+    assert parse("turns around twice").steps[0].turn_deg == 360.0
+    assert parse("turns around").steps[0].direction == "around"
+
+
+def test_known_sentences_are_left_alone_and_unknown_ones_refused():
+    text = "A person walks to the left, then waves."
+    assert with_approximations(text, only_always=True) == text
+    assert in_normal_form("a person waves") == "a person waves"
+    for unknown in ("a person does a handstand", "a person teleports", "a person does a cartwheel"):
+        with pytest.raises(InputError, match="names no activity"):
+            parse(unknown)

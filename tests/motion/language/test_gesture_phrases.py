@@ -1,0 +1,65 @@
+"""Exercises and gestures are understood as their instructions word them."""
+
+import pytest
+
+from mmweaver.motion.language.sentence import parse
+
+INSTRUCTIONS = {
+    "a person lifts the right arm straight up and keeps it above the head": "raise_hold",
+    "a person lets the right arm fall straight down": "lower_arm",
+    "the right arm falls straight down and stays down": "lower_arm",
+    "a person pushes the right palm forward from the chest": "push_hand",
+    "the right hand returns to the chest": "pull_hand",
+    "a person draws one large clockwise circle before the body with the straight right arm": "draw_circle",
+    "the straight right arm draws a large Z before the body": "draw_z",
+    "a person claps three times before the chest": "clap",
+    "a person raises the right hand from the elbow and lowers it twice": "knock_elbow",
+    "a person yawns": "yawn",
+    "a person covers the mouth with the right hand": "yawn",
+    "a person lifts both arms straight up and keeps them above the head": "raise_hold",
+    "a person extends the left arm up at the side": "arm_extension",
+    "left upper limb extension": "arm_extension",
+    "she takes off her jacket": "jacket_off",
+    "he mops the floor": "sweep",
+    "a man vacuums the carpet": "vacuum",
+    "a person coughs": "cough",
+    "she takes deep breaths": "breathe",
+}
+EXERCISES = {
+    "a person does side lunges with the left leg": ("side_lunge", "left"),
+    "a person lunges to the left side": ("side_lunge", "left"),
+    "right side lunge": ("side_lunge", "right"),
+    "a person does a front lunge with the right leg": ("lunge", "right"),
+    "left limb extension": ("limb_extension", "left"),
+    "a person extends the right arm and leg to the side": ("limb_extension", "right"),
+    "someone does ten push-ups": ("push_ups", ""),
+    "a baby crawls on hands and knees": ("crawl", ""),
+}
+
+
+@pytest.mark.parametrize(("text", "upper"), INSTRUCTIONS.items())
+def test_a_gesture_is_known_by_its_instruction(text: str, upper: str):
+    (step,) = parse(text).steps
+    assert step.upper == upper
+    if "right" in text:
+        assert step.hand == "right"
+    if "both" in text:
+        assert step.hand == "both"
+
+
+@pytest.mark.parametrize(("text", "known"), EXERCISES.items())
+def test_an_exercise_is_known_with_its_side(text: str, known: tuple[str, str]):
+    (step,) = parse(text).steps
+    assert (step.lower, step.foot) == known
+
+
+def test_counts_and_hands_held_up_belong_to_the_exercise():
+    (step,) = parse("a person does squats with the hands up").steps
+    assert (step.lower, step.upper) == ("squat", "hands_up")
+    (step,) = parse("a person raises the right hand from the elbow and lowers it twice").steps
+    assert step.count == 2
+
+
+def test_raising_and_lowering_is_still_a_raised_hand():
+    (step,) = parse("a person raises the left hand").steps
+    assert (step.upper, step.hand) == ("raise", "left")

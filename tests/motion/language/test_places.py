@@ -1,0 +1,73 @@
+"""Places of a sentence: what the words mean, and where the planner puts them."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import Landmark
+from mmweaver.motion.language.places import Place, mark_places, place_of, room_of
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.named_places import cells_of, settled
+from rooms import room
+
+TABLE = Landmark(kind="table", position_m=np.array([0.0, 2.0, -0.5]), approach_m=(0.0, 1.4), facing_rad=np.pi / 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("a person stands near the window", "near the window"),
+        ("a man waves behind the sofa", "behind the couch"),
+        ("a person stands two metres away", "2 m from the radar"),
+        ("stands at a distance of 1.5 m from the radar and waves", "1.5 m from the radar"),
+        ("a person waves on the left", "on the left"),
+        ("a woman sits in the middle of the room", "in the middle"),
+    ],
+)
+def test_places_are_read(text: str, words: str):
+    found = [step.place for step in parse(text).steps if step.place is not None]
+    assert [place.words for place in found] == [words]
+
+
+def test_sides_of_the_body_are_no_places():
+    for text in ("is pushed on the left side of the body", "kicks with the left foot", "walks to the left"):
+        assert "place_" not in mark_places(text)
+    assert place_of("place_range_150") == Place("range", distance_m=1.5)
+    assert room_of("stands in the kitchen") == "kitchen"
+
+
+def test_a_walk_goes_to_the_place_of_what_follows():
+    steps = settled(parse("a person walks, then waves near the table")).steps
+    assert steps[0].place == Place("near", "table")
+    with pytest.raises(InputError, match="goes elsewhere"):
+        settled(parse("a person walks to the left, then waves near the table"))
+
+
+def test_distances_of_walks_are_kept():
+    step = parse("a person walks two metres to the left").steps[0]
+    assert (step.direction, step.distance_m) == ("left", 2.0)
+
+
+def test_cells_are_where_the_words_say():
+    from dataclasses import replace
+
+    floor = FloorMap(replace(room(), landmarks=(TABLE,)), (0.7, 3.5), 1.75)
+    every = floor.cell_centres_m[floor.walkable]
+    assert (
+        cells_of(Place("behind", "table"), floor)[:, 1].min()
+        > 2.0
+        > cells_of(Place("front", "table"), floor)[:, 1].max()
+    )
+    assert (
+        cells_of(Place("leftof", "table"), floor)[:, 0].max()
+        < 0
+        < cells_of(Place("rightof", "table"), floor)[:, 0].min()
+    )
+    assert cells_of(Place("left"), floor)[:, 0].max() < np.median(every[:, 0])
+    away = np.hypot(*cells_of(Place("range", distance_m=2.0), floor).T)
+    assert np.abs(away - 2.0).max() < 0.21
+    with pytest.raises(InputError, match="no window was found"):
+        cells_of(Place("near", "window"), floor)
+    with pytest.raises(InputError, match=r"9 m from the radar"):
+        cells_of(Place("range", distance_m=9.0), floor)

@@ -1,0 +1,103 @@
+"""One sentence after the other: no jump and no step of velocity at any seam, postures kept, phases of their own."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.interpolate import CubicSpline
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import Scene
+from mmweaver.core.skeleton import BONES, joint
+from mmweaver.motion.continuous import ContinuousMotion, MotionPart
+from mmweaver.motion.language.sentence import parse
+from rooms import WINDOW_M, room, sofa_room
+
+PERIOD_S = 0.1
+SENTENCES = (
+    "a person walks towards the radar", "waves with the left hand", "", "sits down", "drinks", "stands up", "claps",
+    "walks to the left", "kneels down", "walks away from the radar",
+)  # fmt: skip
+
+
+def continuous(scene: Scene | None = None, seed: int = 0, **given) -> ContinuousMotion:
+    return ContinuousMotion(scene or room(), frame_period_s=PERIOD_S, range_window_m=WINDOW_M, seed=seed, **given)
+
+
+def carried_out(motion: ContinuousMotion, sentences=SENTENCES) -> list[MotionPart]:
+    """The parts of all sentences; waiting ("") is ended after 1.3 s, in the middle of whatever goes on."""
+    parts = []
+    for sentence in sentences:
+        part = motion.act(parse(sentence)) if sentence else motion.go_on()
+        if not sentence:
+            motion.cut(part.first_frame + 13)
+        parts.append(part)
+    return parts
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_seam_shows_in_places_or_velocities(seed: int):
+    parts = carried_out(continuous(seed=seed))
+    for part in parts[1:]:
+        pose, seam_s = part.pose, part.first_frame * PERIOD_S
+        velocity = np.diff(pose.joints_m, axis=0) / np.diff(pose.time_s)[:, None, None]
+        steps = np.linalg.norm(np.diff(velocity, axis=0), axis=-1).max(axis=1)  # m/s from one sample to the next
+        at = int(np.searchsorted(pose.time_s, seam_s - 1e-9))
+        assert np.linalg.norm(pose.joints_m[at] - pose.joints_m[at - 1], axis=-1).max() < 0.02
+        assert steps[at - 3 : at + 3].max() < 0.3
+        assert np.diff(pose.time_s).min() > 0.4 / 120
+        assert np.diff(pose.time_s).max() < 1.6 / 120
+
+
+def test_a_part_goes_on_from_where_the_last_one_ends():
+    parts = carried_out(continuous())
+    for before, after in pairwise(parts):
+        seam_s = after.first_frame * PERIOD_S
+        old, new = (CubicSpline(one.pose.time_s, one.pose.joints_m, axis=0) for one in (before, after))
+        for order, unit in ((0, 1e-3), (1, 0.05)):
+            np.testing.assert_allclose(new(seam_s, order), old(seam_s, order), atol=unit)
+
+
+def test_bones_keep_their_lengths_while_motions_blend():
+    for part in carried_out(continuous())[1:]:
+        for parent, child in BONES:
+            length = np.linalg.norm(part.pose.joints_m[:, child] - part.pose.joints_m[:, parent], axis=-1)
+            assert np.ptp(length) < 2e-3
+
+
+def test_who_sits_stands_up_before_walking_and_stays_seated_otherwise():
+    parts = carried_out(continuous(sofa_room()), ("a person sits down", "waves", "walks to the left"))
+    height_m = [part.pose.joints_m[part.pose.time_s > part.first_frame * PERIOD_S + 1][:, joint("pelvis"), 2]
+                for part in parts]  # fmt: skip
+    assert np.ptp(height_m[1]) < 0.1, "waves while seated"
+    assert height_m[2].max() > height_m[1].max() + 0.2
+    assert [step.lower for step in parts[2].motion.plan.steps[:2]] == ["sit", "stand_up"]
+
+
+def test_the_body_is_one_person_throughout():
+    parts = carried_out(continuous(seed=5), ("a child walks to the left", "a tall man waves", ""))
+    assert len({(part.pose.subject, part.pose.height_m, part.pose.girth) for part in parts}) == 1
+    assert parts[0].pose.height_m < 1.6
+
+
+def test_the_same_seed_gives_the_same_motion_and_another_seed_another():
+    one, same, other = (carried_out(continuous(seed=seed), SENTENCES[:3]) for seed in (1, 1, 2))
+    for a, b in zip(one, same, strict=True):
+        np.testing.assert_array_equal(a.pose.joints_m, b.pose.joints_m)
+    assert one[0].pose.joints_m[5, 0, 0] != other[0].pose.joints_m[5, 0, 0]
+
+
+def test_waiting_goes_on_with_an_activity_that_has_no_end_and_holds_the_posture_otherwise():
+    motion = continuous()
+    motion.act(parse("a person waves with the right hand"))
+    assert [step.upper for step in motion.go_on().motion.plan.steps] == ["wave"]
+    motion.act(parse("a person sits down"))
+    assert [step.lower for step in motion.go_on().motion.plan.steps] == ["sit"]
+
+
+def test_a_sentence_without_room_leaves_the_motion_as_it_was():
+    motion = continuous()
+    first = motion.act(parse("a person waves"))
+    with pytest.raises(InputError):
+        motion.act(parse("goes to the door"))
+    assert motion.go_on().first_frame == first.end_frame
