@@ -1,68 +1,112 @@
+import contextlib
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
 
-from mmweaver.compression.chunk import ChunkEncoder, decode_chunk
+from mmweaver.compression.chunk import PREFIX, ChunkEncoder, ChunkMode, decode_chunk
+from mmweaver.compression.chunk_frames import ChunkFrames
+from mmweaver.compression.chunk_transform import NO_DCT, TransformChoice
+from mmweaver.compression.mmw_codec import scale_of
+from mmweaver.compression.segment import chunk_encoder, noise_power
 from mmweaver.core.errors import InputError
 from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from tests.fields.echoes import SMALL, crowd, error_db
 from tests.fields.scatterers.test_fit_window import overlapping
 
+POINTS = ChunkMode(with_points=True)
 
-def encoder_of(cube, hop: int, recipe: FitRecipe) -> ChunkEncoder:
-    peak = float(np.abs(cube.values).max())
-    fit_window = FitWindow.of(cube.config, len(cube.values), hop)
-    target = fit_window.working(cube.values / np.float32(peak))
-    return ChunkEncoder(target, fit_window, fitted(target, fit_window, recipe), peak)
+
+def encoder_of(cube, recipe: FitRecipe) -> ChunkEncoder:
+    encoder = chunk_encoder(cube, scale_of(cube))
+    encoder.with_layers(fitted(torch.from_numpy(encoder.target), encoder.frames.fit_window(), recipe))
+    return encoder
 
 
 @pytest.fixture(scope="module")
 def encoder() -> ChunkEncoder:
-    return encoder_of(crowd(), 0, FitRecipe(num_points=60, stages=6))
+    return encoder_of(crowd(), FitRecipe(num_points=60, stages=6))
 
 
-def test_a_finer_step_costs_more_and_has_less_error(encoder: ChunkEncoder):
+@pytest.mark.parametrize("mode", [POINTS, ChunkMode(), ChunkMode(with_rank=True)], ids=ChunkMode.name)
+def test_a_finer_step_costs_more_and_has_less_error(encoder: ChunkEncoder, mode: ChunkMode):
     truth = crowd().values
     sizes, errors = [], []
     for step in (0.1, 0.02, 0.004, 8e-4):
-        data = encoder.encode(step)
-        sizes.append(len(data))
-        errors.append(error_db(decode_chunk(data, SMALL).cube_values(), truth))
+        coded = encoder.encode(step, mode, 1)
+        again = decode_chunk(coded.data, SMALL).cube_values()
+        sizes.append(len(coded.data))
+        errors.append(error_db(again, truth))
+        # the encoder knows the error without decoding
+        found = np.sum(np.abs(again - truth) ** 2) / np.abs(truth).max() ** 2
+        assert coded.all_error == pytest.approx(found, rel=0.02)
     assert sizes == sorted(sizes)
     assert errors == sorted(errors, reverse=True)
     assert errors[-1] < -45
     # a cell of a cube that is coded throughout errs by step / sqrt(12)
-    error = np.sqrt(np.mean(np.abs(decode_chunk(data, SMALL).cube_values() - truth) ** 2))
-    assert error < 8e-4 * np.abs(truth).max()
+    assert np.sqrt(np.mean(np.abs(again - truth) ** 2)) < 8e-4 * np.abs(truth).max()
 
 
 def test_without_the_residual_the_layers_are_the_same(encoder: ChunkEncoder):
-    data = encoder.encode(0.01)
+    data = encoder.encode(0.01, POINTS, 4).data
     whole, part = decode_chunk(data, SMALL), decode_chunk(data, SMALL, with_residual=False)
     assert part.residual is None
     assert torch.equal(whole.layers.points.amplitude, part.layers.points.amplitude)
     assert error_db(part.cube_values(), crowd().values) > error_db(whole.cube_values(), crowd().values)
+    assert "scatterers" in whole.mode_name()
 
 
 def test_overlapping_windows():
     cube = overlapping()
-    chunk = encoder_of(cube, 3, FitRecipe(num_points=20, stages=2))
-    data = chunk.encode(0.05)
+    data = encoder_of(cube, FitRecipe(num_points=20, stages=2)).encode(0.05, POINTS, 1).data
     again = decode_chunk(data, SMALL)
-    assert again.fit_window.hop == 3
+    assert again.frames.hop == 3
     assert error_db(again.cube_values(), cube.values) < -12
     # noise once for each chirp, not once for each window: 31 loops instead of 96
     assert len(data) < 0.7 * 2 * cube.values.size
 
 
 def test_noise_power_and_gains_survive(encoder: ChunkEncoder):
-    again = decode_chunk(encoder.encode(0.01), SMALL)
-    assert 10 * np.log10(again.layers.noise_power / encoder.layers.noise_power) == pytest.approx(0.0, abs=0.3)
+    again = decode_chunk(encoder.encode(0.01, POINTS, 4).data, SMALL)
+    peak = np.abs(crowd().values).max()
+    assert 10 * np.log10(again.noise_power * peak**2 / noise_power(crowd())) == pytest.approx(0.0, abs=0.3)
     assert torch.equal(again.layers.calibration, encoder.layers.calibration)
 
 
-@pytest.mark.parametrize("data", [b"", b"\0" * 16, b"\xff" * 400])
+def test_one_loop_has_no_scatterers_but_a_chunk():
+    cube = crowd(replace(SMALL, num_loops=1), num_frames=3)
+    encoder = chunk_encoder(cube, scale_of(cube))
+    assert not encoder.frames.can_have_points
+    data = encoder.encode(1e-3, ChunkMode(), 1).data
+    assert error_db(decode_chunk(data, cube.config).cube_values(), cube.values) < -30
+
+
+def test_working_frames_are_those_of_the_fit_window():
+    values = crowd().values
+    ours, theirs = ChunkFrames.of(SMALL, 3, 0), FitWindow.of(SMALL, 3, 0)
+    assert np.allclose(ours.working(values), theirs.working(values).numpy(), atol=1e-6 * np.abs(values).max())
+    assert np.allclose(ours.cube_values(ours.working(values)), values, atol=1e-6 * np.abs(values).max())
+
+
+@pytest.mark.parametrize("data", [b"", b"\0" * 18, b"\xff" * 400])
 def test_malformed_chunks_are_refused(data: bytes):
     with pytest.raises(InputError, match=r"is malformed"):
         decode_chunk(data, SMALL)
+
+
+def test_a_chunk_of_impossible_size_is_refused_before_anything_is_reserved():
+    with pytest.raises(InputError, match="more values than any chunk has"):
+        decode_chunk(PREFIX.pack(60_000, 0, 1.0, 1.0, 0, 0, 0, 0, 0, 4) + bytes(30), SMALL)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_damaged_stream_ends_in_one_clear_error_or_in_values(encoder: ChunkEncoder, seed: int):
+    """Checksums guard chunks in files; whatever comes past them must not crash either."""
+    mode = ChunkMode(transform=TransformChoice(time=NO_DCT), with_points=bool(seed % 2), with_rank=True)
+    data = bytearray(encoder.encode(0.02, mode, 4).data)
+    for at in np.random.default_rng(seed).integers(PREFIX.size, len(data), 40):
+        broken = bytes(data[:at]) + bytes([data[at] ^ 0x55]) + bytes(data[at + 1 :])
+        with contextlib.suppress(InputError):
+            assert decode_chunk(broken, SMALL).cube_values().shape == crowd().values.shape

@@ -1,22 +1,26 @@
-"""A chunk of frames in one stream: static layer, scatterers and residual, in the order in which they are decoded.
+"""A chunk of frames in one stream: static layer, scatterers, low rank and residual, in the order of their decoding.
 
-All three are quantised with one step: an error of one step in any value leaves about the same energy in the cube.
+All are quantised with one step: an error of one step in any value leaves about the same energy in the cube.
 """
 
 import math
 import struct
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.compression.cell_choice import active_cells, choose_cells, round_levels, share_static_frames
-from mmweaver.compression.cell_coder import COARSE, COARSER, MapCoder, NumberCoder
+from mmweaver.compression.cell_choice import active_cells
+from mmweaver.compression.chunk_frames import ChunkFrames
+from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
+from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
+from mmweaver.compression.level_coder import LevelCoder
+from mmweaver.compression.low_rank import RankFactors
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
-from mmweaver.compression.residual_coder import ResidualCoder
-from mmweaver.compression.transforms import beams_of, from_coefficients, to_coefficients
+from mmweaver.compression.residual_stream import PRICE, QuantizedCells, code_cells, quantized
+from mmweaver.compression.transforms import beams_of
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.shapes import CubeValues
@@ -25,117 +29,233 @@ from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers, no_points, rendered, static_cells, strongest
 from mmweaver.fields.scatterers.refinement import Damping, refined
 
-# frames, hop, peak, step, centroids of 1 and of more, noise, flags
-PREFIX = struct.Struct("<HHffBBBB")
-HAS_STATIC, HAS_POINTS, HAS_RESIDUAL, HAS_GAINS, HAS_CELLS = 1, 2, 4, 8, 16
+# frames, hop, peak, step, centroids of 1 and of more, noise, log2 of the coarse step, rank, flags
+PREFIX = struct.Struct("<HHffBBBBBB")
+HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT = 1, 2, 4, 8, 16, 32
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
-REFINED_STEPS = 4
-SAME_DECISION = 1.5  # difference of log(step) within which the choice for or against scatterers is reused
-SAME_COUNT = 0.1  # relative difference in count within which refined scatterers are reused
+REFINED_STEPS = 3
+SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
+MOST_COARSE = 5
+SAMPLED_CELLS = 4096  # of an estimate
+# hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
+MOST_VALUES, MOST_CELLS = 2**21, 2**26
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChunkMode:
+    """How a chunk is coded; each is one of the choices that the encoder compares by rate and distortion."""
+
+    transform: TransformChoice = field(default_factory=TransformChoice)
+    with_points: bool = False
+    with_rank: bool = False
+
+    def name(self) -> str:
+        """For people."""
+        parts = ["scatterers"] * self.with_points + ["low rank"] * self.with_rank
+        return " + ".join([*parts, self.transform.name()])
+
+
+@dataclass(frozen=True, kw_only=True)
+class CodedChunk:
+    """A chunk's bytes, and the energy of its error in units of the squared peak: active cells, and all."""
+
+    data: bytes
+    active_error: float
+    all_error: float
+    step: float
+    mode: ChunkMode
+
+    def cost(self, coarser: int) -> float:
+        """Lagrangian cost in the units of the error: cells without signal count less."""
+        weighted = self.active_error + (self.all_error - self.active_error) / coarser**2
+        return weighted + PRICE * self.step**2 * 8 * len(self.data)
 
 
 @dataclass(frozen=True, kw_only=True)
 class DecodedChunk:
-    """Content of a chunk. `residual`: working frames in centred phase, or None where it was not decoded."""
+    """Content of a chunk. `residual`: working frames (frame, range, doppler, antenna) in centred phase.
 
-    fit_window: FitWindow
-    layers: Layers
-    residual: Tensor | None
+    `layers` are None where a chunk has neither scatterers nor a static layer.
+    """
+
+    frames: ChunkFrames
+    layers: Layers | None
+    residual: np.ndarray | None
     peak: float
+    noise_power: float
     num_residual_values: int = 0  # non-zero residual values
+    rank: int = 0
+    exact: CubeValues | None = None
+    transform: TransformChoice | None = None
+
+    def mode_name(self) -> str:
+        """How the chunk is coded, for people."""
+        if self.exact is not None:
+            return "exact"
+        parts = ["scatterers"] * (self.layers is not None) + ["low rank"] * bool(self.rank)
+        parts += [self.transform.name()] if self.transform else []
+        return " + ".join(parts) or "nothing"
 
     def cube_values(self) -> CubeValues:
         """The frames of the cube, complex64."""
-        with torch.inference_mode():
-            working = rendered(self.layers, self.fit_window.response, self.fit_window.axes)
-            if self.residual is not None:
-                working = working + self.residual
-            return self.fit_window.cube_values(working * self.peak)
+        if self.exact is not None:
+            return self.exact
+        working = np.zeros(self.frames.working_shape, np.complex64)
+        if self.layers is not None:
+            with torch.inference_mode():
+                window = self.frames.fit_window()
+                working = working + rendered(self.layers, window.response, window.axes).numpy()
+        if self.residual is not None:
+            working = working + self.residual
+        return self.frames.cube_values(working * np.float32(self.peak))
 
 
+@dataclass(kw_only=True)
 class ChunkEncoder:
-    """Encodes fitted frames at any step. `target`: working frames (frame, range, doppler, antenna) over `peak`."""
+    """Encodes frames at any step. `target`: working frames (frame, range, doppler, antenna) over `peak`.
 
-    def __init__(self, target: Tensor, fit_window: FitWindow, layers: Layers, peak: float, *, keep_noise: bool = False):
+    `layers`: fitted scatterers, required by modes with points.
+    """
+
+    frames: ChunkFrames
+    target: np.ndarray
+    peak: float
+    noise_power: float
+    active_power: float | None = None  # above it a cell is active; None = 12 dB above the median
+    layers: Layers | None = None
+    _coefficients: dict[TransformChoice, tuple[ChunkTransform, np.ndarray]] = field(default_factory=dict)
+    _samples: dict[TransformChoice, tuple[ChunkTransform, np.ndarray, np.ndarray]] = field(default_factory=dict)
+    _refined_points: tuple[int, Points] | None = None
+
+    def __post_init__(self) -> None:
+        self.beams = beams_of(self.frames.config)
+        self.is_active = active_cells(self.target, self.active_power)
+
+    def with_layers(self, layers: Layers) -> None:
+        """Takes fitted scatterers for the modes that use them."""
         if bool((layers.calibration - 1).abs().max() < LEAST_GAIN):
             layers = replace(layers, calibration=torch.ones_like(layers.calibration))
-        self.target, self.fit_window, self.peak = target, fit_window, peak
         self.layers = replace(layers, calibration=_quantize_gains(layers.calibration))
-        self.beams = beams_of(fit_window.config)
-        self.is_active = None if keep_noise else share_static_frames(active_cells(target.numpy()))
-        self._refined_points: tuple[int, Points] | None = None
-        self._with_points: tuple[float, bool] | None = None
 
-    def encode(self, step: float) -> bytes:
-        """The chunk with a quantisation error of about step / sqrt(12) per coded cell, relative to the peak.
-
-        With or without scatterers, whichever is shorter: far below the noise, scatterers no longer pay.
-        """
-        decided = self._with_points
-        if decided is None or abs(math.log(step / decided[0])) > SAME_DECISION:
-            both = [self._encode(step, with_points=choice) for choice in (True, False)]
-            is_better = len(both[0]) <= len(both[1])
-            self._with_points = step, is_better
-            return both[0] if is_better else both[1]
-        return self._encode(step, with_points=decided[1])
-
-    def _encode(self, step: float, *, with_points: bool) -> bytes:
+    def encode(self, step: float, mode: ChunkMode, coarser: int) -> CodedChunk:
+        """The chunk with an error of about step / sqrt(12) in each coded cell, relative to the peak."""
         step = float(np.float32(step))
-        fit_window, layers = self.fit_window, self.layers
-        stream = Encoder()
+        stream, flags, front = Encoder(), 0, b""
+        target, near = self.target, np.zeros(self.target.shape[:3], np.int64)
+        if mode.with_points and self.layers is not None:
+            target, near, flags, front = self._points(stream, step)
+        noise = self.noise_power * (1 - 1 / coarser**2)
+        factors = RankFactors.of(target, step, noise) if mode.with_rank else None
+        if factors is not None:
+            flags += HAS_RANK
+            factors.code(stream)
+            target = (target - factors.values(step, target.shape)).astype(target.dtype)
+        transform, coefficients = self._transformed(mode.transform, target, is_plain=target is self.target)
+        mask = transform.spread_over_time(self.is_active)
+        cells = quantized(coefficients, step, coarser, mask)
+        if cells.classes.any():
+            flags += HAS_CELLS
+            front += transform.packed
+            code_cells(stream, cells.levels, cells.classes, near, transform, coarser)
+        lost = coefficients - cells.values(step, coarser) if cells.classes.any() else coefficients
+        lost = np.sum(np.square(np.abs(lost)), axis=0)
+        rank = 0 if factors is None else factors.rank
+        prefix = PREFIX.pack(
+            self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
+            coarser.bit_length() - 1, rank, flags,
+        )  # fmt: skip
+        return CodedChunk(
+            data=prefix + front + stream.to_bytes(), active_error=float(lost[mask].sum()), all_error=float(lost.sum()),
+            step=step, mode=mode,
+        )  # fmt: skip
+
+    def exact(self, values: CubeValues) -> bytes:
+        """The chunk without any loss, as float32."""
+        front = PREFIX.pack(
+            self.frames.num_frames, 0, self.peak, 1.0, 0, 0, _noise_level(self.noise_power), 0, 0, IS_EXACT
+        )
+        return front + pack_exact(values)
+
+    def estimated_cost(self, step: float, choice: TransformChoice, coarser: int) -> float:
+        """Approximate `cost` of a transform without scatterers, from a sample of its cells and without coding."""
+        transform, coefficients, active = self._sample(choice)
+        cells = quantized(coefficients, step, coarser, active)
+        share = self.is_active.size / active.size
+        bits = share * cells.estimated_bits + 8 * len(transform.packed)
+        return (PRICE * bits + share * cells.weighted_error) * step**2
+
+    def even_estimate(self, step: float, choice: TransformChoice) -> tuple[float, float]:
+        """Approximate bytes and error (as `CodedChunk.all_error`) where all cells have the same step."""
+        transform, coefficients, active = self._sample(choice)
+        cells = quantized(coefficients, step, 1, active)
+        share = self.is_active.size / active.size
+        return share * cells.estimated_bits / 8 + len(transform.packed), share * cells.weighted_error * step**2
+
+    def _sample(self, choice: TransformChoice) -> tuple[ChunkTransform, np.ndarray, np.ndarray]:
+        """The transform, some of its coefficients (beam, cell, 1, 1), and which of them are active (cell, 1, 1)."""
+        if choice not in self._samples:
+            transform, coefficients = self._transformed(choice, self.target, is_plain=True)
+            active = transform.spread_over_time(self.is_active).reshape(-1)
+            # a stride without common factors with the axes
+            stride = max(1, active.size // SAMPLED_CELLS)
+            chosen = np.arange(0, active.size, stride) + np.arange(-(-active.size // stride)) % stride
+            chosen = chosen[chosen < active.size]
+            flat = coefficients.reshape(len(coefficients), -1)[:, chosen]
+            self._samples[choice] = transform, flat[:, :, None, None], active[chosen][:, None, None]
+        return self._samples[choice]
+
+    def _transformed(self, choice, target, *, is_plain: bool) -> tuple[ChunkTransform, np.ndarray]:
+        if is_plain and choice in self._coefficients:
+            return self._coefficients[choice]
+        transform = ChunkTransform.of(choice, target, self.beams)
+        found = transform, transform.forward(target)
+        if is_plain:
+            self._coefficients[choice] = found
+        return found
+
+    def _points(self, stream: BitStream, step: float) -> tuple[np.ndarray, np.ndarray, int, bytes]:
+        """Codes static layer and scatterers; returns what remains, nearness, flags and the packed gains."""
+        assert self.layers is not None
+        window = self.frames.fit_window()
+        layers = self.layers
         with torch.inference_mode():
-            static = self._static_levels(step)
-            layers = replace(layers, static=_static_of(static, fit_window, self.beams, step))
+            static = self._static_levels(layers, window, step)
+            layers = replace(layers, static=_static_of(static, window, self.beams, step))
             if static.any():
                 _code_static(stream, static)
-            steps = PointSteps.of(step, fit_window.response, fit_window.axes)
-            points = self._refined(layers, steps) if with_points else no_points(fit_window.num_working_frames)
-            coded = quantize(points, steps, fit_window.axes, fit_window.response.num_directions, LEAST_SIZE)
+            steps = PointSteps.of(step, window.response, window.axes)
+            points = self._refined(layers, window, steps)
+            coded = quantize(points, steps, window.axes, window.response.num_directions, LEAST_SIZE)
             if len(coded):
-                _point_coder(fit_window, steps).code(stream, coded)
-            layers = replace(layers, points=_dequantize(coded, fit_window, steps))
-            residual = self.target - rendered(layers, fit_window.response, fit_window.axes)
-            scaled = to_coefficients(residual.numpy().astype(np.complex128), self.beams) / step
-            parts = np.stack([scaled.real, scaled.imag])
-            near = nearness(coded, _shape_of(fit_window))
-        classes = None if self.is_active is None else choose_cells(parts, self.is_active)
-        if classes is not None:
-            parts = parts / np.where(classes == COARSE, COARSER, 1) * (classes > 0)
-        levels = round_levels(parts)
-        if levels.any():
-            _code_residual(stream, levels, classes, near)
+                _point_coder(self.frames, window, steps).code(stream, coded)
+            layers = replace(layers, points=_dequantize(coded, window, steps))
+            target = self.target - rendered(layers, window.response, window.axes).numpy()
         has_gains = bool((layers.calibration != 1).any())
-        flags = HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded))
-        flags += HAS_GAINS * has_gains
-        flags += (HAS_RESIDUAL if classes is None else HAS_CELLS) * bool(levels.any())
-        front = PREFIX.pack(
-            fit_window.num_frames, fit_window.hop, self.peak, step, *_centroids(parts, levels),
-            _noise_level(layers.noise_power), flags,
-        )  # fmt: skip
-        return front + (_pack_gains(layers.calibration) if has_gains else b"") + stream.to_bytes()
+        flags = HAS_STATIC * bool(static.any()) + HAS_POINTS * bool(len(coded)) + HAS_GAINS * has_gains
+        near = nearness(coded, self.target.shape[:3])
+        return target, near, flags, _pack_gains(layers.calibration) if has_gains else b""
 
-    def _static_levels(self, step: float) -> np.ndarray:
-        values = np.einsum("ra,ba->br", self.layers.static.numpy(), self.beams) / _static_step(self.fit_window, step)
-        return round_levels(np.stack([values.real, values.imag]), STATIC_ROUNDING)[:, :, None, :, None]
+    def _static_levels(self, layers: Layers, window: FitWindow, step: float) -> np.ndarray:
+        values = np.einsum("ra,ba->br", layers.static.numpy(), self.beams) / _static_step(window, step)
+        parts = np.stack([values.real, values.imag])
+        levels = np.sign(parts) * np.floor(np.abs(parts) + STATIC_ROUNDING)
+        return levels.astype(np.int64)[:, :, None, :, None]
 
-    def _refined(self, layers: Layers, steps: PointSteps) -> Points:
+    def _refined(self, layers: Layers, window: FitWindow, steps: PointSteps) -> Points:
         """The scatterers worth coding, refined without the others."""
-        size = layers.points.amplitude.abs() / steps.amplitude
-        count = int((size >= LEAST_SIZE).sum())
+        count = int((layers.points.amplitude.abs() / steps.amplitude >= LEAST_SIZE).sum())
         kept = strongest(layers.points, count)
         if not count:
             return kept
         if self._refined_points is not None and abs(self._refined_points[0] / count - 1) < SAME_COUNT:
             return self._refined_points[1]
-        fit_window = self.fit_window
-        target = self.target / layers.calibration - static_cells(layers.static, fit_window.response, fit_window.axes)
+        target = torch.from_numpy(self.target) / layers.calibration
+        target = target - static_cells(layers.static, window.response, window.axes)
         damping = Damping.fresh(len(target))
-        points = refined(kept, target, fit_window.response, fit_window.axes, damping, steps=REFINED_STEPS, largest=160)[
-            0
-        ]
+        points = refined(kept, target, window.response, window.axes, damping, steps=REFINED_STEPS, largest=160)[0]
         self._refined_points = count, points
         return points
 
@@ -144,108 +264,107 @@ def decode_chunk(data: bytes, config: RadarConfig, *, with_residual: bool = True
     """Decodes a chunk; without the residual, only its layers. Raises InputError for a malformed chunk."""
     try:
         return _decode(data, config, with_residual)
-    except (ValueError, IndexError, struct.error, AssertionError, OverflowError) as error:
+    except (ValueError, IndexError, struct.error, AssertionError, OverflowError, np.linalg.LinAlgError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"a chunk of the .mmw file is malformed ({error}); compress the recording again") from None
 
 
+def frames_of_chunk(data: bytes) -> int:
+    """Number of frames of a chunk, of its first bytes."""
+    return PREFIX.unpack_from(data)[0]
+
+
 def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChunk:
-    num_frames, hop, peak, step, one, more, noise, flags = PREFIX.unpack_from(data)
-    if not (num_frames and hop < config.num_loops and step > 0 and math.isfinite(step) and math.isfinite(peak)):
+    num_frames, hop, peak, step, one, more, noise, coarse, rank, flags = PREFIX.unpack_from(data)
+    if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak) and coarse <= MOST_COARSE):
         raise ValueError("impossible prefix")
-    fit_window = FitWindow.of(config, num_frames, hop)
-    beams = beams_of(config)
-    if flags >= 2 * HAS_CELLS or (flags & HAS_RESIDUAL and flags & HAS_CELLS):
+    if flags >= 2 * IS_EXACT or bool(flags & HAS_RANK) != bool(rank):
         raise ValueError("impossible flags")
-    at = PREFIX.size
-    gains = torch.ones(config.num_antennas, dtype=torch.complex64)
+    cells = config.num_range_bins * config.num_loops * config.num_antennas
+    if (num_frames > 1 and num_frames * cells > MOST_VALUES) or cells > MOST_CELLS:
+        raise ValueError("more values than any chunk has")
+    frames = ChunkFrames.of(config, num_frames, hop)
+    noise_power = 10 ** (-noise / 20)
+    if flags & IS_EXACT:
+        shape = (num_frames, config.num_range_bins, config.num_loops, config.num_antennas)
+        values = unpack_exact(data[PREFIX.size :], shape)
+        return DecodedChunk(frames=frames, layers=None, residual=None, peak=peak, noise_power=noise_power, exact=values)
+    at, beams, shape = PREFIX.size, beams_of(config), frames.working_shape
+    gains, transform = torch.ones(config.num_antennas, dtype=torch.complex64), None
     if flags & HAS_GAINS:
         gains = _unpack_gains(data[at : at + 2 * config.num_antennas])
         at += 2 * config.num_antennas
+    if flags & HAS_CELLS:
+        transform = ChunkTransform.unpack(data[at:], beams, shape[2])
+        at += len(transform.packed)
     stream = Decoder(data[at:])
-    shape = _shape_of(fit_window)
-    static = np.zeros((2, config.num_antennas, 1, config.num_range_bins, 1), np.int64)
+    layers, near = _decode_layers(stream, frames, step, flags, gains, noise_power)
+    residual: np.ndarray | None = None
+    if flags & HAS_RANK:
+        if rank > min(shape[0] * shape[1], shape[2] * shape[3]):
+            raise ValueError("impossible rank")
+        factors = RankFactors.empty(rank, shape)
+        factors.code(stream)
+        residual = factors.values(step, shape).astype(np.complex64)
+    num_values = 0
+    if transform is not None and with_residual:
+        classes = np.zeros(shape[:3], np.int64)
+        levels = np.zeros((2, shape[3], *shape[:3]), np.int64)
+        code_cells(stream, levels, classes, near, transform, 1 << coarse)
+        num_values = int(np.count_nonzero(levels))
+        cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
+        rest = transform.inverse(cells.values(step, 1 << coarse).astype(np.complex64))
+        residual = rest if residual is None else residual + rest
+    return DecodedChunk(
+        frames=frames, layers=layers, residual=residual, peak=peak, noise_power=noise_power,
+        num_residual_values=num_values, rank=rank, transform=None if transform is None else transform.choice,
+    )  # fmt: skip
+
+
+def _decode_layers(stream, frames: ChunkFrames, step: float, flags: int, gains: Tensor, noise_power: float):
+    """Layers, or None where there are none; nearness of scatterers."""
+    near = np.zeros(frames.working_shape[:3], np.int64)
+    if not flags & (HAS_STATIC | HAS_POINTS):
+        return None, near
+    window = frames.fit_window()
+    static = np.zeros((2, frames.config.num_antennas, 1, frames.config.num_range_bins, 1), np.int64)
     if flags & HAS_STATIC:
         _code_static(stream, static)
-    points, near = no_points(shape[0]), np.zeros(shape, np.int64)
+    points = no_points(window.num_working_frames)
     if flags & HAS_POINTS:
-        steps = PointSteps.of(step, fit_window.response, fit_window.axes)
-        coded = _point_coder(fit_window, steps).code(stream, None)
-        points, near = _dequantize(coded, fit_window, steps), nearness(coded, shape)
-    residual, num_values = None, 0
-    if flags & (HAS_RESIDUAL | HAS_CELLS) and with_residual:
-        levels = np.zeros((2, config.num_antennas, *shape), np.int64)
-        classes = np.zeros(shape, np.int64) if flags & HAS_CELLS else None
-        _code_residual(stream, levels, classes, near)
-        num_values = int(np.count_nonzero(levels))
-        values = _reconstruct_levels(levels, one, more) * step
-        if classes is not None:
-            values *= np.where(classes == COARSE, COARSER, 1)
-        cells = from_coefficients(values[0] + 1j * values[1], beams)
-        residual = torch.from_numpy(cells.astype(np.complex64))
+        steps = PointSteps.of(step, window.response, window.axes)
+        coded = _point_coder(frames, window, steps).code(stream, None)
+        points, near = _dequantize(coded, window, steps), nearness(coded, frames.working_shape[:3])
     layers = Layers(
-        points=points, static=_static_of(static, fit_window, beams, step), calibration=gains,
-        noise_power=10 ** (-noise / 20),
+        points=points, static=_static_of(static, window, beams_of(frames.config), step), calibration=gains,
+        noise_power=noise_power,
     )  # fmt: skip
-    return DecodedChunk(
-        fit_window=fit_window, layers=layers, residual=residual, peak=peak, num_residual_values=num_values
-    )
+    return layers, near
 
 
-def _shape_of(fit_window: FitWindow) -> tuple[int, int, int]:
-    """Numbers of working frames, range cells and Doppler cells."""
-    return fit_window.num_working_frames, fit_window.config.num_range_bins, fit_window.response.num_loops
-
-
-def _point_coder(fit_window: FitWindow, steps: PointSteps) -> PointCoder:
-    config, response = fit_window.config, fit_window.response
+def _point_coder(frames: ChunkFrames, window: FitWindow, steps: PointSteps) -> PointCoder:
+    config, response = frames.config, window.response
     moves = round(256 * config.frame_period_s * response.velocity_a_bin_mps / response.range_a_bin_m)
-    return PointCoder(_shape_of(fit_window), steps, response.num_directions, moves)
+    return PointCoder(frames.working_shape[:3], steps, response.num_directions, moves)
 
 
-def _dequantize(coded, fit_window: FitWindow, steps: PointSteps) -> Points:
-    frames, directions = fit_window.num_working_frames, fit_window.response.num_directions
-    return dequantize(coded, frames, steps, fit_window.axes, directions)
+def _dequantize(coded, window: FitWindow, steps: PointSteps) -> Points:
+    return dequantize(coded, window.num_working_frames, steps, window.axes, window.response.num_directions)
 
 
 def _code_static(stream: BitStream, levels: np.ndarray) -> None:
-    ResidualCoder(levels.shape[1:]).code(stream, levels, np.zeros(levels.shape[2:], np.int64))
+    LevelCoder(levels.shape[1:]).code(stream, levels, np.ones(levels.shape[2:], np.int64))
 
 
-def _static_step(fit_window: FitWindow, step: float) -> float:
-    kernel = fit_window.response.doppler_kernel(fit_window.axes.doppler_bin)[0]
-    return step / math.sqrt(fit_window.num_working_frames * float(kernel.double().square().sum()))
+def _static_step(window: FitWindow, step: float) -> float:
+    kernel = window.response.doppler_kernel(window.axes.doppler_bin)[0]
+    return step / math.sqrt(window.num_working_frames * float(kernel.double().square().sum()))
 
 
-def _static_of(levels: np.ndarray, fit_window: FitWindow, beams: np.ndarray, step: float) -> Tensor:
-    values = (levels[0] + 1j * levels[1])[:, 0, :, 0] * _static_step(fit_window, step)
+def _static_of(levels: np.ndarray, window: FitWindow, beams: np.ndarray, step: float) -> Tensor:
+    values = (levels[0] + 1j * levels[1])[:, 0, :, 0] * _static_step(window, step)
     return torch.from_numpy(np.einsum("br,ba->ra", values, beams.conj()).astype(np.complex64))
-
-
-def _code_residual(stream: BitStream, levels: np.ndarray, classes: np.ndarray | None, near: np.ndarray) -> None:
-    """Codes all cells, or those that a map (`classes`) opens."""
-    if classes is None:
-        ResidualCoder(levels.shape[1:]).code(stream, levels, near)
-        return
-    MapCoder(classes.shape).code(stream, classes, near)
-    NumberCoder(levels.shape[1:]).code(stream, levels, classes, near)
-
-
-def _centroids(values: np.ndarray, levels: np.ndarray) -> tuple[int, int]:
-    """Mean offset of values from their level, for level 1 and for higher levels, in 1/256."""
-    above = np.abs(values) - np.abs(levels)
-    out = []
-    for chosen in (np.abs(levels) == 1, np.abs(levels) > 1):
-        mean = float(above[chosen].mean()) if chosen.any() else 0.0
-        out.append(int(np.clip(round(mean * 256) + 128, 0, 255)))
-    return out[0], out[1]
-
-
-def _reconstruct_levels(levels: np.ndarray, one: int, more: int) -> np.ndarray:
-    size = np.abs(levels)
-    shift = np.where(size == 1, (one - 128) / 256, (more - 128) / 256)
-    return np.sign(levels) * (size + shift)
 
 
 def _noise_level(power: float) -> int:

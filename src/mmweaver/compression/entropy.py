@@ -28,6 +28,14 @@ class BitStream(ABC):
     def bits(self, probability: Probability, values: Integers) -> Integers:
         """Codes bits, each 1 with its probability. A decoder uses only the length of `values`."""
 
+    @abstractmethod
+    def symbols(self, probability: Probability, values: Integers) -> Integers:
+        """Codes symbols of one distribution (symbol,). A decoder uses only the length of `values`."""
+
+    @abstractmethod
+    def rows(self, probability: Probability, values: Integers) -> Integers:
+        """Codes symbols, each of its own distribution (n, symbol). A decoder uses only the length of `values`."""
+
     def uniform(self, sizes: Integers, values: Integers) -> Integers:
         """Codes integers uniform on 0 ... size - 1. Sizes beyond 2^23 must be multiples of 2^16."""
         huge = sizes > LARGEST_UNIFORM
@@ -46,7 +54,7 @@ def _constriction() -> tuple[Any, Any]:
     """Models and range coders of the package, whose submodules cannot be imported by name."""
     import constriction
 
-    stream: Any = constriction.stream  # pyright: ignore[reportAttributeAccessIssue]
+    stream: Any = constriction.stream  # type: ignore
     return stream.model, stream.queue
 
 
@@ -58,6 +66,17 @@ class Encoder(BitStream):
 
         self._coder = queue.RangeEncoder()
         self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()
+        self._one_model, self._categorical = model.Categorical, model.Categorical(perfect=False)
+
+    def symbols(self, probability: Probability, values: Integers) -> Integers:
+        if len(values):
+            self._coder.encode(values.astype(np.int32), self._one_model(probability, perfect=False))
+        return values
+
+    def rows(self, probability: Probability, values: Integers) -> Integers:
+        if len(values):
+            self._coder.encode(values.astype(np.int32), self._categorical, probability)
+        return values
 
     def bits(self, probability: Probability, values: Integers) -> Integers:
         if len(values):
@@ -82,6 +101,18 @@ class Decoder(BitStream):
 
         self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4").astype(np.uint32))
         self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()
+        self._one_model, self._categorical = model.Categorical, model.Categorical(perfect=False)
+
+    def symbols(self, probability: Probability, values: Integers) -> Integers:
+        if not len(values):
+            return values
+        found = self._coder.decode(self._one_model(probability, perfect=False), len(values))
+        return np.asarray(found).astype(np.int64)
+
+    def rows(self, probability: Probability, values: Integers) -> Integers:
+        if not len(values):
+            return values
+        return np.asarray(self._coder.decode(self._categorical, probability)).astype(np.int64)
 
     def bits(self, probability: Probability, values: Integers) -> Integers:
         if not len(values):

@@ -1,29 +1,45 @@
-"""The .mmw container: a header and chunks of a few frames each, all covered by checksums.
+"""The .mmw container: a header and records of a few frames each, all covered by checksums.
 
-    "MMWV" | version u8 | length of header u16 | header | chunk, chunk, ... ; all little-endian
-    header: JSON (UTF-8), deflated with a dictionary | CRC-32 of all before it
-    chunk:  payload | CRC-32 of it
+    "MMWV" | version u8 | length of header u16 | header | CRC-32 of all before | record, record, ...; all little-endian
+    header: JSON (UTF-8), deflated with a dictionary
+    record: length of payload u32 | frames u16 | times u8 | frame times | check u16 | payload | CRC-32 of all of it
 
-The header lists the frames and bytes of every chunk, so that one chunk can be read without the others. It names the
-radar in full, or by its preset where it is one. Reference: docs/mmw_format.md.
+Records can be appended, and one can be read without the others. A file that was cut short is readable up to its last
+whole record. In versions 1 and 2 the header lists frames and bytes of every chunk, and a chunk is payload and CRC-32.
+Reference: docs/mmw_format.md.
 """
 
 import json
+import math
 import struct
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
-from mmweaver.core.atomic_files import atomic_file
+import numpy as np
+
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.regular_files import check_regular, open_regular
+from mmweaver.core.safe_files.safe_text import parse_json
 
-MAGIC, VERSION = b"MMWV", 2
-READABLE = (1, 2)  # 2 may hold residuals with a map of open cells
+MAGIC, VERSION = b"MMWV", 3
+MAX_CHUNK_BYTES = 64 * 2**20  # of a decoded chunk, unless a single frame is larger
+MAX_CHUNKS, MAX_FRAMES = 100_000, 1_000_000
+MAX_RATIO = 20_000  # decoded bytes a byte of a file: 256 bytes of 20 frames of an AWR1843 are 15,000
+MAX_TIME_S = 1e15
+READABLE = (1, 2, 3)  # 2 may hold residuals with a map of open cells; 3 has records, and chunks of its own kind
+LISTED = (1, 2)  # versions whose header lists the chunks
 PREFIX = struct.Struct("<4sBH")
 CHECK = struct.Struct("<I")
+RECORD = struct.Struct("<IHB")
+FOLLOWING, FROM_FIRST, ALL_TIMES = 0, 1, 2  # frame times: a period on from the record before, from a first one, all
+TIME = struct.Struct("<d")
+HEAD_CHECK = struct.Struct("<H")  # tells a damaged length from a file that was cut short
+SAME_TIME_S = 1e-9
+MOST_HEADER, MOST_TEXT = 0xFFFF, 1 << 24
 # Deflate dictionary of header text; part of the format, so it must never change.
 WORDS = (
     b'{"chunks":[[20,],"frame_period_s":,"frame_start_s":,"frame_time_s":,"radar":{"schema_version":1,"name":"",'
@@ -38,92 +54,222 @@ WORDS = (
 
 @dataclass(frozen=True, kw_only=True)
 class MmwHeader:
-    """Header of a .mmw file. `frame_time_s` counts from the start of the recording; `scale` as in RadarCube."""
+    """Header of a .mmw file. `scale` as in RadarCube; the first frame is at `start_s`, the others `period_s` apart."""
 
     config: RadarConfig
     scale: float
-    frame_time_s: tuple[float, ...]
-    chunk_frames: tuple[int, ...]
-    chunk_bytes: tuple[int, ...] = ()
+    start_s: float = 0.0
+    period_s: float = 0.0
 
 
-def pack_mmw(header: MmwHeader, chunks: list[bytes]) -> bytes:
-    """The bytes of a file; fills in the chunk lengths in the header."""
-    front = _packed_header(header, [len(chunk) for chunk in chunks])
-    return front + b"".join(chunk + CHECK.pack(zlib.crc32(chunk)) for chunk in chunks)
+@dataclass(frozen=True, kw_only=True)
+class MmwRecord:
+    """Where a chunk lies in its file, and the times of its frames, counted from the start of the recording."""
+
+    offset: int  # of the payload
+    num_bytes: int
+    frame_time_s: np.ndarray
+
+    @property
+    def num_frames(self) -> int:
+        """Number of frames."""
+        return len(self.frame_time_s)
 
 
-def unpack_mmw(data: bytes) -> tuple[MmwHeader, list[bytes]]:
-    """Header and chunks of bytes from `pack_mmw`; nothing is checked."""
-    _, _, size = PREFIX.unpack_from(data)
-    header = _header_of(json.loads(_inflated(data[PREFIX.size : PREFIX.size + size])))
-    chunks, at = [], PREFIX.size + size + CHECK.size
-    for length in header.chunk_bytes:
-        chunks.append(data[at : at + length])
-        at += length + CHECK.size
-    return header, chunks
+def pack_header(header: MmwHeader) -> bytes:
+    """The beginning of a file."""
+    values: dict[str, Any] = {"radar": _packed_radar(header.config)}
+    if header.scale == header.scale:  # JSON has no nan: left out
+        values["scale"] = header.scale
+    values |= {"frame_start_s": header.start_s, "frame_period_s": header.period_s}
+    text = json.dumps(values, separators=(",", ":"), allow_nan=False).encode()
+    packer = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zlib.Z_DEFAULT_STRATEGY, WORDS)
+    body = packer.compress(text) + packer.flush()
+    if len(body) > MOST_HEADER:
+        raise InputError("the radar's description is too long for a .mmw file; shorten its name")
+    front = PREFIX.pack(MAGIC, VERSION, len(body)) + body
+    return front + CHECK.pack(zlib.crc32(front))
 
 
-def write_mmw(path: Path | str, header: MmwHeader, chunks: list[bytes]) -> int:
-    """Writes the file atomically and returns its size. Raises InputError where it cannot be written."""
-    data = pack_mmw(header, chunks)
-    with atomic_file(Path(path)) as temporary:
-        temporary.write_bytes(data)
-    return len(data)
+def pack_record(chunk: bytes, frame_time_s: np.ndarray, header: MmwHeader, last_s: float | None) -> bytes:
+    """A record. `last_s`: time of the last frame before it, None for the first record."""
+    num = len(frame_time_s)
+    first_s = header.start_s if last_s is None else last_s + header.period_s
+    if _is_regular(frame_time_s, first_s, header.period_s):
+        times, kind = b"", FOLLOWING
+    elif _is_regular(frame_time_s, float(frame_time_s[0]), header.period_s):
+        times, kind = TIME.pack(float(frame_time_s[0])), FROM_FIRST
+    else:
+        times, kind = np.asarray(frame_time_s, "<f8").tobytes(), ALL_TIMES
+    head = RECORD.pack(len(chunk), num, kind) + times
+    body = head + HEAD_CHECK.pack(_head_check(head)) + chunk
+    return body + CHECK.pack(zlib.crc32(body))
+
+
+def pack_mmw(header: MmwHeader, chunks: list[bytes], frame_time_s: list[np.ndarray]) -> bytes:
+    """The bytes of a whole file, of its chunks and the times of their frames."""
+    parts, last_s = [pack_header(header)], None
+    for chunk, time_s in zip(chunks, frame_time_s, strict=True):
+        parts.append(pack_record(chunk, time_s, header, last_s))
+        last_s = float(time_s[-1])
+    return b"".join(parts)
+
+
+def header_for(config: RadarConfig, scale: float, frame_time_s: np.ndarray) -> MmwHeader:
+    """A header with the start and the mean period of the frames."""
+    num = len(frame_time_s)
+    start_s = float(frame_time_s[0])
+    period_s = (float(frame_time_s[-1]) - start_s) / (num - 1) if num > 1 else config.frame_period_s
+    return MmwHeader(config=config, scale=scale, start_s=start_s, period_s=period_s)
 
 
 class MmwFile:
-    """A .mmw file: the header is read and checked at once, chunks on demand."""
+    """A .mmw file: header and places of the records are read and checked at once, chunks on demand.
+
+    `cut_short` is the number of bytes after the last whole record; 0 where the file is whole.
+    """
 
     def __init__(self, path: Path | str):
-        """Raises InputError where the file is unreadable, not a .mmw file, truncated, or its header is damaged."""
+        """Raises InputError where the file is unreadable, not a .mmw file, or damaged before its first chunk."""
         self.path = Path(path)
-        try:
-            self.num_bytes = self.path.stat().st_size
-            with self.path.open("rb") as stream:
-                front = stream.read(PREFIX.size)
-                size = self._header_size(front)
-                body = stream.read(size + CHECK.size)
-        except OSError as error:
-            raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+        self.cut_short = 0
+        self.num_bytes = check_regular(self.path)
+        with open_regular(self.path) as stream:
+            front = stream.read(PREFIX.size)
+            size = self._header_size(front)
+            body = stream.read(size + CHECK.size)
+            self._read_header(front, body, size)
+            if self.version not in LISTED:
+                self.records = self._scanned(stream)
+        if not self.records:
+            raise InputError(f"{self.path} holds no whole chunk: it is damaged or was cut short; compress it again")
+        self._check_promises()
+
+    @property
+    def frame_time_s(self) -> np.ndarray:
+        """Times (frame,) of all frames."""
+        return np.concatenate([record.frame_time_s for record in self.records])
+
+    @property
+    def num_frames(self) -> int:
+        """Number of frames of all records."""
+        return sum(record.num_frames for record in self.records)
+
+    def chunk(self, index: int) -> bytes:
+        """One chunk's payload. Raises InputError where it fails its checksum."""
+        record = self.records[index]
+        start = self._starts[index]
+        end = record.offset + record.num_bytes + CHECK.size
+        with open_regular(self.path) as stream:
+            stream.seek(start)
+            data = stream.read(end - start)
+        body = data[: -CHECK.size]
+        if len(data) != end - start or CHECK.unpack(data[-CHECK.size :])[0] != zlib.crc32(body):
+            raise self._damaged(f"chunk {index} fails its checksum")
+        return body[record.offset - start :]
+
+    def _read_header(self, front: bytes, body: bytes, size: int) -> None:
         if len(body) < size + CHECK.size:
             raise self._damaged("it is truncated")
         if CHECK.unpack(body[size:])[0] != zlib.crc32(front + body[:size]):
             raise self._damaged("its header fails its checksum")
+        self.end_of_header = PREFIX.size + size + CHECK.size
         try:
-            self.header = _header_of(json.loads(_inflated(body[:size])))
-        except (zlib.error, ValueError, KeyError, TypeError, IndexError) as error:
+            values = parse_json(_inflated(body[:size]), f"the header of {self.path}")
+            self.header = _header_of(values)
+            if self.version in LISTED:
+                self.records = self._listed(values)
+        except InputError as error:
+            raise self._damaged(str(error)) from None
+        except (zlib.error, ValueError, KeyError, TypeError, IndexError, OverflowError, AttributeError) as error:
             raise self._damaged(f"its header is malformed ({error})") from None
-        self._first = PREFIX.size + size + CHECK.size
-        expected = self._first + sum(self.header.chunk_bytes) + CHECK.size * len(self.header.chunk_bytes)
-        if self.num_bytes != expected:
-            raise self._damaged(f"it has {self.num_bytes} bytes where its header promises {expected}")
+        if self.version in LISTED:
+            last = self.records[-1]
+            expected = last.offset + last.num_bytes + CHECK.size
+            if self.num_bytes != expected:
+                raise self._damaged(f"it has {self.num_bytes} bytes where its header promises {expected}")
 
-    def chunk(self, index: int) -> bytes:
-        """One chunk's payload. Raises InputError where it fails its checksum."""
-        sizes = self.header.chunk_bytes
-        start = self._first + sum(sizes[:index]) + CHECK.size * index
-        try:
-            with self.path.open("rb") as stream:
-                stream.seek(start)
-                data = stream.read(sizes[index] + CHECK.size)
-        except OSError as error:
-            raise InputError(f"cannot read {self.path}: {error.strerror or error}") from None
-        payload = data[: -CHECK.size]
-        if len(payload) != sizes[index] or CHECK.unpack(data[-CHECK.size :])[0] != zlib.crc32(payload):
-            raise self._damaged(f"chunk {index} fails its checksum")
-        return payload
+    def _check_promises(self) -> None:
+        """Raises InputError where the records promise a cube far larger than any file of this size holds."""
+        config = self.header.config
+        frame_bytes = 8 * config.num_range_bins * config.num_loops * config.num_antennas
+        most = max(MAX_CHUNK_BYTES, frame_bytes)  # one frame, however large
+        largest = max((record.num_frames for record in self.records), default=0)
+        total = self.num_frames * frame_bytes
+        if largest * frame_bytes > most or total > max(most, MAX_RATIO * self.num_bytes):
+            raise self._damaged(
+                f"its {self.num_bytes} bytes promise {self.num_frames} frames of {frame_bytes / 1e6:.3g} MB"
+            )
+
+    def _listed(self, values: dict[str, Any]) -> list[MmwRecord]:
+        """Places of the chunks of versions 1 and 2."""
+        frames, sizes = zip(*values["chunks"], strict=True)
+        if not all(type(number) is int and number > 0 for number in (*frames, *sizes)):
+            raise ValueError("chunks")
+        if sum(sizes) > self.num_bytes or len(frames) > MAX_CHUNKS or sum(frames) > MAX_FRAMES:
+            raise ValueError("more than the file holds")
+        num = sum(frames)
+        if "frame_time_s" in values:
+            time_s = np.array([float(t) for t in values["frame_time_s"]])
+        else:
+            time_s = float(values["frame_start_s"]) + np.arange(num) * float(values["frame_period_s"])
+        if len(time_s) != num or not (np.abs(time_s) < MAX_TIME_S).all():
+            raise ValueError("frame times")
+        records, at, first = [], self.end_of_header, 0
+        for count, length in zip(frames, sizes, strict=True):
+            records.append(MmwRecord(offset=at, num_bytes=length, frame_time_s=time_s[first : first + count]))
+            at, first = at + length + CHECK.size, first + count
+        self._starts = [record.offset for record in records]
+        return records
+
+    def _scanned(self, stream: BinaryIO) -> list[MmwRecord]:
+        """Places of the records; nothing is read but what stands in front of the chunks."""
+        records: list[MmwRecord] = []
+        self._starts: list[int] = []
+        at, last_s = self.end_of_header, None
+        while at + RECORD.size <= self.num_bytes:
+            stream.seek(at)
+            head = stream.read(RECORD.size)
+            length, num, kind = RECORD.unpack(head)
+            extra = {FROM_FIRST: TIME.size, ALL_TIMES: TIME.size * num}.get(kind, 0)
+            offset = at + RECORD.size + extra + HEAD_CHECK.size
+            if offset > self.num_bytes and kind <= ALL_TIMES:
+                break
+            times, check = stream.read(extra), stream.read(HEAD_CHECK.size)
+            if HEAD_CHECK.unpack(check)[0] != _head_check(head + times) or kind > ALL_TIMES or not num:
+                raise self._damaged(f"record {len(records)} fails its checksum")
+            if offset + length + CHECK.size > self.num_bytes:
+                break
+            time_s = self._times(times, kind, num, last_s)
+            records.append(MmwRecord(offset=offset, num_bytes=length, frame_time_s=time_s))
+            self._starts.append(at)
+            at, last_s = offset + length + CHECK.size, float(time_s[-1])
+        self.cut_short = self.num_bytes - at
+        if not records and self.cut_short:
+            raise self._damaged("it is truncated before the end of its first chunk")
+        return records
+
+    def _times(self, data: bytes, kind: int, num: int, last_s: float | None) -> np.ndarray:
+        if kind == ALL_TIMES:
+            time_s = np.frombuffer(data, "<f8").astype(np.float64)
+        else:
+            following_s = self.header.start_s if last_s is None else last_s + self.header.period_s
+            first_s = TIME.unpack(data)[0] if kind == FROM_FIRST else following_s
+            time_s = first_s + np.arange(num) * self.header.period_s
+        if not (np.abs(time_s) < MAX_TIME_S).all():
+            raise self._damaged("its frame times are impossible")
+        return time_s
 
     def _header_size(self, front: bytes) -> int:
         if len(front) < PREFIX.size or front[:4] != MAGIC:
             raise InputError(
                 f"{self.path} is no .mmw file; make one with: mmweaver compress capture.npz -o capture.mmw"
             )
-        _, version, size = PREFIX.unpack(front)
-        if version not in READABLE:
+        _, self.version, size = PREFIX.unpack(front)
+        if self.version not in READABLE:
             raise InputError(
-                f"{self.path} is a .mmw file of version {version}, or damaged; this program reads versions"
-                f" {' and '.join(map(str, READABLE))}"
+                f"{self.path} is a .mmw file of version {self.version}, or damaged; this program reads versions"
+                f" {', '.join(map(str, READABLE[:-1]))} and {READABLE[-1]}"
             )
         return size
 
@@ -131,51 +277,44 @@ class MmwFile:
         return InputError(f"{self.path} is damaged: {why}; copy it again or compress the recording again")
 
 
-def _packed_header(header: MmwHeader, sizes: list[int]) -> bytes:
-    config = header.config
-    values: dict[str, Any] = {"chunks": [list(pair) for pair in zip(header.chunk_frames, sizes, strict=True)]}
-    is_preset = config.name in PRESETS and PRESETS[config.name] == config
-    values["radar"] = {"preset": config.name} if is_preset else json.loads(config.to_json())
-    if header.scale == header.scale:  # JSON has no nan: left out
-        values["scale"] = header.scale
-    values |= _times(header.frame_time_s)
-    text = json.dumps(values, separators=(",", ":"), allow_nan=False).encode()
-    packer = zlib.compressobj(9, zlib.DEFLATED, -15, 9, zlib.Z_DEFAULT_STRATEGY, WORDS)
-    body = packer.compress(text) + packer.flush()
-    if len(body) > 0xFFFF:
-        raise InputError("the header is too long; split the recording into shorter files")
-    front = PREFIX.pack(MAGIC, VERSION, len(body)) + body
-    return front + CHECK.pack(zlib.crc32(front))
+def _head_check(head: bytes) -> int:
+    return zlib.crc32(head) & 0xFFFF
 
 
-def _times(time_s: tuple[float, ...]) -> dict[str, Any]:
-    """Start and period of evenly spaced frames, or all frame times."""
-    if len(time_s) > 1:
-        step_s = (time_s[-1] - time_s[0]) / (len(time_s) - 1)
-        if all(abs(t - time_s[0] - k * step_s) < 1e-9 for k, t in enumerate(time_s)):
-            return {"frame_start_s": time_s[0], "frame_period_s": step_s}
-    return {"frame_time_s": list(time_s)}
+def _is_regular(time_s: np.ndarray, first_s: float, period_s: float) -> bool:
+    return bool(np.all(np.abs(time_s - first_s - np.arange(len(time_s)) * period_s) < SAME_TIME_S))
+
+
+def _packed_radar(config: RadarConfig) -> dict[str, Any]:
+    """The preset, with what differs from it, or the whole radar, whichever is shorter."""
+    whole = config.to_values()
+    best: dict[str, Any] = whole
+    for name, preset in PRESETS.items():
+        usual = preset.to_values()
+        changes = {key: value for key, value in whole.items() if usual.get(key) != value}
+        packed = {"preset": name, "changes": changes} if changes else {"preset": name}
+        if usual.keys() == whole.keys() and len(json.dumps(packed)) < len(json.dumps(best)):
+            best = packed
+    return best
+
+
+def _radar_of(values: dict[str, Any]) -> RadarConfig:
+    if "preset" not in values:
+        return RadarConfig.from_values(values)
+    preset, changes = PRESETS[values["preset"]], values.get("changes", {})
+    return RadarConfig.from_values(preset.to_values() | changes) if changes else preset
 
 
 def _inflated(body: bytes) -> bytes:
     unpacker = zlib.decompressobj(-15, WORDS)
-    return unpacker.decompress(body, 1 << 24)
+    return unpacker.decompress(body, MOST_TEXT)
 
 
 def _header_of(values: dict[str, Any]) -> MmwHeader:
-    radar = values["radar"]
-    config = PRESETS[radar["preset"]] if "preset" in radar else RadarConfig.from_json(json.dumps(radar))
-    frames, sizes = zip(*values["chunks"], strict=True)
-    if not all(type(number) is int and number > 0 for number in (*frames, *sizes)):
-        raise ValueError("chunks")
-    num = sum(frames)
-    if "frame_time_s" in values:
-        time_s = tuple(float(t) for t in values["frame_time_s"])
-    else:
-        time_s = tuple(values["frame_start_s"] + k * values["frame_period_s"] for k in range(num))
-    if len(time_s) != num:
+    start_s, period_s = (float(values.get(name, 0.0)) for name in ("frame_start_s", "frame_period_s"))
+    if not (abs(start_s) < MAX_TIME_S and abs(period_s) < MAX_TIME_S):
         raise ValueError("frame times")
-    return MmwHeader(
-        config=config, scale=float(values.get("scale", "nan")), frame_time_s=time_s, chunk_frames=frames,
-        chunk_bytes=sizes,
-    )  # fmt: skip
+    scale = float(values.get("scale", "nan"))
+    if not (math.isnan(scale) or 1e-30 < scale < 1e30):
+        raise ValueError("scale")
+    return MmwHeader(config=_radar_of(values["radar"]), scale=scale, start_s=start_s, period_s=period_s)

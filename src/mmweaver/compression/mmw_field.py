@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Complex
 
 from mmweaver.compression.chunk import DecodedChunk
-from mmweaver.compression.mmw_codec import grid_of_header, read_chunk
+from mmweaver.compression.chunk_frames import ChunkFrames
+from mmweaver.compression.mmw_codec import grid_of_file, read_chunk
 from mmweaver.compression.mmw_container import MmwFile
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.shapes import CubeValues
@@ -29,8 +30,8 @@ class MmwField(SignalField):
     def __init__(self, path: Path | str):
         self.file = MmwFile(path)
         header = self.file.header
-        self.config, self.grid, self.scale = header.config, grid_of_header(header), header.scale
-        self._starts = np.concatenate([[0], np.cumsum(header.chunk_frames)])
+        self.config, self.grid, self.scale = header.config, grid_of_file(self.file), header.scale
+        self._starts = np.concatenate([[0], np.cumsum([record.num_frames for record in self.file.records])])
         self._part = lru_cache(maxsize=CHUNKS_KEPT)(self._read)
 
     @property
@@ -39,9 +40,9 @@ class MmwField(SignalField):
         total = 0
         for index in range(len(self._starts) - 1):
             chunk = read_chunk(self.file, index)
-            total += chunk.layers.num_values(chunk.fit_window.response)
-            if chunk.residual is not None:
-                total += chunk.num_residual_values
+            total += chunk.num_residual_values
+            if chunk.layers is not None:
+                total += chunk.layers.num_values(chunk.frames.fit_window().response)
         return total
 
     def sample(self, coordinates: Coordinates) -> Complex[np.ndarray, " point"]:
@@ -52,7 +53,7 @@ class MmwField(SignalField):
         for index, chosen in self._by_chunk(coordinates[:, 0]):
             field, residual = self._part(index)
             local = coordinates[chosen] - np.array([self._starts[index], 0, 0, 0])
-            values = field.sample(local)
+            values = np.zeros(len(local), np.complex64) if field is None else field.sample(local)
             if residual is not None:
                 place = local.copy()
                 place[:, 0] = np.clip(np.rint(place[:, 0]), 0, len(residual) - 1)
@@ -69,7 +70,8 @@ class MmwField(SignalField):
         phasor = response.phasor(response.axes(grid)).numpy()
         for index, chosen in self._by_chunk(axes[0]):
             field, residual = self._part(index)
-            values = field.on_grid(replace(grid, frame_time_s=grid.frame_time_s[chosen]))
+            own = replace(grid, frame_time_s=grid.frame_time_s[chosen])
+            values = np.zeros(own.shape, np.complex64) if field is None else field.on_grid(own)
             if residual is not None:
                 nearest = np.clip(np.rint(axes[0][chosen]).astype(int) - self._starts[index], 0, len(residual) - 1)
                 part = residual[nearest]
@@ -85,12 +87,14 @@ class MmwField(SignalField):
         index = np.searchsorted(self._starts, np.clip(np.rint(frame), 0, last), side="right") - 1
         return [(int(chunk), np.flatnonzero(index == chunk)) for chunk in np.unique(index)]
 
-    def _read(self, index: int) -> tuple[ScattererField, np.ndarray | None]:
-        """A chunk's field, and its residual at the cells of the cube in centred phase."""
+    def _read(self, index: int) -> tuple[ScattererField | None, np.ndarray | None]:
+        """A chunk's scatterers, and its residual at the cells of the cube in centred phase; None where it has none."""
         chunk = read_chunk(self.file, index)
-        frames = slice(self._starts[index], self._starts[index + 1])
-        grid = replace(self.grid, frame_time_s=self.grid.frame_time_s[frames])
-        field = ScattererField(chunk.layers, chunk.fit_window, grid, self.scale, chunk.peak)
+        field = None
+        if chunk.layers is not None:
+            frames = slice(self._starts[index], self._starts[index + 1])
+            grid = replace(self.grid, frame_time_s=self.grid.frame_time_s[frames])
+            field = ScattererField(chunk.layers, chunk.frames.fit_window(), grid, self.scale, chunk.peak)
         return field, _centred_residual(chunk)
 
     def _phasor_at(self, coordinates: Coordinates) -> np.ndarray:
@@ -104,11 +108,13 @@ class MmwField(SignalField):
 
 
 def _centred_residual(chunk: DecodedChunk) -> np.ndarray | None:
-    if chunk.residual is None:
+    if chunk.exact is not None:
+        values = chunk.exact
+    elif chunk.residual is None:
         return None
-    values = chunk.fit_window.cube_values(chunk.residual * chunk.peak)
-    response = PointResponse(chunk.fit_window.config)
-    return values * response.phasor(response.axes()).numpy().conj()
+    else:
+        values = chunk.frames.cube_values(chunk.residual * np.float32(chunk.peak))
+    return values * ChunkFrames.of(chunk.frames.config, len(values), 0).phasor.conj()
 
 
 def _lines(cell: np.ndarray, num: int) -> np.ndarray:

@@ -11,6 +11,7 @@ import numpy as np
 import torch
 from jaxtyping import Float, Int
 
+from mmweaver.compression.class_map import ClassMapCoder
 from mmweaver.compression.entropy import BitModel, BitStream, Mixture, NumberModel
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
@@ -22,6 +23,7 @@ OCTAVES = 24
 NUM_AROUND, NUM_NEAR = 8, 6
 AROUND_BOUNDS = np.array([1, 2, 3, 4, 6, 8, 12])
 SIXTEENTHS = 16
+SEVERAL, COUNT_PRIOR, MOST_POINTS = 2, (0.96, 0.03, 0.01), 2**20
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,22 +147,43 @@ def nearness(coded: CodedPoints, shape: tuple[int, int, int]) -> Counts:
 class PointCoder:
     """Adaptive models of one cube's scatterers. `moves`: range cells moved per Doppler cell and frame, times 256."""
 
-    def __init__(self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int, moves: int):
+    def __init__(
+        self, shape: tuple[int, int, int], steps: PointSteps, num_directions: int, moves: int, *, by_rows: bool = False
+    ):
+        """`by_rows`: the number in each cell is coded row by row, as in versions 1 and 2 of the format."""
+        self.by_rows = by_rows
         self.shape, self.steps, self.num_directions, self.moves = shape, steps, num_directions, moves
         a = NUM_AROUND
         self.more = [
             Mixture([BitModel(a * a * 2, 0.03, 0.5), BitModel(a * a, 0.03, 0.5), BitModel(shape[2], 0.03, 0.5)])
             for _ in range(4)
         ]
+        self.many = NumberModel(1, 4)
         self.octave = NumberModel(OCTAVES, OCTAVES, 0.7)
         self.coarse = [[BitModel(COARSE, 0.5, 2.0) for _ in range(4)] for _ in range(2)]
 
     def code(self, stream: BitStream, coded: CodedPoints | None) -> CodedPoints:
         """Encodes `coded`, or decodes where it is None."""
-        frames, num_range, num_doppler = self.shape
         wanted = np.zeros(self.shape, np.int64)
         if coded is not None:
             np.add.at(wanted, (coded.frame, coded.range_cell, coded.doppler_cell), 1)
+        counts = self._counts_by_rows(stream, wanted) if self.by_rows else self._counts(stream, wanted)
+        cells = np.repeat(np.stack(np.nonzero(counts)), counts[counts > 0], axis=1)
+        return self._details(stream, cells, coded)
+
+    def _counts(self, stream: BitStream, wanted: np.ndarray) -> np.ndarray:
+        """Number of scatterers in each cell: none, one, or several, and then how many."""
+        counts = np.minimum(wanted, SEVERAL)
+        ClassMapCoder(self.shape[2], COUNT_PRIOR).code(stream, counts, np.zeros_like(counts))
+        several = np.nonzero(counts == SEVERAL)
+        more = self.many.code(stream, np.zeros(len(several[0]), np.int64), wanted[several] - SEVERAL)
+        if int(more.sum()) > MOST_POINTS:
+            raise ValueError("too many scatterers: the stream is damaged")
+        counts[several] += more
+        return counts
+
+    def _counts_by_rows(self, stream: BitStream, wanted: np.ndarray) -> np.ndarray:
+        frames, num_range, num_doppler = self.shape
         counts = np.zeros(self.shape, np.int64)
         for frame in range(frames):
             before = (
@@ -168,8 +191,7 @@ class PointCoder:
             )
             for row in range(num_range):
                 self._code_row(stream, wanted[frame, row], counts[frame], row, before)
-        cells = np.repeat(np.stack(np.nonzero(counts)), counts[counts > 0], axis=1)
-        return self._details(stream, cells, coded)
+        return counts
 
     def _predicted_counts(self, counts: np.ndarray) -> np.ndarray:
         """Scatterer counts of the previous frame, moved by their velocity and smoothed over the neighbours."""

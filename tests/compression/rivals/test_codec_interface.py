@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from mmweaver.compression.rivals.codec_interface import library, merged, split
 from mmweaver.core.errors import InputError
-from studies.baselines.codec_interface import library, merged, split
 from studies.fields.codecs import CODECS
 from tests.fields.echoes import crowd, error_db
 
@@ -15,13 +15,18 @@ NEEDS = {
     "jpegxl": "imagecodecs", "blosc2": "blosc2", "wavelets": "pywt", "cp": "tensorly",
 }  # fmt: skip
 SLOW = {"inr_smooth_short", "inr_paper"}
+# .mmw with its noise: "mmw" here and test_noise_is_kept_on_request in tests/compression/test_mmw_codec.py
+AT_NIGHT = {"mmw_keep_noise"}
 
 
-@pytest.mark.parametrize("name", [name for name in CODECS if name not in SLOW])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] * (name in AT_NIGHT)) for name in CODECS if name not in SLOW],
+)
 def test_bytes_are_kept_to_and_more_of_them_help(name: str):
     if name in NEEDS:
         pytest.importorskip(NEEDS[name])
-    cube = crowd()
+    cube = crowd(num_frames=2)
     codec = CODECS[name]()
     assert codec.name == name
     blank = replace(cube, values=np.zeros_like(cube.values))

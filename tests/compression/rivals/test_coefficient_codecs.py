@@ -1,6 +1,6 @@
 import numpy as np
 
-from studies.baselines.coefficient_codecs import antenna_klt, packed_top, unpacked_klt, unpacked_top
+from mmweaver.compression.rivals.coefficient_codecs import antenna_klt, packed_top, unpacked_klt, unpacked_top
 from tests.fields.echoes import crowd
 
 

@@ -1,0 +1,177 @@
+"""Unitary transforms of a chunk that compact its energy, and the choice among them.
+
+Antennas: beams of the array, or the principal directions (KLT) of this chunk. Time: nothing, a DCT over the frames in
+the static Doppler bins, or in all. Doppler, where there are few bins: nothing, or their KLT, for short windows make
+them linearly dependent (two loops under a Hann window are one).
+"""
+
+import struct
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Complex
+
+from mmweaver.compression.transforms import static_bins
+
+Array = np.ndarray
+NO_DCT, STATIC_DCT, FULL_DCT = 0, 1, 2
+MOST_DOPPLER = 16  # bins up to which their KLT is worth its bytes
+WORD = 2**15 - 1
+ANTENNA_WORD = 127
+CORRELATED = 0.3  # correlation of neighbouring cells from which they predict each other's sign
+HEADER = struct.Struct("<B")
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransformChoice:
+    """Which transforms a chunk uses."""
+
+    time: int = STATIC_DCT
+    antenna_klt: bool = False
+    doppler_klt: bool = False
+
+    def name(self) -> str:
+        """For people: "beams, DCT of static bins"."""
+        parts = ["KLT of antennas" if self.antenna_klt else "beams"]
+        parts += [("", "DCT of static bins", "DCT of all bins")[self.time]] if self.time else []
+        return ", ".join(parts + (["KLT of Doppler bins"] if self.doppler_klt else []))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChunkTransform:
+    """Matrices of a choice, as the decoder has them; `correlated`: neighbours along (range, Doppler) predict signs."""
+
+    choice: TransformChoice
+    antennas: Complex[Array, "beam antenna"]
+    doppler: Complex[Array, "index doppler"] | None
+    correlated: tuple[bool, bool]
+    packed: bytes  # header and the words of the KLTs
+
+    @classmethod
+    def of(
+        cls,
+        choice: TransformChoice,
+        values: Complex[Array, "frame range doppler antenna"],
+        beams: Complex[Array, "beam antenna"],
+    ) -> "ChunkTransform":
+        """The transform of a choice that suits these values."""
+        antennas, words, doppler = beams, b"", None
+        if choice.antenna_klt:
+            flat = values.reshape(-1, values.shape[3])
+            antennas, words = _klt(flat.T @ flat.conj(), ANTENNA_WORD)
+        if choice.doppler_klt:
+            flat = np.moveaxis(values, 2, 3).reshape(-1, values.shape[2])
+            doppler, more = _klt(flat.T @ flat.conj(), WORD)
+            words += more
+        correlated = (_is_correlated(values, 1), doppler is None and _is_correlated(values, 2))
+        header = choice.time + 4 * choice.antenna_klt + 8 * choice.doppler_klt + 16 * correlated[0] + 32 * correlated[1]
+        return cls(
+            choice=choice, antennas=antennas, doppler=doppler, correlated=correlated, packed=bytes([header]) + words
+        )
+
+    @classmethod
+    def unpack(cls, data: bytes, beams: Complex[Array, "beam antenna"], num_doppler: int) -> "ChunkTransform":
+        """The transform of a stream that begins with `packed`. Raises ValueError for what no encoder writes."""
+        (header,) = HEADER.unpack_from(data)
+        choice = TransformChoice(time=header & 3, antenna_klt=bool(header & 4), doppler_klt=bool(header & 8))
+        if header >= 64 or choice.time > FULL_DCT or (choice.doppler_klt and num_doppler > MOST_DOPPLER):
+            raise ValueError("impossible transform")
+        at, antennas, doppler = HEADER.size, beams, None
+        if choice.antenna_klt:
+            antennas, at = _unpack_klt(data, at, len(beams), ANTENNA_WORD)
+        if choice.doppler_klt:
+            doppler, at = _unpack_klt(data, at, num_doppler, WORD)
+        return cls(
+            choice=choice, antennas=antennas, doppler=doppler, correlated=(bool(header & 16), bool(header & 32)),
+            packed=data[:at],
+        )  # fmt: skip
+
+    def forward(self, values: Complex[Array, "frame range doppler antenna"]) -> Complex[Array, "beam time range index"]:
+        """Coefficients of values."""
+        out = np.tensordot(self.antennas.astype(values.dtype), values, axes=(1, 3))
+        if self.doppler is not None:
+            out = out @ self.doppler.T.astype(values.dtype)
+        return self._over_time(out, inverse=False)
+
+    def inverse(self, values: Complex[Array, "beam time range index"]) -> Complex[Array, "frame range doppler antenna"]:
+        """Values of coefficients."""
+        out = self._over_time(values, inverse=True)
+        if self.doppler is not None:
+            out = out @ self.doppler.conj().astype(values.dtype)
+        return np.moveaxis(np.tensordot(self.antennas.conj().astype(values.dtype), out, axes=(0, 0)), 0, 3)
+
+    def _over_time(self, values: Array, *, inverse: bool) -> Array:
+        if self.choice.time == NO_DCT or values.shape[1] == 1:
+            return values
+        chosen = slice(None) if self._is_full else static_bins(values.shape[3])
+        out = values.copy()
+        out[..., chosen] = _dct(values[..., chosen], inverse=inverse)
+        return out
+
+    @property
+    def _is_full(self) -> bool:
+        return self.choice.time == FULL_DCT or self.doppler is not None
+
+    def spread_over_time(self, mask: Array) -> Array:
+        """Mask of cells (frame, range, doppler) -> mask of coefficients that hold some of them."""
+        out = mask.copy()
+        if self.doppler is not None:
+            out[...] = mask.any(axis=2, keepdims=True)
+        if self.choice.time != NO_DCT:
+            chosen = slice(None) if self._is_full else static_bins(mask.shape[2])
+            out[:, :, chosen] = out[:, :, chosen].any(axis=0)
+        return out
+
+
+def choices_of(shape: tuple[int, ...]) -> list[TransformChoice]:
+    """The transforms that can pay for a chunk (frame, range, doppler, antenna), the usual one first."""
+    frames, _, doppler, antennas = shape
+    times = [NO_DCT] if frames == 1 else [STATIC_DCT, FULL_DCT] if doppler > 3 else [FULL_DCT]
+    found = [TransformChoice(time=time) for time in times]
+    if antennas > 1:
+        found += [TransformChoice(time=time, antenna_klt=True) for time in times]
+    if 1 < doppler <= MOST_DOPPLER:
+        found += [TransformChoice(time=times[-1], antenna_klt=klt, doppler_klt=True) for klt in {False, antennas > 1}]
+    return found
+
+
+def _dct(values: Array, *, inverse: bool) -> Array:
+    """Orthonormal DCT over axis 1; complex64 stays complex64."""
+    from scipy import fft
+
+    transform = fft.idct if inverse else fft.dct
+    real, imaginary = (transform(part, axis=1, norm="ortho") for part in (np.real(values), np.imag(values)))
+    return real + values.dtype.type(1j) * imaginary
+
+
+def _klt(covariance: Array, word: int) -> tuple[Array, bytes]:
+    """Principal directions, strongest first, as the decoder gets them, and their bytes."""
+    _, vectors = np.linalg.eigh(covariance.astype(np.complex128))
+    rows = vectors[:, ::-1].T.conj()
+    words = np.rint(np.stack([np.real(rows), np.imag(rows)]) * word).astype(_word_type(word))
+    return _orthonormal(words, word), words.tobytes()
+
+
+def _unpack_klt(data: bytes, at: int, num: int, word: int) -> tuple[Array, int]:
+    words = np.frombuffer(data, _word_type(word), 2 * num * num, at).reshape(2, num, num)
+    return _orthonormal(words, word), at + words.nbytes
+
+
+def _word_type(word: int) -> str:
+    return "<i1" if word == ANTENNA_WORD else "<i2"
+
+
+def _orthonormal(words: Array, word: int) -> Array:
+    """The unitary matrix nearest to rounded directions."""
+    left, _, right = np.linalg.svd((words[0] + 1j * words[1]) / word)
+    return left @ right
+
+
+def _is_correlated(values: Array, axis: int) -> bool:
+    """Whether neighbours along an axis have the same sign, as the FFT windows make them in centred phase."""
+    if values.shape[axis] < 2:
+        return False
+    first, second = np.moveaxis(values, axis, 0)[:-1], np.moveaxis(values, axis, 0)[1:]
+    product = float(np.vdot(first, second).real)
+    energy = float(np.vdot(first, first).real) * float(np.vdot(second, second).real)
+    return bool(product > CORRELATED * np.sqrt(energy))

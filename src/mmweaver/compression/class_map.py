@@ -1,0 +1,62 @@
+"""Entropy coding of a small number for each cell (time, range, doppler): closed, coarse or fine; how many points."""
+
+import numpy as np
+
+from mmweaver.compression.entropy import BitStream
+from mmweaver.compression.lattice import PHASES, Phase, known_neighbours
+from mmweaver.compression.symbol_model import MixedModel
+
+Classes = np.ndarray  # (time, range, doppler) int64
+
+CLOSED, COARSE, FINE = 0, 1, 2
+STRIDES = (4, 2, 1)  # of the lattices, one after the other
+MARGIN = 4
+OPEN_BOUNDS = np.array([1, 3, 6, 9, 13])  # sixteenths of the known neighbours
+FINE_BOUNDS = np.array([1, 6, 12])
+NUM_OPEN, NUM_FINE, NUM_NEAR = len(OPEN_BOUNDS) + 2, len(FINE_BOUNDS) + 1, 4
+
+
+class ClassMapCoder:
+    """`code` encodes classes, or fills them in when decoding. `prior`: probabilities of the classes to begin with."""
+
+    def __init__(self, num_doppler: int, prior: tuple[float, ...] = (0.94, 0.03, 0.03)):
+        contexts = (NUM_OPEN * NUM_FINE * len(STRIDES), NUM_OPEN * NUM_FINE * NUM_NEAR, NUM_OPEN * num_doppler)
+        self.model = MixedModel([np.tile(prior, (num, 1)) for num in contexts])
+
+    def code(self, stream: BitStream, classes: Classes, near: Classes) -> None:
+        """`near` (time, range, doppler): strength of the nearest scatterer, 0 for none."""
+        padded = np.zeros([size + 2 * MARGIN for size in classes.shape], np.int64)
+        inside = padded[(slice(MARGIN, -MARGIN),) * 3]
+        for stride in STRIDES:
+            for phase in PHASES if stride == STRIDES[0] else PHASES[1:]:
+                own = tuple(slice(stride * odd, None, 2 * stride) for odd in phase)
+                if classes[own].size:
+                    contexts = self._contexts(padded, phase, stride, near[own])
+                    values = self.model.code(stream, contexts, classes[own].ravel())
+                    classes[own] = inside[own] = values.reshape(classes[own].shape)
+
+    def _contexts(self, padded: Classes, phase: Phase, stride: int, near: Classes) -> list[np.ndarray]:
+        opened, fine = np.zeros(near.shape, np.int64), np.zeros(near.shape, np.int64)
+        total = 0
+        for offset, weight in known_neighbours(phase):
+            first = [MARGIN + stride * (odd + step) for odd, step in zip(phase, offset, strict=True)]
+            at = tuple(
+                slice(start, start + 2 * stride * (num - 1) + 1, 2 * stride)
+                for start, num in zip(first, near.shape, strict=True)
+            )
+            opened += weight * (padded[at] > CLOSED)
+            fine += weight * (padded[at] == FINE)
+            total += weight
+        by_open = np.full(near.shape, NUM_OPEN - 1)
+        by_fine = np.zeros(near.shape, np.int64)
+        if total:
+            by_open = np.searchsorted(OPEN_BOUNDS, opened * 16 // total, side="right")
+            by_fine = np.searchsorted(FINE_BOUNDS, fine * 16 // total, side="right")
+        both = by_open * NUM_FINE + by_fine
+        column = np.broadcast_to(phase[2] * stride + 2 * stride * np.arange(near.shape[2]), near.shape)
+        contexts = (
+            both * len(STRIDES) + STRIDES.index(stride),
+            both * NUM_NEAR + np.minimum(near, NUM_NEAR - 1),
+            column * NUM_OPEN + by_open,
+        )
+        return [context.ravel() for context in contexts]

@@ -1,0 +1,254 @@
+"""A DCA1000 recording without loss, or with a bounded error, in blocks of frames: the .mmwl file.
+
+    "MMWL" | version u8 | length of header u16 | header | CRC-32 of all before | block, block, ... ; all little-endian
+    header: JSON (UTF-8), deflated: radar, frames in a block, largest error in counts
+    block:  length of payload u32 | frames u16 | check u16 | payload | CRC-32 of all of it
+
+Blocks are independent, so frames can be read without the others, and a file that was cut short holds the frames
+before. The last block may hold fewer frames, and after the last one follow the bytes of an unfinished frame as a block
+of 0 frames. Reference: docs/mmw_format.md.
+"""
+
+import json
+import struct
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from mmweaver.compression.sample_block import BlockShape, decode_block, encode_block
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.regular_files import check_regular, open_regular
+from mmweaver.core.safe_files.safe_text import parse_json
+from mmweaver.formats.dca1000 import bytes_of_frame
+
+MAGIC, VERSION = b"MMWL", 1
+PREFIX = struct.Struct("<4sBH")
+CHECK = struct.Struct("<I")
+BLOCK = struct.Struct("<IH")
+HEAD_CHECK = struct.Struct("<H")
+BLOCK_BYTES = 2**21  # of raw samples, about
+MOST_FRAMES = 4096
+MOST_ERROR = 1000
+MOST_TEXT = 2**20
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LosslessHeader:
+    """Header of a .mmwl file."""
+
+    config: RadarConfig
+    frames_a_block: int
+    max_error: int = 0
+
+    @property
+    def frame_bytes(self) -> int:
+        """Bytes of a frame of the recording."""
+        return bytes_of_frame(self.config)
+
+    def shape(self, num_frames: int) -> BlockShape:
+        """Shape of a block of frames."""
+        config = self.config
+        return BlockShape(
+            loops=num_frames * config.num_loops, antennas=config.num_antennas, samples=config.num_samples, parts=2
+        )
+
+
+def compress_bin(
+    path: Path | str,
+    out: Path | str,
+    config: RadarConfig,
+    *,
+    max_error: int = 0,
+    progress: Progress = lambda _: None,
+) -> int:
+    """Writes adc_data.bin as a .mmwl file, block by block, and returns the size of that file.
+
+    `config`: the radar, for the order of the words; a wrong one costs bytes, not correctness. With `max_error` every
+    word may change by so many counts. Raises InputError where the file cannot be read or written.
+    """
+    if not 0 <= max_error <= MOST_ERROR:
+        raise InputError(f"an error of at most {max_error} counts is not possible; choose 0 to {MOST_ERROR}")
+    if not config.complex_samples or config.num_samples % 2:
+        raise InputError("a DCA1000 records complex samples, an even number per chirp; give the radar that recorded it")
+    size = check_regular(path)
+    if not size:
+        raise InputError(f"{path} is empty; record again")
+    frame = bytes_of_frame(config)
+    frames_a_block = max(1, min(MOST_FRAMES, BLOCK_BYTES // frame))
+    header = LosslessHeader(config=config, frames_a_block=frames_a_block, max_error=max_error)
+    with open_regular(path) as source, atomic_file(Path(out)) as temporary, temporary.open("wb") as target:
+        target.write(_packed_header(header))
+        done = 0
+        while data := source.read(frames_a_block * frame):
+            whole = len(data) // frame
+            if whole:
+                target.write(_packed_block(_encoded(data[: whole * frame], header, whole), whole))
+            if whole * frame < len(data):
+                target.write(_packed_block(zlib.compress(data[whole * frame :], 9), 0))
+            done += len(data)
+            progress(f"{done / 2**20:,.0f} of {size / 2**20:,.0f} MB")
+        return target.tell()
+
+
+class LosslessFile:
+    """A .mmwl file: header and places of the blocks are read and checked at once, blocks on demand.
+
+    `cut_short` is the number of bytes after the last whole block; 0 where the file is whole.
+    """
+
+    def __init__(self, path: Path | str):
+        """Raises InputError where the file is unreadable, not a .mmwl file, or its header is damaged."""
+        self.path = Path(path)
+        self.num_bytes = check_regular(path)
+        with open_regular(path) as stream:
+            self.header = self._read_header(stream)
+            self._scan(stream)
+
+    @property
+    def num_frames(self) -> int:
+        """Number of whole frames."""
+        return sum(self.block_frames)
+
+    def decompress(self, out: Path | str, frames: slice = slice(None), progress: Progress = lambda _: None) -> int:
+        """Writes the recording, or a stretch of its frames, as a .bin, and returns its size."""
+        chosen = range(self.num_frames)[frames]
+        is_whole = len(chosen) == self.num_frames
+        if chosen.step != 1 or not (len(chosen) or is_whole):
+            raise InputError(f"{self.path} has {self.num_frames} frames, and none of them is selected")
+        frame, first = self.header.frame_bytes, 0
+        with atomic_file(Path(out)) as temporary, temporary.open("wb") as target:
+            for index, count in enumerate(self.block_frames):
+                last = first + count
+                if not count and is_whole:
+                    target.write(self._tail(index))
+                elif first < chosen.stop and last > chosen.start:
+                    data = self.block(index)
+                    target.write(data[max(0, chosen.start - first) * frame : (chosen.stop - first) * frame])
+                    progress(f"frame {last} of {self.num_frames}")
+                first = last
+            return target.tell()
+
+    def block(self, index: int) -> bytes:
+        """The bytes of a block of frames, as the recording had them. Raises InputError where it is damaged."""
+        count = self.block_frames[index]
+        try:
+            samples = decode_block(self._payload(index), self.header.shape(count))
+        except (ValueError, IndexError, struct.error, AssertionError, OverflowError) as error:
+            raise self._damaged(f"block {index} is malformed ({error})") from None
+        config = self.header.config
+        lines = samples.reshape(count * config.num_loops, config.num_antennas, config.num_samples // 2, 2, 2)
+        return lines.swapaxes(3, 4).astype("<i2").tobytes()
+
+    def _tail(self, index: int) -> bytes:
+        unpacker = zlib.decompressobj()
+        try:
+            data = unpacker.decompress(self._payload(index), self.header.frame_bytes)
+        except zlib.error as error:
+            raise self._damaged(f"its last bytes are malformed ({error})") from None
+        return data
+
+    def _payload(self, index: int) -> bytes:
+        start, length = self._places[index]
+        with open_regular(self.path) as stream:
+            stream.seek(start)
+            data = stream.read(BLOCK.size + HEAD_CHECK.size + length + CHECK.size)
+        if CHECK.unpack(data[-CHECK.size :])[0] != zlib.crc32(data[: -CHECK.size]):
+            raise self._damaged(f"block {index} fails its checksum")
+        return data[BLOCK.size + HEAD_CHECK.size : -CHECK.size]
+
+    def _read_header(self, stream: BinaryIO) -> LosslessHeader:
+        front = stream.read(PREFIX.size)
+        if len(front) < PREFIX.size or front[:4] != MAGIC:
+            raise InputError(f"{self.path} is no .mmwl file; make one with: mmweaver compress adc_data.bin --lossless")
+        _, version, size = PREFIX.unpack(front)
+        if version != VERSION:
+            raise InputError(f"{self.path} is a .mmwl file of version {version}; this program reads {VERSION}")
+        body = stream.read(size)
+        check = stream.read(CHECK.size)
+        if len(check) < CHECK.size or CHECK.unpack(check)[0] != zlib.crc32(front + body):
+            raise self._damaged("its header fails its checksum")
+        try:
+            text = zlib.decompressobj().decompress(body, MOST_TEXT)
+            values: dict[str, Any] = parse_json(text, f"the header of {self.path}")
+            header = LosslessHeader(
+                config=RadarConfig.from_values(values["radar"]), frames_a_block=int(values["frames_a_block"]),
+                max_error=int(values["max_error"]),
+            )  # fmt: skip
+        except InputError as error:
+            raise self._damaged(str(error)) from None
+        except (zlib.error, ValueError, KeyError, TypeError, OverflowError) as error:
+            raise self._damaged(f"its header is malformed ({error})") from None
+        if not 0 < header.frames_a_block <= MOST_FRAMES:
+            raise self._damaged("its header is malformed (frames in a block)")
+        return header
+
+    def _scan(self, stream: BinaryIO) -> None:
+        """Finds the blocks; nothing is read but their heads."""
+        self.block_frames: list[int] = []
+        self._places: list[tuple[int, int]] = []
+        at = stream.tell()
+        while at + BLOCK.size + HEAD_CHECK.size <= self.num_bytes:
+            stream.seek(at)
+            head, check = stream.read(BLOCK.size), stream.read(HEAD_CHECK.size)
+            length, count = BLOCK.unpack(head)
+            if HEAD_CHECK.unpack(check)[0] != zlib.crc32(head) & 0xFFFF or count > self.header.frames_a_block:
+                raise self._damaged(f"block {len(self._places)} fails its checksum")
+            end = at + BLOCK.size + HEAD_CHECK.size + length + CHECK.size
+            if end > self.num_bytes:
+                break
+            self.block_frames.append(count)
+            self._places.append((at, length))
+            at = end
+        self.cut_short = self.num_bytes - at
+
+    def _damaged(self, why: str) -> InputError:
+        return InputError(f"{self.path} is damaged: {why}; copy it again or compress the recording again")
+
+
+def is_lossless_file(path: Path | str) -> bool:
+    """Whether a file begins as a .mmwl file does."""
+    with open_regular(path) as stream:
+        return stream.read(len(MAGIC)) == MAGIC
+
+
+def describe_lossless(path: Path | str) -> dict[str, Any]:
+    """Describes a file by plain values. Raises InputError where it is damaged."""
+    file = LosslessFile(path)
+    raw = file.num_frames * file.header.frame_bytes
+    return {
+        "file": str(path), "version": VERSION, "bytes": file.num_bytes, "cut_short_bytes": file.cut_short,
+        "frames": file.num_frames, "blocks": len(file.block_frames), "max_error_counts": file.header.max_error,
+        "raw_bytes": raw, "ratio": round(raw / file.num_bytes, 2), "radar": {"name": file.header.config.name},
+    }  # fmt: skip
+
+
+def _encoded(data: bytes, header: LosslessHeader, num_frames: int) -> bytes:
+    """A block of frames: groups of I0 I1 Q0 Q1 become samples of two parts (the order of I and Q does not matter)."""
+    config = header.config
+    words = np.frombuffer(data, "<i2")
+    lines = words.reshape(num_frames * config.num_loops, config.num_antennas, config.num_samples // 2, 2, 2)
+    samples = lines.swapaxes(3, 4).reshape(len(lines), config.num_antennas, config.num_samples, 2)
+    return encode_block(samples.astype(np.int64), header.max_error)
+
+
+def _packed_header(header: LosslessHeader) -> bytes:
+    values = {
+        "radar": header.config.to_values(), "frames_a_block": header.frames_a_block, "max_error": header.max_error
+    }  # fmt: skip
+    body = zlib.compress(json.dumps(values, separators=(",", ":"), allow_nan=False).encode(), 9)
+    front = PREFIX.pack(MAGIC, VERSION, len(body)) + body
+    return front + CHECK.pack(zlib.crc32(front))
+
+
+def _packed_block(payload: bytes, num_frames: int) -> bytes:
+    head = BLOCK.pack(len(payload), num_frames)
+    body = head + HEAD_CHECK.pack(zlib.crc32(head) & 0xFFFF) + payload
+    return body + CHECK.pack(zlib.crc32(body))

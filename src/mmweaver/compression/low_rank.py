@@ -1,0 +1,98 @@
+"""A chunk as a matrix of low rank, rows (frame, range) by columns (Doppler, antenna), with quantised factors.
+
+It suits static scenes whose spectrum is spread over many Doppler bins alike, by phase noise or a strong leakage.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Complex, Int
+
+from mmweaver.compression.entropy import BitStream
+from mmweaver.compression.level_coder import LevelCoder
+
+Array = np.ndarray
+MOST_RANK = 255
+ROUNDING = 0.4
+LEAST_GAIN = 0.3  # squared steps per bit that a component must remove
+WIDER = 3.0  # noise of windowed cells is correlated: its strongest components exceed those of white noise
+
+
+@dataclass(frozen=True, kw_only=True)
+class RankFactors:
+    """Levels (part, 1, component, row, 1) of the left factor and (part, 1, component, doppler, antenna) of the right.
+
+    An error of one step in either factor leaves the same error in the matrix: columns of the left factor have the
+    strength of their component, rows of the right one unit norm, so these have finer steps.
+    """
+
+    left: Int[Array, "2 1 rank row 1"]
+    right: Int[Array, "2 1 rank doppler antenna"]
+
+    @classmethod
+    def of(
+        cls, values: Complex[Array, "frame range doppler antenna"], step: float, noise_power: float = 0.0
+    ) -> "RankFactors | None":
+        """The components worth their bits at a step, or None where there are none.
+
+        Components no stronger than noise of `noise_power` a cell would be are left out.
+        """
+        frames, num_range, doppler, antennas = values.shape
+        matrix = values.reshape(frames * num_range, doppler * antennas)
+        left, strength, right = np.linalg.svd(matrix, full_matrices=False)
+        rank = _worthwhile(strength, matrix.shape, step, noise_power)
+        if not rank:
+            return None
+        scaled = (left[:, :rank] * strength[:rank]).T
+        left_levels = _rounded(scaled[None, :, :, None] / step)
+        steps = _right_steps(left_levels)
+        rows = right[:rank].reshape(1, rank, doppler, antennas)
+        return cls(left=left_levels, right=_rounded(rows / steps[:, None, None]))
+
+    @property
+    def rank(self) -> int:
+        """Number of components."""
+        return self.left.shape[2]
+
+    def values(self, step: float, shape: tuple[int, int, int, int]) -> Complex[Array, "frame range doppler antenna"]:
+        """The matrix as values of a chunk of this shape."""
+        left = (self.left[0, 0, :, :, 0] + 1j * self.left[1, 0, :, :, 0]) * step
+        steps = _right_steps(self.left)[:, None]
+        right = (self.right[0, 0] + 1j * self.right[1, 0]).reshape(self.rank, -1) * steps
+        return (left.T @ right).reshape(shape)
+
+    def code(self, stream: BitStream) -> None:
+        """Encodes the factors, or fills them in when decoding."""
+        for levels in (self.left, self.right):
+            every = np.ones(levels.shape[2:], np.int64)
+            LevelCoder(levels.shape[1:], (True, False)).code(stream, levels, every)
+
+    @classmethod
+    def empty(cls, rank: int, shape: tuple[int, int, int, int]) -> "RankFactors":
+        """Factors to decode into, of a chunk (frame, range, doppler, antenna)."""
+        frames, num_range, doppler, antennas = shape
+        return cls(
+            left=np.zeros((2, 1, rank, frames * num_range, 1), np.int64),
+            right=np.zeros((2, 1, rank, doppler, antennas), np.int64),
+        )
+
+
+def _worthwhile(strength: Array, shape: tuple[int, int], step: float, noise_power: float) -> int:
+    """Number of leading components whose energy is worth the bits of their factors."""
+    noise = noise_power * WIDER * (np.sqrt(shape[0]) + np.sqrt(shape[1])) ** 2
+    size = np.maximum(strength.astype(np.float64) ** 2 - noise, 1e-30)
+    bits = sum(num * np.log2(1 + 6 * size / (num * step**2)) for num in shape)
+    gain = size - sum(shape) * step**2 / 6
+    worth = gain > LEAST_GAIN * step**2 * bits
+    return min(int(np.argmin(worth)) if not worth.all() else len(worth), MOST_RANK)
+
+
+def _rounded(values: Complex[Array, "..."]) -> Array:
+    parts = np.stack([np.real(values), np.imag(values)])
+    return (np.sign(parts) * np.floor(np.abs(parts) + ROUNDING)).astype(np.int64)
+
+
+def _right_steps(left: Array) -> Array:
+    """Step of each row of the right factor: that of the matrix over the strength of the component."""
+    norm = np.sqrt(np.sum(left.astype(np.float64) ** 2, axis=(0, 1, 3, 4)))
+    return 1 / np.maximum(norm, 1.0)

@@ -1,0 +1,98 @@
+"""Writes a long recording as a .mmw file piece by piece, at constant memory, and appends to one."""
+
+import os
+from pathlib import Path
+from types import TracebackType
+
+import numpy as np
+
+from mmweaver.compression.mmw_codec import check_request, check_writable, encoded_chunks, scale_of
+from mmweaver.compression.mmw_container import MmwFile, MmwHeader, header_for, pack_header, pack_record
+from mmweaver.compression.segment import COARSER, SegmentEncoder
+from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import cannot_write
+from mmweaver.core.records import RadarCube
+
+FEWEST_BYTES_A_FRAME = 4
+
+
+class MmwWriter:
+    """Appends pieces of a recording to a file; every record is on the disk before the next one is encoded.
+
+    The file is readable up to its last whole record at any time, whatever ends the program. With `append` an existing
+    file is continued; a record that was cut short is cut off first.
+    """
+
+    def __init__(self, path: Path | str, *, append: bool = False):
+        """Raises InputError where the file exists and `append` is not set, or cannot be continued."""
+        self.path = Path(path)
+        self._header: MmwHeader | None = None
+        self._last_s: float | None = None
+        self._end = 0
+        if self.path.exists():
+            if not append:
+                raise InputError(f"{path} exists; choose another name or append to it")
+            file = MmwFile(self.path)
+            if file.version < 3:
+                raise InputError(f"{path} is of version {file.version}, which cannot be appended to; compress it again")
+            self._header, self._end = file.header, file.num_bytes - file.cut_short
+            self._last_s = float(file.frame_time_s[-1]) if file.records else None
+        try:
+            self._stream = self.path.open("r+b" if self._header else "xb")
+            self._stream.truncate(self._end)
+            self._stream.seek(self._end)
+        except OSError as error:
+            raise cannot_write(self.path, error) from None
+
+    def append(
+        self,
+        cube: RadarCube,
+        *,
+        num_bytes: int | None = None,
+        quality_db: float | None = None,
+        keep_noise: bool = False,
+    ) -> int:
+        """Encodes and writes a piece in `num_bytes` or to `quality_db`; returns the bytes written.
+
+        Frame times continue the recording's. Raises InputError where the piece has another radar or scale, or cannot be
+        stored.
+        """
+        check_request(num_bytes, quality_db)
+        check_writable(cube)
+        if self._header is None:
+            self._header = header_for(cube.config, cube.scale, cube.grid.frame_time_s)
+            self._write(pack_header(self._header))
+        same_scale = cube.scale == self._header.scale or (np.isnan(cube.scale) and np.isnan(self._header.scale))
+        if cube.config != self._header.config or not same_scale:
+            raise InputError(
+                f"{self.path} holds frames of another radar or scale; write these into a file of their own"
+            )
+        segment = SegmentEncoder(cube, scale_of(cube), coarser=1 if keep_noise else COARSER)
+        chunks = encoded_chunks(segment, num_bytes=num_bytes, quality_db=quality_db)
+        before = self._end
+        for chunk, part in zip(chunks, segment.parts, strict=True):
+            time_s = cube.grid.frame_time_s[part.start : part.stop]
+            self._write(pack_record(chunk, time_s, self._header, self._last_s))
+            self._last_s = float(time_s[-1])
+        return self._end - before
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._stream.close()
+
+    def _write(self, data: bytes) -> None:
+        try:
+            self._stream.write(data)
+            self._stream.flush()
+            os.fsync(self._stream.fileno())
+        except OSError as error:
+            raise cannot_write(self.path, error) from None
+        self._end += len(data)
+
+    def __enter__(self) -> "MmwWriter":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()

@@ -1,0 +1,109 @@
+"""Adaptive distributions of integers, mixed from several contexts and coded many symbols at once.
+
+Probabilities are ratios of counts: additions, products and divisions of IEEE doubles, identical on every machine.
+"""
+
+import numpy as np
+
+from mmweaver.compression.entropy import BitStream
+
+Integers = np.ndarray  # (n,) int64; called thousands of times a cube
+
+MEMORY = 4000.0  # counts of a context are halved beyond
+CONFIDENT = 150.0  # counts beyond which a context gains no more weight
+PRIOR = 3.0  # symbols that the initial distribution counts for
+HALF = 12  # signed numbers from -HALF to HALF have a symbol each; others escape
+ESCAPE = 2 * HALF + 1
+SIZE = ESCAPE + 1
+MOST_BITS = 30
+
+
+class MixedModel:
+    """Distributions of symbols 0 ... size - 1, one table of contexts for each entry of `num_contexts`.
+
+    The tables are averaged; contexts with many counts and narrow distributions have more weight.
+    """
+
+    def __init__(self, priors: list[np.ndarray]):
+        """Initial distributions (context, symbol) of each table; they need not be normalised."""
+        self.size = priors[0].shape[1]
+        self.tables = [PRIOR * prior / prior.sum(axis=1, keepdims=True) for prior in priors]
+        self.totals = [np.full(len(prior), PRIOR) for prior in priors]
+
+    def code(self, stream: BitStream, contexts: list[Integers], values: Integers, mirrored: np.ndarray | None = None):
+        """Codes symbols (n,) with one context (n,) per table, then learns them.
+
+        Where `mirrored` (n,) is set, a number and its negative are learned alike.
+        """
+        rows = np.zeros((len(values), self.size))
+        for table, total, context in zip(self.tables, self.totals, contexts, strict=True):
+            share = table / total[:, None]
+            confidence = np.minimum(total, CONFIDENT) / (1.005 - np.einsum("cs,cs->c", share, share))
+            rows += (share * confidence[:, None])[context]
+        rows /= rows.sum(axis=1, keepdims=True)
+        found = stream.rows(rows, values)
+        for index, context in enumerate(contexts):
+            self._learn(index, context, found, mirrored)
+        return found
+
+    def _learn(self, index: int, context: Integers, symbols: Integers, mirrored: np.ndarray | None) -> None:
+        table, total = self.tables[index], self.totals[index]
+        place = context * self.size + symbols
+        if mirrored is None:
+            table += np.bincount(place, minlength=table.size).reshape(table.shape)
+        else:
+            other = context * self.size + np.where(symbols < ESCAPE, 2 * HALF - symbols, symbols)
+            weights = np.where(mirrored, 0.5, 1.0)
+            table += np.bincount(place, weights, table.size).reshape(table.shape)
+            table += np.bincount(other, 1.0 - weights, table.size).reshape(table.shape)
+        total += np.bincount(context, minlength=len(total))
+        old = total > MEMORY
+        table[old] *= 0.5
+        total[old] *= 0.5
+
+
+class SignedModel:
+    """Signed integers in contexts: high part by symbol, the lowest `shift` bits uniform, large ones by escape."""
+
+    def __init__(self, scales: list[np.ndarray]):
+        """`scales` (context,) of each table: the magnitude to expect."""
+        self.symbols = MixedModel([_prior(scale) for scale in scales])
+        self.escapes = MixedModel([np.ones((1, MOST_BITS))])
+
+    def code(
+        self, stream: BitStream, contexts: list[Integers], shift: Integers, values: Integers, mirrored
+    ) -> Integers:
+        """Codes values (n,); `mirrored` (n,): a value and its negative are equally likely."""
+        half = (1 << shift) >> 1
+        high = (values + half) >> shift
+        low = values + half - (high << shift)
+        symbol = np.where(np.abs(high) <= HALF, high + HALF, ESCAPE)
+        symbol = self.symbols.code(stream, contexts, symbol, mirrored)
+        out = symbol - HALF
+        if shift.any():
+            out = (
+                (out << shift)
+                - half
+                + stream.uniform(np.where(symbol < ESCAPE, 1 << shift, 1), np.where(symbol < ESCAPE, low, 0))
+            )
+        far = np.flatnonzero(symbol == ESCAPE)
+        if len(far):
+            out[far] = self._far(stream, values[far])
+        return out
+
+    def _far(self, stream: BitStream, values: Integers) -> Integers:
+        size = np.abs(values) + 1
+        bits = (np.frexp(size.astype(np.float64))[1] - 1).astype(np.int64)
+        bits = self.escapes.code(stream, [np.zeros(len(values), np.int64)], np.minimum(bits, MOST_BITS - 1))
+        top = 1 << bits
+        size = top + stream.uniform(top, size - top)
+        negative = stream.bits(np.full(len(values), 0.5), (values < 0).astype(np.int64))
+        return (size - 1) * (1 - 2 * negative)
+
+
+def _prior(scale: np.ndarray) -> np.ndarray:
+    distance = np.abs(np.arange(SIZE) - HALF)
+    relative = 1 + distance / scale[:, None]
+    prior = 1.0 / (relative * relative * relative)
+    prior[:, ESCAPE] = 0.003
+    return prior

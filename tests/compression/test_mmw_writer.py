@@ -1,0 +1,59 @@
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, read_cube
+from mmweaver.compression.mmw_writer import MmwWriter
+from mmweaver.core.errors import InputError
+from tests.compression.test_mmw_codec import plain_cube
+from tests.fields.echoes import SMALL, error_db
+
+RADAR = replace(SMALL, num_loops=2, num_range_bins=4)
+
+
+def piece(first: int, num_frames: int):
+    cube = plain_cube(RADAR, num_frames)
+    return replace(cube, grid=replace(cube.grid, frame_time_s=cube.grid.frame_time_s + first * RADAR.frame_period_s))
+
+
+def test_pieces_are_one_recording(tmp_path: Path):
+    path = tmp_path / "a.mmw"
+    with MmwWriter(path) as writer:
+        sizes = [writer.append(piece(0, 10), num_bytes=900), writer.append(piece(10, 5), quality_db=20.0)]
+    with MmwWriter(path, append=True) as writer:
+        sizes.append(writer.append(piece(15, 10), num_bytes=900))
+    again = read_cube(path)
+    assert again.grid.frame_time_s == pytest.approx(np.arange(25) * RADAR.frame_period_s)
+    assert sum(sizes) <= path.stat().st_size < sum(sizes) + 120
+    assert error_db(again.values[10:15], plain_cube(RADAR, 5).values) < -15
+    assert len(read_cube(path, slice(12, 20)).values) == 8
+
+
+def test_a_record_cut_short_is_replaced(tmp_path: Path):
+    path = tmp_path / "a.mmw"
+    with MmwWriter(path) as writer:
+        for first in (0, 4):
+            writer.append(piece(first, 4), num_bytes=700)
+    whole = read_cube(path)
+    path.write_bytes(path.read_bytes()[:-30])
+    assert describe_mmw(path)["shape"][0] == 4
+    with MmwWriter(path, append=True) as writer:
+        writer.append(piece(4, 4), num_bytes=700)
+    assert describe_mmw(path)["cut_short_bytes"] == 0
+    assert np.array_equal(read_cube(path).values, whole.values)
+
+
+def test_what_does_not_fit_is_refused(tmp_path: Path):
+    path = tmp_path / "a.mmw"
+    path.write_bytes(compress_cube(piece(0, 3), num_bytes=800))
+    with pytest.raises(InputError, match="exists"):
+        MmwWriter(path)
+    before = path.read_bytes()
+    with MmwWriter(path, append=True) as writer, pytest.raises(InputError, match="another radar"):
+        writer.append(plain_cube(SMALL, 1), num_bytes=800)
+    assert path.read_bytes() == before
+    (tmp_path / "b.mmw").write_bytes((Path(__file__).parents[1] / "golden" / "version_1.mmw").read_bytes())
+    with pytest.raises(InputError, match="version 1"):
+        MmwWriter(tmp_path / "b.mmw", append=True)
