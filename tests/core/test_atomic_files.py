@@ -1,11 +1,20 @@
-"""A file or folder is whole or not there."""
+"""A file or folder is whole or not there, whenever the process dies and whatever the disk answers."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from mmweaver.core.atomic_files import atomic_file, staged_folder
+from mmweaver.core.atomic_files import atomic_file, atomic_files, create_once, staged_folder, written
+from mmweaver.core.checksums import SUMS_FILE, damages, read_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.staging import COMMITTED, staging_path
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(file.name for file in folder.iterdir())
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path):
@@ -15,14 +24,14 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path):
         path.write_text("half")
         raise RuntimeError
     assert target.read_text() == "old"
-    assert [file.name for file in tmp_path.iterdir()] == ["a.txt"]
+    assert names(tmp_path) == ["a.txt"]
 
 
-def test_a_failed_folder_leaves_nothing(tmp_path: Path):
-    with pytest.raises(RuntimeError), staged_folder(tmp_path / "out") as stage:
+def test_a_failed_folder_leaves_nothing_not_even_the_folders_above(tmp_path: Path):
+    with pytest.raises(RuntimeError), staged_folder(tmp_path / "new" / "out") as stage:
         (stage / "a.txt").write_text("half")
         raise RuntimeError
-    assert list(tmp_path.iterdir()) == []
+    assert names(tmp_path) == []
 
 
 def test_a_full_folder_is_refused_and_overwritten_on_demand(tmp_path: Path):
@@ -33,11 +42,108 @@ def test_a_full_folder_is_refused_and_overwritten_on_demand(tmp_path: Path):
         pass
     with staged_folder(out, overwrite=True) as stage:
         (stage / "new.txt").write_text("new")
-    assert sorted(file.name for file in out.iterdir()) == ["mine.txt", "new.txt"]
-    assert [file.name for file in tmp_path.iterdir()] == ["out"]
+    assert names(out) == [SUMS_FILE, "mine.txt", "new.txt"]
+    assert names(tmp_path) == ["out"]
+    assert set(read_sums(out) or {}) == {"new.txt"}
 
 
-def test_a_full_disk_is_one_clear_line(tmp_path: Path):
-    with pytest.raises(InputError, match="cannot write"), staged_folder(tmp_path / "out"):
+def test_an_existing_folder_is_filled_and_stays_the_same_folder(tmp_path: Path):
+    """It may be a mount point, or the working directory of a shell."""
+    before = tmp_path.stat().st_ino
+    with staged_folder(tmp_path) as stage:
+        (stage / "a.txt").write_text("a")
+    assert tmp_path.stat().st_ino == before
+    assert names(tmp_path) == [SUMS_FILE, "a.txt"]
+
+
+@pytest.mark.parametrize("moved", [0, 1, 2])
+def test_moving_into_a_folder_that_was_interrupted_is_finished(tmp_path: Path, moved: int):
+    """Old and new files mixed do not match the checksums; the next to write there moves the rest."""
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).write_text("old")
+    with staged_folder(tmp_path / "new") as stage:
+        for name in ("a.txt", "b.txt"):
+            (stage / name).write_text("new")
+    committed = (tmp_path / "new").rename(tmp_path / COMMITTED)
+    for name in (SUMS_FILE, "a.txt")[:moved]:
+        (committed / name).rename(tmp_path / name)
+    assert (len(damages(tmp_path)) > 0) == (moved > 0)
+    with pytest.raises(InputError, match="not empty"), staged_folder(tmp_path):
+        pass
+    assert [(tmp_path / name).read_text() for name in ("a.txt", "b.txt")] == ["new", "new"]
+    assert names(tmp_path) == [SUMS_FILE, "a.txt", "b.txt"]
+    assert damages(tmp_path) == []
+
+
+def test_files_that_belong_together_are_all_there_or_none(tmp_path: Path):
+    first, second = tmp_path / "a.txt", tmp_path / "b.txt"
+    with pytest.raises(InputError, match="cannot write"), atomic_files(first, second) as stages:
+        stages[0].write_text("a")
         raise OSError(28, "No space left on device")
-    assert list(tmp_path.iterdir()) == []
+    assert names(tmp_path) == []
+    second.mkdir()  # so that the second cannot be renamed
+    with pytest.raises(InputError, match="cannot write"), atomic_files(first, second) as stages:
+        stages[0].write_text("a")
+    assert names(tmp_path) == ["b.txt"]
+
+
+def test_only_a_full_disk_is_told_to_free_space(tmp_path: Path):
+    for number, advice in ((28, "free some space"), (122, "free some space"), (30, "another disk"), (36, "shorter")):
+        with pytest.raises(InputError, match=advice) as caught, staged_folder(tmp_path / "out"):
+            raise OSError(number, os.strerror(number))
+        assert ("free some space" in str(caught.value)) == (number in (28, 122))
+    assert names(tmp_path) == []
+
+
+def test_what_dead_processes_left_is_removed_and_what_living_ones_write_is_not(tmp_path: Path):
+    code = "import sys; from pathlib import Path; from mmweaver.core.staging import staging_path;"
+    code += "staging_path(Path(sys.argv[1])).mkdir(); staging_path(Path(sys.argv[1])).write_text('')"
+    living = staging_path(tmp_path / "walk.npz")
+    living.write_text("")
+    # the number of a living process, as another one had it before
+    reused = living.with_name(living.name.replace(f"-{os.getpid()}-", f"-{os.getpid()}-1"))
+    reused.mkdir()
+    target = tmp_path / "walk.png"
+    subprocess.run([sys.executable, "-c", code, str(target)], check=False)
+    subprocess.run([sys.executable, "-c", code.replace("mkdir()", "write_text('')"), str(target)], check=True)
+    (tmp_path / ".walk.png.mine").write_text("keep")
+    with atomic_file(target) as temporary:
+        temporary.write_text("new")
+    assert names(tmp_path) == sorted([".walk.png.mine", living.name, "walk.png"])
+
+
+def test_a_link_is_followed(tmp_path: Path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "out").symlink_to("real")
+    (tmp_path / "file.txt").symlink_to("real/file.txt")
+    with staged_folder(tmp_path / "out") as stage:
+        (stage / "a.txt").write_text("a")
+    with atomic_file(tmp_path / "file.txt") as temporary:
+        temporary.write_text("b")
+    assert (tmp_path / "real" / "file.txt").read_text() == "b"
+    assert (tmp_path / "out").is_symlink()
+    assert (tmp_path / "file.txt").is_symlink()
+
+
+def test_a_file_that_another_command_replaces_leaves_the_checksums(tmp_path: Path):
+    with staged_folder(tmp_path / "out") as stage:
+        (stage / "a.txt").write_text("a")
+        (stage / "b.txt").write_text("b")
+    with atomic_file(tmp_path / "out" / "a.txt") as temporary:
+        temporary.write_text("another")
+    assert set(read_sums(tmp_path / "out") or {}) == {"b.txt"}
+
+
+def test_the_first_of_several_creates(tmp_path: Path):
+    assert create_once(tmp_path / "plan.json", "one") == "one"
+    assert create_once(tmp_path / "plan.json", "two") == "one"
+    assert names(tmp_path) == ["plan.json"]
+    assert written()[-1] == tmp_path / "plan.json"
+
+
+def test_the_longest_name_that_fits_can_be_written(tmp_path: Path):
+    target = tmp_path / ("a" * 251 + ".npz")
+    with atomic_file(target) as temporary:
+        temporary.write_text("")
+        assert temporary.suffix == ".npz"
+    assert target.is_file()

@@ -53,7 +53,7 @@ def test_json_gives_the_same_radar_back(name: str):
         ({"first_range_bin": 200}, "range bins"),
         ({"sample_rate_hz": float("nan")}, "sample_rate_hz"),
         ({"num_loops": 0}, "num_loops"),
-        ({"idle_time_s": -1e-6}, "negative"),
+        ({"idle_time_s": -1e-6}, "idle_time_s must be 0 to"),
         ({"rx_position_m": ()}, "receiver"),
     ],
 )

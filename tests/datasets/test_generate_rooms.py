@@ -3,11 +3,12 @@
 import hashlib
 import json
 import os
-import platform
 import shutil
+import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +16,11 @@ import pytest
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
+from mmweaver.core.staging import is_being_written, staging_path
+from mmweaver.datasets import generate_rooms
 from mmweaver.datasets.dataset_plan import DatasetPlan
-from mmweaver.datasets.dataset_store import PLAN_FILE, is_being_written, read_rooms
+from mmweaver.datasets.dataset_store import PLAN_FILE, read_rooms
+from mmweaver.datasets.dataset_writer import open_dataset
 from mmweaver.datasets.generate_rooms import generate_dataset, generate_one
 
 zarr = pytest.importorskip("zarr")
@@ -53,8 +57,8 @@ def test_after_a_kill_the_rest_is_generated_bit_by_bit(folder: Path, tmp_path: P
     again = tmp_path / "again"
     shutil.copytree(folder, again)
     shutil.rmtree(again / "office_001")
-    host = platform.node().replace(".", "-")
-    dead, living = (again / f".office_001.{host}.{process}" for process in (4_000_000, os.getppid()))
+    living = staging_path(again / "office_001")
+    dead = living.with_name(living.name.replace(f"-{os.getpid()}-", "-4000000-"))
     for partial in (dead, living):  # what a killed process leaves, and what a worker that outlives it still writes
         partial.mkdir()
     reports = generate_dataset(again, PLAN, AWR1843)
@@ -112,6 +116,60 @@ def test_leftovers_of_a_zombie_worker_are_removed(tmp_path: Path):
         if Path(f"/proc/{child.pid}/stat").read_text().rpartition(")")[2].split()[0] == "Z":
             break
         time.sleep(0.01)
-    host = platform.node().replace(".", "-") or "here"
-    assert not is_being_written(tmp_path / f".office_000.{host}.{child.pid}")
+    own = staging_path(tmp_path / "office_000")
+    assert not is_being_written(own.with_name(own.name.replace(f"-{os.getpid()}-", f"-{child.pid}-")))
     child.wait()
+
+
+def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path):
+    """Whatever part of the root is there, an empty folder included, the same command completes it to the bit."""
+    root = [PLAN_FILE, "zarr.json", "SHA256SUMS", "range_m"]
+    for count in range(len(root) + 1):
+        part = tmp_path / f"part_{count}"
+        part.mkdir()
+        for name in root[:count]:
+            copy = shutil.copytree if (folder / name).is_dir() else shutil.copy
+            copy(folder / name, part / name)
+        if count == 4:
+            (part / "SHA256SUMS").unlink()
+            shutil.rmtree(part / "range_m" / "c")
+        if count == 3:  # a list of checksums is written last: what it lists was there, and is damaged
+            with pytest.raises(InputError, match="--repair"):
+                open_dataset(part, PLAN, AWR1843)
+            continue
+        open_dataset(part, PLAN, AWR1843)
+        own = {name: digest for name, digest in contents(folder).items() if not name.startswith("office")}
+        assert contents(part) == own
+
+
+def test_several_that_start_at_once_make_one_set(folder: Path, tmp_path: Path):
+    code = (
+        "import sys; from pathlib import Path; from mmweaver.datasets.dataset_plan import DatasetPlan;"
+        "from mmweaver.core.presets import AWR1843; from mmweaver.datasets.dataset_writer import open_dataset;"
+        "sys.stdin.read();"
+        "open_dataset(Path(sys.argv[1]), DatasetPlan(kinds=('office',), lightings=('day',), num_layouts=2,"
+        " sequences_a_room=2, num_frames=4), AWR1843)"
+    )
+    words = [sys.executable, "-c", code, str(tmp_path / "set")]
+    several = [subprocess.Popen(words, stdin=subprocess.PIPE) for _ in range(3)]
+    for one in several:
+        assert one.stdin is not None
+        one.stdin.close()
+    assert [one.wait() for one in several] == [0, 0, 0]
+    own = {name: digest for name, digest in contents(folder).items() if not name.startswith("office")}
+    assert contents(tmp_path / "set") == own
+
+
+def test_another_radar_of_the_same_name_is_refused(folder: Path):
+    with pytest.raises(InputError, match="another radar"):
+        open_dataset(folder, PLAN, replace(AWR1843, tx_power_dbm=3.0))
+
+
+def test_a_killed_worker_is_one_line_and_not_a_wait_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(generate_rooms, "generate_one", _kill_myself)
+    with pytest.raises(InputError, match="a worker was killed"):
+        generate_dataset(tmp_path / "set", PLAN, AWR1843, workers=2)
+
+
+def _kill_myself(task: object) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)

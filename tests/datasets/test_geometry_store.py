@@ -72,7 +72,7 @@ def test_geometry_at_other_instants_of_the_frame_is_refused(folders: dict[bool, 
     assert stored is not None
     longer = replace(AWR1843, num_loops=4 * AWR1843.num_loops)
     with pytest.raises(InputError, match="instants a frame"):
-        _ = StoredGeometry(folder=stored.folder, config=longer).node_joints_m
+        _ = StoredGeometry(files=stored.files, config=longer).node_joints_m
 
 
 def test_signals_and_geometry_are_not_mixed(folders: dict[bool, Path]):

@@ -1,89 +1,220 @@
-"""Files and folders that are written completely or not at all: under a temporary name, then renamed."""
+"""Files and folders that are written completely or not at all: under a temporary name, synced to disk, then renamed.
+
+A kill at any instant leaves the old state or the new one; the temporary names of a dead process are removed by the next
+that writes there (`core.staging`). Nothing is renamed before its bytes are on the disk. Reference: decision 175.
+"""
 
 import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from mmweaver.core.checksums import SUMS_FILE, read_sums, sums_text, write_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import cannot_write, check_output_folder, is_empty, resolved
+from mmweaver.core.staging import COMMITTED, finish_moving, remove, staging_path, sweep, sync, sync_tree
+
+_written: list[Path] = []
 
 
 @contextmanager
 def atomic_file(path: Path) -> Iterator[Path]:
     """Yields a temporary path in the same folder; on success it is renamed to `path`, on any error it is removed."""
-    path = Path(path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-    except OSError as error:
-        raise InputError(_cannot_write(path, error)) from error
-    os.close(handle)
-    temporary = Path(name)
-    try:
+    with atomic_files(path) as (temporary,):
         yield temporary
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(path)
-    except OSError as error:
-        raise InputError(_cannot_write(path, error)) from error
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 @contextmanager
-def staged_folder(out: Path, *, overwrite: bool = False) -> Iterator[Path]:
-    """Yields a temporary folder next to `out`; on success it is renamed to `out`, on any error it is removed.
+def atomic_files(*paths: Path) -> Iterator[list[Path]]:
+    """As `atomic_file` for several files that belong together: all are on the disk before the first is renamed.
 
-    Raises InputError where `out` exists and is not an empty folder, unless `overwrite` allows its files to be
-    replaced one by one (files of other names in it stay), or where nothing can be written.
+    Missing folders are made, and removed again on an error. Raises InputError where something cannot be written.
     """
-    out = Path(out)
-    check_output_folder(out, overwrite=overwrite)
+    targets = [resolved(path) for path in paths]
+    made: list[Path] = []
+    staged: list[Path] = []
     try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        stage = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
+        for target in targets:
+            made += _make_folders(target.parent)
+            sweep(target.parent)
+            staged.append(_new_file(target))
+        yield staged
+        for temporary in staged:
+            sync(temporary)
+        _rename_all(staged, targets)
+        _written.extend(Path(path) for path in paths)
     except OSError as error:
-        raise InputError(_cannot_write(out, error)) from error
-    try:
-        yield stage
-        stage.chmod(0o777 & ~_umask())
-        _move_into_place(stage, out)
-    except OSError as error:
-        raise InputError(_cannot_write(out, error)) from error
+        raise cannot_write(Path(paths[0]), error) from error
     finally:
-        shutil.rmtree(stage, ignore_errors=True)
+        for temporary in staged:
+            remove(temporary)
+        _remove_empty(made)
 
 
-def check_output_folder(out: Path, *, overwrite: bool) -> None:
-    """Raises InputError where `staged_folder` would; cheap, so that it can be called before long work."""
-    out = Path(out)
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out} is a file, not a folder; choose another --out")
-    if out.is_dir() and any(out.iterdir()) and not overwrite:
-        raise InputError(f"{out} exists and is not empty; choose another --out or allow it with --overwrite")
-    nearest = next(folder for folder in (out.absolute(), *out.absolute().parents) if folder.exists())
-    if not nearest.is_dir():
-        raise InputError(f"{out} cannot be a folder, for {nearest} is a file; choose another --out")
-    if not os.access(nearest, os.W_OK | os.X_OK):
-        raise InputError(f"{out} cannot be written: no permission in {nearest}; choose another --out")
-
-
-def _move_into_place(stage: Path, out: Path) -> None:
-    if out.is_dir() and any(out.iterdir()):
-        for file in stage.iterdir():
-            file.replace(out / file.name)
+def _forget_sum(path: Path) -> None:
+    """Takes a file out of its folder's SHA256SUMS, before it is replaced by a file of another origin."""
+    try:
+        known = read_sums(path.parent)
+    except InputError:
         return
-    if out.is_dir():
-        out.rmdir()
-    stage.rename(out)
+    if known is not None and known.pop(path.name, None) is not None:
+        with atomic_file(path.parent / SUMS_FILE) as temporary:
+            temporary.write_text(sums_text(known), encoding="utf-8")
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _new_file(target: Path) -> Path:
+    temporary = staging_path(target)
+    os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+    return temporary
 
 
-def _cannot_write(path: Path, error: OSError) -> str:
-    return f"cannot write {path}: {error.strerror or error}; free some space or choose another --out"
+def _rename_all(staged: list[Path], targets: list[Path]) -> None:
+    """Renames one after the other; where one cannot be, those that were new are taken back."""
+    new: list[Path] = []
+    try:
+        for temporary, target in zip(staged, targets, strict=True):
+            is_new = not target.exists()
+            if not is_new:
+                _forget_sum(target)
+            temporary.replace(target)
+            if is_new:
+                new.append(target)
+        for folder in {target.parent for target in targets}:
+            sync(folder)
+    except OSError:
+        for target in new:
+            remove(target)
+        raise
+
+
+@contextmanager
+def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = False) -> Iterator[Path]:
+    """Yields a temporary folder; on success it becomes `out`, with the sha256 of its files; on any error it is removed.
+
+    An `out` that exists is filled, so that it may be a mount point or somebody's working directory: the complete files
+    are moved into it, and if that is interrupted, the next to write there moves the rest. With `overwrite` files are
+    replaced, and those of other names stay; with `keep_existing` a folder that is there by then is kept, for content
+    that is the same whoever writes it. Raises InputError where `check_output_folder` does, and where nothing can be
+    written.
+    """
+    target = resolved(out)
+    if not keep_existing:
+        check_output_folder(out, overwrite=overwrite)
+    made: list[Path] = []
+    stage: Path | None = None
+    try:
+        made = _make_folders(target.parent)
+        sweep(target.parent)
+        is_new = keep_existing or not target.is_dir()
+        if not is_new:
+            sweep(target)
+        stage = staging_path(target if is_new else target / target.name)
+        stage.mkdir()
+        yield stage
+        write_sums(stage)
+        sync_tree(stage)
+        if is_new:
+            _rename_new(stage, target, keep_existing=keep_existing)
+        else:
+            _move_into(stage, target)
+        _written.append(Path(out))
+    except OSError as error:
+        raise cannot_write(Path(out), error) from error
+    finally:
+        if stage is not None:
+            remove(stage)
+        _remove_empty(made)
+
+
+def _rename_new(stage: Path, target: Path, *, keep_existing: bool) -> None:
+    try:
+        stage.rename(target)
+    except OSError:
+        if not (keep_existing and target.is_dir()):
+            raise
+    try:
+        sync(target.parent)
+    except OSError:
+        if stage.parent.is_dir() and not stage.exists():
+            target.rename(stage)  # what is not on the disk is not reported as written, and not left either
+        raise
+
+
+def _move_into(stage: Path, folder: Path) -> None:
+    if not is_empty(folder):
+        for file in stage.iterdir():
+            if (folder / file.name).is_dir() and not file.is_dir():
+                raise IsADirectoryError(21, f"{file.name} is a folder there")
+    stage.rename(folder / COMMITTED)
+    sync(folder)
+    finish_moving(folder)
+
+
+def create_once(path: Path, text: str) -> str:
+    """Writes a file unless there is one, and returns what it holds then: of several processes the first decides."""
+    with_others = path.parent
+    try:
+        made = _make_folders(with_others)
+        sweep(with_others)
+        if not path.exists():
+            temporary = _new_file(path)
+            try:
+                temporary.write_text(text, encoding="utf-8")
+                sync(temporary)
+                _link(temporary, path)
+                sync(with_others)
+            except OSError:
+                remove(temporary)
+                _remove_empty(made)
+                raise
+            remove(temporary)
+            _written.append(path)
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise cannot_write(path, error) from error
+
+
+def _link(temporary: Path, path: Path) -> None:
+    """Gives a file its name unless another has it."""
+    try:
+        os.link(temporary, path)
+    except FileExistsError:
+        pass
+    except (PermissionError, NotImplementedError, AttributeError):  # a file system without links, as FAT
+        if not path.exists():
+            temporary.replace(path)
+
+
+def append_line(path: Path, line: str) -> None:
+    """Adds a line to a log. A kill or a full disk may leave half a line, which its reader must skip."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a", encoding="utf-8") as file:
+            file.write(f"{line}\n")
+    except OSError as error:
+        raise cannot_write(path, error) from error
+
+
+def written() -> list[Path]:
+    """What this process has written completely, since `forget_written`."""
+    return list(_written)
+
+
+def forget_written() -> None:
+    """Begins the list of `written` anew."""
+    _written.clear()
+
+
+def _make_folders(folder: Path) -> list[Path]:
+    """Makes a folder and those above it; returns the new ones, the innermost first."""
+    missing = [place for place in (folder, *folder.parents) if not place.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    return missing
+
+
+def _remove_empty(folders: list[Path]) -> None:
+    for folder in folders:
+        try:
+            folder.rmdir()
+        except OSError:
+            return

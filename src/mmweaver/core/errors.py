@@ -1,8 +1,55 @@
-"""The error for bad input, which the user can correct."""
+"""The errors for bad input, which the user can correct."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+MAX_CHARACTERS = 500
+_LONG_WORD = re.compile(r"\S{121,}")
 
 
 class InputError(ValueError):
-    """Bad input: one line on what was wrong and what to do about it.
+    """Bad input: one line on what was wrong and what to do about it, of at most 500 characters.
 
-    The command line prints it as it is and exits with status 2; anything else that is raised is a bug.
+    Line breaks and control characters of a value that is quoted are made harmless, and long values are shortened. The
+    command line prints the line as it is and exits with status 2; anything else that is raised is a bug.
     """
+
+    def __init__(self, message: object = ""):
+        super().__init__(one_line(str(message)))
+
+
+class NoRoomError(InputError):
+    """A motion finds no room in a photo; `ways_on` says what would help.
+
+    Keys, where known: `nearest_place_m` (x, y), `range_m` (near, far) of the window that it needs, `radars` (names of
+    presets that have such a window).
+    """
+
+    def __init__(self, message: str, *, ways_on: Mapping[str, Any] | None = None) -> None:
+        self.ways_on: dict[str, Any] = dict(ways_on or {})
+        super().__init__(message + _in_words(self.ways_on))
+
+
+def _in_words(ways_on: Mapping[str, Any]) -> str:
+    if not ways_on:
+        return ""
+    (x, y), (near_m, far_m) = ways_on["nearest_place_m"], ways_on["range_m"]
+    radars = f" (or --radar {' or '.join(ways_on['radars'])})" if ways_on["radars"] else ""
+    return f"; the nearest free place is {x:g},{y:g}: try --range {near_m:g},{far_m:g}{radars}"
+
+
+def one_line(text: str, limit: int = MAX_CHARACTERS) -> str:
+    r"""A text as one printable line; long words are shortened first, then the middle is left out.
+
+    >>> one_line("a\nb\x1b[31m")
+    'a b\\x1b[31m'
+    """
+    text = " ".join(text.split())
+    if len(text) > limit:
+        text = _LONG_WORD.sub(lambda word: f"{word[0][:80]}...{word[0][-30:]}", text)
+    if not text.isprintable():
+        text = "".join(character if character.isprintable() else ascii(character)[1:-1] for character in text)
+    if len(text) > limit:
+        text = f"{text[: limit - 165]} ... {text[-160:]}"
+    return text

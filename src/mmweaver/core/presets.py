@@ -3,16 +3,13 @@
 from dataclasses import replace
 from typing import Any
 
+from mmweaver.core.antenna_tables import AOP, BOOST, BOOST_1642, EVM_2944, ISK, ODS, AntennaTable, Places
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import Position, RadarConfig
 from mmweaver.core.registry import Registry
 
-# Half-wavelength units (x right, z up). The third transmitter of the three stands half a wavelength higher.
-XWR1843_TX_HALFWAVES = ((0.0, 0.0), (2.0, 1.0), (4.0, 0.0))
-XWR_RX_HALFWAVES = ((-6.0, 0.0), (-5.0, 0.0), (-4.0, 0.0), (-3.0, 0.0))
 
-
-def halfwave_positions(places: tuple[tuple[float, float], ...], centre_frequency_hz: float) -> tuple[Position, ...]:
+def halfwave_positions(places: Places, centre_frequency_hz: float) -> tuple[Position, ...]:
     """(x, z) in half wavelengths at a frequency -> (x, y, z) in metres, y = 0."""
     half_m = SPEED_OF_LIGHT_MPS / centre_frequency_hz / 2
     return tuple((x * half_m, 0.0, z * half_m) for x, z in places)
@@ -24,11 +21,17 @@ BAND_60_HZ = (57.0e9, 64.0e9)
 
 def ti_1843(name: str, **chirp: Any) -> RadarConfig:
     """A board with the xWR1843's 3 x 4 array, spaced half a wavelength at the centre of the chirp given."""
+    return ti_board(name, BOOST, **{"tx_order": (0, 2, 1), **chirp})
+
+
+def ti_board(name: str, board: AntennaTable, **chirp: Any) -> RadarConfig:
+    """A board with this array, spaced half a wavelength at the centre of the chirp given."""
     values: dict[str, Any] = {
         "start_frequency_hz": 77.0e9,
         "frame_period_s": 0.1,
-        "tx_order": (0, 2, 1),
+        "tx_order": tuple(range(len(board.tx_halfwaves))),
         "frequency_limits_hz": BAND_77_HZ,
+        "rx_inverted": board.rx_inverted,
         **chirp,
     }
     sampled_s = values["num_samples"] / values["sample_rate_hz"]
@@ -37,8 +40,8 @@ def ti_1843(name: str, **chirp: Any) -> RadarConfig:
     )
     return RadarConfig(
         name=name,
-        tx_position_m=halfwave_positions(XWR1843_TX_HALFWAVES, middle_hz),
-        rx_position_m=halfwave_positions(XWR_RX_HALFWAVES, middle_hz),
+        tx_position_m=halfwave_positions(board.tx_halfwaves, middle_hz),
+        rx_position_m=halfwave_positions(board.rx_halfwaves, middle_hz),
         **values,
     )
 
@@ -120,6 +123,7 @@ IWR1443_RADHAR = ti_1843(
     num_loops=16,
     frame_period_s=1 / 30,
     num_range_bins=126,
+    lvds_lanes=4,
 )
 
 # IWR1443BOOST of the MARS recordings. Measured on them: range steps of 2.93 cm, velocity steps of 0.356 m/s (nothing
@@ -136,7 +140,27 @@ IWR1443_MARS = ti_1843(
     sample_rate_hz=3.5e6,
     num_loops=16,
     first_range_bin=10,
+    lvds_lanes=4,
 )
+
+# Boards with the chirp of a recording or of TI's own profiles, so that every array is at hand: the 6843 boards with
+# the indoor profile of TI's 3D People Tracking (60.75 GHz, 54.71 MHz/us, 96 samples at 2.95 Msps, 96 loops every
+# 55 ms), the 77 GHz boards with the awr1843's chirp. All range bins are kept.
+PEOPLE_TRACKING: dict[str, Any] = {
+    "start_frequency_hz": 60.75e9, "chirp_slope_hz_per_s": 54.71e12, "idle_time_s": 30e-6, "adc_start_time_s": 25e-6,
+    "ramp_end_time_s": 59.1e-6, "num_samples": 96, "sample_rate_hz": 2.95e6, "num_loops": 96,
+    "frame_period_s": 55e-3, "num_range_bins": 96, "frequency_limits_hz": BAND_60_HZ,
+}  # fmt: skip
+SHORT_CHIRP: dict[str, Any] = {
+    "chirp_slope_hz_per_s": 60.012e12, "idle_time_s": 7e-6, "adc_start_time_s": 6e-6, "ramp_end_time_s": 65e-6,
+    "num_samples": 256, "sample_rate_hz": 4.51e6, "num_loops": 32, "num_range_bins": 256,
+}  # fmt: skip
+IWR6843_ISK = ti_board("iwr6843isk", ISK, **PEOPLE_TRACKING)
+IWR6843_AOP = ti_board("iwr6843aop", AOP, **PEOPLE_TRACKING)
+IWR6843_ODS = ti_board("iwr6843ods", ODS, **PEOPLE_TRACKING)
+XWR1443 = ti_board("xwr1443boost", BOOST, tx_order=(0, 2, 1), lvds_lanes=4, **SHORT_CHIRP)
+XWR1642 = ti_board("xwr1642boost", BOOST_1642, **SHORT_CHIRP)
+AWR2944 = ti_board("awr2944evm", EVM_2944, tx_order=(0, 2, 3, 1), **SHORT_CHIRP)
 
 # Infineon BGT60TR13C: 58 to 63.5 GHz in 64 real samples; receivers in an L, its corner the third. Receiver spacing
 # and sides are from the data sheet's drawing, unconfirmed by a recording.
@@ -168,7 +192,22 @@ PRESETS: Registry[RadarConfig] = Registry(
     "radar preset",
     [
         (config.name, config)
-        for config in (AWR1843, MMMESH, RF_GENESIS, HUPR, IWR6843, IWR1443_RADHAR, IWR1443_MARS, BGT60)
+        for config in (
+            AWR1843,
+            MMMESH,
+            RF_GENESIS,
+            HUPR,
+            IWR6843,
+            IWR1443_RADHAR,
+            IWR1443_MARS,
+            BGT60,
+            IWR6843_ISK,
+            IWR6843_AOP,
+            IWR6843_ODS,
+            XWR1443,
+            XWR1642,
+            AWR2944,
+        )
     ],
     entry_points="mmweaver.radars",
 )

@@ -11,18 +11,27 @@ import numpy as np
 
 from mmweaver.core.constants import BOLTZMANN_J_PER_K, NOISE_TEMPERATURE_K, SPEED_OF_LIGHT_MPS
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_limits import impossible_together, impossible_values
+from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.shapes import AntennaPositions, PerDoppler, PerRange
+from mmweaver.core.transmit_code import TxCode, decoder, separates_transmitters, virtual_tx_m, weights_of
 
 SCHEMA_VERSION = 1
+RAMP_BEYOND_BAND_HZ = 100e6  # that boards accept past the end of their band: the ADC has stopped by then
+# fields that radar files have only where they differ from the default
+RARE_FIELDS = (
+    "loop_gap_s", "tx_code", "lvds_lanes", "rx_channels", "rx_inverted", "frame_words_before", "frame_words_after",
+)  # fmt: skip
 Position = tuple[float, float, float]
 
 
 @dataclass(frozen=True, kw_only=True)
 class RadarConfig:
-    """One TDM-MIMO FMCW radar. All lengths in metres, times in seconds, frequencies in hertz.
+    """One MIMO FMCW radar. All lengths in metres, times in seconds, frequencies in hertz.
 
     Positions are seen from behind the radar: x right, y away from the radar, z up. The transmitters fire in the order
-    of `tx_order` (TDM-MIMO); a loop is one chirp of each of them.
+    of `tx_order` (TDM-MIMO); a loop is one chirp of each of them. With a `tx_code` several send in one chirp, and a
+    loop is one chirp of each of its rows ("slots"; `core.transmit_code`).
     Radial velocity is positive for a target that moves away. Raises InputError where the radar could not exist.
 
     Reference: docs/radar_primer.md, equations 1 to 9.
@@ -52,40 +61,40 @@ class RadarConfig:
     elevation_beamwidth_deg: float = 28.0
     adc_full_scale_v: float = 0.5
     frequency_limits_hz: tuple[float, float] = (57.0e9, 81.5e9)
+    loop_gap_s: float = 0.0  # pause between the last chirp of a loop and the next loop
+    tx_code: TxCode = ()  # (slot, tx) weights of simultaneous transmitters; () = TDM-MIMO in tx_order
+    lvds_lanes: int = 2  # of a DCA1000's recording: 2 or 4, see formats.dca1000
+    rx_channels: tuple[int, ...] = ()  # the receivers' numbers on the board; () = 0, 1, 2 ...
+    rx_inverted: tuple[int, ...] = ()  # receivers (indices) whose feed turns the phase by 180 degrees
+    frame_words_before: int = 0  # int16 words of other sub-frames in each frame of a recording, before this one
+    frame_words_after: int = 0
 
     def __post_init__(self) -> None:
         for problem, text in self._problems():
             if problem:
                 raise InputError(f"radar {self.name!r} is impossible: {text}")
+        if self.is_coded:
+            _ = self.tx_decoder  # raises where transmitters cannot be told apart
+        if (wrong := impossible_together(self)) is not None:
+            raise InputError(f"radar {self.name!r} is impossible: {wrong}")
 
     def _problems(self) -> list[tuple[bool, str]]:
-        for field in dataclasses.fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, float) and not math.isfinite(value):
-                return [(True, f"{field.name} is {value}")]
-        positive = (
-            "start_frequency_hz", "chirp_slope_hz_per_s", "ramp_end_time_s", "num_samples", "sample_rate_hz",
-            "num_loops", "frame_period_s", "num_range_bins", "azimuth_beamwidth_deg", "elevation_beamwidth_deg",
-            "adc_full_scale_v",
-        )  # fmt: skip
-        for name in positive:
-            if getattr(self, name) <= 0:
-                return [(True, f"{name} must be above 0, not {getattr(self, name)}")]
-        if not self.tx_position_m or not self.rx_position_m:
-            return [(True, "it needs at least one transmitter and one receiver")]
+        if (wrong := impossible_values(self)) is not None:
+            return [(True, wrong)]
         adc_end_s = self.adc_start_time_s + self.num_samples / self.sample_rate_hz
         bins = self.num_unambiguous_range_bins
+        if self.tx_code and any(len(row) != self.num_tx or not any(map(any, row)) for row in self.tx_code):
+            return [(True, f"each row of tx_code needs a weight of each of its {self.num_tx} transmitters, not all 0")]
         low_hz, high_hz = self.frequency_limits_hz
         end_hz = self.start_frequency_hz + self.chirp_slope_hz_per_s * self.ramp_end_time_s
         return [
-            (self.idle_time_s < 0 or self.adc_start_time_s < 0, "idle and ADC start times cannot be negative"),
             (
                 adc_end_s > self.ramp_end_time_s * (1 + 1e-9),
                 f"the ADC samples until {adc_end_s * 1e6:.2f} us, but the ramp ends at {self.ramp_end_time_s * 1e6:.2f}"
                 " us; take fewer samples, a higher sample rate or a longer ramp",
             ),
             (
-                self.start_frequency_hz < low_hz or end_hz > high_hz,
+                self.start_frequency_hz < low_hz or end_hz > high_hz + RAMP_BEYOND_BAND_HZ,
                 f"the chirp runs from {self.start_frequency_hz / 1e9:.3f} to {end_hz / 1e9:.3f} GHz, outside"
                 f" {low_hz / 1e9:g} to {high_hz / 1e9:g} GHz; lower the slope or the ramp end",
             ),
@@ -98,7 +107,17 @@ class RadarConfig:
                 sorted(self.tx_order) != list(range(len(self.tx_position_m))),
                 f"tx_order {self.tx_order} must name each of its {len(self.tx_position_m)} transmitters once",
             ),
-            (self.first_range_bin < 0, "first_range_bin cannot be negative"),
+            (self.loop_gap_s < 0, "loop_gap_s cannot be negative"),
+            (self.lvds_lanes not in (2, 4), f"a DCA1000 records 2 or 4 lanes, not {self.lvds_lanes}"),
+            (
+                bool(self.rx_channels) and len(set(self.rx_channels)) != self.num_rx,
+                f"rx_channels {self.rx_channels} must name each of its {self.num_rx} receivers once",
+            ),
+            (
+                not set(self.rx_inverted) <= set(range(self.num_rx)),
+                f"rx_inverted {self.rx_inverted} names receivers that it does not have",
+            ),
+            (min(self.frame_words_before, self.frame_words_after) < 0, "words of a frame cannot be negative"),
             (
                 self.first_range_bin + self.num_range_bins > bins,
                 f"range bins {self.first_range_bin} to {self.first_range_bin + self.num_range_bins - 1} are asked for,"
@@ -116,9 +135,29 @@ class RadarConfig:
         return len(self.rx_position_m)
 
     @property
+    def is_coded(self) -> bool:
+        """Whether several transmitters send in one chirp."""
+        return bool(self.tx_code)
+
+    @property
+    def num_slots(self) -> int:
+        """Chirps of a loop, the second axis of its ADC samples: physical transmitters, or rows of the code."""
+        return len(self.tx_code) or self.num_tx
+
+    @cached_property
+    def tx_decoder(self) -> np.ndarray:
+        """Matrix (virtual tx, slot) from the slots of a coded radar to its transmitters or beams. Raises InputError."""
+        return decoder(weights_of(self.tx_code)) if self.is_coded else np.eye(self.num_tx)
+
+    @property
+    def num_virtual_tx(self) -> int:
+        """Transmitters that can be told apart: all, or the beams of a coded radar."""
+        return len(self.tx_decoder)
+
+    @property
     def num_antennas(self) -> int:
-        """Number of virtual antennas; antenna index = tx * num_rx + rx, where tx is the physical transmitter."""
-        return self.num_tx * self.num_rx
+        """Number of virtual antennas; antenna index = tx * num_rx + rx, where tx is the (virtual) transmitter."""
+        return self.num_virtual_tx * self.num_rx
 
     @property
     def num_unambiguous_range_bins(self) -> int:
@@ -160,7 +199,7 @@ class RadarConfig:
 
     @property
     def loop_period_s(self) -> float:
-        return self.num_tx * self.chirp_period_s
+        return self.num_slots * self.chirp_period_s + self.loop_gap_s
 
     @property
     def active_time_s(self) -> float:
@@ -183,16 +222,36 @@ class RadarConfig:
 
     @cached_property
     def tx_delay_s(self) -> np.ndarray:
-        """Time within a loop at which each physical transmitter fires, (tx,), the first at 0."""
+        """Time within a loop at which each physical transmitter fires, (tx,), the first at 0; of a code, each slot."""
+        if self.is_coded:
+            return np.arange(self.num_slots) * self.chirp_period_s
         slot = np.argsort(np.asarray(self.tx_order))
         return slot * self.chirp_period_s
 
+    @cached_property
+    def antenna_delay_s(self) -> np.ndarray:
+        """Time within a loop at which each virtual antenna is measured, (antenna,); decoded from all slots: 0."""
+        if self.is_coded and separates_transmitters(weights_of(self.tx_code)):
+            return np.zeros(self.num_antennas)
+        return np.repeat(self.tx_delay_s, self.num_rx)
+
+    @property
+    def tx_noise_gain(self) -> np.ndarray:
+        """Power of the noise of each (virtual) transmitter's signal relative to that of a sample, (tx,); TDM: 1."""
+        return (np.abs(self.tx_decoder) ** 2).sum(axis=1)
+
     # array ------------------------------------------------------------------------------------------------------
+    @cached_property
+    def virtual_tx_position_m(self) -> np.ndarray:
+        """Positions (tx, 3) of the transmitters, or of the beams' phase centres, in metres."""
+        tx = np.asarray(self.tx_position_m)
+        return virtual_tx_m(weights_of(self.tx_code), tx) if self.is_coded else tx
+
     @cached_property
     def antenna_position_m(self) -> AntennaPositions:
         """Virtual antennas in metres, (antenna, 3): tx + rx. A far target in direction u has the phase
         -2 pi / wavelength (u . p)."""
-        tx, rx = np.asarray(self.tx_position_m), np.asarray(self.rx_position_m)
+        tx, rx = self.virtual_tx_position_m, np.asarray(self.rx_position_m)
         return (tx[:, None, :] + rx[None, :, :]).reshape(-1, 3)
 
     # noise ------------------------------------------------------------------------------------------------------
@@ -211,19 +270,39 @@ class RadarConfig:
     # files ------------------------------------------------------------------------------------------------------
     def to_json(self) -> str:
         """JSON in SI units; `from_json` restores the same RadarConfig."""
-        return json.dumps({"schema_version": SCHEMA_VERSION, **dataclasses.asdict(self)}, indent=2) + "\n"
+        return json.dumps(self.to_values(), indent=2) + "\n"
+
+    def to_values(self) -> dict[str, Any]:
+        """The content of the JSON: numbers, texts and lists; rare fields only where they are not the default."""
+        values = {"schema_version": SCHEMA_VERSION, **dataclasses.asdict(self)}
+        for field in dataclasses.fields(self):
+            if field.name in RARE_FIELDS and values[field.name] == field.default:
+                del values[field.name]
+        return {name: _as_list(value) for name, value in values.items()}
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is unusual about this radar, in sentences for people."""
+        end_hz = self.start_frequency_hz + self.chirp_slope_hz_per_s * self.ramp_end_time_s
+        over_hz = end_hz - self.frequency_limits_hz[1]
+        if over_hz <= 1e3:
+            return ()
+        return (
+            f"the ramp ends {over_hz / 1e6:.0f} MHz past {self.frequency_limits_hz[1] / 1e9:g} GHz; boards run this,"
+            " but the band's end is not specified",
+        )
 
     @classmethod
     def from_json(cls, text: str) -> "RadarConfig":
         """Reads the JSON of `to_json`. Raises InputError for anything else; an unknown key is an error."""
-        try:
-            values = json.loads(text)
-        except json.JSONDecodeError as error:
-            raise InputError(
-                f"the radar file is no JSON ({error}); make one with: mmweaver radar awr1843 --json"
-            ) from None
+        return cls.from_values(parse_json(text, "the radar file"))
+
+    @classmethod
+    def from_values(cls, values: Any) -> "RadarConfig":
+        """The radar of `to_values`. Raises InputError for anything else."""
         if not isinstance(values, dict):
             raise InputError("the radar file holds no object; make one with: mmweaver radar awr1843 --json")
+        values = dict(values)
         version = values.pop("schema_version", None)
         if version != SCHEMA_VERSION:
             raise InputError(f"the radar file has schema_version {version!r}; this version reads {SCHEMA_VERSION}")
@@ -246,13 +325,23 @@ def _coerced(name: str, kind: Any, value: Any) -> Any:
         return tuple(value)
     if kind == tuple[float, float] and _is_vector(value, 2):
         return tuple(float(item) for item in value)
+    if kind == TxCode and isinstance(value, list) and all(_is_code_row(row) for row in value):
+        return tuple(tuple((float(one[0]), float(one[1])) for one in row) for row in value)
     if kind == tuple[Position, ...] and isinstance(value, list) and all(_is_vector(item, 3) for item in value):
         return tuple(tuple(float(number) for number in item) for item in value)
     raise InputError(f"radar file: {name} cannot be {value!r}")
 
 
+def _as_list(value: Any) -> Any:
+    return [_as_list(item) for item in value] if isinstance(value, tuple) else value
+
+
 def _is_number(value: Any) -> bool:
     return type(value) in (int, float)
+
+
+def _is_code_row(value: Any) -> bool:
+    return isinstance(value, list) and all(_is_vector(one, 2) for one in value)
 
 
 def _is_vector(value: Any, length: int) -> bool:

@@ -43,10 +43,10 @@ class CubeGrid:
     wavelength_m: float
 
     @classmethod
-    def of(cls, config: RadarConfig, num_frames: int) -> "CubeGrid":
-        """The grid of a radar's range and Doppler FFTs for a number of frames."""
+    def of(cls, config: RadarConfig, num_frames: int, first_frame: int = 0) -> "CubeGrid":
+        """The grid of a radar's range and Doppler FFTs for a number of frames, counted from `first_frame`."""
         return cls(
-            frame_time_s=np.arange(num_frames) * config.frame_period_s,
+            frame_time_s=np.arange(first_frame, first_frame + num_frames) * config.frame_period_s,
             range_m=config.range_m,
             radial_velocity_mps=config.radial_velocity_mps,
             antenna_position_m=config.antenna_position_m,
@@ -142,6 +142,7 @@ class PoseSequence(ShownByFacts):
     joints_m: Joints
     height_m: float
     subject: int = 0  # identifies the body: its surface points and random phases
+    girth: float = 1.0  # thickness of trunk and limbs relative to the average body of this height
 
     def facts(self) -> dict[str, str]:
         """Times, joints and body."""
@@ -214,6 +215,7 @@ class FreeSpace:
     y_m: np.ndarray  # (y,) centres of the rows
     is_free: GridMask  # free from the floor to head height
     is_seen: GridMask  # measured; a free cell that is not seen is assumed to be free
+    is_assumed: GridMask | None = None  # not free by what is seen, but probably: used where nobody finds room otherwise
 
 
 @dataclass(frozen=True, kw_only=True)

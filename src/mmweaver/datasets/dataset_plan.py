@@ -1,7 +1,10 @@
 """Plan of a data set: room, person, activity, seed and split of every sequence."""
 
 import json
+import shlex
 from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -9,6 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.seeding import stream
 
 PLAN_VERSION = 2
+RADAR_FILE = "radar.json"  # the radar with its range window, in the root of a data set
 # The activities of the paper and three more, each phrased in several ways.
 ACTIVITIES: dict[str, tuple[str, ...]] = {
     "walking": ("a person walks towards the radar", "a person walks to the left", "a person walks to the right",
@@ -29,6 +33,9 @@ ACTIVITIES: dict[str, tuple[str, ...]] = {
 # Six people by height; the index also selects the body surface.
 PEOPLE_HEIGHT_M = (1.63, 1.70, 1.75, 1.80, 1.87, 1.96)
 SPLITS = ("train", "validation", "test_room", "test_layout", "test_person", "test_activity")
+
+
+MOST = 100_000  # of layouts, sequences of a room, and frames
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,7 +96,7 @@ class RoomSpec:
 
     @property
     def name(self) -> str:
-        return f"{self.kind.replace(' ', '_')}_{self.layout:03d}"
+        return room_name(self.kind, self.layout)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,8 +115,8 @@ class DatasetPlan:
 
     def __post_init__(self) -> None:
         for name in ("num_layouts", "sequences_a_room", "num_frames"):
-            if getattr(self, name) < 1:
-                raise InputError(f"{name} must be 1 or more, not {getattr(self, name)}")
+            if not 1 <= getattr(self, name) <= MOST:
+                raise InputError(f"{name} must be 1 to {MOST}, not {getattr(self, name)}")
         if not self.kinds:
             raise InputError("a data set needs at least one kind of room")
 
@@ -155,6 +162,23 @@ class DatasetPlan:
         if not self.geometry_only:  # older data sets do not have it
             del values["geometry_only"]
         return json.dumps(values, indent=1)
+
+
+def command_of(plan: dict[str, Any], folder: Path) -> str:
+    """The command line that makes, or repairs, the data set of a plan.json."""
+    own = folder / RADAR_FILE
+    radar = str(own) if own.is_file() else plan["radar"]
+    words = [
+        "mmweaver dataset", shlex.quote(str(folder)), f"--rooms {shlex.quote(','.join(plan['kinds']))}",
+        f"--layouts {plan['num_layouts']}", f"--sequences {plan['sequences_a_room']}", f"--frames {plan['num_frames']}",
+        f"--radar {shlex.quote(radar)}", f"--seed {plan['seed']}",
+    ]  # fmt: skip
+    return " ".join([*words, *(["--geometry-only"] if plan.get("geometry_only") else []), "--repair"])
+
+
+def room_name(kind: str, layout: int) -> str:
+    """The name of a room's folder."""
+    return f"{kind.replace(' ', '_')}_{layout:03d}"
 
 
 def check_for_leaks(rooms: list[RoomSpec]) -> None:

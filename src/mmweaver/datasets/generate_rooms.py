@@ -1,15 +1,18 @@
 """Generates the missing rooms of a data set, on the cores of this machine or on a Ray cluster."""
 
-import shutil
+import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import resolved
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.staging import sweep
 from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec, check_for_leaks
-from mmweaver.datasets.dataset_store import is_being_written, is_done, open_dataset, write_room
+from mmweaver.datasets.dataset_store import is_done
+from mmweaver.datasets.dataset_writer import open_dataset, remove_damaged, write_room
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,33 +32,32 @@ def generate_dataset(
     workers: int = 1,
     ray_address: str | None = None,
     listener: Callable[[RoomReport], object] | None = None,
+    repair: bool = False,
 ) -> list[RoomReport]:
     """Generates the missing rooms and returns a report of each; may be killed and called again.
 
-    Uses `workers` processes; with `ray_address` ("local" for an embedded cluster) Ray, one task per core.
-    Raises InputError for a folder of another plan.
+    Uses `workers` processes; with `ray_address` ("local" for an embedded cluster) Ray, one task per core. With `repair`
+    the rooms that are there are checked, and damaged ones made anew. Raises InputError for a folder of another plan,
+    and where a worker was killed.
     """
     rooms = plan.rooms()
     check_for_leaks(rooms)
+    if repair:
+        remove_damaged(folder, plan)
     open_dataset(folder, plan, config)
-    _remove_partial_rooms(folder)
+    sweep(resolved(folder), again=True)
     missing = [room for room in rooms if not is_done(folder, room.name)]
     tasks = ((folder, room, config, plan.num_frames, plan.geometry_only) for room in missing)
     reports = []
-    with _executor(workers, ray_address) as run:
-        for report in run(tasks):
-            reports.append(report)
-            if listener is not None:
-                listener(report)
-    _remove_partial_rooms(folder)
+    try:
+        with _executor(workers, ray_address) as run:
+            for report in run(tasks):
+                reports.append(report)
+                if listener is not None:
+                    listener(report)
+    finally:
+        sweep(resolved(folder), again=True)
     return reports
-
-
-def _remove_partial_rooms(folder: Path) -> None:
-    """Removes unfinished rooms of killed processes."""
-    for leftover in folder.glob(".*.*"):
-        if leftover.is_dir() and not is_being_written(leftover):
-            shutil.rmtree(leftover, ignore_errors=True)
 
 
 Task = tuple[Path, RoomSpec, RadarConfig, int, bool]
@@ -82,10 +84,56 @@ def _executor(workers: int, ray_address: str | None) -> Iterator[Callable[[Itera
     elif workers == 1:
         yield lambda tasks: map(generate_one, tasks)
     else:
-        import multiprocessing
+        with _processes(workers) as run:
+            yield run
 
-        with multiprocessing.get_context("spawn").Pool(workers) as pool:
-            yield lambda tasks: pool.imap_unordered(generate_one, tasks)
+
+@contextmanager
+def _processes(workers: int) -> Iterator[Callable[[Iterable[Task]], Iterator[RoomReport]]]:
+    """Processes of this machine. Raises InputError where one of them was killed; multiprocessing.Pool would wait."""
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+    from concurrent.futures.process import BrokenProcessPool
+
+    others = set(multiprocessing.active_children())
+    pool = ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn"), initializer=_end_with_parent)
+
+    def run(tasks: Iterable[Task]) -> Iterator[RoomReport]:
+        try:
+            for done in as_completed([pool.submit(generate_one, task) for task in tasks]):
+                yield done.result()
+        except BrokenProcessPool:
+            raise InputError(
+                "a worker was killed, perhaps for want of memory; finished rooms are kept: the same command makes the"
+                " rest, if need be with fewer --workers"
+            ) from None
+
+    try:
+        yield run
+    except BaseException:
+        for process in set(multiprocessing.active_children()) - others:
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _end_with_parent() -> None:
+    """A worker ends at once, without a word, when it is interrupted or its parent is killed."""
+    import multiprocessing
+    import signal
+    import threading
+    from multiprocessing.connection import wait
+
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    parent = multiprocessing.parent_process()
+
+    def watch() -> None:
+        if parent is not None:
+            wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 @contextmanager

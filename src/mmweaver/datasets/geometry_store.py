@@ -11,14 +11,15 @@ No ray caster is needed to read it. Reference: decision 93.
 import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
+from mmweaver.datasets.zarr_arrays import put_array
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points
@@ -53,13 +54,7 @@ def _put(group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...])
     from zarr.codecs import BloscCodec
 
     packing = BloscCodec(cname="zstd", clevel=7, shuffle="bitshuffle" if values.dtype.kind == "f" else "noshuffle")
-    chunks = values.shape if values.size else (1,) * values.ndim
-    array = group.create_array(
-        name, shape=values.shape, dtype=values.dtype, chunks=chunks, compressors=packing, dimension_names=dimensions
-    )
-    array[...] = np.ascontiguousarray(values)
-    if name.endswith("_m"):
-        array.attrs["units"] = "m"
+    put_array(group, name, values, dimensions, packing=packing)
 
 
 @lru_cache(maxsize=1)
@@ -74,18 +69,18 @@ def skin_mark() -> str:
 class StoredGeometry:
     """The geometry of one room, read when it is first asked for."""
 
-    folder: Path  # the room's
+    files: CheckedFolder  # the room's
     config: RadarConfig
     _resyntheses: dict[str, Any] = field(default_factory=dict)
 
     @cached_property
     def node_joints_m(self) -> np.ndarray:
         """(sequence, frame, node, 22, 3)."""
-        return np.asarray(self._group["node_joints_m"])
+        return self._array("node_joints_m")
 
     @cached_property
     def _visibility(self) -> np.ndarray:
-        return np.asarray(self._group["visibility"])
+        return self._array("visibility")
 
     @cached_property
     def room(self) -> PreparedRoom:
@@ -125,20 +120,28 @@ class StoredGeometry:
     def _group(self) -> Any:
         import zarr
 
-        group: Any = zarr.open_group(self.folder / GEOMETRY, mode="r")
+        self.files.check(f"{GEOMETRY}/")
+        with self.files.reading():
+            group: Any = zarr.open_group(self.files.folder / GEOMETRY, mode="r")
         if group.attrs.get("skin") != skin_mark():
             raise InputError(
-                f"{self.folder} was made by another version of mmweaver, whose people have another skin; make the data"
-                " set again"
+                f"{self.files.folder} was made by another version of mmweaver, whose people have another skin; make the"
+                " data set again"
             )
         num_nodes = len(FrameClock(self.config).node_s)
         if group["node_joints_m"].shape[2] != num_nodes:
             raise InputError(
-                f"{self.folder} was made by another version of mmweaver, which kept joints at"
+                f"{self.files.folder} was made by another version of mmweaver, which kept joints at"
                 f" {group['node_joints_m'].shape[2]} instants a frame, not {num_nodes}; make the data set again"
             )
         return group
 
     def _read(self, name: str) -> PreparedRoom:
-        group = self._group[name]
-        return room_of({key: np.asarray(array) for key, array in group.arrays()}, group.attrs["faces"], self.config)
+        with self.files.reading():
+            group = self._group[name]
+            arrays = {key: np.asarray(array) for key, array in group.arrays()}
+            return room_of(arrays, group.attrs["faces"], self.config)
+
+    def _array(self, name: str) -> np.ndarray:
+        with self.files.reading():
+            return np.asarray(self._group[name])

@@ -12,6 +12,7 @@ from mmweaver.dsp.cube import radar_cube
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.people import Person
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
 from mmweaver.paths.visibility import Visibility
@@ -141,7 +142,12 @@ def pose_of(spec: SequenceSpec, scene: Scene, config: RadarConfig, num_frames: i
     for attempt in range(RETRIES):
         try:
             motion = compose(
-                plan, scene, seed=spec.seed + attempt, range_window_m=window, height_m=PEOPLE_HEIGHT_M[spec.person]
+                plan,
+                scene,
+                seed=spec.seed + attempt,
+                range_window_m=window,
+                person=Person(height_m=PEOPLE_HEIGHT_M[spec.person]),
+                is_varied=False,
             )
             return replace(motion.pose, subject=spec.person)
         except InputError:

@@ -1,0 +1,127 @@
+"""What can be refused before long work begins: where nothing can be written, or where an input would be replaced."""
+
+import errno
+import os
+import stat
+from collections.abc import Iterable
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.staging import finish_moving, is_staged, staging_path, sweep
+
+LONGEST_NAME = 255  # bytes, where the file system does not say
+ADVICE = {
+    errno.ENOSPC: "free some space or choose another --out",
+    errno.EDQUOT: "free some space or choose another --out",
+    errno.EFBIG: "files this large are not allowed here; choose another --out or raise the limit (ulimit -f)",
+    errno.ENAMETOOLONG: "choose a shorter name",
+    errno.EROFS: "choose an --out on another disk",
+    errno.EACCES: "choose another --out or ask for permission",
+    errno.EPERM: "choose another --out or ask for permission",
+}
+
+
+def cannot_write(path: Path, error: OSError) -> InputError:
+    """The one line for a failed write, with what helps against its cause."""
+    advice = ADVICE.get(error.errno or 0, "choose another --out")
+    return InputError(f"cannot write {_short(path)}: {error.strerror or error}; {advice}")
+
+
+def resolved(path: Path | str) -> Path:
+    """The absolute path behind all links: what is written is the target of a link, not the link."""
+    return Path(os.path.realpath(path))
+
+
+def check_output_file(out: Path, *, overwrite: bool, inputs: Iterable[Path | None] = ()) -> None:
+    """Raises InputError where a file cannot be written, or is one of `inputs` (files, or folders with recordings)."""
+    target = resolved(out)
+    try:
+        mode = target.lstat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        mode = None
+    except OSError as error:
+        raise cannot_write(out, error) from None
+    if mode is not None:
+        if stat.S_ISDIR(mode):
+            raise InputError(f"{out} is a folder; name a file")
+        if not stat.S_ISREG(mode):
+            raise InputError(f"{out} is neither a file nor a folder; name a file")
+        if not overwrite:
+            raise InputError(f"{out} exists; choose another name or allow it with --overwrite")
+    for given in inputs:
+        if given is not None and _is_input(target, resolved(given)):
+            raise InputError(f"{out} belongs to the input {given}, which it would replace; name another file")
+    _check_place(target.parent, out)
+
+
+def check_output_folder(
+    out: Path, *, overwrite: bool, files: Iterable[str] = (), inputs: Iterable[Path | None] = ()
+) -> None:
+    """Raises InputError where a folder cannot be written, or is not empty and `overwrite` is not set.
+
+    `files`: what will be written into it; none of them may be a folder, or one of `inputs`.
+    """
+    target = resolved(out)
+    try:
+        mode = target.lstat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        mode = None
+    except OSError as error:
+        raise cannot_write(out, error) from None
+    if mode is not None and not stat.S_ISDIR(mode):
+        what = "a link that leads nowhere" if stat.S_ISLNK(mode) else "a file, not a folder"
+        raise InputError(f"{out} is {what}; choose another --out")
+    try:
+        finish_moving(target)
+    except OSError as error:
+        raise cannot_write(out, error) from None
+    if mode is not None and not overwrite and not is_empty(target):
+        raise InputError(f"{out} exists and is not empty; choose another --out or allow it with --overwrite")
+    given = [resolved(path) for path in inputs if path is not None]
+    for name in files:
+        if (target / name).is_dir():
+            raise InputError(f"{out / name} is a folder where a file is to be written; choose another --out")
+        if any(_is_input(target / name, one) for one in given):
+            raise InputError(f"{out / name} belongs to the input and would be replaced; choose another --out")
+    _check_place(target, out)
+
+
+def is_empty(folder: Path) -> bool:
+    """Whether a folder holds nothing but what unfinished writing left."""
+    try:
+        with os.scandir(folder) as entries:
+            return all(is_staged(entry.name) for entry in entries)
+    except OSError as error:
+        raise cannot_write(folder, error) from None
+
+
+def _is_input(target: Path, given: Path) -> bool:
+    if given.is_dir():
+        return given in target.parents and target.exists() and target.suffix != ".mmw"
+    return target == given
+
+
+def _check_place(folder: Path, out: Path) -> None:
+    """Raises InputError where no entry can be made in `folder`, or in the nearest one above that exists."""
+    try:
+        nearest = next(place for place in (folder, *folder.parents) if os.path.lexists(place))
+    except OSError as error:
+        raise cannot_write(out, error) from None
+    if not nearest.is_dir():
+        raise InputError(f"{out} cannot be written, for {nearest} is not a folder; choose another --out")
+    sweep(nearest)
+    probe = staging_path(nearest / "probe")
+    try:
+        longest = os.pathconf(nearest, "PC_NAME_MAX") if hasattr(os, "pathconf") else LONGEST_NAME
+        if any(len(os.fsencode(name)) > longest for name in (*folder.parts[len(nearest.parts) :], resolved(out).name)):
+            raise OSError(errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG))
+        probe.mkdir()
+        probe.rmdir()
+    except OSError as error:
+        raise cannot_write(out, error) from None
+
+
+def _short(path: Path) -> str:
+    """A path of any length, for one line."""
+    text = str(path)
+    return text if len(text) <= 200 else f"{text[:90]} ... {text[-90:]}"

@@ -1,0 +1,58 @@
+"""Which range bins are kept: a window in metres or in bins, or all of them up to a size."""
+
+import math
+from dataclasses import replace
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+
+MAX_CUBE_BYTES = 4 * 2**20  # of a frame's cube, where nobody chose a window
+BYTES_A_CELL = 8  # complex64
+
+
+def with_range(config: RadarConfig, near_m: float, far_m: float) -> RadarConfig:
+    """The radar with the range bins nearest to `near_m` and `far_m`, and all between.
+
+    Raises InputError where nothing lies between them, or they are beyond the unambiguous range.
+    """
+    if not (math.isfinite(near_m) and math.isfinite(far_m) and 0 <= near_m < far_m):
+        raise InputError(f"a range of {near_m:g} to {far_m:g} m is none; give near before far, for example 0.3,8")
+    step_m = config.range_resolution_m
+    if far_m > config.max_range_m + step_m / 2:
+        raise InputError(
+            f"radar {config.name!r} sees up to {config.max_range_m:.2f} m, not {far_m:g} m; range is ambiguous beyond"
+        )
+    first, last = round(near_m / step_m), round(far_m / step_m)
+    return with_range_bins(config, first, min(last, config.num_unambiguous_range_bins - 1))
+
+
+def with_range_bins(config: RadarConfig, first: int, last: int) -> RadarConfig:
+    """The radar with range bins `first` to `last`, both kept. Raises InputError for bins that it does not have."""
+    most = config.num_unambiguous_range_bins - 1
+    if not 0 <= first <= last <= most:
+        raise InputError(f"radar {config.name!r} has range bins 0 to {most}, not {first} to {last}")
+    return replace(config, first_range_bin=first, num_range_bins=last - first + 1)
+
+
+def default_range_bins(num_bins: int, cells_a_bin: int) -> int:
+    """How many of the nearest bins are kept where nobody chose: all, or as many as a cube of 4 MiB a frame holds.
+
+    `cells_a_bin`: Doppler bins times antennas.
+
+    >>> default_range_bins(256, 128 * 12), default_range_bins(512, 85 * 12)
+    (256, 512)
+    >>> default_range_bins(1024, 128 * 12)
+    341
+    """
+    return max(1, min(num_bins, MAX_CUBE_BYTES // (BYTES_A_CELL * cells_a_bin)))
+
+
+def chosen_range(
+    config: RadarConfig, range_m: tuple[float, float] | None = None, range_bins: tuple[int, int] | None = None
+) -> RadarConfig:
+    """The radar with a window in metres or in bins, or as it is. Raises InputError for both, or one that it lacks."""
+    if range_m is not None and range_bins is not None:
+        raise InputError("give the range in metres or in bins, not both")
+    if range_m is not None:
+        return with_range(config, *range_m)
+    return config if range_bins is None else with_range_bins(config, *range_bins)

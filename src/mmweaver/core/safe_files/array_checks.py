@@ -1,0 +1,75 @@
+"""Checks of arrays that came out of a file: type, shape, equal lengths, finite and plausible values."""
+
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+
+_WORDS = {"f": "real numbers", "fiu": "real numbers", "iu": "whole numbers", "c": "complex numbers"}
+
+
+class ArrayChecks:
+    """Checks arrays of one file. Axes of one name have one length in all of them."""
+
+    def __init__(self, path: Path | str):
+        self.path = path
+        self._lengths: dict[str, tuple[int, str]] = {}
+
+    def numbers(
+        self,
+        name: str,
+        values: np.ndarray,
+        shape: tuple[int | str, ...] | None = None,
+        *,
+        kinds: str = "fiu",
+        low: int | float = -np.inf,
+        high: int | float = np.inf,
+        nan: bool = False,
+    ) -> np.ndarray:
+        """`values`, if it holds numbers of one of `kinds` (numpy's letters) of `shape`, finite, from `low` to `high`.
+
+        An axis of `shape` is a length or a name; a name has the same length in all arrays. `nan` allows NaN. Complex
+        numbers are limited by their larger part. Raises InputError otherwise.
+        """
+        if values.dtype.kind not in kinds:
+            raise InputError(
+                f"{self.path}: {name} is of type {values.dtype}; it must hold {_WORDS.get(kinds, 'numbers')}"
+            )
+        if shape is not None:
+            self._check_shape(name, values, shape)
+        if values.size and values.dtype.kind in "fc":
+            for part in (np.real(values), np.imag(values)) if values.dtype.kind == "c" else (values,):
+                self._check_range(name, part, low, high, nan)
+        elif values.size:
+            self._check_range(name, values, low, high, nan)
+        return values
+
+    def _check_shape(self, name: str, values: np.ndarray, shape: tuple[int | str, ...]) -> None:
+        wanted = f"({', '.join(str(axis) for axis in shape)})"
+        if values.ndim != len(shape):
+            raise InputError(f"{self.path}: {name} has shape {values.shape}; it must be {wanted}")
+        for axis, length in zip(shape, values.shape, strict=True):
+            if isinstance(axis, int):
+                if axis != length:
+                    raise InputError(f"{self.path}: {name} has shape {values.shape}; it must be {wanted}")
+                continue
+            known, first = self._lengths.setdefault(axis, (length, name))
+            if known != length:
+                raise InputError(
+                    f"{self.path}: {name} has {length} along {axis!r}, but {first} has {known}; write the file again"
+                )
+
+    def _check_range(self, name: str, values: np.ndarray, low: int | float, high: int | float, nan: bool) -> None:
+        if nan:
+            values = values[~np.isnan(values)]
+            if not values.size:
+                return
+        least, most = values.min(), values.max()  # NaN if any is NaN
+        if not (np.isfinite(least) and np.isfinite(most)):
+            raise InputError(f"{self.path}: {name} holds values that are not finite; write the file again without them")
+        if least < low or most > high:
+            raise InputError(
+                f"{self.path}: {name} runs from {float(least):.4g} to {float(most):.4g}, outside {low:g} to {high:g};"
+                " is the unit right?"
+            )

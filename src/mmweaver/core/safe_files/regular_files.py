@@ -1,0 +1,102 @@
+"""Opens regular files alone, and turns what libraries raise for damaged ones into the one line of an InputError."""
+
+import contextlib
+import os
+import stat
+import warnings
+from collections.abc import Iterator
+from io import BufferedReader
+from pathlib import Path
+
+from mmweaver.core.errors import InputError, one_line
+
+MEGABYTE = 2**20
+
+
+def check_regular(path: Path | str) -> int:
+    """The size of a regular file in bytes. Raises InputError for folders, FIFOs, devices, sockets and missing files."""
+    try:
+        found = Path(path).stat()
+    except (OSError, ValueError) as error:
+        raise InputError(cannot_read(path, error)) from None
+    if stat.S_ISDIR(found.st_mode):
+        raise InputError(f"cannot read {path}: it is a folder; give a file")
+    if not stat.S_ISREG(found.st_mode):
+        raise InputError(f"cannot read {path}: it is no regular file but {_kind(found.st_mode)}; give a file")
+    return found.st_size
+
+
+def open_regular(path: Path | str) -> BufferedReader:
+    """A regular file, opened for reading bytes; never waits, as opening a FIFO would. Raises InputError otherwise."""
+    check_regular(path)
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+    try:
+        handle = os.open(path, flags)
+        if stat.S_ISREG(os.fstat(handle).st_mode):  # it may have been replaced since it was checked
+            return os.fdopen(handle, "rb")
+        os.close(handle)
+    except OSError as error:
+        raise InputError(cannot_read(path, error)) from None
+    raise InputError(f"cannot read {path}: it is no regular file; give a file")
+
+
+def read_bytes(path: Path | str, *, max_bytes: int) -> bytes:
+    """The whole of a regular file of at most `max_bytes`. Raises InputError for anything else."""
+    pieces, held = [], 0
+    with open_regular(path) as file:
+        try:
+            while piece := file.read(MEGABYTE):  # a larger read would take the memory before it has the bytes
+                pieces.append(piece)
+                held += len(piece)
+                if held > max_bytes:
+                    raise InputError(f"{path} is larger than {max_bytes / MEGABYTE:g} MB; is it the right file?")
+        except OSError as error:
+            raise InputError(cannot_read(path, error)) from None
+    return b"".join(pieces)
+
+
+@contextlib.contextmanager
+def foreign_errors(path: Path | str, what: str) -> Iterator[None]:
+    """Turns whatever a library raises while it decodes `path` into an InputError "PATH is `what` (reason)".
+
+    `what` says what is wrong and what to do with "{reason}" where the library's own words go, for example
+    "no .npy array ({reason}); save it with numpy.save". Only calls of libraries belong inside.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    except InputError:
+        raise
+    except MemoryError:
+        raise InputError(f"{path} needs more memory than there is; is it the right file?") from None
+    except OSError as error:
+        if error.errno is not None:
+            raise InputError(cannot_read(path, error)) from None
+        raise InputError(f"{path} is {what.format(reason=_reason(error))}") from None
+    except Exception as error:
+        raise InputError(f"{path} is {what.format(reason=_reason(error))}") from None
+
+
+def cannot_read(path: Path | str, error: Exception) -> str:
+    """The sentence for a file that the system does not open."""
+    reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+    return f"cannot read {path}: {reason}"
+
+
+def _reason(error: Exception) -> str:
+    """What a library says, shortened; numpy and torch advise to allow pickles, which is never right."""
+    text = one_line(str(error) or type(error).__name__, 160)
+    if "pickle" in text.lower() or "weights_only" in text:
+        return "it holds pickled objects, which could run code and are not opened"
+    return text
+
+
+def _kind(mode: int) -> str:
+    kinds = {
+        stat.S_IFIFO: "a FIFO",
+        stat.S_IFSOCK: "a socket",
+        stat.S_IFCHR: "a device",
+        stat.S_IFBLK: "a device",
+    }
+    return kinds.get(stat.S_IFMT(mode), "something else")

@@ -1,0 +1,194 @@
+"""Arrays of .npy, .npz and raw files: what a header says is held against the file before memory is taken for it.
+
+Pickled objects are never loaded. Reference: numpy.lib.format; PKWARE APPNOTE.TXT for zip.
+"""
+
+import ast
+import math
+import re
+import struct
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.array_checks import ArrayChecks
+from mmweaver.core.safe_files.regular_files import MEGABYTE, check_regular, foreign_errors, open_regular
+
+MAGIC = b"\x93NUMPY"
+MAX_HEADER_BYTES = 10_000
+KINDS = "biufcUS"  # what mmWeaver reads: no objects, dates or records
+# A compressed archive may grow to this, or to this many times its own size, whichever is more.
+INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
+NO_NPY = "no plain .npy array of numbers ({reason}); save it with numpy.save"
+NO_NPZ = "no plain .npz archive, or it is damaged ({reason}); write it again with numpy.savez"
+_LONG_SUFFIX = re.compile(r"(\d)L\b")  # of Python 2
+
+
+def read_npy(path: Path | str, *, mapped: bool = False) -> np.ndarray:
+    """The array of a .npy file; `mapped` leaves it on the disk, read-only. Raises InputError for anything else."""
+    with open_regular(path) as file, foreign_errors(path, NO_NPY):
+        if zipfile.is_zipfile(file):
+            raise InputError(f"{path} is an archive, not a .npy array; save the array alone with numpy.save")
+        file.seek(0)
+        dtype, shape, order = _header(file)
+        start = file.tell()
+        needed, held = math.prod(shape) * dtype.itemsize, check_regular(path) - start
+        if needed > held:
+            raise ValueError(f"its header says {shape} {dtype}, {needed} bytes, but it holds {max(held, 0)}")
+        if mapped and needed:
+            return np.memmap(file, dtype=dtype, mode="r", offset=start, shape=shape, order=order)
+        return _filled(file, dtype, shape, order)
+
+
+class NpzArrays(Mapping[str, np.ndarray]):
+    """The arrays of an .npz archive, and checks of them (`array_checks`)."""
+
+    def __init__(self, path: Path | str, arrays: dict[str, np.ndarray]):
+        self.path, self._arrays, self._checks = path, arrays, ArrayChecks(path)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def take(self, name: str) -> np.ndarray:
+        """An array as it is. Raises InputError where there is none of that name."""
+        if name not in self._arrays:
+            raise InputError(f"{self.path} holds no {name!r}; it has {', '.join(self._arrays) or 'nothing'}")
+        return self._arrays[name]
+
+    def numbers(self, name: str, shape: tuple[int | str, ...] | None = None, **limits: Any) -> np.ndarray:
+        """A checked array of numbers; see `ArrayChecks.numbers`."""
+        return self._checks.numbers(name, self.take(name), shape, **limits)
+
+    def texts(self, name: str) -> tuple[str, ...]:
+        """A list of texts. Raises InputError where the array holds anything else."""
+        values = self.take(name)
+        if values.dtype.kind != "U" or values.ndim != 1:
+            raise InputError(f"{self.path}: {name} is {values.dtype} of shape {values.shape}; texts are needed")
+        with foreign_errors(self.path, "damaged ({reason}); write it again"):
+            return tuple(values.tolist())
+
+
+def read_npz(path: Path | str, only: Iterable[str] | None = None, *, skip_unreadable: bool = False) -> NpzArrays:
+    """The arrays of an .npz archive, or those named in `only`.
+
+    `skip_unreadable` omits arrays of Python objects and other types that are not read, instead of refusing the archive.
+    Raises InputError where the file is no such archive, is damaged, or would grow out of proportion.
+    """
+    held = check_regular(path)
+    found: dict[str, np.ndarray] = {}
+    with open_regular(path) as file, foreign_errors(path, NO_NPZ):
+        if not zipfile.is_zipfile(file):
+            raise ValueError("it is no zip file")
+        with zipfile.ZipFile(file) as archive:
+            left = max(INFLATED_BYTES, INFLATED_RATIO * held)
+            for entry in archive.infolist():
+                name = entry.filename.removesuffix(".npy")
+                if only is not None and name not in only:
+                    continue
+                left -= entry.file_size
+                if left < 0 or (entry.compress_type == zipfile.ZIP_STORED and entry.file_size > held):
+                    raise ValueError(f"{held} bytes would grow to more than {INFLATED_RATIO} times as many")
+                array = _entry(archive, entry, skip_unreadable)
+                if array is not None:
+                    found[name] = array
+    return NpzArrays(path, found)
+
+
+def is_sound_zip(path: Path | str) -> bool:
+    """Whether a file is a zip archive, such as a checkpoint of torch, whose entries all have their CRC-32."""
+    try:
+        with open_regular(path) as file, foreign_errors(path, NO_NPZ), zipfile.ZipFile(file) as archive:
+            return archive.testzip() is None
+    except InputError:
+        return False
+
+
+def read_words(path: Path | str, dtype: str, *, count: int) -> np.ndarray:
+    """The first `count` numbers of a raw file, (count,). Raises InputError where it has fewer."""
+    needed = count * np.dtype(dtype).itemsize
+    if check_regular(path) < needed:
+        raise InputError(f"{path} has fewer than {needed} bytes; is it truncated?")
+    with open_regular(path) as file, foreign_errors(path, "unreadable ({reason})"):
+        return _filled(file, np.dtype(dtype), (count,), "C")
+
+
+def _entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, skip_unreadable: bool) -> np.ndarray | None:
+    with archive.open(entry) as stream:
+        try:
+            dtype, shape, order = _header(stream)
+        except _UnreadTypeError:
+            if skip_unreadable:
+                return None
+            raise
+        if math.prod(shape) * dtype.itemsize > entry.file_size:
+            raise ValueError(f"{entry.filename} says {shape} {dtype}, but has {entry.file_size} bytes")
+        array = _filled(stream, dtype, shape, order)
+        if stream.read(1):
+            raise ValueError(f"{entry.filename} is longer than its header says")
+        return array
+
+
+class _UnreadTypeError(ValueError):
+    """An array of a type that is not read."""
+
+
+def _header(file: Any) -> tuple[np.dtype, tuple[int, ...], Any]:
+    """Type, shape and order ("C" or "F") of a .npy stream. Raises ValueError for anything else."""
+    start = file.read(len(MAGIC) + 2)
+    if len(start) < len(MAGIC) + 2 or start[:-2] != MAGIC:
+        raise ValueError("it does not begin as a .npy")
+    size_format = {1: "<H", 2: "<I", 3: "<I"}.get(start[-2])
+    if size_format is None:
+        raise ValueError(f"version {start[-2]} of .npy is unknown")
+    (size,) = struct.unpack(size_format, _exactly(file, struct.calcsize(size_format)))
+    if size > MAX_HEADER_BYTES:
+        raise ValueError(f"its header has {size} bytes")
+    text = _exactly(file, size).decode("utf-8" if start[-2] == 3 else "latin-1")
+    header = ast.literal_eval(_LONG_SUFFIX.sub(r"\1", text.strip()))
+    if not isinstance(header, dict) or set(header) != {"descr", "fortran_order", "shape"}:
+        raise ValueError("its header lacks descr, fortran_order or shape")
+    shape = header["shape"]
+    if not isinstance(shape, tuple) or not all(type(length) is int and 0 <= length < 2**48 for length in shape):
+        raise ValueError("its header has an impossible shape")
+    if len(shape) > 16 or type(header["fortran_order"]) is not bool:
+        raise ValueError("its header is impossible")
+    if not isinstance(header["descr"], str):
+        raise _UnreadTypeError("it holds records, not plain numbers")
+    dtype = np.dtype(header["descr"])
+    if dtype.kind == "O":
+        raise _UnreadTypeError("it holds pickled objects")
+    if dtype.kind not in KINDS or dtype.itemsize == 0:
+        raise _UnreadTypeError(f"it holds values of type {dtype}")
+    return dtype, shape, "F" if header["fortran_order"] else "C"
+
+
+def _filled(file: Any, dtype: np.dtype, shape: tuple[int, ...], order: Any) -> np.ndarray:
+    """An array read from a stream that holds at least its bytes."""
+    array = np.empty(math.prod(shape), dtype)
+    raw: Any = array.view(np.uint8) if array.size else b""
+    view = memoryview(raw)
+    at = 0
+    while at < len(view):
+        piece = file.read(min(len(view) - at, MEGABYTE))
+        if not piece:
+            raise ValueError(f"it ends after {at} of {len(view)} bytes")
+        view[at : at + len(piece)] = piece
+        at += len(piece)
+    return array.reshape(shape, order=order)
+
+
+def _exactly(file: Any, size: int) -> bytes:
+    data = file.read(size)
+    if len(data) != size:
+        raise ValueError("its header is cut off")
+    return data

@@ -1,0 +1,107 @@
+"""Pictures by the decoders of a few common formats; every other decoder of Pillow stays out of reach.
+
+Pillow would hand an EPS to Ghostscript whatever the file is called, and rare formats have rare bugs.
+"""
+
+import contextlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+MAX_PIXELS = 50_000_000
+FORMATS = ("PNG", "JPEG", "TIFF", "WEBP", "BMP", "PPM")  # JPEG includes the MPO of many phones
+_MIN_SIDE = 32
+ORIENTATION = 0x0112
+# EXIF's orientation: what turns the stored picture upright, as Pillow numbers it (Image.Transpose)
+_TURN = {2: 0, 3: 3, 4: 1, 5: 5, 6: 4, 7: 6, 8: 2}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """A decoded picture, upright."""
+
+    image: "Image.Image"
+    stored_size: tuple[int, int]  # (width, height) in the file
+    orientation: int  # EXIF's, 1 to 8; 1 = as stored
+
+
+def open_picture(path: Path) -> Picture:
+    """Opens and decodes a picture, and turns it upright as its EXIF tag says.
+
+    Raises InputError where it cannot be read, is too small or too large.
+    """
+    from PIL import Image, UnidentifiedImageError
+
+    with open_regular(path) as file, foreign_errors(path, "damaged ({reason}); give a whole picture file"):
+        try:
+            image = Image.open(file, formats=FORMATS)
+        except UnidentifiedImageError:
+            raise InputError(_unknown(path)) from None
+        except Image.DecompressionBombError:
+            raise InputError(_too_large(path)) from None
+        size = image.size
+        if size[0] * size[1] > MAX_PIXELS:
+            raise InputError(_too_large(path))
+        if min(size) < _MIN_SIDE:
+            raise InputError(f"{path} has only {size[0]} x {size[1]} pixels; give a larger picture")
+        if image.format == "TIFF":  # Pillow turns these upright itself, and then forgets the tag
+            orientation = image.getexif().get(ORIENTATION, 1)
+            with _no_messages():
+                image.load()
+        else:
+            image.load()
+            orientation = image.getexif().get(ORIENTATION, 1)
+            if orientation in range(2, 9):
+                image = image.transpose(Image.Transpose(_TURN[orientation]))
+    return Picture(image=image, stored_size=size, orientation=orientation if orientation in range(2, 9) else 1)
+
+
+def read_animation(path: Path) -> list[np.ndarray]:
+    """The pictures of a .gif, (height, width, 3) uint8 each. Raises InputError where it is none or too large."""
+    from PIL import Image, ImageSequence
+
+    with open_regular(path) as file, foreign_errors(path, "damaged or no .gif ({reason}); make it again"):
+        image, pictures = Image.open(file, formats=("GIF",)), []
+        for picture in ImageSequence.Iterator(image):
+            if (len(pictures) + 1) * image.width * image.height > MAX_PIXELS:
+                raise InputError(_too_large(path))
+            pictures.append(np.asarray(picture.convert("RGB")))
+    return pictures
+
+
+def _unknown(path: Path) -> str:
+    if path.suffix.lower() == ".exr":
+        return f"{path} is OpenEXR, which is not supported; save it as a float TIFF or a .npy"
+    return f"{path} is not a picture that can be read; give a PNG or JPEG (TIFF, WebP, BMP and PPM are read too)"
+
+
+def _too_large(path: Path) -> str:
+    return f"{path} is too large; make it smaller than {MAX_PIXELS / 1e6:.0f} million pixels"
+
+
+@contextlib.contextmanager
+def _no_messages() -> Iterator[None]:
+    """Silences what libtiff itself writes to the process's stderr about a damaged file."""
+    try:
+        kept = os.dup(2)
+    except OSError:  # there is no stderr
+        yield
+        return
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)

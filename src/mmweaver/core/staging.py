@@ -1,0 +1,153 @@
+"""Temporary names of unfinished files and folders, and what sets right what a killed process left.
+
+    .walk.mmweaver-1f3a09c2-4711-88342-3.png     place, process, its start, a running number
+
+A process is known by its number and the time at which it started, for numbers are used again. The place is the host and
+its process namespace: on a shared disk, what another host left is removed when nothing in it has changed for an hour.
+"""
+
+import contextlib
+import errno
+import hashlib
+import itertools
+import os
+import platform
+import re
+import shutil
+import time
+from functools import cache
+from pathlib import Path
+
+ABANDONED_S = 3600.0
+COMMITTED = ".mmweaver-committed"  # in a folder: complete new files that are being moved into place
+LONGEST_NAME = 60  # characters of the name that are kept, for file systems allow 255 bytes in all
+STAGED = re.compile(r"\..*\.mmweaver-(?P<place>[0-9a-f]{8})-(?P<process>\d+)-(?P<start>\d+)-\d+(\.[^.]{1,16})?")
+_number = itertools.count()
+_swept: set[tuple[int, str]] = set()
+
+
+def staging_path(path: Path) -> Path:
+    """A new temporary name next to `path`, with its suffix."""
+    suffix = path.suffix if len(path.suffix) <= 16 else ""
+    stem = path.name.removesuffix(suffix).lstrip(".")[:LONGEST_NAME]
+    while len(stem.encode()) > 2 * LONGEST_NAME:
+        stem = stem[:-1]
+    process = os.getpid()
+    return path.with_name(f".{stem}.mmweaver-{_place()}-{process}-{_start_of(process)}-{next(_number)}{suffix}")
+
+
+def is_staged(name: str) -> bool:
+    """Whether this is the name of something unfinished."""
+    return STAGED.fullmatch(name) is not None
+
+
+def is_being_written(staged: Path) -> bool:
+    """Whether something unfinished belongs to a process that still runs here, or may run on another host."""
+    found = STAGED.fullmatch(staged.name)
+    if found is None:
+        return False
+    if found["place"] != _place() or os.name == "nt":  # on Windows os.kill would end the process instead of asking
+        return _age_s(staged) < ABANDONED_S
+    process = int(found["process"])
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        pass
+    return _start_of(process) == int(found["start"])
+
+
+def sweep(folder: Path, *, again: bool = False) -> None:
+    """Removes what killed processes left in a folder; once a process and folder, unless `again`."""
+    key = (os.getpid(), str(folder))
+    if key in _swept and not again:
+        return
+    _swept.add(key)
+    try:
+        with os.scandir(folder) as entries:
+            staged = [Path(entry.path) for entry in entries if is_staged(entry.name)]
+    except OSError:
+        return
+    for leftover in staged:
+        if not is_being_written(leftover):
+            remove(leftover)
+
+
+def remove(path: Path) -> None:
+    """Removes a file or a folder, as far as it can be."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path, ignore_errors=True)
+        return
+    with contextlib.suppress(OSError):
+        path.unlink(missing_ok=True)
+
+
+def finish_moving(folder: Path) -> None:
+    """Moves the rest of complete new files into place, where a kill has interrupted that. Raises OSError."""
+    committed = folder / COMMITTED
+    if not committed.is_dir():
+        return
+    try:
+        # the checksums first: until all files are there, those that are missing or old do not match
+        for file in sorted(committed.iterdir(), key=lambda file: file.name != "SHA256SUMS"):
+            place = folder / file.name
+            if place.is_dir() and file.is_dir():
+                shutil.rmtree(place)
+            file.replace(place)
+        sync(folder)
+        committed.rmdir()
+    except FileNotFoundError:
+        pass  # another process has moved it in the meantime
+
+
+def sync_tree(folder: Path) -> None:
+    """Brings all files and folders below to the disk."""
+    for place, _, files in os.walk(folder, topdown=False):
+        for name in files:
+            sync(Path(place) / name)
+        sync(Path(place))
+
+
+def sync(path: Path) -> None:
+    """Brings a file's bytes, or a folder's names, to the disk."""
+    is_folder = path.is_dir()
+    if is_folder and os.name == "nt":
+        return  # Windows has no such call for folders
+    handle = os.open(path, os.O_RDWR if os.name == "nt" else os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if not (is_folder and error.errno == errno.EINVAL):  # some network file systems cannot sync a folder
+            raise
+    finally:
+        os.close(handle)
+
+
+def _age_s(path: Path) -> float:
+    """Seconds since anything in a file or folder changed; 0 where it is gone."""
+    newest = 0.0
+    for place in (path, *path.rglob("*")):
+        try:
+            newest = max(newest, place.lstat().st_mtime)
+        except OSError:
+            return 0.0
+    return time.time() - newest
+
+
+@cache
+def _place() -> str:
+    try:
+        namespace = str(Path("/proc/self/ns/pid").readlink())
+    except OSError:
+        namespace = ""
+    return hashlib.sha256(f"{platform.node()} {namespace}".encode()).hexdigest()[:8]
+
+
+def _start_of(process: int) -> int:
+    """When a process started, in clock ticks since the host did; 0 where that cannot be known, -1 of a dead one."""
+    try:
+        state, *fields = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    except OSError:
+        return -1 if Path("/proc/self/stat").exists() else 0
+    return -1 if state == "Z" else int(fields[18])  # a zombie has ended and waits for its parent

@@ -1,0 +1,66 @@
+"""Tensors as safetensors files: the same tensors give the same bytes, and damage is noticed.
+
+The header holds the sha256 of the tensors beside whatever the caller puts there.
+"""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files import safe_tensors
+from mmweaver.core.safe_files.safe_text import parse_json
+
+if TYPE_CHECKING:
+    from torch import Tensor
+
+SHA256 = "sha256"  # in the header
+
+
+def write_tensors(file: Path, tensors: "dict[str, Tensor]", header: dict[str, str] | None = None) -> None:
+    """Writes tensors and their sha256, whole or not at all. Raises InputError where they cannot be written."""
+    from safetensors.torch import save
+
+    own = {name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}
+    data = _in_order(save(own, metadata={**(header or {}), SHA256: sha256_of(own)}))
+    with atomic_file(file) as temporary:
+        temporary.write_bytes(data)
+
+
+def read_tensors(file: Path) -> "tuple[dict[str, Tensor], dict[str, str]]":
+    """Reads tensors and header of what `write_tensors` wrote. Raises InputError for a damaged or missing file, or
+    values that are not finite."""
+    tensors, header = safe_tensors.read_tensors(file)
+    if header.get(SHA256, "") not in ("", sha256_of(tensors)):
+        raise InputError(f"{file} is damaged: its values are not those that were written; write it again")
+    return tensors, header
+
+
+def sha256_of(tensors: "dict[str, Tensor]") -> str:
+    """The sha256 of names, types, shapes and values."""
+    import torch
+
+    digest = hashlib.sha256()
+    for name in sorted(tensors):
+        tensor = tensors[name].detach().cpu().contiguous()
+        digest.update(f"{name} {tensor.dtype} {tuple(tensor.shape)}\n".encode())
+        if tensor.dtype == torch.bfloat16:
+            tensor = tensor.view(torch.int16)  # which numpy knows
+        digest.update(tensor.numpy().tobytes())
+    return digest.hexdigest()
+
+
+def _in_order(data: bytes) -> bytes:
+    """Sorts the entries of `__metadata__`, which safetensors writes in an order that differs from run to run.
+
+    Reference: safetensors format: 8 bytes of length, a JSON header padded with spaces, the data.
+    """
+    size = int.from_bytes(data[:8], "little")
+    header = parse_json(data[8 : 8 + size], "the header")
+    metadata = dict(sorted(header.pop("__metadata__").items()))
+    text = json.dumps({"__metadata__": metadata, **header}, ensure_ascii=False, separators=(",", ":"))
+    packed = text.encode().ljust(size)
+    assert len(packed) == size, "the header is as long as before"
+    return data[:8] + packed + data[8 + size :]

@@ -1,0 +1,54 @@
+"""A folder of a data set whose files are checked against SHA256SUMS before they are used; decision 176."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmweaver.core.checksums import SUMS_FILE, damage_of_file, read_sums
+from mmweaver.core.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckedFolder:
+    """A room, or the root of a data set; without checksums, as in sets of mmweaver before 1.0, all is accepted."""
+
+    folder: Path
+    sums: dict[str, str] | None
+    made_by: str  # the command that makes damaged rooms anew
+
+    @classmethod
+    def of(cls, folder: Path, made_by: str) -> "CheckedFolder":
+        """Reads the checksums. Raises InputError where their list is damaged."""
+        return cls(folder=folder, sums=read_sums(folder), made_by=made_by)
+
+    def check(self, *below: str, but: tuple[str, ...] = ()) -> None:
+        """Checks all files whose name begins with one of `below` (default: all) and with none of `but`.
+
+        A file is read once a process, and again when it has changed. Raises InputError for the first that is damaged.
+        """
+        for name, expected in (self.sums or {}).items():
+            if name.startswith(below or "") and not name.startswith(but or "/"):
+                found = damage_of_file(self.folder, name, expected)
+                if found is not None:
+                    raise self.damaged(str(found))
+
+    def require_sums(self) -> None:
+        """Raises InputError where the checksums are missing from a room that was written with them."""
+        if self.sums is None:
+            raise self.damaged(f"{self.folder / SUMS_FILE} is missing")
+
+    def damaged(self, what: str) -> InputError:
+        """The error for something damaged."""
+        return InputError(f"{what}; make it anew with: {self.made_by}")
+
+    @contextmanager
+    def reading(self) -> Iterator[None]:
+        """Whatever Zarr raises over damaged files becomes an InputError."""
+        try:
+            yield
+        except (InputError, MemoryError):
+            raise
+        except Exception as error:  # Zarr and its codecs raise some twenty kinds
+            reason = " ".join(str(error).split())[:120] or type(error).__name__
+            raise self.damaged(f"{self.folder} is damaged ({reason})") from error

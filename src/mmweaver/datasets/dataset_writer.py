@@ -1,0 +1,202 @@
+"""Writes data sets: the root, and each room under a temporary name that is renamed when it is complete.
+
+A kill at any instant loses only unfinished rooms, and several processes may work on the same set. What the root holds
+follows from plan.json, which the first process creates; each completes what is missing. Layout: `dataset_store`.
+"""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
+from mmweaver.core.checksums import SUMS_FILE, damages, read_sums, write_sums
+from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import cannot_write, is_empty, resolved
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import CubeGrid
+from mmweaver.core.skeleton import JOINT_NAMES
+from mmweaver.core.staging import is_staged, remove, staging_path, sync, sync_tree
+from mmweaver.datasets.dataset_plan import RADAR_FILE, DatasetPlan
+from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
+from mmweaver.datasets.geometry_store import write_geometry
+from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, TracedSequence
+from mmweaver.datasets.zarr_arrays import put_array, zarr_module
+
+SEQUENCES_A_SHARD = 8
+AXES = {
+    "frame_time_s": ("frame",), "range_m": ("range",), "radial_velocity_mps": ("doppler",),
+    "antenna_position_m": ("antenna", "axis"),
+}  # fmt: skip
+ROOT_NAMES = (PLAN_FILE, RADAR_FILE, "zarr.json", *AXES, SUMS_FILE)
+
+
+def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
+    """Creates the folder of a data set, or completes an existing one of the same plan and radar.
+
+    Raises InputError for a folder of another plan, of another radar, or of something else.
+    """
+    target = resolved(folder)
+    text = plan.to_json()
+    if not (target / PLAN_FILE).is_file() and not _can_begin(target):
+        raise InputError(f"{folder} is not empty and holds no data set; choose another folder")
+    if create_once(target / PLAN_FILE, text) != text:
+        raise InputError(f"{folder} holds a data set of another plan; choose another folder or the same settings")
+    stage = staging_path(target / "axes")
+    try:
+        _write_root(stage, plan, config)
+        if read_sums(target) is None:
+            _move_entries(stage, target)
+        elif not (target / RADAR_FILE).is_file():
+            raise InputError(f"{target / RADAR_FILE} is missing; make it anew with the same command and --repair")
+        elif (target / RADAR_FILE).read_bytes() != (stage / RADAR_FILE).read_bytes():
+            raise InputError(f"{folder} holds a data set of another radar; choose another folder or the same radar")
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    finally:
+        remove(stage)
+
+
+def _can_begin(target: Path) -> bool:
+    """Whether a folder is new or empty, or was left by a kill before its plan was written."""
+    if not target.exists() or is_empty(target):
+        return True
+    others = {entry.name for entry in target.iterdir() if not is_staged(entry.name)}
+    return others <= {*ROOT_NAMES, f".{PLAN_FILE}"}
+
+
+def _write_root(stage: Path, plan: DatasetPlan, config: RadarConfig) -> None:
+    root = zarr_module().open_group(stage, mode="w")
+    grid = CubeGrid.of(config, plan.num_frames)
+    for name, dimensions in AXES.items():
+        put_array(root, name, getattr(grid, name), dimensions)
+    root.attrs.update(
+        {"made_by": "mmweaver dataset", "radar": json.loads(config.to_json()), "joints": list(JOINT_NAMES),
+         "wavelength_m": config.wavelength_m, "checksums": SUMS_FILE}
+    )  # fmt: skip
+    (stage / PLAN_FILE).write_text(plan.to_json(), encoding="utf-8")
+    (stage / RADAR_FILE).write_text(config.to_json(), encoding="utf-8")
+    write_sums(stage)
+
+
+def _move_entries(stage: Path, target: Path) -> None:
+    """Moves what is missing or differs, the checksums last; other processes may do the same."""
+    sync_tree(stage)
+    for name in ROOT_NAMES:
+        if _contents(stage / name) == _contents(target / name):
+            continue
+        if (target / name).is_dir():
+            remove(target / name)
+        try:
+            (stage / name).rename(target / name)
+        except OSError:
+            if not (target / name).is_dir():  # else another process was quicker
+                raise
+    remove(target / f".{PLAN_FILE}")
+    sync(target)
+
+
+def _contents(place: Path) -> dict[str, bytes]:
+    files = [place] if place.is_file() else sorted(file for file in place.rglob("*") if file.is_file())
+    return {file.relative_to(place).as_posix(): file.read_bytes() for file in files}
+
+
+def remove_damaged(folder: Path, plan: DatasetPlan) -> list[str]:
+    """Removes damaged rooms and the damaged root of a data set of this plan, so that they are made anew.
+
+    Returns the names of the rooms. Raises InputError where the folder holds another data set.
+    """
+    if not (folder / PLAN_FILE).is_file() and not (folder / SUMS_FILE).is_file():
+        return []
+    text = plan.to_json()
+    sums = _sums_or_none(folder)
+    if sums is None or damages(folder):
+        is_ours = (sums or {}).get(PLAN_FILE) == hashlib.sha256(text.encode()).hexdigest()
+        if not is_ours and (folder / PLAN_FILE).read_bytes() != text.encode():
+            raise InputError(f"{folder} holds a data set of another plan; give the settings it was made with")
+        remove(folder / SUMS_FILE)
+        with atomic_file(folder / PLAN_FILE) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    rooms = [room.name for room in plan.rooms() if is_done(folder, room.name)]
+    damaged = [name for name in rooms if _is_damaged(folder / name)]
+    for name in damaged:
+        away = staging_path(folder / name)
+        (folder / name).rename(away)
+        remove(away)
+    return damaged
+
+
+def _sums_or_none(folder: Path) -> dict[str, str] | None:
+    try:
+        return read_sums(folder)
+    except InputError:
+        return None
+
+
+def _is_damaged(room: Path) -> bool:
+    return _sums_or_none(room) is None or bool(damages(room))
+
+
+def write_room(folder: Path, generated: GeneratedRoom) -> None:
+    """Writes one room atomically; one that is there already is kept, for the same plan gives the same bits."""
+    with staged_folder(resolved(folder) / generated.spec.name, keep_existing=True) as partial:
+        group = zarr_module().open_group(partial, mode="w")
+        _put_sequences(group, generated)
+        _put_photo(group, generated)
+        group.attrs.update(_attributes(generated))
+
+
+def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
+    sequences = generated.sequences
+    traced = tuple(s for s in sequences if isinstance(s, TracedSequence))
+    signals = [s.cube.values for s in sequences if isinstance(s, GeneratedSequence)]
+    if signals:
+        iq, scale = _packed(signals)
+        axes = ("sequence", "frame", "range", "doppler", "antenna", "part")
+        put_array(group, "iq", iq, axes, sequences=SEQUENCES_A_SHARD)
+        put_array(group, "iq_scale", scale, ("sequence",))
+    if generated.geometry is not None:
+        write_geometry(group, generated.geometry, traced)
+    if sequences:
+        pose = ("sequence", "frame", "joint", "axis")
+        put_array(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
+        put_array(group, "joint_velocity_mps", np.stack([s.joint_velocity_mps for s in sequences]), pose)
+        put_array(group, "person", np.array([s.spec.person for s in sequences]), ("sequence",))
+        put_array(group, "seed", np.array([s.spec.seed for s in sequences]), ("sequence",))
+
+
+def _put_photo(group: Any, generated: GeneratedRoom) -> None:
+    photo, static = generated.photo, generated.static
+    put_array(group, "photo_rgb", photo.rgb, ("row", "column", "colour"))
+    put_array(group, "photo_depth_m", photo.depth_m.astype(np.float32), ("row", "column"))
+    if photo.classes is not None:
+        put_array(group, "photo_class", photo.classes.index, ("row", "column"))
+    put_array(group, "empty_iq", np.stack([np.real(static), np.imag(static)], -1), ("range", "antenna", "part"))
+
+
+def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
+    spec, photo, sequences = generated.spec, generated.photo, generated.sequences
+    return {
+        "kind": spec.kind, "layout": spec.layout, "lighting": spec.lighting, "checksums": SUMS_FILE,
+        "activity": [s.spec.activity for s in sequences], "text": [s.spec.text for s in sequences],
+        "split": [s.spec.split for s in sequences], "index": [s.spec.index for s in sequences],
+        "refused": [list(entry) for entry in generated.refused],
+        "camera": asdict(photo.intrinsics),
+        "class_names": list(photo.classes.names) if photo.classes else [],
+    }  # fmt: skip
+
+
+def _packed(cubes: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Cubes as float16 pairs (cube, ..., part) and the scale of each (cube,): relative error below 5e-4."""
+    out = np.empty((len(cubes), *cubes[0].shape, 2), np.float16)
+    scale = np.empty(len(cubes), np.float32)
+    for index, values in enumerate(cubes):  # one at a time: 120 sequences would fill gigabytes
+        scale[index] = max(np.abs(values).max(), 1e-30)
+        unit = values / scale[index]
+        # float16 loses precision below 6e-5, where the cell noise lies: 1.0 is stored as 1024
+        out[index] = np.stack([unit.real, unit.imag], axis=-1) * 1024
+    return out, scale / np.float32(1024)

@@ -1,0 +1,127 @@
+"""A PyTorch data set over a labelled set: features on the fly, or cached in memory."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch.utils.data import Dataset
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud, RadarCube
+from mmweaver.datasets.activity_store import SPLIT_KEYS, SPLITS, ActivitySet, read_activity_set
+from mmweaver.features import (
+    dynamic_range_angle,
+    micro_doppler_db,
+    point_table,
+    range_azimuth_db,
+    range_doppler_db,
+    range_elevation_db,
+)
+
+OF_CUBE: dict[str, Callable[[RadarCube], np.ndarray]] = {
+    "iq": lambda cube: cube.values,
+    "rd": range_doppler_db,
+    "ra": range_azimuth_db,
+    "re": range_elevation_db,
+    "drai": dynamic_range_angle,
+    "micro_doppler": micro_doppler_db,
+}
+FEATURES = (*OF_CUBE, "points", "pose", "label")
+
+
+class RadarDataset(Dataset[dict[str, Any]]):
+    """Sequences of a labelled set (`mmweaver dataset --activities`) as dicts of tensors, for torch's DataLoader.
+
+    `features`: any of "iq" (complex64: frame, range, doppler, antenna), "rd" (dB: frame, range, doppler), "ra" (dB:
+    frame, range, azimuth), "re" (dB: frame, range, elevation), "drai" (linear: frame, 32, 32), "micro_doppler" (dB:
+    window, doppler), "points" ((point, 6): frame, x, y, z, velocity, SNR), "pose" ((frame, 22, 3) metres) and "label"
+    (int). `split`: "train", "validation", "test" or None for all; `by`: whether "subject", "place", "room" or
+    "sentence" is held out (default: what the set was made with). `cached` keeps features in memory once computed. The
+    order is that of the set; an item is the same in every worker. Raises InputError for unknown names.
+    """
+
+    def __init__(
+        self,
+        path: str | Path | ActivitySet,
+        features: Sequence[str] = ("rd", "label"),
+        *,
+        split: str | None = None,
+        by: str | None = None,
+        cached: bool = False,
+    ):
+        unknown = [name for name in features if name not in FEATURES]
+        if unknown or not features:
+            raise InputError(f"unknown features {', '.join(unknown) or '(none)'}; known: {', '.join(FEATURES)}")
+        if split is not None and split not in SPLITS:
+            raise InputError(f"unknown split {split!r}; known: {', '.join(SPLITS)}, or None for all")
+        if by is not None and by not in SPLIT_KEYS:
+            raise InputError(f"unknown key {by!r}; splits are by {', '.join(SPLIT_KEYS)}")
+        self.set = path if isinstance(path, ActivitySet) else read_activity_set(Path(path))
+        self.features = tuple(features)
+        of_split = self.set.columns["split" if by is None else f"split_{by}"]
+        chosen = np.ones(len(self.set), bool) if split is None else of_split == split
+        self.indices = np.flatnonzero(chosen)
+        self._cache: dict[int, dict[str, Any]] | None = {} if cached else None
+
+    @property
+    def label_names(self) -> tuple[str, ...]:
+        """The words of the labels, by number."""
+        return self.set.label_names
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    def __getitem__(self, index: int) -> dict[str, Any]:
+        if not -len(self) <= index < len(self):
+            raise IndexError(index)
+        own = int(self.indices[index])
+        if self._cache is None:
+            return self._item(own)
+        if own not in self._cache:
+            self._cache[own] = self._item(own)
+        return self._cache[own]
+
+    def _item(self, own: int) -> dict[str, Any]:
+        needs_cube = any(name in OF_CUBE for name in self.features)
+        cube = self.set.cube(own) if needs_cube else None
+        item: dict[str, torch.Tensor | int] = {}
+        for name in self.features:
+            if name == "label":
+                item[name] = int(self.set.columns["label"][own])
+            else:
+                values = self._feature(name, own, cube)
+                item[name] = torch.from_numpy(np.ascontiguousarray(values))
+        return item
+
+    def _feature(self, name: str, own: int, cube: RadarCube | None) -> np.ndarray:
+        if name == "pose":
+            return self.set.joints_m[own]
+        if name == "points":
+            return frame_and_points(self.set.cloud(own))
+        assert cube is not None
+        return OF_CUBE[name](cube)
+
+
+def frame_and_points(points: PointCloud) -> np.ndarray:
+    """(point, 6) float32: frame, x, y, z in metres, radial velocity in m/s, SNR in dB."""
+    return np.concatenate([points.frame[:, None].astype(np.float32), point_table(points)], axis=1)
+
+
+def collate(items: Sequence[dict[str, Any]]) -> dict[str, torch.Tensor]:
+    """A batch for DataLoader(collate_fn=...): stacked, with clouds padded by zeros and `points_mask` (item, point)."""
+    batch: dict[str, torch.Tensor] = {}
+    for name in items[0]:
+        values = [item[name] for item in items]
+        if name == "points":
+            most = max(len(value) for value in values)
+            batch[name] = torch.stack(
+                [torch.nn.functional.pad(value, (0, 0, 0, most - len(value))) for value in values]
+            )
+            batch["points_mask"] = torch.stack([torch.arange(most) < len(value) for value in values])
+        elif name == "label":
+            batch[name] = torch.tensor(values)
+        else:
+            batch[name] = torch.stack(values)
+    return batch

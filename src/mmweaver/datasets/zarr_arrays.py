@@ -1,0 +1,49 @@
+"""Arrays of a data set's Zarr groups: every chunk is written, with a CRC-32C."""
+
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+
+UNITS = {
+    "iq": "1 (times iq_scale: sqrt(mW))", "iq_scale": "sqrt(mW)", "joints_m": "m", "joint_velocity_mps": "m/s",
+    "photo_depth_m": "m", "range_m": "m", "radial_velocity_mps": "m/s", "frame_time_s": "s",
+    "antenna_position_m": "m", "empty_iq": "sqrt(mW)",
+}  # fmt: skip
+
+
+def zarr_module() -> Any:
+    """The zarr module, imported lazily. Raises InputError where it is not installed."""
+    try:
+        import zarr
+    except ImportError as error:
+        raise InputError("data sets need Zarr; install it with: pip install 'mmweaver[dataset]'") from error
+    return zarr
+
+
+def put_array(
+    group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...], *, packing: Any = None, sequences: int = 0
+) -> None:
+    """Writes one array as one chunk, or, with `sequences`, one chunk a sequence in shards of at most so many.
+
+    `packing`: the codec of its bytes (default Zstandard). Chunks of nothing but zeros are written too, so that a file
+    that is missing is damage, which Zarr itself takes for zeros.
+    """
+    from zarr.codecs import Crc32cCodec, ZstdCodec
+
+    values = np.ascontiguousarray(values)
+    options: dict[str, Any] = {"chunks": values.shape if values.size else (1,) * values.ndim}
+    if sequences:
+        rest = values.shape[1:]
+        options = {"chunks": (1, *rest), "shards": (min(sequences, len(values)), *rest)}
+        if len(values) % options["shards"][0]:
+            options["shards"] = (1, *rest)
+    array = group.create_array(
+        name, shape=values.shape, dtype=values.dtype, dimension_names=dimensions, overwrite=True,
+        compressors=[packing or ZstdCodec(), Crc32cCodec()], config={"write_empty_chunks": True}, **options,
+    )  # fmt: skip
+    array[...] = values
+    unit = UNITS.get(name, "m" if name.endswith("_m") else "")
+    if unit:
+        array.attrs["units"] = unit

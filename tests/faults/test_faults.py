@@ -1,0 +1,66 @@
+"""Commands that die, or find the disk full, at an event of the file system: run again, they end with the same bits.
+
+Here a sample of events of the quick commands; all events of all commands are the nightly test below, and
+`python -m studies run injected_faults` makes the table of docs/trust.md.
+"""
+
+import random
+import sys
+from pathlib import Path
+
+import pytest
+
+if not sys.platform.startswith("linux"):
+    pytest.skip("faults are injected into forked processes", allow_module_level=True)
+
+from studies.trust.fault_injection import Fault
+from studies.trust.faulted_commands import FaultedRuns, faulted_commands, prepare_inputs
+from studies.trust.injected_faults import faults_of
+from studies.trust.random_kills import KilledRuns, killed_commands
+
+QUICK = ("process",)
+ALL = (
+    *QUICK, "decompress", "motion", "decompress --overwrite", "compress", "rooms", "generate", "generate --overwrite",
+    "generate --texts", "dataset", "train",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("inputs")
+    prepare_inputs(folder, which=("walk",))
+    return folder
+
+
+def faulted(name: str, inputs: Path, work: Path) -> FaultedRuns:
+    return FaultedRuns(next(one for one in faulted_commands(inputs) if one.name == name), work)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_sample_of_events(name: str, inputs: Path, tmp_path: Path):
+    runs = faulted(name, inputs, tmp_path)
+    middle, late = runs.events // 2, runs.events - 2
+    faults = [Fault(kind="kill", number=late), Fault(kind="once", number=middle), Fault(kind="large", number=1000)]
+    assert {fault: runs.problems(fault) for fault in faults} == {fault: [] for fault in faults}
+
+
+@pytest.mark.slow  # a sample of it: test_a_sample_of_events
+@pytest.mark.parametrize("name", ALL)
+def test_every_event(name: str, inputs: Path, tmp_path: Path):
+    prepare_inputs(inputs)
+    runs = faulted(name, inputs, tmp_path)
+    assert {fault: found for fault in faults_of(runs.events) if (found := runs.problems(fault))} == {}
+
+
+def test_points_are_spread_from_the_first_event_to_the_last():
+    faults = list(faults_of(9, 3))
+    assert [fault.number for fault in faults if fault.kind == "kill"] == [1, 5, 9]
+    assert [fault.number for fault in faults_of(2) if fault.kind == "once"] == [1, 2]
+
+
+@pytest.mark.slow  # the kinds of faults of test_a_sample_of_events hold the same behaviour
+@pytest.mark.parametrize("name", ["generate", "dataset --workers 2"])
+def test_random_kills(name: str, tmp_path: Path):
+    prepare_inputs(tmp_path / "inputs", which=())
+    killed = KilledRuns(killed_commands(tmp_path / "inputs")[name], tmp_path / "runs", random.Random(14))
+    assert killed.problems(10) == []

@@ -1,0 +1,111 @@
+"""Runs damaged inputs through readers: every case is refused in one line or gives a sound record, quickly, in little
+memory."""
+
+import random
+import resource
+import signal
+import time
+import traceback
+import warnings
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import MAX_CHARACTERS, InputError
+
+CASE_LIMIT_S = 20.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reader:
+    """One reader: a damaged file of a case, how it is read, and what is wrong with a result (None: nothing)."""
+
+    name: str
+    suffix: str
+    damaged: Callable[[random.Random], bytes]
+    read: Callable[[Path], Any]
+    wrong: Callable[[Any], str | None] = lambda _: None
+
+
+@dataclass(kw_only=True)
+class Report:
+    """What became of the cases of one reader."""
+
+    name: str
+    cases: int = 0
+    refused: int = 0
+    accepted: int = 0
+    failures: Counter[str] = field(default_factory=Counter)
+    examples: dict[str, bytes] = field(default_factory=dict)  # a file of each kind of failure
+    slowest_s: float = 0.0
+    cpu_s: float = 0.0
+    peak_mb: float = 0.0  # of the process, up to the end of this reader
+
+    def add(self, other: "Report") -> None:
+        """Adds the cases of another report."""
+        self.cases, self.refused = self.cases + other.cases, self.refused + other.refused
+        self.accepted, self.cpu_s = self.accepted + other.accepted, self.cpu_s + other.cpu_s
+        self.failures += other.failures
+        self.examples = {**other.examples, **self.examples}
+        self.slowest_s, self.peak_mb = max(self.slowest_s, other.slowest_s), max(self.peak_mb, other.peak_mb)
+
+
+class _HangError(BaseException):
+    pass
+
+
+def _alarm(*_: Any) -> None:
+    raise _HangError
+
+
+def fuzz(reader: Reader, folder: Path, *, seed: int, cases: range, until: float = float("inf")) -> Report:
+    """Runs the cases of these numbers, or until a time of `time.monotonic`; the same seed damages in the same way."""
+    report = Report(name=reader.name)
+    path = folder / f"{reader.name.replace(' ', '_')}{reader.suffix}"
+    for number in cases:
+        if time.monotonic() > until:
+            break
+        data = reader.damaged(random.Random(f"{seed} {reader.name} {number}"))
+        try_case(reader, path, data, report)
+    report.peak_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return report
+
+
+def try_case(reader: Reader, path: Path, data: bytes, report: Report) -> None:
+    """Reads one file and counts what became of it."""
+    path.write_bytes(data)
+    start, report.cases = time.process_time(), report.cases + 1
+    previous = signal.signal(signal.SIGALRM, _alarm)
+    signal.setitimer(signal.ITIMER_REAL, 6 * CASE_LIMIT_S)  # a loaded machine is no hang
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            problem = reader.wrong(reader.read(path))
+        report.accepted += 1
+        failure = problem and f"wrong result: {problem}"
+    except InputError as error:
+        report.refused += 1
+        text = str(error)
+        failure = f"refusal of {len(text)} characters" if len(text) > MAX_CHARACTERS or "\n" in text else None
+    except _HangError:
+        failure = "hang"
+    except MemoryError:
+        failure = "memory"
+    except Exception as error:
+        own = [frame for frame in traceback.extract_tb(error.__traceback__) if "/mmweaver/" in frame.filename]
+        where = f"{Path(own[-1].filename).name}:{own[-1].lineno}" if own else "?"
+        failure = f"{type(error).__name__} at {where}: {str(error)[:100]}"
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, previous)
+    took = time.process_time() - start
+    report.cpu_s += took
+    report.slowest_s = max(report.slowest_s, took)
+    if took > CASE_LIMIT_S:
+        failure = failure or "slow"
+    if failure:
+        kind = failure.partition(": ")[0] if "wrong" not in failure else failure
+        report.failures[kind] += 1
+        report.examples.setdefault(kind, data)
