@@ -3,15 +3,15 @@ import pytest
 import torch
 
 from mmweaver.dsp.window_kernels import WindowKernel
-from mmweaver.dsp.windows import hann
+from mmweaver.dsp.windows import doppler_window, doppler_window_middle, hann
 
 
-@pytest.mark.parametrize("num", [16, 85, 256])
+@pytest.mark.parametrize("num", [1, 2, 3, 16, 85, 256])
 def test_the_kernel_is_the_windows_spectrum_anywhere(num: int):
-    """Against the sum over samples; odd lengths change sign from one period to the next."""
-    window = hann(num)
+    """Against the sum over samples; some change sign from one period to the next. Fewer than four are a rectangle."""
+    window = doppler_window(num)
     place = np.linspace(-1.6 * num, 1.6 * num, 1501)
-    middle = np.arange(num) - num / 2
+    middle = np.arange(num) - doppler_window_middle(num)
     turns = np.outer(place, middle) / num
     value = np.cos(2 * np.pi * turns) @ window / window.sum()
     slope = -np.sin(2 * np.pi * turns) @ (window * 2 * np.pi * middle / num) / window.sum()

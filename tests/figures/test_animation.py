@@ -19,7 +19,7 @@ def test_one_picture_per_frame_in_real_time(view: FigureData, tmp_path: Path):
     draw_animation(view, tmp_path / "a.gif")
     with Image.open(tmp_path / "a.gif") as picture:
         assert picture.size == (900, 370)
-        assert picture.n_frames == 12
+        assert getattr(picture, "n_frames", 1) == 12
         assert picture.info["duration"] == 100
         assert picture.info["loop"] == 0
 

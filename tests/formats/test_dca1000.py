@@ -16,6 +16,7 @@ from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.seeding import stream
+from mmweaver.core.transmit_code import tx_code_of
 from mmweaver.formats.dca1000 import read_bin, write_bin
 
 SMALL = replace(AWR1843, num_loops=2, num_samples=8, num_range_bins=4, first_range_bin=0)
@@ -45,6 +46,74 @@ def described_reader(data: bytes, config: RadarConfig, tx_order: tuple[int, ...]
                         found[frame, loop, tx, rx, sample + 1] = complex(i1, q1)
         frame += 1
     return found
+
+
+def described_four_lanes(data: bytes, config: RadarConfig, tx_order: tuple[int, ...], q_first: bool) -> dict:
+    """From the description: each sample is I of receivers 0 to 3, then Q of them; all four lanes are always there."""
+    found, at, frame = {}, 0, 0
+    while at < len(data):
+        for loop in range(config.num_loops):
+            for tx in tx_order:
+                for sample in range(config.num_samples):
+                    words = struct.unpack_from("<8h", data, at)
+                    at += 16
+                    real, imaginary = (words[4:], words[:4]) if q_first else (words[:4], words[4:])
+                    for index, lane in enumerate(config.rx_channels or range(4)):
+                        found[frame, loop, tx, index, sample] = complex(real[lane], imaginary[lane])
+        frame += 1
+    return found
+
+
+@pytest.mark.parametrize("iq_order", ["iq", "qi"])
+@pytest.mark.parametrize("receivers", [(), (0, 2)], ids=["four receivers", "two of four"])
+def test_four_lanes_follow_their_format(tmp_path: Path, iq_order: str, receivers: tuple[int, ...]):
+    """xWR12xx and xWR14xx; with an odd number of samples, which two lanes cannot have."""
+    rx = tuple(SMALL.rx_position_m[one] for one in receivers) or SMALL.rx_position_m
+    config = replace(SMALL, lvds_lanes=4, num_samples=7, rx_position_m=rx, rx_channels=receivers)
+    adc = counts_adc(config)
+    path = tmp_path / "adc_data.bin"
+    write_bin(path, adc, iq_order=iq_order, counts_per_unit=1.0)
+    assert path.stat().st_size == 2 * 2 * 3 * 4 * 7 * 4
+    found = described_four_lanes(path.read_bytes(), config, config.tx_order, iq_order == "qi")
+    assert len(found) == adc.samples.size
+    for index, value in found.items():
+        assert adc.samples[index] == value
+    assert np.array_equal(read_bin(path, config, iq_order=iq_order).samples, adc.samples)
+
+
+def test_a_sub_frame_is_cut_out_of_each_frame(tmp_path: Path):
+    """Two sub-frames follow each other in each frame; written, the other one is zero."""
+    config = replace(SMALL, frame_words_before=10, frame_words_after=6)
+    adc = counts_adc(config, 3)
+    path = tmp_path / "adc_data.bin"
+    write_bin(path, adc, counts_per_unit=1.0)
+    words = np.fromfile(path, "<i2").reshape(3, -1)
+    assert not words[:, :10].any()
+    assert not words[:, -6:].any()
+    write_bin(tmp_path / "alone.bin", replace(adc, config=SMALL), counts_per_unit=1.0)
+    assert np.array_equal(words[:, 10:-6].ravel(), np.fromfile(tmp_path / "alone.bin", "<i2"))
+    assert np.array_equal(read_bin(path, config).samples, adc.samples)
+    with pytest.raises(InputError, match="32 of other sub-frames"):
+        path.write_bytes(path.read_bytes()[:-2])
+        read_bin(path, config)
+
+
+def test_receivers_fed_from_the_other_side_are_turned_back(tmp_path: Path):
+    """An AOP board records two receivers inverted: read and written so, the cube knows nothing of it."""
+    config = replace(SMALL, rx_inverted=(1, 3))
+    adc = counts_adc(config)
+    write_bin(tmp_path / "adc_data.bin", adc, counts_per_unit=0.5)
+    on_file = read_bin(tmp_path / "adc_data.bin", SMALL).samples
+    assert np.abs(on_file[:, :, :, 1] * 2 + adc.samples[:, :, :, 1]).max() < 2
+    assert np.abs(read_bin(tmp_path / "adc_data.bin", config).samples * 2 - adc.samples).max() < 2
+
+
+def test_chirps_of_a_code_stay_in_their_order(tmp_path: Path):
+    code = tx_code_of(np.array([[1, 1, 1], [1, -1, 1], [1, 1, -1]]))
+    config = replace(SMALL, tx_order=(0, 1, 2), tx_code=code)
+    adc = counts_adc(config)
+    write_bin(tmp_path / "adc_data.bin", adc, counts_per_unit=1.0)
+    assert np.array_equal(read_bin(tmp_path / "adc_data.bin", config).samples, adc.samples)
 
 
 @pytest.mark.parametrize("iq_order", ["iq", "qi"])

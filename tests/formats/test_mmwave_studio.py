@@ -6,9 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.transmit_code import weights_of
 from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio, read_mmwave_studio_iq_order
 
 
@@ -68,12 +70,12 @@ def changed(change: Callable[[Any], Any]) -> Any:
 @pytest.mark.parametrize(
     ("change", "word"),
     [
-        (lambda setup: setup.update(waveformType="advFrameChirp"), "legacyFrameChirp"),
-        (lambda setup: setup.update(rlBpmChirps=[{}]), "BPM"),
+        (lambda setup: setup.update(waveformType="continuousWave"), "frames of chirps"),
+        (lambda setup: setup.update(rlBpmChirps=[{}]), "lacks rlBpmChirpCfg_t"),
         (lambda setup: setup.pop("rlFrameCfg_t"), "lacks rlFrameCfg_t"),
         (lambda setup: setup.update(rlChirps=[]), "chirp 0"),
         (lambda setup: setup.update(rlChirps=7), "not an mmWave Studio"),
-        (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 0, "0x3")), "TDM"),
+        (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 0, "0x0")), "mask 0"),
         (lambda setup: setup["rlChirps"].__setitem__(0, chirp(0, 10**9, "0x1")), "0 to 511"),
         (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(idleTimeVar_usec=1.0), "idleTimeVar"),
         (lambda setup: setup["rlChirps"][1]["rlChirpCfg_t"].update(profileId=1), "profiles"),
@@ -89,6 +91,40 @@ def test_a_bad_file_is_refused(tmp_path: Path, change: Callable[[Any], Any], wor
     with pytest.raises(InputError, match=word) as caught:
         read_mmwave_studio(path)
     assert str(path) in str(caught.value)
+
+
+def test_bpm_and_phase_shifters(tmp_path: Path):
+    """Bit 2 tx + 1 of constBpmVal inverts a transmitter that is on; a step of a phase shifter is 5.625 degrees."""
+    setup = changed(lambda setup: None)
+    setup["rlChirps"] = [chirp(0, 2, "0x7")]
+    setup["rlFrameCfg_t"].update(chirpStartIdx=0, chirpEndIdx=2)
+    shift = {"chirpStartIdx": 1, "chirpEndIdx": 1, "tx0PhaseShift": 0, "tx1PhaseShift": 16, "tx2PhaseShift": 32}
+    setup["rlRfPhaseShiftCfgs"] = [{"rlRfPhaseShiftCfg_t": shift}]
+    invert = {"chirpStartIdx": 2, "chirpEndIdx": 2, "constBpmVal": "0x8"}
+    setup["rlBpmChirps"] = [{"rlBpmChirpCfg_t": invert}]
+    config = read_mmwave_studio(written(tmp_path, setup))
+    assert np.allclose(weights_of(config.tx_code), [[1, 1, 1], [1, 1j, -1], [1, -1, 1]])
+
+
+def test_sub_frames_and_lanes(tmp_path: Path):
+    setup = changed(lambda setup: None)
+    one = {"chirpStartIdx": 0, "numOfChirps": 3, "numLoops": 8, "numOfBurst": 1, "numOfBurstLoops": 1,
+           "subFramePeriodicity_msec": 20.0}  # fmt: skip
+    other = {**one, "numOfChirps": 1, "numLoops": 32, "subFramePeriodicity_msec": 30.0}
+    frames = [{"rlSubFrameCfg_t": frame} for frame in (one, other)]
+    setup["waveformType"] = "advancedFrameChirp"
+    setup["rlAdvFrameCfg_t"] = {"frameSeq": {"numOfSubFrames": 2, "subFrameCfg": frames}}
+    path = written(tmp_path, setup)
+    config = read_mmwave_studio(path, sub_frame=1)
+    assert (config.num_loops, config.num_slots, config.frame_period_s) == (32, 1, pytest.approx(0.05))
+    assert config.frame_words_before == 3 * 8 * 4 * config.num_samples * 2
+    with pytest.raises(InputError, match="--subframe"):
+        read_mmwave_studio(path)
+    values = json.loads(written(tmp_path, SETUP).read_text())
+    values["mmWaveDevices"][0]["rawDataCaptureConfig"]["rlDevLaneEnable_t"] = {"laneEn": "0xF"}
+    path.write_text(json.dumps(values))
+    assert read_mmwave_studio(path).lvds_lanes == 4
+    assert read_mmwave_studio(path, lanes=2).lvds_lanes == 2
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"mmWaveDevices": []}', '{"mmWaveDevices": [3]}', "\xff"])

@@ -8,7 +8,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import HUPR, MMMESH, RF_GENESIS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
-from mmweaver.formats.peer_arrays import detect_layout, read_hupr, read_mmmesh, read_rf_genesis
+from mmweaver.formats.peer_arrays import detect_layout, read_cubelearn, read_hupr, read_mmmesh, read_rf_genesis
 from mmweaver.paths.exact import exact_frame
 from mmweaver.recordings.read_recording import read_recording
 from tests.fields.echoes import direction_of, middle_s
@@ -135,3 +135,19 @@ def test_refusals_are_clear(tmp_path: Path, hupr_frame: Path):
     ):
         with pytest.raises(InputError, match=word):
             call()
+
+
+def test_cubelearn(tmp_path: Path):
+    """Real numbers, I and then Q; transmitters in firing order."""
+    rng = np.random.default_rng(0)
+    shape = (1, 128, 3, 4, 256)  # (frame, loop, slot, rx, sample)
+    samples = rng.integers(-99, 99, shape) + 1j * rng.integers(-99, 99, shape)
+    stored = np.stack([samples.real, samples.imag]).reshape(2, 1, 128, 12, 256)
+    np.save(tmp_path / "sample.npy", stored.astype(np.int16))
+    adc = read_cubelearn(tmp_path / "sample.npy", MMMESH)
+    assert np.array_equal(adc.samples[:, :, list(MMMESH.tx_order)], samples.astype(np.complex64))
+    assert detect_layout(tmp_path / "sample.npy") == "cubelearn"
+    with pytest.raises(InputError, match="CubeLearn"):
+        read_cubelearn(tmp_path / "sample.npy", replace(MMMESH, num_loops=64))
+    with pytest.raises(InputError, match="--radar"):
+        read_recording(tmp_path / "sample.npy")

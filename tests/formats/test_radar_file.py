@@ -53,7 +53,7 @@ def test_the_table_of_the_papers_radar():
     for fact in (
         "77.000 to 80.901 GHz", "60.012 MHz/us", "256 complex at 4.510 Msps", "3 TX x 4 RX = 12", "0, 2, 1",
         "14.3 deg", "4.40 cm", "up to 11.26 m", "0.70 to 3.48 m (bins 16 to 79)", "0.274 m/s", "+-4.39 m/s",
-        "64 range x 32 Doppler x 12 antennas", "elevation                   yes", "10.00 per second",
+        "64 range x 32 Doppler x 12 antennas", "elevation                  yes", "10.00 per second",
     ):  # fmt: skip
         assert fact in text
 

@@ -5,8 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.antenna_tables import AOP, BOOST_1642, ISK, ODS, AntennaTable
 from mmweaver.core.errors import InputError
-from mmweaver.core.virtual_array import has_elevation
+from mmweaver.core.transmit_code import weights_of
+from mmweaver.core.virtual_array import azimuth_row, has_elevation
 from mmweaver.formats.ti_cfg import read_ti_cfg, read_ti_cfg_iq_order
 
 # TI's best range resolution profile for three transmitters, the elevated one last.
@@ -44,8 +46,8 @@ def test_the_best_range_profile(tmp_path: Path):
     assert config.velocity_resolution_mps == pytest.approx(0.125, abs=0.004)
     assert (config.num_loops, config.num_tx, config.num_rx, config.tx_order) == (16, 3, 4, (0, 2, 1))
     assert (config.frame_period_s, config.rx_gain_db, config.complex_samples) == (0.1, 30.0, True)
-    assert (config.num_range_bins, config.first_range_bin) == (64, 16)
-    assert config.range_m[0] == pytest.approx(0.70, abs=0.02)
+    assert (config.first_range_bin, config.num_range_bins) == (0, 256)  # all of it
+    assert config.range_m[-1] == pytest.approx(11.11, abs=0.01)
     assert has_elevation(config)
     assert read_ti_cfg_iq_order(tmp_path / "best_range.cfg") == "qi"
 
@@ -85,6 +87,104 @@ def test_chirps_repeated_in_the_list_are_loops(tmp_path: Path):
     assert (config.num_tx, config.num_loops) == (1, 128)
 
 
+def test_a_ramp_that_ends_past_the_band_is_accepted_with_a_note(tmp_path: Path):
+    """60 GHz + 40.04 us x 100 MHz/us: TI's own visualizer writes such files."""
+    text = BEST_RANGE.replace("0 77 267 7 57.14 0 0 70 1 256 5209", "0 60 43 7 40.04 0 0 100 1 224 7000")
+    config = read_ti_cfg(written(tmp_path, text))
+    assert len(config.notes) == 1
+    assert "4 MHz past 64 GHz" in config.notes[0]
+    assert read_ti_cfg(written(tmp_path, BEST_RANGE)).notes == ()
+
+
+def test_bpm_of_the_azimuth_pair_beside_tdm(tmp_path: Path):
+    """TI's 3D People Tracking: chirps 0 and 2 are the pair, chirp 1 the elevated transmitter alone."""
+    text = (
+        BEST_RANGE.replace("0 0 1\n", "0 0 5\n", 1)
+        .replace("0 0 4   % TX2", "0 0 2")
+        .replace("2 2 0 0 0 0 0 2", "2 2 0 0 0 0 0 5")
+    )
+    config = read_ti_cfg(written(tmp_path, text.replace("bpmCfg -1 0 0 1", "bpmCfg -1 1 0 2")))
+    assert np.allclose(weights_of(config.tx_code), [[1, 0, 1], [0, 1, 0], [1, 0, -1]])
+    assert (config.num_slots, config.num_antennas, config.num_loops) == (3, 12, 16)
+    assert np.allclose(config.antenna_position_m, read_ti_cfg(written(tmp_path, BEST_RANGE)).antenna_position_m)
+
+
+def test_all_transmitters_at_once_are_one_beam(tmp_path: Path):
+    text = BEST_RANGE.replace("chirpCfg 0 0 0 0 0 0 0 1", "chirpCfg 0 0 0 0 0 0 0 5").replace(
+        "frameCfg 0 2 16", "frameCfg 0 0 16"
+    )
+    config = read_ti_cfg(written(tmp_path, text))
+    assert (config.num_tx, config.num_slots, config.num_antennas) == (2, 1, 4)
+
+
+def test_a_fourth_transmitter_is_the_awr2944(tmp_path: Path):
+    text = BEST_RANGE.replace("channelCfg 15 7", "channelCfg 15 15").replace(
+        "frameCfg 0 2", "chirpCfg 3 3 0 0 0 0 0 8\nframeCfg 0 3"
+    )
+    config = read_ti_cfg(written(tmp_path, text))
+    assert (config.num_tx, config.tx_order) == (4, (0, 2, 1, 3))
+    row = azimuth_row(config.antenna_position_m, config.wavelength_m)
+    assert len(row) == 12
+    steps = np.diff(config.antenna_position_m[row, 0]) / (config.wavelength_m / 2)
+    assert steps == pytest.approx(np.ones(11))
+
+
+SUB_FRAMES = """dfeDataOutputMode 3
+channelCfg 15 5 0
+adcCfg 2 1
+adcbufCfg -1 0 1 1 1
+profileCfg 0 60 7 2 16 0 0 250 1 128 9200 0 0 30
+profileCfg 1 60 7 3 25 0 0 150 1 256 12000 0 0 30
+chirpCfg 0 0 0 0 0 0 0 1
+chirpCfg 1 1 0 0 0 0 0 4
+chirpCfg 2 2 1 0 0 0 0 1
+advFrameCfg 2 0 0 1 0
+subFrameCfg 0 0 0 2 32 50 0 1 1 50
+subFrameCfg 1 0 2 1 64 30 0 1 1 30
+"""
+
+
+def test_each_sub_frame_is_a_radar_of_its_own(tmp_path: Path):
+    path = written(tmp_path, SUB_FRAMES)
+    first, second = (read_ti_cfg(path, sub_frame=index) for index in range(2))
+    assert (first.num_tx, first.num_loops, first.num_samples) == (2, 32, 128)
+    assert (second.num_tx, second.num_loops, second.num_samples) == (1, 64, 256)
+    assert first.frame_period_s == second.frame_period_s == pytest.approx(0.08)
+    assert (first.frame_words_before, first.frame_words_after) == (0, 64 * 4 * 256 * 2)
+    assert (second.frame_words_before, second.frame_words_after) == (2 * 32 * 4 * 128 * 2, 0)
+    for sub_frame, words in ((None, "--subframe 0 to 1"), (2, "0 to 1, not 2")):
+        with pytest.raises(InputError, match=words):
+            read_ti_cfg(path, sub_frame=sub_frame)
+    with pytest.raises(InputError, match="leave out --subframe"):
+        read_ti_cfg(written(tmp_path, BEST_RANGE), sub_frame=0)
+
+
+@pytest.mark.parametrize(
+    ("lines", "board", "lanes"),
+    [
+        ("% Platform:xWR68xx_AOP\n", AOP, 2),
+        ("% Platform:xWR16xx\n", BOOST_1642, 2),
+        ("% Platform:xWR14xx\n", ISK, 4),
+        ("antGeometry0 -1 -1 0 0 -3 -3 -2 -2 -1 -1 0 0\nantGeometry1 -1 0 -1 0 -3 -2 -3 -2 -3 -2 -3 -2\n"
+         "antPhaseRot 1 -1 1 -1 1 -1 1 -1 1 -1 1 -1\n", AOP, 2),
+        ("antGeometry0 0 0 -1 -1 -2 -2 -3 -3 -2 -2 -3 -3\nantGeometry1 0 -1 -1 0 0 -1 -1 0 -2 -3 -3 -2\n"
+         "antPhaseRot 1 -1 -1 1 1 -1 -1 1 1 -1 -1 1\n", ODS, 2),
+        ("antGeometry0 0 -1 -2 -3 -2 -3 -4 -5 -4 -5 -6 -7\nantGeometry1 -1 -1 -1 -1 0 0 0 0 -1 -1 -1 -1\n", ISK, 2),
+    ],
+    ids=["AOP named", "1642 named", "1443 named", "AOP's geometry", "ODS's geometry", "ISK's geometry"],
+)  # fmt: skip
+def test_the_board_of_a_cfg(tmp_path: Path, lines: str, board: AntennaTable, lanes: int):
+    """Named in a comment, or by the lines that TI's people tracking has for its board."""
+    text = BEST_RANGE if len(board.tx_halfwaves) == 3 else BEST_RANGE.replace("frameCfg 0 2", "frameCfg 0 0")
+    config = read_ti_cfg(written(tmp_path, lines + text))
+    fired = [tx for tx in range(len(board.tx_halfwaves)) if tx < config.num_tx]
+    half_m = config.wavelength_m / 2
+    wanted = np.array([np.add(board.tx_halfwaves[tx], one) for tx in fired for one in board.rx_halfwaves])
+    found = config.antenna_position_m[:, [0, 2]] / half_m
+    assert np.allclose(found - found[0], wanted - wanted[0], atol=1e-6)
+    assert (config.rx_inverted, config.lvds_lanes) == (board.rx_inverted, lanes)
+
+
 def test_few_samples_keep_all_their_bins(tmp_path: Path):
     config = read_ti_cfg(written(tmp_path, BEST_RANGE.replace("1 256 5209", "1 48 2000")))
     assert (config.first_range_bin, config.num_range_bins) == (0, 48)
@@ -101,10 +201,10 @@ def test_few_samples_keep_all_their_bins(tmp_path: Path):
         ("70 1 256", "fast 1 256", ["line 10", "not a number", "fast"]),
         ("70 1 256", "nan 1 256", ["line 10", "finite"]),
         ("1 256 5209", "1 256.5 5209", ["line 10", "whole"]),
-        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 5", ["mask 5", "TDM"]),
-        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 0", ["mask 0", "TDM"]),
-        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 8", ["mask 8"]),
-        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 1", ["once"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 0", ["mask 0", "some of the 3"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 16", ["mask 16"]),
+        ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 0 0 0 8", ["channel mask 7"]),
+        ("0 0 4   % TX2\nchirpCfg 2 2 0 0 0 0 0 2", "0 0 7\nchirpCfg 2 2 0 0 0 0 0 7", ["cannot be decoded"]),
         ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 0 5 0 0 4", ["line 12", "slope", "identical"]),
         ("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 1 0 0 0 0 4", ["profiles [0, 1]"]),
         ("chirpCfg 1 1 0", "chirpCfg 1 99999999999 0", ["line 12", "0 to 511"]),
@@ -115,12 +215,14 @@ def test_few_samples_keep_all_their_bins(tmp_path: Path):
         ("adcCfg 2 1", "adcCfg 2 7", ["line 8", "ADC format 7"]),
         ("0 77 267", "0 24 267", ["24 GHz"]),
         ("57.14", "52", ["ramp ends"]),
-        ("57.14", "60", ["GHz"]),
+        ("57.14", "63", ["GHz"]),
         ("frameCfg 0 2 16 0 100", "frameCfg 0 2 200 0 100", ["frame period"]),
         ("frameCfg 0 2 16", "frameCfg 0 2 0", ["num_loops"]),
         ("1 256 5209", "1 0 5209", ["above 0"]),
-        ("bpmCfg -1 0 0 1", "bpmCfg -1 1 0 1", ["line 16", "BPM"]),
-        ("lowPower 0 0", "subFrameCfg 0 0 0 1 1 1 1 1 1 100", ["line 15", "subframes"]),
+        ("bpmCfg -1 0 0 1", "bpmCfg -1 1 0 7", ["line 16", "chirp 7"]),
+        ("lowPower 0 0", "advFrameCfg 1 0 0 1 0\nsubFrameCfg 0 0 0 1 1 1 0 2 1 100", ["line 16", "several bursts"]),
+        ("lowPower 0 0", "contModeCfg 77 5209 0 0 0 0 0 1 256", ["line 15", "continuous mode"]),
+        ("lowPower 0 0", "chirpComnCfg 15 5 0 128 1 34 3", ["line 15", "xWRL"]),
     ],
 )
 def test_a_bad_file_is_refused_with_the_reason(tmp_path: Path, old: str, new: str, words: list[str]):

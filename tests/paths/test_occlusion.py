@@ -4,6 +4,8 @@ import numpy as np
 import torch
 
 from mmweaver.core.skeleton import JOINT_NAMES
+from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.paths.body_model import average_body
 from mmweaver.paths.occlusion import occluded
 from tests.rooms import STANDING_M
 
@@ -37,3 +39,15 @@ def test_places_may_differ_from_frame_to_frame():
     joints = torch.stack([_standing(0.0, 2.0, 1.2)] * 2)
     places = torch.tensor([[(0.0, 4.0, 0.1), (1.0, 4.0, 0.1)], [(1.0, 4.0, 0.1), (0.1, 4.0, 0.1)]])
     assert occluded(places, joints).tolist() == [[True, False], [False, True]]
+
+
+def test_agrees_with_the_rays_by_which_the_ray_tracer_decides():
+    """Decision 161: capsules in the network, rays at the hull of the same capsules in the ray tracer."""
+    joints = _standing(0.1, 2.0, 1.0)[None]
+    across, up = np.meshgrid(np.linspace(-1.0, 1.4, 61), np.linspace(-2.2, 1.8, 101), indexing="ij")
+    places = np.stack([across, np.full(across.shape, 4.0), up], axis=-1).reshape(-1, 3)
+    vertices, faces = average_body().hull(joints.double().numpy())
+    by_rays = ~RayCaster(vertices[0], faces).is_clear(np.zeros_like(places), places)
+    by_capsules = occluded(torch.from_numpy(places), joints)[0].numpy()
+    assert by_rays.sum() > 300
+    assert (by_rays != by_capsules).sum() < 0.1 * by_rays.sum()  # at its rim

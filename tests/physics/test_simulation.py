@@ -61,11 +61,11 @@ def test_reciprocity_transmitters_and_receivers_may_change_places():
 
 
 def test_amplitude_falls_with_the_square_of_the_range():
-    """A person glided from 3 m to 6 m before a radar without a beam: a quarter of the amplitude, 12 dB.
+    """A person glided from 3 m to 6 m before a radar with hardly a beam: a quarter of the amplitude, 12 dB.
 
     With a skin that has no lobe: further away, more of a body faces the radar.
     """
-    everywhere = replace(AWR1843, azimuth_beamwidth_deg=1e4, elevation_beamwidth_deg=1e4)
+    everywhere = replace(AWR1843, azimuth_beamwidth_deg=360.0, elevation_beamwidth_deg=360.0)
     simulator = Simulator(scene_of((floor(-50.0),)), everywhere, IDEAL)
     power = []
     for distance_m in (3.0, 6.0):

@@ -32,7 +32,12 @@ def test_a_radar_of_real_samples(samples: Path):
     assert recording.adc.samples.imag.max() == 0
     assert recording.meta["axes"] == "frame,rx,loop,sample"
     assert recording.meta["frames"] == 3
-    assert list(recording.stages.seconds) == ["read the recording", "range, Doppler, antennas", "point cloud"]
+    assert list(recording.stages.seconds) == [
+        "read the recording",
+        "range, Doppler, antennas",
+        "point cloud",
+        "movement, people",
+    ]
 
 
 def test_the_radar_may_be_named_or_given(samples: Path):

@@ -51,6 +51,31 @@ def test_a_cube_is_processed_without_samples(adc: AdcCube, tmp_path: Path):
     assert from_cube.save(tmp_path / "out")["iq_order"] is None
 
 
+def test_a_range_of_samples_and_of_a_stored_cube_is_the_same(adc: AdcCube, tmp_path: Path):
+    """A .cfg keeps all; a window in metres or in bins cuts samples before the transform, and a cube after it."""
+    whole = read_recording(tmp_path / "adc_data.bin", tmp_path / "made.cfg")
+    assert whole.cube.values.shape[1] == adc.config.num_samples
+    step_m = adc.config.range_resolution_m
+    chosen = {"range_m": (10 * step_m, 20.4 * step_m)}
+    from_samples = read_recording(tmp_path / "adc_data.bin", tmp_path / "made.cfg", **chosen).cube
+    from_cube = read_recording(tmp_path / "processed", **chosen).cube
+    assert np.allclose(from_samples.grid.range_m, step_m * np.arange(10, 21))
+    assert np.array_equal(from_samples.values, whole.cube.values[:, 10:21])
+    assert np.array_equal(from_samples.values, from_cube.values)
+    assert np.array_equal(from_cube.grid.range_m, from_samples.grid.range_m)
+    by_bins = read_recording(tmp_path / "processed", range_bins=(10, 20)).cube
+    assert np.array_equal(by_bins.values, from_cube.values)
+
+
+def test_a_cube_that_lacks_the_range_is_refused(adc: AdcCube, tmp_path: Path):
+    cube = read_recording(tmp_path / "processed", range_bins=(10, 20)).cube
+    (tmp_path / "cropped").mkdir()
+    write_radar_npz(tmp_path / "cropped" / "radar.npz", cube)
+    (tmp_path / "cropped" / "radar.json").write_text(cube.config.to_json())
+    with pytest.raises(InputError, match="process its samples again"):
+        read_recording(tmp_path / "cropped", range_bins=(0, 15))
+
+
 def test_firmware_settings_are_checked_before_samples_are_read(adc: AdcCube, tmp_path: Path):
     (tmp_path / "adc_data.bin").write_bytes(b"")
     with pytest.raises(InputError, match=r"made\.cfg"):  # it sets no CFAR

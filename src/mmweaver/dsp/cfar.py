@@ -31,6 +31,15 @@ class CfarCells:
     guard: tuple[int, int] = (4, 4)
     training: tuple[int, int] = (12, 8)
 
+    def within(self, num_doppler: int) -> "CfarCells":
+        """These areas for a Doppler axis of so many bins, which is cyclic: no cell is its own training cell."""
+        most = (num_doppler - 1) // 2
+        if num_doppler >= 2 * self.training[1]:
+            return self
+        return CfarCells(
+            guard=(self.guard[0], min(self.guard[1], most)), training=(self.training[0], min(self.training[1], most))
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class CfarResult:
@@ -162,6 +171,14 @@ def _half_extents(num_doppler: int, cells: CfarCells) -> tuple[int, int]:
 
 def _rings(num_range: int, num_doppler: int, cells: CfarCells, correlation: np.ndarray | None) -> list[_Ring]:
     """The training ring of each range bin."""
+    flat = None if correlation is None else tuple(correlation.ravel().tolist())
+    return _known_rings(num_range, num_doppler, cells, flat)
+
+
+@lru_cache(maxsize=32)
+def _known_rings(num_range: int, num_doppler: int, cells: CfarCells, flat: tuple[float, ...] | None) -> list[_Ring]:
+    """The rings, which maps of one size share: they take as long as all else of CFAR in ten frames."""
+    correlation = None if flat is None else np.array(flat).reshape(POWER_CORRELATION.shape)
     guard, whole = cells.guard[0], cells.guard[0] + cells.training[0]
     extents = (guard, *_half_extents(num_doppler, cells))
     known: dict[tuple[int, int], _Ring] = {}

@@ -1,5 +1,6 @@
 """ADC samples <-> range-Doppler cube."""
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -9,12 +10,12 @@ from jaxtyping import Complex
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
-from mmweaver.dsp.windows import hann
+from mmweaver.dsp.windows import SHORTEST_HANN, doppler_window, hann
 
 # Singular values below this share of the largest carry nothing but rounding.
 SMALLEST_SINGULAR_VALUE = 1e-9
 FRAMES_A_BLOCK = 20
-STATIC_REMOVALS = ("mean_chirp", "none")
+STATIC_REMOVALS = ("auto", "mean_chirp", "mean_frame", "none")
 
 
 def radar_cube(adc: AdcCube, *, compensate_tdm: bool = True) -> RadarCube:
@@ -49,10 +50,28 @@ def cube_values(samples: Any, config: RadarConfig, *, compensate_tdm: bool = Tru
         spectrum = _fft(samples.real * _like(2 * weight, samples), -1)
     kept = spectrum[..., config.first_range_bin : config.first_range_bin + config.num_range_bins]
     frames, loops = kept.shape[:2]
-    antennas = kept.reshape(frames, loops, config.num_antennas, config.num_range_bins)
+    antennas = kept.reshape(frames, loops, config.num_slots * config.num_rx, config.num_range_bins)
     slow = antennas.swapaxes(1, 3).swapaxes(2, 3)  # (frame, range, loop, antenna)
     values = _fft(slow * _like(doppler_weight(loops)[:, None], samples), 2)
-    return values * _like(tdm_compensation(config), samples) if compensate_tdm else values
+    values = values * _like(slot_compensation(config), samples) if compensate_tdm else values
+    return decoded(values, config)
+
+
+def cropped(cube: RadarCube, config: RadarConfig) -> RadarCube:
+    """The range bins of a cube that `config`, the same radar with another range window, keeps.
+
+    Raises InputError where the cube does not hold all of them.
+    """
+    own = cube.config
+    first = config.first_range_bin - own.first_range_bin
+    last = first + config.num_range_bins
+    if first < 0 or last > own.num_range_bins:
+        raise InputError(
+            f"the cube holds {cube.grid.range_m[0]:.2f} to {cube.grid.range_m[-1]:.2f} m, not"
+            f" {config.range_m[0]:.2f} to {config.range_m[-1]:.2f} m; process its samples again with this range"
+        )
+    grid = replace(cube.grid, range_m=cube.grid.range_m[first:last])
+    return replace(cube, values=cube.values[:, first:last], grid=grid, config=config)
 
 
 def adc_from_cube(cube: RadarCube) -> AdcCube:
@@ -63,7 +82,7 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     can be (least squares).
     """
     config = cube.config
-    turned = cube.values.astype(np.complex128) * tdm_compensation(config).conj()
+    turned = encoded(cube.values.astype(np.complex128), config) * slot_compensation(config).conj()
     loops = _inverse_fft(turned, 2)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     loops *= np.divide(1, weight, out=np.zeros_like(weight), where=np.abs(weight) > SMALLEST_SINGULAR_VALUE)[:, None]
@@ -72,25 +91,26 @@ def adc_from_cube(cube: RadarCube) -> AdcCube:
     samples = (
         slow @ inverse if config.complex_samples else np.concatenate([np.real(slow), np.imag(slow)], axis=-1) @ inverse
     )
-    shape = (len(samples), config.num_loops, config.num_tx, config.num_rx, config.num_samples)
+    shape = (len(samples), config.num_loops, config.num_slots, config.num_rx, config.num_samples)
     return AdcCube(samples=samples.reshape(shape).astype(np.complex64), config=config, scale=cube.scale)
 
 
 def static_cube(still: np.ndarray, config: RadarConfig) -> RadarCube:
     """One frame of static clutter, of its value (range, antenna) at zero Doppler."""
     weight = doppler_weight(config.num_loops).astype(np.complex128)
-    response = _fft(weight, 0)[:, None] * tdm_compensation(config)
-    values = still[:, None, :] * (response / response[config.num_loops // 2])
+    response = _fft(weight, 0)[:, None] * slot_compensation(config)
+    slots = encoded(still.astype(np.complex128), config)
+    values = decoded(slots[:, None, :] * (response / response[config.num_loops // 2]), config)
     return RadarCube(values=values[None].astype(np.complex64), grid=CubeGrid.of(config, 1), config=config, scale=1.0)
 
 
 def static_samples(static: np.ndarray, config: RadarConfig) -> np.ndarray:
     """Samples (tx, rx, sample) of least energy of static clutter, of its cube (range, antenna) at zero Doppler."""
     inverse = _range_inverse(config.num_samples, config.first_range_bin, config.num_range_bins, config.complex_samples)
-    spectrum = static.T.astype(np.complex128)  # (antenna, range)
+    spectrum = encoded(static.astype(np.complex128), config).T  # (slot * rx, range)
     if not config.complex_samples:
         spectrum = np.concatenate([spectrum.real, spectrum.imag], axis=-1)
-    return (spectrum @ inverse).reshape(config.num_tx, config.num_rx, -1).astype(np.complex64)
+    return (spectrum @ inverse).reshape(config.num_slots, config.num_rx, -1).astype(np.complex64)
 
 
 def remove_static_adc(adc: AdcCube) -> AdcCube:
@@ -99,10 +119,11 @@ def remove_static_adc(adc: AdcCube) -> AdcCube:
     return AdcCube(samples=(adc.samples - still).astype(np.complex64), config=adc.config, scale=adc.scale)
 
 
-def remove_static(cube: RadarCube, how: str = "mean_chirp") -> RadarCube:
-    """Static clutter removal on a cube: "mean_chirp" takes the mean over the loops away, "none" gives the cube back.
+def remove_static(cube: RadarCube, how: str = "auto") -> RadarCube:
+    """Static clutter removal on a cube: "mean_chirp" takes each frame's mean over its loops away, "mean_frame" the mean
+    over all frames, "none" gives the cube back; "auto" is mean_frame for radars of fewer than four loops a frame.
 
-    The mean is that of the samples before the Doppler window, found from the Doppler spectrum, so this equals
+    The mean over loops is that of the samples before the Doppler window, found from the Doppler spectrum, so it equals
     `remove_static_adc` before `radar_cube`, but for the first loop, to which a Hann window is blind: with it left
     out of the mean the two agree. A body that stands still goes too. Raises InputError for another `how`.
     """
@@ -111,23 +132,53 @@ def remove_static(cube: RadarCube, how: str = "mean_chirp") -> RadarCube:
     if how == "none":
         return cube
     config = cube.config
-    compensation = tdm_compensation(config)
+    if how == "mean_frame" or (how == "auto" and config.num_loops < SHORTEST_HANN):
+        mean = cube.values.mean(axis=0, keepdims=True, dtype=np.complex128)
+        return replace(cube, values=(cube.values - mean).astype(np.complex64))
+    compensation = slot_compensation(config)
     weight = doppler_weight(config.num_loops).astype(np.complex128)
     seen = np.abs(weight) > SMALLEST_SINGULAR_VALUE
     # mean of the loops seen = sum over doppler of (mean_of_doppler * spectrum)
     share = np.divide(1, weight, out=np.zeros_like(weight), where=seen) / seen.sum()
     mean_of_doppler = _inverse_fft(share, 0)
-    still = np.einsum("frda,da->fra", cube.values, mean_of_doppler[:, None] * compensation.conj(), optimize=True)
+    slots = encoded(cube.values, config)
+    still = np.einsum("frda,da->fra", slots, mean_of_doppler[:, None] * compensation.conj(), optimize=True)
     response = _fft(weight.copy(), 0)[:, None] * compensation
-    values = cube.values - still[:, :, None, :] * response
+    values = decoded(slots - still[:, :, None, :] * response, config)
     return RadarCube(values=values.astype(np.complex64), grid=cube.grid, config=config, scale=cube.scale)
 
 
 def tdm_compensation(config: RadarConfig) -> Complex[np.ndarray, "doppler antenna"]:
     """Turns each virtual antenna back to the start of the loop: exp(-j 2 pi f_doppler delay of its transmitter)."""
+    return _compensation(config, config.antenna_delay_s)
+
+
+def slot_compensation(config: RadarConfig) -> Complex[np.ndarray, "doppler channel"]:
+    """The same of each slot and receiver before decoding; of a TDM radar the virtual antennas themselves."""
+    return _compensation(config, np.repeat(config.tx_delay_s, config.num_rx))
+
+
+def _compensation(config: RadarConfig, delay_s: np.ndarray) -> np.ndarray:
     doppler_hz = 2 * config.radial_velocity_mps / config.wavelength_m
-    delay_s = np.repeat(config.tx_delay_s, config.num_rx)
     return np.exp(-2j * np.pi * doppler_hz[:, None] * delay_s).astype(np.complex64)
+
+
+def decoded(values: Any, config: RadarConfig) -> Any:
+    """Slots and receivers (..., slot * rx) -> virtual antennas (..., antenna); of a TDM radar the same."""
+    return _through(config.tx_decoder, values, config) if config.is_coded else values
+
+
+def encoded(values: Any, config: RadarConfig) -> Any:
+    """The inverse of `decoded`, virtual antennas -> slots (least squares where there are more slots)."""
+    return _through(np.linalg.pinv(config.tx_decoder), values, config) if config.is_coded else values
+
+
+def _through(matrix: np.ndarray, values: Any, config: RadarConfig) -> Any:
+    """A matrix (out, in) applied to the transmitters of values (..., in * rx)."""
+    apart = values.reshape(*values.shape[:-1], matrix.shape[1], config.num_rx)
+    kind = np.complex128 if values.dtype == np.complex128 else np.complex64
+    product = _like(matrix.astype(kind), values) @ apart
+    return product.reshape(*values.shape[:-1], matrix.shape[0] * config.num_rx)
 
 
 def _fft(values: Any, axis: int) -> Any:
@@ -162,8 +213,8 @@ def _inverse_fft(values: np.ndarray, axis: int) -> np.ndarray:
 
 
 def doppler_weight(num_loops: int) -> Complex[np.ndarray, " loop"]:
-    """Hann over loops, normalised, with the turn that moves zero Doppler to bin num_loops // 2."""
-    window = hann(num_loops)
+    """The Doppler window, normalised, with the turn that moves zero Doppler to bin num_loops // 2."""
+    window = doppler_window(num_loops)
     loop = np.arange(num_loops)
     # exact integers under the 2 pi: an FFT of it has then true zeros to rounding
     turn = np.exp(2j * np.pi * ((loop * (num_loops // 2)) % num_loops) / num_loops)

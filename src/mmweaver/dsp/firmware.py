@@ -79,10 +79,10 @@ def firmware_points(signal: AdcCube | RadarCube, settings: FirmwareSettings = Fi
 
 def check_firmware_radar(config: RadarConfig) -> None:
     """Raises InputError for a radar that the firmware does not support."""
-    if not config.complex_samples or config.num_loops < 4:
+    if not config.complex_samples or config.num_loops < 4 or config.is_coded:
         raise InputError(
-            f"firmware points are for TI radars with complex samples and four loops or more; radar {config.name!r}"
-            " has others; use --points cfar"
+            f"firmware points are for TI radars with complex samples, four loops or more and TDM-MIMO; radar"
+            f" {config.name!r} has others; use --points cfar"
         )
 
 

@@ -23,8 +23,8 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
 from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.dsp import windows
 from mmweaver.dsp.window_kernels import WindowKernel
-from mmweaver.dsp.windows import hann
 
 FLAT_WAVELENGTHS = 0.05  # an array lower than this cannot tell elevation
 
@@ -57,17 +57,18 @@ class PointResponse:
     """
 
     def __init__(self, config: RadarConfig, doppler_window: np.ndarray | None = None):
-        window = hann(config.num_loops) if doppler_window is None else doppler_window
+        window = windows.doppler_window(config.num_loops) if doppler_window is None else doppler_window
         self.config = config
         self.num_loops = len(window)
-        self.range_kernel = WindowKernel(hann(config.num_samples))
+        self.range_kernel = WindowKernel(windows.hann(config.num_samples))
         self.doppler_kernel = WindowKernel(window)
+        self._doppler_middle = self.doppler_kernel.middle / self.num_loops  # 1/2 for a Hann window
         length_s = self.num_loops * config.loop_period_s
         self.velocity_a_bin_mps = config.wavelength_m / (2 * length_s)
         self.range_a_bin_m = config.range_resolution_m
         # migration through range bins, in bins a loop for each Doppler bin
         self.migration = self.velocity_a_bin_mps * config.loop_period_s / self.range_a_bin_m
-        self.delay = np.repeat(config.tx_delay_s, config.num_rx) / length_s
+        self.delay = config.antenna_delay_s / length_s
         # a Doppler shift moves the beat frequency too
         self.coupling = config.num_samples / config.sample_rate_hz / length_s
         place = config.antenna_position_m[:, [0, 2]] / config.wavelength_m
@@ -96,9 +97,12 @@ class PointResponse:
         )
 
     def phasor(self, axes: Axes) -> Tensor:
-        """exp(-j pi (r + d) - j 2 pi d s), (range, doppler, antenna): centred, compensated phase -> the cube's."""
-        bins = axes.range_bin[:, None].double() + axes.doppler_bin[None, :].double()
-        turns = -0.5 * bins[..., None] - axes.doppler_bin[None, :, None].double() * axes.delay.double()
+        """exp(-j pi (r + 2 m d) - j 2 pi d s) (range, doppler, antenna): centred, compensated phase -> the cube's.
+
+        m is the middle of the Doppler window in lengths of the frame.
+        """
+        late = self._doppler_middle + axes.delay.double()  # (antenna,)
+        turns = -0.5 * axes.range_bin[:, None, None].double() - axes.doppler_bin[None, :, None].double() * late
         angle = 2 * math.pi * (turns - turns.round())
         return torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
 
@@ -136,7 +140,7 @@ class PointResponse:
 
     def phasor_at_cells(self, axes: Axes) -> Tensor:
         """`phasor`, where the axes give one range, Doppler and antenna a cell."""
-        turns = -0.5 * (axes.range_bin.double() + axes.doppler_bin.double()) - axes.doppler_bin * axes.delay.double()
+        turns = -0.5 * axes.range_bin.double() - axes.doppler_bin * (self._doppler_middle + axes.delay.double())
         angle = 2 * math.pi * (turns - turns.round())
         return torch.polar(torch.ones_like(angle), angle).to(torch.complex64)
 
@@ -157,7 +161,7 @@ class PointResponse:
         own = gap.argmin(axis=1)
         ends = np.stack(
             [
-                np.asarray(config.tx_position_m)[own // config.num_rx],
+                config.virtual_tx_position_m[own // config.num_rx],
                 np.asarray(config.rx_position_m)[own % config.num_rx],
             ]
         )

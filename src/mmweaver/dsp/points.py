@@ -11,6 +11,7 @@ from mmweaver.core.shapes import RangeDopplerMap, RangeDopplerMask
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.dsp.cfar import CFAR_METHODS, CfarCells, CfarResult
 from mmweaver.dsp.spectra import moving_doppler, range_doppler_power, steering
+from mmweaver.dsp.windows import SHORTEST_HANN
 
 NUM_DIRECTION_COSINES = 129  # a sixteenth of the beam width of eight antennas
 
@@ -54,8 +55,9 @@ def point_cloud(
     power = range_doppler_power(cube)
     used_bins = moving_doppler(cube) if moving_only else np.ones(power.shape[2], bool)
     found = CFAR_METHODS[method](
-        power[:, :, used_bins], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1], cells=cells
-    )
+        power[:, :, used_bins], false_alarm_rate=false_alarm_rate, num_looks=cube.values.shape[-1],
+        cells=cells.within(power.shape[2]),
+    )  # fmt: skip
     detections = _detected_cells(cube, power, found, used_bins)
     which, direction, gain_db = _azimuth_peaks(cube, detections.signal, azimuth_peak_db, max_azimuth_peaks)
     up = _elevation(cube, detections.signal[which], direction)
@@ -92,7 +94,7 @@ def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, 
     doppler_offset = _parabola(slower, at, faster) if num_doppler > 2 else np.zeros(len(at))
     step_mps = config.velocity_resolution_mps
     velocity = cube.grid.radial_velocity_mps[doppler] + doppler_offset * step_mps
-    delay_s = np.repeat(config.tx_delay_s, config.num_rx)
+    delay_s = config.antenna_delay_s
     residual_hz = 2 * doppler_offset * step_mps / cube.grid.wavelength_m
     signal = cube.values[frame, row, doppler].astype(np.complex128)
     return _Cells(
@@ -106,9 +108,11 @@ def _detected_cells(cube: RadarCube, power: RangeDopplerMap, found: CfarResult, 
 
 
 def _peaks(power: RangeDopplerMap) -> RangeDopplerMask:
-    """Local maxima along range, or along Doppler (cyclic)."""
+    """Local maxima along range, or along Doppler (cyclic); with fewer than four loops the strongest of each range."""
     padded = np.pad(power, ((0, 0), (1, 1), (0, 0)))
     along_range = (power >= padded[:, :-2]) & (power >= padded[:, 2:])
+    if power.shape[2] < SHORTEST_HANN:
+        return along_range & (power == power.max(axis=2, keepdims=True))
     along_doppler = (power >= np.roll(power, 1, 2)) & (power >= np.roll(power, -1, 2))
     return along_range | along_doppler
 

@@ -9,19 +9,25 @@ STEPS_A_BIN = 32
 
 
 class WindowKernel:
-    """Response K(x) of a window at x bins from a tone, counted from the window's middle; K(0) = 1.
+    """Response K(x) of a window at x bins from a tone, counted from the window's middle m; K(0) = 1.
 
-    K(x) = sum_n w[n] cos(2 pi x (n - N/2) / N) / sum(w), for windows with w[n] = w[N - n] (a periodic Hann: yes; its
-    w[0] is zero). Piecewise cubic, accurate to 1e-6. The DFT of the window itself is exp(-j pi x) K(x).
+    K(x) = sum_n w[n] cos(2 pi x (n - m) / N) / sum(w). m is N/2 for windows with w[n] = w[N - n] and w[0] = 0 (a
+    periodic Hann), (N - 1)/2 for those with w[n] = w[N - 1 - n] (a rectangle). Piecewise cubic, accurate to 1e-6. The
+    DFT of the window itself is exp(-j 2 pi x m / N) K(x).
     """
 
     def __init__(self, window: Float[np.ndarray, " num"]):
         num = len(window)
-        if not np.allclose(window[1:], window[1:][::-1]) or abs(window[0]) > 1e-9 * window.max():
+        if np.allclose(window[1:], window[1:][::-1]) and abs(window[0]) <= 1e-9 * window.max():
+            self.middle = num / 2
+        elif np.allclose(window, window[::-1]):
+            self.middle = (num - 1) / 2
+        else:
             raise ValueError("the window is not symmetric about its middle")
         self.num = num
+        self._changes_sign = round(2 * self.middle) % 2 == 1  # from one period to the next
         place = np.arange(0, num * STEPS_A_BIN // 2 + 2 * STEPS_A_BIN) / STEPS_A_BIN
-        value, slope = _spectrum(np.asarray(window, np.float64), place)
+        value, slope = _spectrum(np.asarray(window, np.float64), self.middle, place)
         # (coefficient, piece): four short lookups are four times as fast as one long one
         self._pieces = torch.from_numpy(_cubics(value, slope / STEPS_A_BIN).T.copy()).to(torch.float32)
 
@@ -29,9 +35,8 @@ class WindowKernel:
         """Value and slope (a bin) at any x; differentiable."""
         periods = torch.round(x / self.num)
         folded = x - periods * self.num
-        # a window of odd length changes sign from one period to the next
-        sign = torch.sign(folded) if self.num % 2 == 0 else torch.sign(folded) * (1 - 2 * (periods % 2))
-        even = 1.0 if self.num % 2 == 0 else 1 - 2 * (periods % 2)
+        even = 1 - 2 * (periods % 2) if self._changes_sign else 1.0
+        sign = torch.sign(folded) * even
         step = folded.abs() * STEPS_A_BIN
         index = step.detach().floor()
         t = step - index
@@ -42,13 +47,13 @@ class WindowKernel:
         return value * even, slope * sign
 
 
-def _spectrum(window: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _spectrum(window: np.ndarray, centre: float, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """K and dK/dx at places k / STEPS_A_BIN, from one long FFT each."""
     num = len(window)
-    middle = np.arange(num) - num / 2
+    middle = np.arange(num) - centre
     long = num * STEPS_A_BIN
     index = np.arange(len(place))
-    phasor = np.exp(2j * np.pi * (num / 2) * index / long)
+    phasor = np.exp(2j * np.pi * centre * index / long)
     weight = window / window.sum()
     value = np.real(np.resize(np.fft.fft(weight, long), len(place)) * phasor)
     slope = np.real(np.resize(np.fft.fft(-2j * np.pi / num * middle * weight, long), len(place)) * phasor)

@@ -27,15 +27,15 @@ def draw_animation(view: FigureData, path: Path) -> None:
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
-        pictures = _render(view)
+        pictures = render_pictures(view)
     step_s = (view.time_edges_s[1] - view.time_edges_s[0]) / len(pictures)
     duration_ms = int(np.clip(round(step_s * 1000), SHORTEST_MS, LONGEST_MS))
     first, *others = _share_palette(pictures)
     first.save(path, format="GIF", save_all=True, append_images=others, duration=duration_ms, loop=0, optimize=False)
 
 
-def _render(view: FigureData) -> list[np.ndarray]:
-    """All frames as (height, width, 3) uint8."""
+def render_pictures(view: FigureData) -> list[np.ndarray]:
+    """All frames of the animation as (height, width, 3) uint8; under `rc_context(STYLE)` for our own look."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -256,7 +256,7 @@ def draw_points_top(axes: "Axes", view: FigureData) -> None:
         _note(axes, "line: pelvis", corner="upper right")
     axes.set(xlim=(-0.9 * reach_m, 0.9 * reach_m), ylim=(0, reach_m))
     axes.set_aspect("equal", anchor="N")
-    label_axes(axes, f"Points from above ({len(view.shown_points.frame)})", "right (m)", "ahead (m)")
+    label_axes(axes, f"Points from above ({len(view.shown_points.frame)})", "right (m)", "ahead (m)", grid=True)
 
 
 def draw_points_side(axes: "Axes", view: FigureData) -> None:
@@ -273,24 +273,24 @@ def draw_points_side(axes: "Axes", view: FigureData) -> None:
     half_m = float(np.clip(1.1 * highest_m, 0.32 * reach_m, 0.45 * reach_m))
     axes.set(xlim=(0, reach_m), ylim=(-half_m, half_m))
     axes.set_aspect("equal", anchor="N")
-    label_axes(axes, "Points from the side", "ahead (m)", "up (m)")
+    label_axes(axes, "Points from the side", "ahead (m)", "up (m)", grid=True)
 
 
 def _scatter(axes: "Axes", view: FigureData, across_m: np.ndarray, up_m: np.ndarray) -> None:
     """Weak detections are pale; colours span all but the fastest 5 %, which are mostly noise."""
+    import matplotlib
     from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize, to_rgb
 
     velocity_mps, snr_db = view.shown_points.radial_velocity_mps, view.shown_points.snr_db
     top_mps = max(float(np.percentile(np.abs(velocity_mps), 95)), 0.1) if len(velocity_mps) else 0.1
-    strength = np.clip((np.sort(snr_db) - 10) / 20, 0.2, 1.0)
+    solid = ScalarMappable(norm=Normalize(-top_mps, top_mps), cmap=matplotlib.colormaps[VELOCITY_MAP])
     rising = np.argsort(snr_db, kind="stable")
-    dots = axes.scatter(
-        across_m[rising], up_m[rising], c=velocity_mps[rising], cmap=VELOCITY_MAP, vmin=-top_mps, vmax=top_mps,
-        s=12, linewidths=0.3, edgecolors=INK, alpha=strength if len(strength) else None,  # type: ignore[arg-type]
-    )  # fmt: skip
-    axes.grid(color="#d8dce0", linewidth=0.5)
-    axes.set_axisbelow(True)
-    solid = ScalarMappable(norm=dots.norm, cmap=VELOCITY_MAP)
+    face = solid.to_rgba(velocity_mps[rising])
+    face[:, 3] = np.clip((snr_db[rising] - 10) / 20, 0.2, 1.0)
+    edge = np.column_stack([np.broadcast_to(to_rgb(INK), (len(face), 3)), face[:, 3]])
+    dots: Any = {"s": 12, "linewidths": 0.3, "facecolors": face, "edgecolors": edge}
+    axes.scatter(across_m[rising], up_m[rising], **dots)
     colour_bar(axes, solid, "m/s, away +")
 
 

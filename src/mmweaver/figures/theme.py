@@ -1,5 +1,6 @@
 """Common style of all figures: colour maps for power, time and radial velocity."""
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -7,7 +8,6 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
-    from matplotlib.figure import Figure
     from matplotlib.transforms import Transform
 
 POWER_MAP = "inferno"
@@ -46,22 +46,68 @@ STYLE: Any = {
 }
 
 
-def label_axes(axes: "Axes", title: str, x_label: str, y_label: str, *, y_label_pt: float = 26.0) -> None:
-    """Title at the upper left and axis labels, at fixed positions: automatic layout doubles the time."""
-    from matplotlib.transforms import ScaledTranslation
+_AS_IT_IS: Any = {"scalex": False, "scaley": False}  # the limits stay
+_TICK: Any = {"color": INK, "linestyle": "", "markersize": 3, "markeredgewidth": 0.7, "clip_on": False, **_AS_IT_IS}
+_GRID: Any = {"color": "#d8dce0", "linewidth": 0.5, "zorder": 0.5, **_AS_IT_IS}
+
+
+def label_axes(
+    axes: "Axes", title: str, x_label: str, y_label: str, *, y_label_pt: float = 26.0, grid: bool = False
+) -> None:
+    """Title at the upper left, ticks for the limits as they are now, and axis labels at fixed positions.
+
+    Drawn from primitives: matplotlib's own ticks take three times as long, and automatic layout doubles the time.
+    """
+    from matplotlib.markers import TICKDOWN, TICKLEFT
 
     axes.set_title(title, y=1.0)
     axes.set_xlabel(x_label)
     axes.set_ylabel(y_label)
-    for axis, place, shift_pt in ((axes.xaxis, (0.5, 0.0), (0, -18)), (axes.yaxis, (0.0, 0.5), (-y_label_pt, 0))):
-        shift = ScaledTranslation(shift_pt[0] / 72, shift_pt[1] / 72, _root(axes).dpi_scale_trans)
-        axis.set_label_coords(*place, transform=axes.transAxes + shift)
+    along_x, along_y = axes.get_xaxis_transform(), axes.get_yaxis_transform()
+    across, up = tick_labels(*axes.get_xlim()), tick_labels(*axes.get_ylim())
+    for axis, place, shift_pt in ((axes.xaxis, (0.5, 0.0), (0.0, -18.0)), (axes.yaxis, (0.0, 0.5), (-y_label_pt, 0.0))):
+        axis.set_ticks([])
+        axis.set_label_coords(*place, transform=_shifted(axes, axes.transAxes, *shift_pt))
+    axes.plot([*across], [0] * len(across), marker=TICKDOWN, transform=along_x, **_TICK)
+    axes.plot([0] * len(up), [*up], marker=TICKLEFT, transform=along_y, **_TICK)
+    below, left = _shifted(axes, along_x, 0.0, -5.0), _shifted(axes, along_y, -5.0, 0.0)
+    for number, text in across.items():
+        axes.text(number, 0, text, transform=below, fontsize=8, ha="center", va="top")
+    for number, text in up.items():
+        axes.text(0, number, text, transform=left, fontsize=8, ha="right", va="center_baseline")
+    if grid:
+        axes.plot(*_lines(across), transform=along_x, **_GRID)
+        axes.plot(*reversed(_lines(up)), transform=along_y, **_GRID)
 
 
-def _root(axes: "Axes") -> "Figure":
+def _lines(places: Iterable[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Lines from 0 to 1 at some places, as one polyline with gaps: the places and the share of the way."""
+    at = np.repeat(np.array([*places], float), 3)
+    return at, np.resize([0.0, 1.0, np.nan], len(at))
+
+
+def tick_labels(low: float, high: float, most: int = 5) -> dict[float, str]:
+    """Round numbers from low to high, at most `most` steps, and how they are written.
+
+    >>> tick_labels(-50.0, 0.0)
+    {-50.0: '\u221250', -40.0: '\u221240', -30.0: '\u221230', -20.0: '\u221220', -10.0: '\u221210', 0.0: '0'}
+    """
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = min(low, high), max(low, high)
+    ticks = [float(tick) for tick in MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(low, high)]
+    ticks = [tick for tick in ticks if low <= tick <= high]
+    decimals = max((-int(np.floor(np.log10(step) + 1e-9)) for step in np.diff(ticks)[:1]), default=0)
+    return {tick: f"{tick:.{max(decimals, 0)}f}".replace("-", "\u2212") for tick in ticks}
+
+
+def _shifted(axes: "Axes", place: "Transform", right_pt: float, up_pt: float) -> "Transform":
+    """A transform that moves what is drawn by some points."""
+    from matplotlib.transforms import ScaledTranslation
+
     figure = axes.get_figure(root=True)
     assert figure is not None
-    return figure
+    return place + ScaledTranslation(right_pt / 72, up_pt / 72, figure.dpi_scale_trans)
 
 
 def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
@@ -70,8 +116,6 @@ def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
     Drawn from primitives: matplotlib's own colour bar, with separate axes, takes five times as long.
     """
     from matplotlib.markers import TICKRIGHT
-    from matplotlib.ticker import MaxNLocator
-    from matplotlib.transforms import ScaledTranslation
 
     left, right = 1.02, 1.055
     low, high = (float(np.asarray(limit)) for limit in (mappable.norm.vmin, mappable.norm.vmax))
@@ -81,20 +125,16 @@ def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
         origin="lower", clip_on=False,
     )  # fmt: skip
     axes.set(**limits)  # imshow changed them
-    ticks = [tick for tick in MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high) if low <= tick <= high]
+    ticks = tick_labels(low, high)
     heights = [(tick - low) / (high - low) for tick in ticks]
-    line: Any = {"color": INK, "linewidth": 0.5, "transform": axes.transAxes, "clip_on": False, "scalex": False}
-    axes.plot([left, left, right, right, left], [0, 1, 1, 0, 0], **line, scaley=False)
-    axes.plot([right] * len(ticks), heights, TICKRIGHT, markersize=2, markeredgewidth=0.5, **line, scaley=False)
-
-    def shifted(points: float) -> "Transform":
-        return axes.transAxes + ScaledTranslation(points / 72, 0, _root(axes).dpi_scale_trans)
-
-    decimals = max((-int(np.floor(np.log10(step) + 1e-9)) for step in np.diff(ticks)[:1]), default=0)
-    for tick, height in zip(ticks, heights, strict=True):
-        number = f"{tick:.{max(decimals, 0)}f}".replace("-", "\u2212")
-        axes.text(right, height, number, transform=shifted(4.0), fontsize=7, va="center_baseline")
-    axes.text(right, 0.5, label, transform=shifted(25.0), fontsize=8, rotation=90, va="center", ha="left")
+    line: Any = {"color": INK, "transform": axes.transAxes, "clip_on": False, **_AS_IT_IS}
+    axes.plot([left, left, right, right, left], [0, 1, 1, 0, 0], linewidth=0.5, **line)
+    axes.plot([right] * len(ticks), heights, **{**_TICK, **line}, marker=TICKRIGHT)
+    for text, height in zip(ticks.values(), heights, strict=True):
+        place = _shifted(axes, axes.transAxes, 4.0, 0.0)
+        axes.text(right, height, text, transform=place, fontsize=7, va="center_baseline")
+    label_place = _shifted(axes, axes.transAxes, 25.0, 0.0)
+    axes.text(right, 0.5, label, transform=label_place, fontsize=8, rotation=90, va="center", ha="left")
 
 
 def person_colour(index: int, count: int, *, on_white: bool = False) -> str:

@@ -1,13 +1,14 @@
-"""The DCA1000's adc_data.bin: little-endian int16, complex samples in groups of two, no header.
+"""The DCA1000's adc_data.bin: little-endian int16, complex samples, no header.
 
-Order: frame, loop, transmitter (in firing order), receiver, sample. Each four words hold two consecutive samples of
-one receiver: I0 I1 Q0 Q1 ("iq", mmWave Studio's default) or Q0 Q1 I0 I1 ("qi", the SDK's demo, SampleSwap 1). The
-wrong order reverses the range axis.
+Two lanes (xWR16xx, 18xx, 68xx): frame, loop, transmitter (in firing order), receiver, sample; each four words hold two
+consecutive samples of one receiver: I0 I1 Q0 Q1 ("iq", mmWave Studio's default) or Q0 Q1 I0 I1 ("qi", the SDK's demo,
+SampleSwap 1). Four lanes (xWR12xx, 14xx): frame, loop, transmitter, sample; each eight words hold one sample of the
+receivers 0 to 3, I of all and then Q ("qi": Q first); a receiver that is off has its lane, too. The wrong I/Q order
+reverses the range axis. Of an advanced frame, the words of other sub-frames are skipped, and written as zeros.
 
 Reference: TI SWRA581B, mmWave Radar Device ADC Raw Data Capture.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,10 +18,14 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
+from mmweaver.core.safe_files.regular_files import check_regular
+from mmweaver.core.safe_files.safe_arrays import read_words
 
 IQ_ORDERS = ("iq", "qi")
 INT16_MAX = 32767
 WORDS_PER_SAMPLE = 2
+GROWING = "parts.jsonl"  # beside a file that grows (mmweaver generate --stream): a kill may cut its last frame
+LANES = 4  # of the devices with more than two
 HEADROOM = 0.5  # share of full scale of the largest word where `write_bin` chooses the scale
 
 
@@ -35,20 +40,19 @@ def read_bin(
     """
     config = _checked(config, iq_order, tx_order)
     path = Path(path)
-    if path.is_dir():
-        raise InputError(f"cannot read {path}: it is a folder; give the adc_data.bin in it")
-    try:
-        size = path.stat().st_size
-        num_frames = _num_frames(path, size, config)
-        words = np.fromfile(path, dtype="<i2", count=num_frames * bytes_of_frame(config) // 2)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    num_frames = _num_frames(path, check_regular(path), config)
+    words = read_words(path, "<i2", count=num_frames * bytes_of_frame(config) // 2)
     return adc_of_words(words, config, iq_order=iq_order)
 
 
 def bytes_of_frame(config: RadarConfig) -> int:
-    """The bytes that a DCA1000 sends per radar frame."""
-    return config.num_loops * config.num_antennas * config.num_samples * WORDS_PER_SAMPLE * 2
+    """The bytes that a DCA1000 sends per radar frame, other sub-frames included."""
+    return 2 * (_own_words(config) + config.frame_words_before + config.frame_words_after)
+
+
+def _own_words(config: RadarConfig) -> int:
+    channels = LANES if config.lvds_lanes == LANES else config.num_rx
+    return config.num_loops * config.num_slots * channels * config.num_samples * WORDS_PER_SAMPLE
 
 
 def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str = "iq") -> AdcCube:
@@ -58,12 +62,21 @@ def adc_of_words(words: np.ndarray, config: RadarConfig, *, iq_order: str = "iq"
     """
     config = _checked(config, iq_order, None)
     num_frames = 2 * len(words) // bytes_of_frame(config)
-    pairs = words.reshape(-1, 2, 2)  # (two samples, component, sample of the two)
+    first = config.frame_words_before
+    words = words.reshape(num_frames, bytes_of_frame(config) // 2)[:, first : first + _own_words(config)]
     real, imaginary = (0, 1) if iq_order == "iq" else (1, 0)
-    samples = np.empty((len(pairs), 2), np.complex64)
-    samples.real, samples.imag = pairs[:, real], pairs[:, imaginary]
-    shape = (num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples)
-    return AdcCube(samples=by_transmitter(samples.reshape(shape), config.tx_order), config=config, scale=float("nan"))
+    head = (num_frames, config.num_loops, config.num_slots)
+    if config.lvds_lanes == LANES:
+        lanes = words.reshape(*head, config.num_samples, 2, LANES)[..., _channels(config)]
+        parts = lanes[..., real, :].swapaxes(-1, -2), lanes[..., imaginary, :].swapaxes(-1, -2)
+    else:
+        pairs = words.reshape(-1, 2, 2)  # (two samples, component, sample of the two)
+        shape = (*head, config.num_rx, config.num_samples)
+        parts = pairs[:, real].reshape(shape), pairs[:, imaginary].reshape(shape)
+    samples = np.empty((*head, config.num_rx, config.num_samples), np.complex64)
+    samples.real, samples.imag = parts
+    samples = upright(by_transmitter(samples, config), config)
+    return AdcCube(samples=samples, config=config, scale=float("nan"))
 
 
 def write_bin(
@@ -81,8 +94,22 @@ def write_bin(
     InputError where a sample is not finite or does not fit int16, where samples are real or odd in number, or where
     the file cannot be written.
     """
+    pairs, counts = words_of(adc, iq_order=iq_order, tx_order=tx_order, counts_per_unit=counts_per_unit)
+    with atomic_file(Path(path)) as temporary:
+        pairs.tofile(temporary)
+    return counts
+
+
+def words_of(
+    adc: AdcCube,
+    *,
+    iq_order: str = "iq",
+    tx_order: tuple[int, ...] | None = None,
+    counts_per_unit: float | None = None,
+) -> tuple[np.ndarray, float]:
+    """The int16 words that `write_bin` writes, and the counts per unit. Raises InputError as it does."""
     config = _checked(adc.config, iq_order, tx_order)
-    samples = adc.samples[:, :, list(config.tx_order)]
+    samples = upright(adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)], config)
     parts = np.real(samples), np.imag(samples)
     low = float(min(part.min(initial=0) for part in parts))
     high = float(max(part.max(initial=0) for part in parts))
@@ -99,19 +126,44 @@ def write_bin(
             f"a sample of {peak * counts_per_unit:.0f} counts does not fit int16;"
             f" take at most {INT16_MAX / peak:.6g} counts per unit"
         )
+    words = _words(samples, config, iq_order, counts_per_unit)
+    frame = np.zeros((len(samples), bytes_of_frame(config) // 2), "<i2")
+    frame[:, config.frame_words_before : config.frame_words_before + _own_words(config)] = words
+    return frame, float(counts_per_unit)
+
+
+def _words(samples: np.ndarray, config: RadarConfig, iq_order: str, counts_per_unit: float) -> np.ndarray:
+    """Samples (frame, loop, slot, rx, sample) as int16 words (frame, word)."""
+    real, imaginary = (0, 1) if iq_order == "iq" else (1, 0)
+    if config.lvds_lanes == LANES:
+        lanes = np.zeros((*samples.shape[:3], config.num_samples, 2, LANES), "<i2")
+        for part, component in ((np.real(samples), real), (np.imag(samples), imaginary)):
+            lanes[..., component, _channels(config)] = np.rint(part.swapaxes(-1, -2) * np.float64(counts_per_unit))
+        return lanes.reshape(len(samples), -1)
     grouped = samples.reshape(-1, 2)
     pairs = np.empty((len(grouped), 2, 2), "<i2")
-    real, imaginary = (0, 1) if iq_order == "iq" else (1, 0)
     pairs[:, real] = np.rint(np.real(grouped) * np.float64(counts_per_unit))
     pairs[:, imaginary] = np.rint(np.imag(grouped) * np.float64(counts_per_unit))
-    with atomic_file(Path(path)) as temporary:
-        pairs.tofile(temporary)
-    return float(counts_per_unit)
+    return pairs.reshape(len(samples), -1)
 
 
-def by_transmitter(samples: np.ndarray, tx_order: Sequence[int]) -> np.ndarray:
-    """Reorders (frame, loop, slot, rx, sample), transmitters in firing order, to (frame, loop, tx, rx, sample)."""
-    return samples[:, :, np.argsort(tx_order)]
+def _channels(config: RadarConfig) -> list[int]:
+    """The lanes of a radar's receivers."""
+    return list(config.rx_channels or range(config.num_rx))
+
+
+def by_transmitter(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Reorders (frame, loop, slot, rx, sample) in firing order by transmitter; slots of a code stay."""
+    return samples if config.is_coded else samples[:, :, np.argsort(config.tx_order)]
+
+
+def upright(samples: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Turns the receivers (..., rx, sample) that a board feeds from the other side by 180 degrees, either way."""
+    if not config.rx_inverted:
+        return samples
+    sign = np.ones(config.num_rx, np.float32)
+    sign[list(config.rx_inverted)] = -1
+    return samples * sign[:, None]
 
 
 def _checked(config: RadarConfig, iq_order: str, tx_order: tuple[int, ...] | None) -> RadarConfig:
@@ -119,7 +171,7 @@ def _checked(config: RadarConfig, iq_order: str, tx_order: tuple[int, ...] | Non
         raise InputError(f"unknown I/Q order {iq_order!r}; known: {', '.join(IQ_ORDERS)}")
     if not config.complex_samples:
         raise InputError(f"radar {config.name!r} has real samples, a DCA1000 file holds complex ones; use .npy")
-    if config.num_samples % 2:
+    if config.num_samples % 2 and config.lvds_lanes != LANES:
         raise InputError(
             f"a DCA1000 file holds samples in pairs, but a chirp has {config.num_samples}; take an even number"
         )
@@ -128,10 +180,13 @@ def _checked(config: RadarConfig, iq_order: str, tx_order: tuple[int, ...] | Non
 
 def _num_frames(path: Path, size: int, config: RadarConfig) -> int:
     frame_bytes = bytes_of_frame(config)
-    layout = f"{config.num_loops} loops x {config.num_tx} TX x {config.num_rx} RX x {config.num_samples} samples x 4"
+    channels = "4 lanes" if config.lvds_lanes == LANES else f"{config.num_rx} RX"
+    layout = f"{config.num_loops} loops x {config.num_slots} TX x {channels} x {config.num_samples} samples x 4"
+    if config.frame_words_before or config.frame_words_after:
+        layout += f" + {2 * (config.frame_words_before + config.frame_words_after)} of other sub-frames"
     if size == 0:
         raise InputError(f"{path} is empty")
-    if size % frame_bytes:
+    if size % frame_bytes and not (size >= frame_bytes and path.with_name(GROWING).is_file()):
         raise InputError(
             f"{path} has {size} bytes: {size // frame_bytes} whole frames of {frame_bytes} bytes ({layout}) and"
             f" {size % frame_bytes} bytes more; the file is truncated or --radar is not the radar that recorded it"

@@ -22,6 +22,7 @@ from mmweaver.formats.pcap import UdpPacket, udp_packets
 DATA_PORT = 4098
 HEADER_BYTES = 10
 MAX_BYTES = 4_000_000_000
+MAX_LOSS = 20  # of so many bytes at least one was received
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +71,12 @@ def read_pcap(
     if num_bytes > MAX_BYTES:
         raise InputError(
             f"{path} says that {num_bytes / 1e9:.1f} GB were sent; at most {MAX_BYTES / 1e9:.0f} GB are read"
+        )
+    received = sum(len(piece.payload) for piece in pieces)
+    if num_bytes > MAX_LOSS * received:
+        raise InputError(
+            f"{path} says that {num_bytes} bytes were sent, but holds {received}: nearly all packets are lost, or it is"
+            " damaged; record again"
         )
     frame_bytes = bytes_of_frame(config)
     frames = num_bytes // frame_bytes

@@ -1,26 +1,40 @@
 """mmWave Studio's .mmwave.json: the radar configuration of a DCA1000 recording."""
 
-import json
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
+
+from mmweaver.core.antenna_tables import AntennaTable
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.formats.ti_chirps import TiChirps, radar_from_ti
+from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.formats.ti_chirps import MOST_TX, SubFrame, TiChirps, radar_from_ti
 
 Answer = TypeVar("Answer")
+PLAIN_FRAMES = ("legacyFrameChirp", "singleFrameChirp")
+DEGREES_A_STEP = 5.625  # of a transmitter's phase shifter
 VARIATIONS = ("startFreqVar_MHz", "freqSlopeVar_KHz_usec", "idleTimeVar_usec", "adcStartTimeVar_usec")
 
 
-def read_mmwave_studio(path: Path | str) -> RadarConfig:
+def read_mmwave_studio(
+    path: Path | str, *, sub_frame: int | None = None, antennas: AntennaTable | None = None, lanes: int | None = None
+) -> RadarConfig:
     """The radar of the file's first device, named after the file.
 
-    Raises InputError where the file cannot be read, a key is missing or of the wrong type, the frame is not a legacy
-    frame of identical TDM chirps, or the radar could not exist.
+    `sub_frame`, `antennas` and `lanes` as in `formats.ti_cfg.read_ti_cfg`; lanes are otherwise those that the file
+    enables. Raises InputError where the file cannot be read, a key is missing or of the wrong type, chirps differ or
+    cannot be told apart, or the radar could not exist.
     """
     path = Path(path)
-    return _query(path, lambda device: radar_from_ti(_chirps(path.name.split(".")[0], device["rfConfig"])))
+
+    def radar(device: Any) -> RadarConfig:
+        chirps = _chirps(path.name.split(".")[0], device["rfConfig"], sub_frame)
+        return radar_from_ti(replace(chirps, antennas=antennas, lvds_lanes=lanes or _lanes(device)))
+
+    return _query(path, radar)
 
 
 def read_mmwave_studio_iq_order(path: Path | str) -> str:
@@ -35,36 +49,39 @@ def is_mmwave_studio(values: Any) -> bool:
 
 
 def _query(path: Path, query: Callable[[Any], Answer]) -> Answer:
+    values = read_json(path)
     try:
-        values = json.loads(path.read_text(encoding="utf-8"))
         return query(values["mmWaveDevices"][0])
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    except (UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise InputError(f"{path} is not JSON ({error})") from None
     except KeyError as error:
         raise InputError(f"{path} lacks {error.args[0]}; is it an mmWave Studio .mmwave.json?") from None
     except (TypeError, ValueError, IndexError, OverflowError) as error:
         raise InputError(f"{path} is not an mmWave Studio .mmwave.json ({error})") from None
 
 
-def _chirps(name: str, setup: Any) -> TiChirps:
-    if setup["waveformType"] != "legacyFrameChirp":
-        raise InputError(f"waveform {setup['waveformType']!r} cannot be read; use legacyFrameChirp")
-    if setup.get("rlBpmChirps"):
-        raise InputError("BPM-MIMO chirps cannot be read; use TDM")
-    frame = setup["rlFrameCfg_t"]
-    masks, profile_ids = _fired(setup["rlChirps"], _whole(frame["chirpStartIdx"]), _whole(frame["chirpEndIdx"]))
-    if len(profile_ids) != 1:
-        raise InputError(f"the frame's chirps use profiles {sorted(profile_ids)}; only one profile can be read")
-    profiles = {_whole(entry["rlProfileCfg_t"]["profileId"]): entry["rlProfileCfg_t"] for entry in setup["rlProfiles"]}
-    profile = profiles.get(min(profile_ids))
-    if profile is None:
-        raise InputError(f"the chirps use profile {min(profile_ids)}, which rlProfiles does not define")
+def _lanes(device: Any) -> int:
+    """2 or 4 LVDS lanes, of the mask laneEn; 2 without it."""
+    lanes = device.get("rawDataCaptureConfig", {}).get("rlDevLaneEnable_t", {}).get("laneEn")
+    return 4 if lanes is not None and _whole(lanes).bit_count() == 4 else 2
+
+
+def _chirps(name: str, setup: Any, sub_frame: int | None) -> TiChirps:
+    frames = _frames(setup)
+    if sub_frame is None and len(frames) > 1:
+        raise InputError(f"it has {len(frames)} sub-frames; choose one with --subframe 0 to {len(frames) - 1}")
+    chosen = sub_frame or 0
+    if not 0 <= chosen < len(frames):
+        raise InputError(f"it has sub-frames 0 to {len(frames) - 1}, not {chosen}")
+    fired = [_fired(setup["rlChirps"], one.first, one.last) for one in frames]
+    profiles = [_profile(setup, profile_ids) for _, profile_ids in fired]
+    counts = [
+        len(masks) * one.num_loops * _whole(profile["numAdcSamples"])
+        for one, (masks, _), profile in zip(frames, fired, profiles, strict=True)
+    ]
+    frame, masks, profile = frames[chosen], fired[chosen][0], profiles[chosen]
     return TiChirps(
-        name=name,
+        name=name if len(frames) == 1 else f"{name}_{chosen}",
         start_frequency_ghz=float(profile["startFreqConst_GHz"]),
         idle_time_us=float(profile["idleTimeConst_usec"]),
         adc_start_time_us=float(profile["adcStartTimeConst_usec"]),
@@ -76,10 +93,67 @@ def _chirps(name: str, setup: Any) -> TiChirps:
         rx_mask=_whole(setup["rlChanCfg_t"]["rxChannelEn"]),
         tx_mask=_whole(setup["rlChanCfg_t"]["txChannelEn"]),
         chirp_tx_masks=masks,
-        num_loops=_whole(frame["numLoops"]),
-        frame_period_ms=float(frame["framePeriodicity_msec"]),
+        num_loops=frame.num_loops,
+        frame_period_ms=frame.period_ms,
         complex_samples=_whole(setup["rlAdcOutCfg_t"]["fmt"]["b2AdcOutFmt"]) != 0,
+        chirp_phase_deg=_phases(setup, frame.first, frame.last),
+        sub_frame=SubFrame(index=chosen, samples_before=sum(counts[:chosen]), samples_after=sum(counts[chosen + 1 :])),
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _ChirpFrame:
+    """The chirps of a frame, or of one sub-frame; the period is that of the whole frame."""
+
+    first: int
+    last: int
+    num_loops: int
+    period_ms: float
+
+
+def _frames(setup: Any) -> list[_ChirpFrame]:
+    """The plain frame, or the sub-frames of an advanced one."""
+    if setup["waveformType"] in PLAIN_FRAMES:
+        frame = setup["rlFrameCfg_t"]
+        first, last, loops = (_whole(frame[key]) for key in ("chirpStartIdx", "chirpEndIdx", "numLoops"))
+        return [_ChirpFrame(first=first, last=last, num_loops=loops, period_ms=float(frame["framePeriodicity_msec"]))]
+    if setup["waveformType"] != "advancedFrameChirp":
+        raise InputError(f"waveform {setup['waveformType']!r} cannot be read; use frames of chirps")
+    sequence = setup["rlAdvFrameCfg_t"]["frameSeq"]
+    entries = [entry["rlSubFrameCfg_t"] for entry in sequence["subFrameCfg"]][: _whole(sequence["numOfSubFrames"])]
+    period_ms = sum(float(entry["subFramePeriodicity_msec"]) for entry in entries)
+    found = []
+    for index, entry in enumerate(entries):
+        if _whole(entry["numOfBurst"]) != 1 or _whole(entry["numOfBurstLoops"]) != 1:
+            raise InputError(f"sub-frame {index} has several bursts, which cannot be read; use one")
+        first, count, loops = (_whole(entry[key]) for key in ("chirpStartIdx", "numOfChirps", "numLoops"))
+        found.append(_ChirpFrame(first=first, last=first + count - 1, num_loops=loops, period_ms=period_ms))
+    return found
+
+
+def _profile(setup: Any, profile_ids: set[int]) -> Any:
+    if len(profile_ids) != 1:
+        raise InputError(f"the frame's chirps use profiles {sorted(profile_ids)}; only one profile can be read")
+    profiles = {_whole(entry["rlProfileCfg_t"]["profileId"]): entry["rlProfileCfg_t"] for entry in setup["rlProfiles"]}
+    profile = profiles.get(min(profile_ids))
+    if profile is None:
+        raise InputError(f"the chirps use profile {min(profile_ids)}, which rlProfiles does not define")
+    return profile
+
+
+def _phases(setup: Any, first: int, last: int) -> tuple[tuple[float, ...], ...]:
+    """Degrees of each transmitter in each chirp: 180 by BPM (odd bits of constBpmVal), 5.625 a step of a shifter."""
+    phases = np.zeros((512, MOST_TX))
+    for entry in setup.get("rlBpmChirps") or []:
+        chirp = entry["rlBpmChirpCfg_t"]
+        bits = _whole(chirp["constBpmVal"])
+        inverted = [180.0 * (bits >> (2 * tx + 1) & 1) for tx in range(MOST_TX)]
+        phases[_whole(chirp["chirpStartIdx"]) : _whole(chirp["chirpEndIdx"]) + 1] += inverted
+    for entry in setup.get("rlRfPhaseShiftCfgs") or []:
+        chirp = entry["rlRfPhaseShiftCfg_t"]
+        steps = [_whole(chirp.get(f"tx{tx}PhaseShift", 0)) for tx in range(MOST_TX)]
+        phases[_whole(chirp["chirpStartIdx"]) : _whole(chirp["chirpEndIdx"]) + 1] += DEGREES_A_STEP * np.array(steps)
+    return tuple(tuple(float(one) for one in row) for row in phases[first : last + 1])
 
 
 def _fired(entries: Any, first: int, last: int) -> tuple[tuple[int, ...], set[int]]:

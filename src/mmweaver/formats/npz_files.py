@@ -7,18 +7,21 @@ Reference: docs/conventions.md, "Files".
 
 import zipfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from mmweaver.core.checksums import check_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PointCloud, PoseSequence, RadarCube
+from mmweaver.core.safe_files.safe_arrays import NpzArrays, read_npz
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.skeleton import JOINT_NAMES
 
 CUBE_AXES = ("frame", "range", "doppler", "antenna")
 POINT_COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 FIRMWARE_COLUMNS = ("intensity",)
+MAX_CUBE, MAX_TIME_S = 1e15, 1e12  # far above what is recorded; squares and sums stay finite
 NO_DATE = (1980, 1, 1, 0, 0, 0)  # the first a zip file can name
 
 
@@ -57,30 +60,33 @@ def read_radar_npz(path: str | Path, config: RadarConfig | None = None) -> Radar
     path = Path(path)
     if config is None:
         config = _radar_of(path)
-    arrays = read_npz(path)
-    names = ("cube", "frame_time_s", "range_m", "radial_velocity_mps", "antenna_position_m", "wavelength_m", "scale")
-    cube, time_s, range_m, velocity_mps, antenna_m, wavelength_m, scale = (_take(path, arrays, name) for name in names)
+    held = _read(path)
+    cube = held.numbers("cube", ("frame", "range", "doppler", "antenna"), kinds="c", low=-MAX_CUBE, high=MAX_CUBE)
     grid = CubeGrid(
-        frame_time_s=time_s,
-        range_m=range_m,
-        radial_velocity_mps=velocity_mps,
-        antenna_position_m=antenna_m,
-        wavelength_m=float(wavelength_m),
+        frame_time_s=held.numbers("frame_time_s", ("frame",), low=-MAX_TIME_S, high=MAX_TIME_S),
+        range_m=held.numbers("range_m", ("range",), low=0, high=1e6),
+        radial_velocity_mps=held.numbers("radial_velocity_mps", ("doppler",), low=-1e6, high=1e6),
+        antenna_position_m=held.numbers("antenna_position_m", ("antenna", 3), low=-1e3, high=1e3),
+        wavelength_m=float(held.numbers("wavelength_m", (), low=1e-6, high=1e3)),
     )
+    scale = float(held.numbers("scale", (), low=1e-30, high=1e30, nan=True))
+    if not len(cube):
+        raise InputError(f"{path} holds no frames; record or generate it again")
     radar_shape = (config.num_range_bins, config.num_loops, config.num_antennas)
-    if cube.shape != grid.shape or cube.shape[1:] != radar_shape:
-        raise InputError(
-            f"{path}: the cube is {cube.shape}, its axes {grid.shape}, radar {config.name!r} {radar_shape}"
-        )
-    return RadarCube(values=cube, grid=grid, config=config, scale=float(scale))
+    if cube.shape[1:] != radar_shape:
+        raise InputError(f"{path}: the cube is {cube.shape}, radar {config.name!r} makes frames of {radar_shape}")
+    return RadarCube(values=cube, grid=grid, config=config, scale=scale)
 
 
 def _radar_of(path: Path) -> RadarConfig:
+    file = path.with_name("radar.json")
+    if not file.exists():
+        raise InputError(f"no radar.json next to {path}; give the radar that recorded it")
+    check_file(file)
     try:
-        text = path.with_name("radar.json").read_text(encoding="utf-8")
-    except OSError:
-        raise InputError(f"no radar.json next to {path}; give the radar that recorded it") from None
-    return RadarConfig.from_json(text)
+        return RadarConfig.from_values(read_json(file))
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
 
 
 # pose.npz -----------------------------------------------------------------------------------------------------------
@@ -113,21 +119,19 @@ def read_pose_npz(path: str | Path) -> PoseSequence:
 def read_poses_npz(path: str | Path) -> tuple[PoseSequence, ...]:
     """Reads all people of a pose.npz, as subjects 0, 1, 2 ... Raises InputError for anything else."""
     path = Path(path)
-    arrays = read_npz(path)
-    joints_m, names = _take(path, arrays, "joints_m"), _take(path, arrays, "joint_names")
-    if (
-        tuple(names.tolist()) != JOINT_NAMES
-        or joints_m.ndim not in (3, 4)
-        or joints_m.shape[-2:] != (len(JOINT_NAMES), 3)
-    ):
-        raise InputError(f"{path}: joints_m is {joints_m.shape}; the {len(JOINT_NAMES)} joints of SMPL are needed")
-    time_s, height_m = _take(path, arrays, "frame_time_s"), np.atleast_1d(_take(path, arrays, "height_m"))
-    people = joints_m if joints_m.ndim == 4 else joints_m[None]
-    if len(height_m) != len(people):
-        raise InputError(f"{path}: {len(people)} people, but {len(height_m)} heights")
+    held = _read(path)
+    is_single = held.take("joints_m").ndim == 3
+    people = () if is_single else ("person",)
+    joints_m = held.numbers("joints_m", (*people, "frame", len(JOINT_NAMES), 3), kinds="f", low=-1e3, high=1e3)
+    if held.texts("joint_names") != JOINT_NAMES:
+        raise InputError(f"{path} has other joints than the {len(JOINT_NAMES)} of SMPL")
+    time_s = held.numbers("frame_time_s", ("frame",), low=-MAX_TIME_S, high=MAX_TIME_S)
+    height_m = np.atleast_1d(held.numbers("height_m", people, low=0.1, high=10))
+    if not joints_m.size:
+        raise InputError(f"{path} holds no frames; generate it again")
     return tuple(
         PoseSequence(time_s=time_s, joints_m=joints, height_m=float(height), subject=index)
-        for index, (joints, height) in enumerate(zip(people, height_m, strict=True))
+        for index, (joints, height) in enumerate(zip(joints_m[None] if is_single else joints_m, height_m, strict=True))
     )
 
 
@@ -145,9 +149,9 @@ def write_points_npz(path: Path, points: PointCloud) -> None:
 def read_points_npz(path: str | Path) -> PointCloud:
     """Reads a points.npz. Raises InputError for anything else."""
     path = Path(path)
-    arrays = read_npz(path)
-    columns = {name: _take(path, arrays, name) for name in POINT_COLUMNS}
-    return PointCloud(frame=_take(path, arrays, "frame"), **columns)
+    held = _read(path)
+    columns = {name: held.numbers(name, ("point",), kinds="f", low=-1e9, high=1e9) for name in POINT_COLUMNS}
+    return PointCloud(frame=held.numbers("frame", ("point",), kinds="iu", low=0), **columns)
 
 
 # archives -----------------------------------------------------------------------------------------------------------
@@ -160,24 +164,7 @@ def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
                 np.lib.format.write_array(stream, np.asanyarray(array), allow_pickle=False)
 
 
-def read_npz(path: str | Path) -> dict[str, Any]:
-    """Reads all arrays of a numpy archive. Raises InputError where it is missing, damaged or holds objects."""
-    path = Path(path)
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise InputError(f"{path} is not an .npz archive")
-            return {name: archive[name] for name in archive.files}
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, EOFError, zipfile.BadZipFile, KeyError, TypeError, AttributeError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path} is not a plain .npz archive, or it is damaged ({error})") from None
-
-
-def _take(path: Path, arrays: dict[str, Any], name: str) -> np.ndarray:
-    try:
-        return arrays[name]
-    except KeyError:
-        raise InputError(f"{path} holds no {name!r}; it has {', '.join(arrays) or 'nothing'}") from None
+def _read(path: Path) -> NpzArrays:
+    """Reads an archive once it was held against the checksums of its folder."""
+    check_file(path)
+    return read_npz(path)

@@ -3,6 +3,7 @@
 HuPR: one .npy per frame, complex (doppler 16, range 64, azimuth 64, elevation 8): the middle 16 of 64 Doppler bins,
 range from far to near, no windows, the mean over loops removed, zero-padded angle FFTs, both angles reversed. The
 elevation FFT was computed at azimuth channels 2 to 5 only, where the array has two rows. All of it is invertible.
+CubeLearn: real (I/Q, frame 20, loop 128, virtual antenna 12, sample 256).
 mmMesh: complex (tx, rx, loop, sample) of a frame, or a stack of frames. RF-Genesis: radar_frames.npy, complex
 (frame, tx, rx, loop, sample).
 """
@@ -16,12 +17,16 @@ from jaxtyping import Complex
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
-from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.core.safe_files.array_checks import ArrayChecks
+from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.formats.dca1000 import by_transmitter
+from mmweaver.formats.raw_npy import MAX_SAMPLE, read_adc_npy
 
-LAYOUTS = ("hupr", "mmmesh", "rf_genesis")
+LAYOUTS = ("hupr", "mmmesh", "rf_genesis", "cubelearn")
 HUPR_SHAPE = (16, 64, 64, 8)
 HUPR_ANTENNAS = (3, 4)
 ADC_SHAPE = (3, 4, 128, 256)
+CUBELEARN_SHAPE = (128, 12, 256)
 POINT_COLUMNS = 6
 # azimuth channel of receiver 0 of each transmitter; the second has the upper row
 HUPR_FIRST_CHANNEL = (0, 2, 4)
@@ -33,9 +38,11 @@ def detect_layout(path: Path) -> str:
     """The layout that an array's shape implies. Raises InputError where it implies none, or several."""
     if path.is_dir():
         return "hupr"
-    shape = _memory_mapped(path).shape
+    shape = read_npy(path, mapped=True).shape
     if shape == HUPR_SHAPE:
         return "hupr"
+    if len(shape) == 5 and shape[0] == 2 and shape[2:] == CUBELEARN_SHAPE:
+        return "cubelearn"
     if shape[-4:] == ADC_SHAPE:
         raise InputError(
             f"{path} has shape {shape}, as mmMesh and RF-Genesis have it; give --layout mmmesh or rf_genesis"
@@ -48,9 +55,26 @@ def detect_layout(path: Path) -> str:
     )
 
 
+def read_cubelearn(path: Path, config: RadarConfig) -> AdcCube:
+    """Reads (I/Q, frame, loop, virtual antenna, sample), antennas in firing order. Raises InputError."""
+    values = read_npy(path)
+    wanted = (config.num_loops, config.num_antennas, config.num_samples)
+    if values.ndim != 5 or len(values) != 2 or values.shape[2:] != wanted or values.dtype.kind not in "fi":
+        raise InputError(
+            f"{path} has shape {values.shape} of {values.dtype}; CubeLearn's with radar {config.name!r} is (2, frames,"
+            f" {', '.join(map(str, wanted))}) of real numbers, I and Q"
+        )
+    if config.is_coded or not config.complex_samples:
+        raise InputError(f"CubeLearn's radar is a TDM one with complex samples, not {config.name!r}")
+    samples = (values[0] + 1j * values[1].astype(np.float64)).astype(np.complex64)
+    shape = (len(samples), config.num_loops, config.num_tx, config.num_rx, config.num_samples)
+    ordered = by_transmitter(samples.reshape(shape), config)
+    return AdcCube(samples=np.ascontiguousarray(ordered), config=config, scale=float("nan"))
+
+
 def read_mmmesh(path: Path, config: RadarConfig) -> AdcCube:
     """Reads one frame or more; transmitters in firing order. Raises InputError where the array is not mmMesh's."""
-    frames = "frame," if _memory_mapped(path).ndim == len(ADC_SHAPE) + 1 else ""
+    frames = "frame," if read_npy(path, mapped=True).ndim == len(ADC_SHAPE) + 1 else ""
     return read_adc_npy(path, config, f"{frames}tx,rx,loop,sample")
 
 
@@ -91,12 +115,11 @@ def read_hupr(path: Path, config: RadarConfig) -> RadarCube:
 
 def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
     """Inverts a frame's angle FFTs."""
-    array = _memory_mapped(path)
+    array = read_npy(path, mapped=True)
     if array.shape != HUPR_SHAPE or array.dtype.kind != "c":
         raise InputError(f"{path} holds {array.dtype} of shape {array.shape}; HuPR's are complex {HUPR_SHAPE}")
     values = np.asarray(array, np.complex128)[:, ::-1, ::-1, ::-1]
-    if not np.isfinite(values).all():
-        raise InputError(f"{path} holds values that are not finite")
+    ArrayChecks(path).numbers("the array", values, kinds="c", low=-MAX_SAMPLE, high=MAX_SAMPLE)
     values = np.fft.ifftshift(values, axes=(2, 3))
     channels = np.fft.ifft(values, axis=2)  # doppler, range, channel, elevation
     channels[:, :, BOTH_ROWS] = np.fft.ifft(channels[:, :, BOTH_ROWS], axis=3)
@@ -108,16 +131,3 @@ def _hupr_antennas(path: Path) -> Complex[np.ndarray, "range doppler antenna"]:
     if energy - np.sum(np.abs(out) ** 2) > MAX_RESIDUAL * energy:
         raise InputError(f"{path} has HuPR's shape, but its angle spectra are not those of HuPR's array")
     return out.reshape(*channels.shape[:2], -1).transpose(1, 0, 2)
-
-
-def _memory_mapped(path: Path) -> np.ndarray:
-    """An array whose values are read on access."""
-    try:
-        array = np.load(path, mmap_mode="r", allow_pickle=False)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, EOFError, SyntaxError) as error:
-        raise InputError(f"{path} is not a .npy array of numbers ({str(error).splitlines()[0]})") from None
-    if not isinstance(array, np.ndarray):
-        raise InputError(f"{path} holds several arrays; give one .npy")
-    return array

@@ -1,6 +1,5 @@
 """Loads a radar by name or from any supported file, and describes it in a table."""
 
-import json
 import math
 from pathlib import Path
 
@@ -8,8 +7,10 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FIRMWARE, FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.virtual_array import azimuth_resolution_rad, has_elevation
 from mmweaver.formats.mmwave_studio import is_mmwave_studio, read_mmwave_studio
+from mmweaver.formats.radar_options import RadarOptions, split_radar, with_options
 from mmweaver.formats.ti_cfg import read_ti_cfg
 from mmweaver.formats.ti_firmware import read_ti_firmware
 
@@ -17,15 +18,17 @@ from mmweaver.formats.ti_firmware import read_ti_firmware
 def load_radar(name_or_path: str) -> RadarConfig:
     """Loads a preset, a TI .cfg, an mmWave Studio .json, or the .json of a RadarConfig.
 
-    Raises InputError where it is none of them, or the file describes no possible radar.
+    Options may follow the name: "profile.cfg#subframe=1;antennas=aop;lanes=4" (`formats.radar_options`). Raises
+    InputError where it is none of them, or the file describes no possible radar.
     """
+    name_or_path, options = split_radar(name_or_path)
     if name_or_path in PRESETS:
-        return PRESETS[name_or_path]
+        return with_options(PRESETS[name_or_path], options)
     path = Path(name_or_path)
     if path.suffix.lower() == ".cfg" and path.is_file():
-        return read_ti_cfg(path)
+        return read_ti_cfg(path, sub_frame=options.sub_frame, antennas=options.antennas, lanes=options.lanes)
     if path.suffix.lower() == ".json" and path.is_file():
-        return _from_json(path)
+        return _from_json(path, options)
     what = "is neither .cfg nor .json" if path.is_file() else "is neither a radar preset nor a file"
     raise InputError(
         f"{name_or_path!r} {what}; presets: {', '.join(PRESETS)}; or give a TI .cfg, an mmWave Studio .json, or a .json"
@@ -38,23 +41,19 @@ def load_firmware(name_or_path: str) -> FirmwareSettings:
 
     Raises InputError where the .cfg does not hold them.
     """
+    name_or_path, _ = split_radar(name_or_path)
     path = Path(name_or_path)
     if name_or_path not in PRESETS and path.suffix.lower() == ".cfg" and path.is_file():
         return read_ti_firmware(path)
     return FIRMWARE.get(name_or_path, FirmwareSettings())
 
 
-def _from_json(path: Path) -> RadarConfig:
+def _from_json(path: Path, options: RadarOptions) -> RadarConfig:
+    values = read_json(path)
+    if is_mmwave_studio(values):
+        return read_mmwave_studio(path, sub_frame=options.sub_frame, antennas=options.antennas, lanes=options.lanes)
     try:
-        text = path.read_text(encoding="utf-8")
-        if is_mmwave_studio(json.loads(text)):
-            return read_mmwave_studio(path)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise InputError(f"{path} is not JSON ({error}); make one with: mmweaver radar awr1843 --json") from None
-    try:
-        return RadarConfig.from_json(text)
+        return with_options(RadarConfig.from_values(values), options)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
 
@@ -62,6 +61,7 @@ def _from_json(path: Path) -> RadarConfig:
 def describe_radar(config: RadarConfig) -> str:
     """A table of chirp, array, resolutions and limits, in customary units."""
     rows = [*_chirp_rows(config), *_array_rows(config), *_limit_rows(config), *_data_rows(config)]
+    rows += [("note", text) for text in config.notes]
     width = max(len(name) for name, _ in rows)
     return "\n".join([f"radar {config.name}", *(f"  {name:<{width}}  {value}" for name, value in rows)])
 
@@ -86,10 +86,18 @@ def _array_rows(config: RadarConfig) -> list[tuple[str, str]]:
     resolution = math.degrees(azimuth_resolution_rad(config))
     return [
         ("array", f"{config.num_tx} TX x {config.num_rx} RX = {config.num_antennas} virtual antennas"),
-        ("transmitters fire in order", ", ".join(str(tx) for tx in config.tx_order)),
+        ("transmitters", _scheme(config)),
         ("azimuth resolution", "none, one column" if math.isnan(resolution) else f"{resolution:.1f} deg at broadside"),
         ("elevation", "yes" if has_elevation(config) else "no"),
     ]
+
+
+def _scheme(config: RadarConfig) -> str:
+    if not config.is_coded:
+        return "fire in order " + ", ".join(str(tx) for tx in config.tx_order)
+    if config.num_virtual_tx < config.num_tx:
+        return f"{config.num_tx} at once, {config.num_virtual_tx} beam{'s' if config.num_virtual_tx > 1 else ''}"
+    return f"{config.num_tx} coded over {config.num_slots} chirps of a loop"
 
 
 def _limit_rows(config: RadarConfig) -> list[tuple[str, str]]:
@@ -107,7 +115,7 @@ def _limit_rows(config: RadarConfig) -> list[tuple[str, str]]:
 def _data_rows(config: RadarConfig) -> list[tuple[str, str]]:
     cube = (config.num_range_bins, config.num_loops, config.num_antennas)
     words = 2 if config.complex_samples else 1
-    adc_kb = 2 * words * config.num_loops * config.num_antennas * config.num_samples / 1e3
+    adc_kb = 2 * words * config.num_loops * config.num_slots * config.num_rx * config.num_samples / 1e3
     shape = f"{cube[0]} range x {cube[1]} Doppler x {cube[2]} antennas"
     return [
         ("cube per frame", f"{shape}, {8 * math.prod(cube) / 1e3:.1f} kB"),

@@ -7,7 +7,9 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
-from mmweaver.formats.dca1000 import by_transmitter
+from mmweaver.core.safe_files.array_checks import ArrayChecks
+from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.formats.dca1000 import by_transmitter, upright
 
 # The dimensions that an axis combines, the slowest first; transmitters in firing order.
 DIMENSIONS = {
@@ -20,20 +22,22 @@ DIMENSIONS = {
     "antenna": ("tx", "rx"),
     "vrx": ("tx", "rx"),
 }
+MAX_SAMPLE = 1e12  # whatever the unit; its powers and sums stay finite in float32
 ORDER = ("frame", "loop", "tx", "rx", "sample")
 
 
 def read_adc_npy(path: Path | str, config: RadarConfig, axes: str) -> AdcCube:
     """Reads an array whose axes are named in order, such as "frame,loop,tx,rx,sample" or "loop,antenna,sample".
 
-    `tx` is in firing order (`config.tx_order`); `antenna` (or `vrx`) = tx * num_rx + rx and `chirp` = loop * num_tx
-    + tx, with that same tx. An axis that is not named has size 1. Real samples must be real numbers; their mean over
-    each chirp is removed, and int16 stored as uint16 (values above 32767) is converted back. Samples stay in the
+    `tx` is in firing order (`config.tx_order`; of a coded radar its chirps); `antenna` (or `vrx`) = tx * num_rx + rx
+    and `chirp` = loop * num_tx + tx, with that same tx. An axis that is not named has size 1. Real samples must be real
+    numbers; their mean over each chirp is removed, and int16 stored as uint16 (values above 32767) is converted back.
+    Samples stay in the
     file's unit, so their scale is unknown (nan). Raises InputError where the file is not such an array.
     """
     names = [name.strip() for name in axes.split(",")]
-    values = _loaded(Path(path))
-    sizes = {"loop": config.num_loops, "tx": config.num_tx, "rx": config.num_rx, "sample": config.num_samples}
+    values = read_npy(path)
+    sizes = {"loop": config.num_loops, "tx": config.num_slots, "rx": config.num_rx, "sample": config.num_samples}
     parts = _checked_axes(Path(path), names, values.shape, sizes)
     sizes["frame"] = values.shape[names.index("frame")] if "frame" in names else 1
     if not values.size:
@@ -45,20 +49,8 @@ def read_adc_npy(path: Path | str, config: RadarConfig, axes: str) -> AdcCube:
     values = values.transpose([(parts + missing).index(name) for name in ORDER])
     if not config.complex_samples:
         values = values - values.mean(axis=-1, keepdims=True)
-    samples = by_transmitter(values, config.tx_order).astype(np.complex64)
+    samples = upright(by_transmitter(values, config).astype(np.complex64), config)
     return AdcCube(samples=np.ascontiguousarray(samples), config=config, scale=float("nan"))
-
-
-def _loaded(path: Path) -> np.ndarray:
-    try:
-        values = np.load(path, allow_pickle=False)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, EOFError, SyntaxError) as error:
-        raise InputError(f"{path} is not a .npy array of numbers ({str(error).splitlines()[0]})") from None
-    if not isinstance(values, np.ndarray):
-        raise InputError(f"{path} holds several arrays; save the ADC samples alone as .npy")
-    return values
 
 
 def _checked_axes(path: Path, names: list[str], shape: tuple[int, ...], sizes: dict[str, int]) -> list[str]:
@@ -90,6 +82,4 @@ def _numbers(path: Path, values: np.ndarray, config: RadarConfig) -> np.ndarray:
     if values.dtype == np.uint16 and values.max() > np.iinfo(np.int16).max:
         values = values.astype(np.int16)
     values = values.astype(np.complex128 if config.complex_samples else np.float64)
-    if not np.isfinite(values).all():
-        raise InputError(f"{path} holds values that are not finite")
-    return values
+    return ArrayChecks(path).numbers("the array", values, kinds="fc", low=-MAX_SAMPLE, high=MAX_SAMPLE)

@@ -4,21 +4,23 @@ Reference: mmWave SDK User Guide, "Configuration (.cfg) File Format".
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from mmweaver.core.antenna_tables import AntennaTable
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.formats.ti_chirps import TiChirps, radar_from_ti
+from mmweaver.core.safe_files.safe_text import read_text
+from mmweaver.formats.ti_antennas import antennas_of_cfg, has_four_lanes
+from mmweaver.formats.ti_chirps import MOST_TX, SubFrame, TiChirps, radar_from_ti
 
+MAX_CFG_BYTES = 2**20
 # command: minimum count of numbers that follow it (later SDKs append more)
-NEEDED = {"channelCfg": 2, "adcCfg": 2, "profileCfg": 14, "chirpCfg": 8, "frameCfg": 6}
-OPTIONAL = {"adcbufCfg": 4}
-REFUSED = {
-    "advFrameCfg": "advanced frames",
-    "subFrameCfg": "subframes",
-    "bpmCfg": "BPM-MIMO (bpmCfg)",
-}
+NEEDED = {"channelCfg": 2, "adcCfg": 2, "profileCfg": 14, "chirpCfg": 8}
+FRAMES = {"frameCfg": 6, "advFrameCfg": 5, "subFrameCfg": 10}  # one of the first two
+OPTIONAL = {"adcbufCfg": 4, "bpmCfg": 4}
+REFUSED = {"contModeCfg": "continuous mode", "advChirpCfg": "advanced chirps", "LUTDataCfg": "advanced chirps"}
+OTHER_DEVICES = {"chirpComnCfg": "a low-power xWRL device"}
 ADC_FORMATS = {0: False, 1: True, 2: True}  # adcCfg's second number: real, complex 1x, complex 2x
 CHIRP_VARIATIONS = ("start frequency", "slope", "idle time", "ADC start time")
 
@@ -31,16 +33,22 @@ class Line:
     values: tuple[float, ...]
 
 
-def read_ti_cfg(path: Path | str) -> RadarConfig:
+def read_ti_cfg(
+    path: Path | str, *, sub_frame: int | None = None, antennas: AntennaTable | None = None, lanes: int | None = None
+) -> RadarConfig:
     """The radar that a .cfg configures, named after the file.
 
-    Raises InputError where the file cannot be read, lines are missing or have too few numbers, chirps differ or do not
-    fire one transmitter after the other, or the radar could not exist.
+    `sub_frame` chooses one of an advanced frame; `antennas` and `lanes` replace the board's table and the lanes of its
+    recordings. Raises InputError where the file cannot be read, lines are missing or have too few numbers, chirps
+    differ or cannot be told apart, or the radar could not exist.
     """
     path = Path(path)
     lines = ti_cfg_lines(path)
+    text = read_text(path, max_bytes=MAX_CFG_BYTES, errors="replace")
     try:
-        return radar_from_ti(_chirps(path.stem, lines))
+        board = antennas or antennas_of_cfg(text)
+        lanes = lanes or (4 if has_four_lanes(text) or _is_interleaved(lines) else 2)
+        return radar_from_ti(replace(_chirps(path.stem, lines, sub_frame), antennas=board, lvds_lanes=lanes))
     except InputError as error:
         text = str(error)
         raise InputError(text if text.startswith(str(path)) else f"{path}: {text}") from None
@@ -62,31 +70,36 @@ def ti_cfg_lines(path: Path, more: dict[str, int] | None = None) -> dict[str, li
 
     Raises InputError as `read_ti_cfg` does.
     """
-    counts = {**NEEDED, **OPTIONAL, **(more or {})}
-    try:
-        text = path.read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    counts = {**NEEDED, **FRAMES, **OPTIONAL, **(more or {})}
+    text = read_text(path, max_bytes=MAX_CFG_BYTES, errors="replace")
     found: dict[str, list[Line]] = {}
     for number, raw in enumerate(text.splitlines(), 1):
         words = raw.split("%")[0].split()
         if not words:
             continue
         command, *rest = words
-        if command in REFUSED and not _is_off(command, rest):
+        if command in REFUSED:
             raise InputError(
-                f"{path}, line {number}: {REFUSED[command]} cannot be read; use one legacy frame of TDM chirps"
+                f"{path}, line {number}: {REFUSED[command]} ({command}) cannot be read; use frames of chirps"
             )
+        if command in OTHER_DEVICES:
+            raise InputError(f"{path}, line {number}: {command} is for {OTHER_DEVICES[command]}, which cannot be read")
         if command in counts:
             found.setdefault(command, []).append(Line(number, _numbers(path, number, command, rest, counts[command])))
-    if missing := [command for command in NEEDED if command not in found]:
+    missing = [command for command in NEEDED if command not in found]
+    if "frameCfg" not in found and not {"advFrameCfg", "subFrameCfg"} <= found.keys():
+        missing.append("frameCfg")
+    if missing:
         raise InputError(f"{path} lacks {', '.join(missing)}; is it a mmWave SDK .cfg?")
     return found
 
 
-def _is_off(command: str, words: list[str]) -> bool:
-    """bpmCfg <subframe> <enabled> ...: the demos' files have it disabled."""
-    return command == "bpmCfg" and len(words) > 1 and words[1] == "0"
+def _is_interleaved(lines: dict[str, list[Line]]) -> bool:
+    """Whether receivers are interleaved in the ADC buffer (adcbufCfg), as xWR12xx and xWR14xx alone do."""
+    if "adcbufCfg" not in lines:
+        return False
+    values = lines["adcbufCfg"][-1].values
+    return (values[2] if len(values) == 4 else values[3]) == 0
 
 
 def _numbers(path: Path, number: int, command: str, words: list[str], needed: int) -> tuple[float, ...]:
@@ -103,23 +116,18 @@ def _numbers(path: Path, number: int, command: str, words: list[str], needed: in
     return values
 
 
-def _chirps(name: str, lines: dict[str, list[Line]]) -> TiChirps:
-    channel, adc, frame = (lines[command][-1] for command in ("channelCfg", "adcCfg", "frameCfg"))
-    first, last, num_loops = (whole(frame, "frameCfg", at) for at in range(3))
-    masks, profile_ids = _fired(lines["chirpCfg"], first, last)
-    if len(profile_ids) != 1:
-        raise InputError(f"the frame's chirps use profiles {sorted(profile_ids)}; only one profile can be read")
-    profiles = {whole(line, "profileCfg", 0): line for line in lines["profileCfg"]}
-    profile = profiles.get(min(profile_ids))
-    if profile is None:
-        raise InputError(f"the chirps use profile {min(profile_ids)}, which no profileCfg defines")
+def _chirps(name: str, lines: dict[str, list[Line]], sub_frame: int | None) -> TiChirps:
+    channel, adc = lines["channelCfg"][-1], lines["adcCfg"][-1]
+    frame = _frame(lines, sub_frame)
+    masks, profile_ids = _fired(lines["chirpCfg"], frame.first, frame.last)
+    profile = _profile(lines, profile_ids)
     adc_format = whole(adc, "adcCfg", 1)
     if adc_format not in ADC_FORMATS:
         raise InputError(
             f"line {adc.number}: adcCfg has ADC format {adc_format}; known are 0 (real), 1 and 2 (complex)"
         )
     return TiChirps(
-        name=name,
+        name=name if frame.index is None else f"{name}_{frame.index}",
         start_frequency_ghz=profile.values[1],
         idle_time_us=profile.values[2],
         adc_start_time_us=profile.values[3],
@@ -131,10 +139,97 @@ def _chirps(name: str, lines: dict[str, list[Line]]) -> TiChirps:
         rx_mask=whole(channel, "channelCfg", 0),
         tx_mask=whole(channel, "channelCfg", 1),
         chirp_tx_masks=masks,
-        num_loops=num_loops,
-        frame_period_ms=frame.values[4],
+        num_loops=frame.num_loops,
+        frame_period_ms=frame.period_ms,
         complex_samples=ADC_FORMATS[adc_format],
+        chirp_phase_deg=_bpm_phases(lines, masks, frame),
+        sub_frame=_others(lines, frame),
     )
+
+
+def fired_transmitters(lines: dict[str, list[Line]], sub_frame: int | None) -> list[int]:
+    """Numbers of the board's transmitters that the frame, or a sub-frame, uses."""
+    frame = _frame(lines, sub_frame)
+    masks, _ = _fired(lines["chirpCfg"], frame.first, frame.last)
+    return [tx for tx in range(MOST_TX) if any(mask >> tx & 1 for mask in masks)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """The chirps of a frame, or of one sub-frame of an advanced frame."""
+
+    index: int | None  # of the sub-frame
+    first: int
+    last: int
+    num_loops: int
+    period_ms: float  # of the whole frame
+
+
+def _frame(lines: dict[str, list[Line]], sub_frame: int | None) -> Frame:
+    if "advFrameCfg" not in lines:
+        if sub_frame is not None:
+            raise InputError("it has one plain frame (frameCfg) and no sub-frames; leave out --subframe")
+        line = lines["frameCfg"][-1]
+        first, last, loops = (whole(line, "frameCfg", at) for at in range(3))
+        return Frame(index=None, first=first, last=last, num_loops=loops, period_ms=line.values[4])
+    frames = _sub_frames(lines)
+    if sub_frame is None and len(frames) > 1:
+        raise InputError(f"it has {len(frames)} sub-frames; choose one with --subframe 0 to {len(frames) - 1}")
+    chosen = sub_frame or 0
+    if not 0 <= chosen < len(frames):
+        raise InputError(f"it has sub-frames 0 to {len(frames) - 1}, not {chosen}")
+    return frames[chosen]
+
+
+def _sub_frames(lines: dict[str, list[Line]]) -> list[Frame]:
+    """subFrameCfg: number, forced profile, first chirp, chirps, loops, burst ms, offset, bursts, repeats, period ms."""
+    period_ms = sum(line.values[9] for line in lines["subFrameCfg"])
+    found: dict[int, Frame] = {}
+    for line in lines["subFrameCfg"]:
+        index, _, first, count, loops = (whole(line, "subFrameCfg", at) for at in range(5))
+        if whole(line, "subFrameCfg", 7) != 1 or whole(line, "subFrameCfg", 8) != 1:
+            raise InputError(f"line {line.number}: sub-frame {index} has several bursts, which cannot be read; use one")
+        found[index] = Frame(index=index, first=first, last=first + count - 1, num_loops=loops, period_ms=period_ms)
+    if sorted(found) != list(range(len(found))):
+        raise InputError(f"its sub-frames are {sorted(found)}; they must be numbered from 0 on")
+    return [found[index] for index in range(len(found))]
+
+
+def _others(lines: dict[str, list[Line]], frame: Frame) -> SubFrame | None:
+    """How many samples (of all receivers) the other sub-frames have in each frame of a recording."""
+    if frame.index is None:
+        return None
+    counts = []
+    for other in _sub_frames(lines):
+        masks, profile_ids = _fired(lines["chirpCfg"], other.first, other.last)
+        samples = whole(_profile(lines, profile_ids), "profileCfg", 9)
+        counts.append(len(masks) * other.num_loops * samples)
+    before, after = sum(counts[: frame.index]), sum(counts[frame.index + 1 :])
+    return SubFrame(index=frame.index, samples_before=before, samples_after=after)
+
+
+def _bpm_phases(lines: dict[str, list[Line]], masks: tuple[int, ...], frame: Frame) -> tuple[tuple[float, ...], ...]:
+    """bpmCfg: sub-frame, enabled, first and second chirp. In the second the last of its transmitters is inverted."""
+    phases = [[0.0] * MOST_TX for _ in masks]
+    for line in lines.get("bpmCfg", []):
+        index, enabled, _, second = (whole(line, "bpmCfg", at) for at in range(4))
+        if enabled != 1 or index not in (-1, frame.index if frame.index is not None else 0):
+            continue
+        if not frame.first <= second <= frame.last:
+            raise InputError(f"line {line.number}: bpmCfg names chirp {second}, which the frame does not send")
+        mask = masks[second - frame.first]
+        phases[second - frame.first][mask.bit_length() - 1] = 180.0
+    return tuple(tuple(row) for row in phases)
+
+
+def _profile(lines: dict[str, list[Line]], profile_ids: set[int]) -> Line:
+    if len(profile_ids) != 1:
+        raise InputError(f"the frame's chirps use profiles {sorted(profile_ids)}; only one profile can be read")
+    profiles = {whole(line, "profileCfg", 0): line for line in lines["profileCfg"]}
+    profile = profiles.get(min(profile_ids))
+    if profile is None:
+        raise InputError(f"the chirps use profile {min(profile_ids)}, which no profileCfg defines")
+    return profile
 
 
 def _fired(lines: list[Line], first: int, last: int) -> tuple[tuple[int, ...], set[int]]:

@@ -16,17 +16,20 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.paths.frame_clock import FrameClock, Segment
 from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
+from mmweaver.paths.transmit_elements import TransmitElements
 
 COARSE = 16  # samples of which the fast-time factor is made, and steps between them
 ROWS_AT_ONCE = 2048  # static paths, which bounds memory
 
 
 class AdcSynthesis:
-    """The ADC samples that paths leave in one radar, on one device."""
+    """The ADC samples that paths leave in one radar, on one device. `tx` axes are slots where the radar is coded."""
 
     def __init__(self, config: RadarConfig, device: str | torch.device = "cpu"):
-        self.config, self.clock, self.device = config, FrameClock(config), torch.device(device)
-        self.array = ArrayPhases(config, self.device)
+        self._elements = TransmitElements(config)
+        self.config, self.device = self._elements.config, torch.device(device)
+        self.clock = FrameClock(self.config)
+        self.array = ArrayPhases(self.config, self.device)
         self._centre_m = _double(self.clock.centre_m, self.device)
         self._segments = [_SegmentFactors(segment, self.device) for segment in self.clock.segments]
 
@@ -44,7 +47,7 @@ class AdcSynthesis:
             for batch in batches:
                 some = unpadded(paths[index::count][batch]).to(self.device)
                 self._add_segment(some, segment, adc[batch, segment.loops])
-        return adc
+        return self._elements.slots(adc, 2)
 
     def static(self, paths: StaticPaths, weight: Tensor | None = None) -> Tensor:
         """Samples of static paths, complex64 (tx, rx, sample); the same in every loop.
@@ -60,14 +63,14 @@ class AdcSynthesis:
         adc = torch.zeros(shape, dtype=torch.complex64, device=self.device)
         for first in range(0, len(some), ROWS_AT_ONCE):
             rows = slice(first, first + ROWS_AT_ONCE)
-            length_m = chosen.length_m[rows].to(self.device)
+            length_m = self._elements.lengths(chosen.length_m[rows]).to(self.device)
             slow = phasor(length_m / config.wavelength_m)  # (path, tx, rx)
             each = amplitude[:, rows].to(self.device)
             for m in range(config.num_tx):
                 fast = fast_time(length_m[:, m].mean(dim=-1) / SPEED_OF_LIGHT_MPS, 0.0, config)
                 left = (each[:, None, :] * slow[:, m].T).flatten(0, 1)  # (set * rx, path)
                 adc[m] += (left @ fast).unflatten(0, (len(weights), config.num_rx))
-        adc = adc.transpose(0, 1)
+        adc = self._elements.slots(adc, 0).transpose(0, 1)
         return adc[0] if weight is None else adc
 
     def occluded(self, paths: ScenePaths) -> Tensor:

@@ -7,6 +7,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.dsp.point_response import PointResponse, Points
+from mmweaver.dsp.windows import doppler_window_middle
 from mmweaver.paths.adc_synthesis import phasor
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import Paths, StaticPaths
@@ -43,7 +44,7 @@ def moving_points(paths: Paths, response: PointResponse) -> Points:
 def signal_points(paths: Paths, clock: FrameClock, response: PointResponse) -> Points:
     """Direct moving paths (frame, path) of frames of one segment as points of complex amplitude, in centred phase."""
     config = response.config
-    middle_loop_s = clock.chirp_s.min() + config.num_loops / 2 * config.loop_period_s
+    middle_loop_s = clock.chirp_s.min() + doppler_window_middle(config.num_loops) * config.loop_period_s
     length_m = paths.length_m + (middle_loop_s - clock.middle_s[0]) * paths.rate_mps
     points = _points(length_m / 2, paths.rate_mps / 2, paths.departure.direction, paths.amplitude.abs(), response)
     return replace(points, amplitude=paths.amplitude * phasor(length_m / config.wavelength_m))

@@ -43,11 +43,13 @@ class ScatteringBody:
     """One subject's skin points on its capsules; `skin` and `hull` pose them."""
 
     def __init__(
-        self, subject: int, height_m: float, num_points: int = DEFAULT_NUM_POINTS, echo: SkinEcho | None = None
-    ):
+        self, subject: int, height_m: float, num_points: int = DEFAULT_NUM_POINTS, echo: SkinEcho | None = None,
+        girth: float = 1.0,
+    ):  # fmt: skip
         self.echo = echo or SkinEcho()
         self.scale = scale_of(height_m)
         self.height_m = height_m
+        self.girth = girth
         self._posed: tuple[bytes, PosedCapsules] | None = None
         rng = stream(subject, "body", num_points)
         area = np.array([self._side_area(capsule) for capsule in CAPSULES])
@@ -59,7 +61,7 @@ class ScatteringBody:
         self.cap_sine = over / np.maximum(np.where(over < 0, caps[:, 0], caps[:, 1]), 1e-9)
         self.angle_rad = rng.uniform(0, 2 * np.pi, num_points)
         self.micro_phase = np.exp(2j * np.pi * rng.random(num_points))
-        self.area_m2 = area.sum() * self.scale**2 / num_points
+        self.area_m2 = area.sum() * self.scale**2 * girth / num_points
         limb_db = [_limb_db(capsule, self.echo) for capsule in CAPSULES]
         self.brightness = 10 ** (np.array(limb_db)[self.part] / 10)  # (point,) in power
 
@@ -71,7 +73,7 @@ class ScatteringBody:
     @cached_property
     def radii_m(self) -> np.ndarray:
         """(capsule, 2)."""
-        return radii_m(self.height_m)
+        return radii_m(self.height_m, self.girth)
 
     @cached_property
     def _taper(self) -> np.ndarray:
@@ -126,7 +128,7 @@ class ScatteringBody:
 
     def hull(self, joints_m: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Low-poly hull of all capsules for occlusion: vertices (time, vertex, 3) and faces (face, 3)."""
-        return hull(self.posed(joints_m), self.height_m)
+        return hull(self.posed(joints_m), self.height_m, self.girth)
 
 
 def _cap_shares(capsule: Capsule) -> tuple[float, float]:
@@ -145,7 +147,7 @@ def _limb_db(capsule: Capsule, echo: SkinEcho) -> float:
 
 def body_of(pose: PoseSequence, num_points: int = DEFAULT_NUM_POINTS, echo: SkinEcho | None = None) -> ScatteringBody:
     """The body that a pose sequence moves."""
-    return ScatteringBody(pose.subject, pose.height_m, num_points, echo)
+    return ScatteringBody(pose.subject, pose.height_m, num_points, echo, pose.girth)
 
 
 @lru_cache(maxsize=1)

@@ -254,7 +254,7 @@ class SkinPaths:
         """Without the frames that hardly add to the direct paths, and without the faintest paths of the others."""
         power = np.abs(self.amplitude) ** 2 * self.present
         order = np.argsort(power, axis=1)
-        below = np.cumsum(np.take_along_axis(power, order, axis=1), axis=1)
+        below: np.ndarray = np.cumsum(np.take_along_axis(power, order, axis=1), axis=1)
         total = below[:, -1:]
         strong = np.zeros_like(self.present)
         np.put_along_axis(strong, order, below > LEFT_OUT * total, axis=1)

@@ -15,12 +15,13 @@ from torch import Tensor
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.tensor_record import TensorRecord
-from mmweaver.dsp.cube import doppler_weight, tdm_compensation
+from mmweaver.dsp.cube import doppler_weight, slot_compensation, tdm_compensation
 from mmweaver.dsp.window_kernels import WindowKernel
 from mmweaver.dsp.windows import hann
 from mmweaver.paths.adc_synthesis import ArrayPhases, phasor, unpadded
 from mmweaver.paths.frame_clock import FrameClock, Segment
 from mmweaver.paths.paths import Paths, StaticPaths
+from mmweaver.paths.transmit_elements import TransmitElements
 
 FRAMES_AT_ONCE = 4  # stay in the cache
 
@@ -57,6 +58,9 @@ class CubeRenderer:
     """The cube that paths leave in one radar, on the CPU; values as `dsp.cube.radar_cube` gives them."""
 
     def __init__(self, config: RadarConfig):
+        self._elements = TransmitElements(config)
+        self._static_mixing = _static_mixing(config) if config.is_coded else None
+        config = self._elements.config
         self.config, self.clock = config, FrameClock(config)
         self._array = ArrayPhases(config, torch.device("cpu"))
         self._range_kernel = WindowKernel(hann(config.num_samples))
@@ -85,7 +89,7 @@ class CubeRenderer:
         flat = torch.view_as_real(values).flatten(2)  # (frame, range, 2 doppler antenna)
         for index, segment in enumerate(self._segments):
             self._add_segment(unpadded(paths[index::count]), segment, flat, is_first=index == 0)
-        return values
+        return self._elements.decoded(values)
 
     def _add_segment(self, paths: Paths, segment: "_SegmentDoppler", values: Tensor, *, is_first: bool) -> None:
         """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
@@ -125,7 +129,7 @@ class CubeRenderer:
     def static(self, paths: StaticPaths) -> StaticResponse:
         """What static paths (path,) leave at zero Doppler."""
         config = self.config
-        length_m = paths.length_m.flatten(1)  # (path, antenna)
+        length_m = self._elements.lengths(paths.length_m).flatten(1)  # (path, antenna)
         mean_m = length_m.mean(dim=1)
         delay_s = mean_m / SPEED_OF_LIGHT_MPS
         cycles = length_m / config.wavelength_m - (config.chirp_slope_hz_per_s * delay_s**2 / 2)[:, None]
@@ -135,11 +139,29 @@ class CubeRenderer:
             self._range_bin - (mean_m / (2 * config.range_resolution_m)).float()[:, None]
         )
         at_range, range_slope = (part * self._range_sign for part in (kernel, slope))
-        return StaticResponse(at_range=at_range, range_slope=range_slope, echo=echo, tilted=-off_bin * echo)
+        echo, tilted = (self._elements.decoded(part) for part in (echo, -off_bin * echo))
+        return StaticResponse(at_range=at_range, range_slope=range_slope, echo=echo, tilted=tilted)
 
     def add_static(self, values: Tensor, layer: Tensor) -> None:
         """Adds static layers (range, antenna) or (frame, range, antenna) to cube values, in place."""
+        if self._static_mixing is not None:
+            tx = layer.unflatten(-1, (self._static_mixing.shape[-1], -1))
+            mixed = torch.einsum("bvw,...wr->...bvr", self._static_mixing, tx)
+            values[:, :, self.static_bins] += mixed.flatten(-2)
+            return
         values[:, :, self.static_bins] += layer[..., None, :] * self._static_doppler
+
+
+def _static_mixing(config: RadarConfig) -> Tensor:
+    """What a static signal of each (virtual) transmitter leaves in each static Doppler bin, (bin, tx, tx).
+
+    The slots' compensation is made for a bin's velocity, so beside zero Doppler it mixes the transmitters slightly.
+    """
+    encoder = np.linalg.pinv(config.tx_decoder)  # (slot, tx)
+    each = np.einsum("vs,ds,sw->dvw", config.tx_decoder, slot_compensation(config)[:, :: config.num_rx], encoder)
+    weight = np.fft.fft(doppler_weight(config.num_loops))
+    seen = np.abs(weight) > 1e-6
+    return torch.from_numpy((weight[:, None, None] * each)[seen]).to(torch.complex64)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,15 +5,28 @@ Reference: docs/radar_primer.md, section 5; reflection coefficients from `materi
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from scipy.special import erf
+from torch import Tensor
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Values
 from mmweaver.paths.materials import MATERIALS, reflection
 
 MAX_REFLECTORS = 10  # the largest faces; smaller ones count as diffuse surface only
+
+
+Vectors = TypeVar("Vectors", np.ndarray, Tensor)
+
+
+def mirrored(vectors: Vectors, along: Vectors, normal: Vectors) -> Vectors:
+    """Mirror images (..., 3) in a face with a unit normal (..., 3), of arrays or tensors.
+
+    `along` (...) is the height above the face of places, and the component along its normal of velocities.
+    """
+    return vectors - 2 * along[..., None] * normal  # ty: ignore[invalid-explicit-return]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,13 +42,13 @@ class SpecularReflector:
 
     def image(self, points_m: np.ndarray) -> np.ndarray:
         """Mirrored points (..., 3)."""
-        return points_m - 2 * np.asarray(self.side(points_m))[..., None] * self.plane.normal
+        return mirrored(points_m, np.asarray(self.side(points_m)), self.plane.normal)
 
     def image_of_motion(self, motion: np.ndarray) -> np.ndarray:
         """Mirrored position, velocity and acceleration (..., 3, 3), the last but one axis naming which."""
         along = motion @ self.plane.normal
         along[..., 0] -= self.offset_m
-        return motion - 2 * along[..., None] * self.plane.normal
+        return mirrored(motion, along, self.plane.normal)
 
     def crossing(self, start_m: np.ndarray, image_m: np.ndarray) -> np.ndarray:
         """Where the segments from `start_m` to `image_m`, one on each side, meet the face (..., 3)."""
@@ -95,45 +108,56 @@ def specular_paths(reflectors: list[SpecularReflector], wavelength_m: float, fre
     """All paths of one, two and three bounces from the radar to itself, each image once."""
     paths: list[SpecularPath] = []
     seen: list[np.ndarray] = []
-    sequences = [[first] for first in reflectors]
+    chains: list[tuple[list[SpecularReflector], list[np.ndarray]]] = [([], [np.zeros(3)])]  # faces, and images in them
     for _ in range(3):
-        for sequence in sequences:
-            path = _path(sequence, wavelength_m, frequency_hz)
+        chains = [
+            ([*faces, face], [*images, face.image(images[-1])]) for faces, images in chains for face in reflectors
+            if not (faces and face is faces[-1]) and face.side(images[-1]) > 0
+        ]  # fmt: skip
+        for faces, images in chains:
+            path = _path(faces, images, wavelength_m, frequency_hz)
             if path and not any(np.linalg.norm(path.shift_m - other) < 1e-3 for other in seen):
                 seen.append(path.shift_m)
                 paths.append(path)
-        sequences = [[*sequence, more] for sequence in sequences for more in reflectors if more is not sequence[-1]]
     return paths
 
 
-def _path(sequence: list[SpecularReflector], wavelength_m: float, frequency_hz: float) -> SpecularPath | None:
-    images = [np.zeros(3)]
-    rotation = np.eye(3)
-    for face in sequence:
-        if face.side(images[-1]) <= 0:
-            return None
-        images.append(face.image(images[-1]))
-        normal = face.plane.normal
-        rotation = (np.eye(3) - 2 * np.outer(normal, normal)) @ rotation
+def _path(
+    faces: list[SpecularReflector], images: list[np.ndarray], wavelength_m: float, frequency_hz: float
+) -> SpecularPath | None:
+    """The path over some faces with the radar's images in them (bounce + 1); None where it meets no face or is weak."""
+    corners = _corners(faces, images)
+    if corners is None:
+        return None
     length = float(np.linalg.norm(images[-1]))
-    corners, tapers, coefficient, end, gone = [], [], 1.0 + 0j, np.zeros(3), 0.0
-    for face, image in zip(reversed(sequence), reversed(images[1:]), strict=True):
-        if face.side(end) < -1e-6 or face.side(image) >= 0:
-            return None
-        corner = face.crossing(end, image)
+    tapers, coefficient, end, gone = [], 1.0 + 0j, np.zeros(3), 0.0
+    for face, image, corner in zip(reversed(faces), reversed(images[1:]), corners, strict=True):
         gone += float(np.linalg.norm(corner - end))
         fresnel_m = fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m)
         tapers.append(float(face.inside(corner, fresnel_m)))
         direction = (image - end) / np.linalg.norm(image - end)
         coefficient *= complex(face.coefficient(np.abs(direction @ face.plane.normal), frequency_hz))
-        corners.append(corner)
         end = corner
     coefficient *= _share_of_wave(np.array(corners), min(tapers), length)
     if abs(coefficient) < 1e-5:
         return None
+    rotation = np.eye(3)
+    for face in faces:
+        rotation = (np.eye(3) - 2 * np.outer(face.plane.normal, face.plane.normal)) @ rotation
     return SpecularPath(
         corners_m=np.array(corners[::-1]), rotation=rotation, shift_m=images[-1], coefficient=coefficient
     )
+
+
+def _corners(faces: list[SpecularReflector], images: list[np.ndarray]) -> list[np.ndarray] | None:
+    """Where a path back to the radar meets the faces, the last one first; None where it passes behind one."""
+    corners, end = [], np.zeros(3)
+    for face, image in zip(reversed(faces), reversed(images[1:]), strict=True):
+        if face.side(end) < -1e-6 or face.side(image) >= 0:
+            return None
+        end = face.crossing(end, image)
+        corners.append(end)
+    return corners
 
 
 def _share_of_wave(corners_m: np.ndarray, taper: float, length_m: float) -> float:

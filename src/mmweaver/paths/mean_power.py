@@ -14,7 +14,7 @@ from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.core.virtual_array import azimuth_row, elevation_rows
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 from mmweaver.dsp.spectra import azimuth_axis_rad, elevation_axis_rad
-from mmweaver.dsp.windows import hann
+from mmweaver.dsp.windows import noise_share
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +41,8 @@ class MeanPower:
         rows = elevation_rows(place, config.wavelength_m)
         self._row_gap = None if rows is None else wave * float(place[rows.upper[0], 2] - place[rows.lower[0], 2])
         self._sin_elevation = torch.tensor(elevation_axis_rad(), dtype=torch.float32).sin()
-        self.noise = config.noise_power_mw * _noise_share(config.num_samples) * _noise_share(config.num_loops)
+        self.noise = config.noise_power_mw * noise_share(config.num_samples, config.num_loops)
+        self.noise *= float(config.tx_noise_gain.mean())
         self._row_length = len(row)
 
     def to(self, device: torch.device) -> "MeanPower":
@@ -83,9 +84,3 @@ class MeanPower:
         if self._row_gap is None:
             return cosine_z.new_zeros((*cosine_z.shape, 0))
         return 0.5 + 0.5 * ((self._sin_elevation - cosine_z[..., None]) * self._row_gap).cos()
-
-
-def _noise_share(num: int) -> float:
-    """Power of white noise after a normalised Hann window and its transform."""
-    window = hann(num)
-    return float((window**2).sum() / window.sum() ** 2)

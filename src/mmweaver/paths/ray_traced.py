@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import torch
@@ -103,30 +104,9 @@ class Simulator:
         """Samples of the room without people and of the leakage, complex64 (tx, rx, sample), in sqrt(mW)."""
         return self._static.numpy()
 
-    def run(
-        self,
-        pose: PoseSequence | Sequence[PoseSequence],
-        *,
-        num_frames: int,
-        seed: int,
-        num_points: int = DEFAULT_NUM_POINTS,
-        echo: SkinEcho | None = None,
-        motions: MicroMotionSettings | None = None,
-        mutual_occlusion: bool = True,
-    ) -> Simulation:
-        """ADC samples of the posed people, all frames at once: mind the memory, or take `chunks`.
-
-        They sway, waver and breathe as `motions` says, by default as people do; STILL holds the joints alone.
-        """
-        chunks = self.chunks(
-            pose,
-            num_frames=num_frames,
-            seed=seed,
-            num_points=num_points,
-            echo=echo,
-            motions=motions,
-            mutual_occlusion=mutual_occlusion,
-        )
+    def run(self, pose: PoseSequence | Sequence[PoseSequence], **options: Any) -> Simulation:
+        """ADC samples of the posed people, all frames at once, with the options of `chunks`: mind the memory."""
+        chunks = self.chunks(pose, **options)
         samples = np.concatenate([chunk.samples for chunk in chunks])
         scale = 1.0 if self.background is None else self.background.unit
         return Simulation(adc=AdcCube(samples=samples, config=self.config, scale=scale), assumptions=ASSUMPTIONS)
@@ -137,26 +117,29 @@ class Simulator:
         *,
         num_frames: int,
         seed: int,
+        first_frame: int = 0,
         num_points: int = DEFAULT_NUM_POINTS,
         echo: SkinEcho | None = None,
         motions: MicroMotionSettings | None = None,
         mutual_occlusion: bool = True,
     ) -> Iterator[AdcCube]:
-        """The same, at most CHUNK_FRAMES frames at a time; how the frames are cut changes no bit of them.
+        """ADC samples of the posed people, at most CHUNK_FRAMES frames at a time, which changes no bit of them.
 
+        `first_frame`: the number of the first one, in the time of the poses, whose noise and micro-motion go on so.
+        People sway, waver and breathe as `motions` says, by default as people do; STILL holds the joints alone.
         `pose` is one person, several, or an empty tuple for the room alone. Without `mutual_occlusion` the signal is
         the plain sum of people who do not occlude each other. Raises InputError where a pose does not cover the frames
         or holds values that are not finite.
         """
         poses = (pose,) if isinstance(pose, PoseSequence) else tuple(pose)
         for one in poses:
-            self._check(one, num_frames)
+            self._check(one, num_frames, first_frame)
         bodies = [body_of(one, num_points, echo) for one in poses]
         receiver = self._receiver(seed)
         unit = 1.0 if self.background is None else self.background.unit
         micro_motions = [MicroMotion(one.subject, seed, motions or MicroMotionSettings()) for one in poses]
-        for first in range(0, num_frames, CHUNK_FRAMES):
-            frames = np.arange(first, min(first + CHUNK_FRAMES, num_frames))
+        for first in range(first_frame, first_frame + num_frames, CHUNK_FRAMES):
+            frames = np.arange(first, min(first + CHUNK_FRAMES, first_frame + num_frames))
             people = self._people(poses, bodies, micro_motions, frames, mutual_occlusion)
             samples = self.samples(people.scene(len(frames)), frames, receiver).numpy()
             samples = samples if unit == 1.0 else samples / np.float32(unit)
@@ -209,12 +192,13 @@ class Simulator:
         beyond_s = np.maximum(times - last_s, 0.0)
         return joints + beyond_s[..., None, None] * spline(last_s, 1) if beyond_s.any() else joints
 
-    def _check(self, pose: PoseSequence, num_frames: int) -> None:
-        needed_s = (num_frames - 1) * self.config.frame_period_s
-        if pose.time_s[-1] < needed_s - 1e-9 or pose.time_s[0] > 1e-9:
+    def _check(self, pose: PoseSequence, num_frames: int, first_frame: int = 0) -> None:
+        begin_s = first_frame * self.config.frame_period_s
+        needed_s = (first_frame + num_frames - 1) * self.config.frame_period_s
+        if pose.time_s[-1] < needed_s - 1e-9 or pose.time_s[0] > begin_s + 1e-9:
             raise InputError(
-                f"the motion covers {pose.time_s[0]:.2f} to {pose.time_s[-1]:.2f} s, but {num_frames} frames need 0 to"
-                f" {needed_s:.2f} s; give a longer motion or fewer frames"
+                f"the motion covers {pose.time_s[0]:.2f} to {pose.time_s[-1]:.2f} s, but {num_frames} frames need"
+                f" {begin_s:g} to {needed_s:.2f} s; give a longer motion or fewer frames"
             )
         if not np.isfinite(pose.joints_m).all():
             raise InputError("the motion has joints that are not numbers; mend the pose file")

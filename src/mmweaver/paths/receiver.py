@@ -13,6 +13,7 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
+from mmweaver.paths.transmit_elements import TransmitElements
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +46,7 @@ class Receiver:
 
     def __init__(self, config: RadarConfig, impairments: Impairments, seed: int):
         self.config, self.impairments, self.seed = config, impairments, seed
-        self.channels = channel_errors(config, impairments)
+        self.channels = TransmitElements(config).with_weights(channel_errors(config, impairments))
         self.count_sqrt_mw = config.adc_count_sqrt_mw
         # rms of either part of a sample's noise, and of a sample's shift in time by phase noise
         self.noise_sqrt_mw = float(np.sqrt(config.noise_power_mw / 2)) if impairments.thermal_noise else 0.0
@@ -133,9 +134,9 @@ class Receiver:
         """Clock error delta (loop, tx, sample) of one frame in seconds: s(t + delta) is sampled."""
         config, jitter_s = self.config, self.impairments.chirp_jitter_s
         rng = stream(self.seed, "clock", frame)
-        shift = np.zeros((config.num_loops, config.num_tx, config.num_samples), np.float32)
+        shift = np.zeros((config.num_loops, config.num_slots, config.num_samples), np.float32)
         if jitter_s:
-            late = rng.random((config.num_loops, config.num_tx, 1)) < 0.5
+            late = rng.random((config.num_loops, config.num_slots, 1)) < 0.5
             shift += (late - 0.5).astype(np.float32) * np.float32(jitter_s)
         if self.phase_noise_s:
             shift += rng.standard_normal(shift.shape, dtype=np.float32) * np.float32(self.phase_noise_s)

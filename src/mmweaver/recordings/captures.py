@@ -10,7 +10,6 @@ depth.png or depth.npy and camera.json, in the folder or its parent; or the one 
 """
 
 import hashlib
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -19,10 +18,13 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.checksums import sha256_of_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.skeleton import NUM_JOINTS
+from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.dataset_store import StoredRoom
 from mmweaver.dsp.spectra import noise_power
 from mmweaver.formats.npz_files import read_pose_npz
@@ -119,7 +121,8 @@ def _room(capture: Capture, config: RadarConfig, frames: int) -> RecordedRoom:
         times_s = cube.grid.frame_time_s[: count * frames] + config.active_time_s / 2
         joints, velocity = (part.reshape(shape) for part in joints_and_velocities(capture.pose, times_s))
     return RecordedRoom(
-        folder=capture.folder, kind=SPLIT, layout=0, lighting="", photo=capture.photo,
+        files=CheckedFolder(folder=capture.folder, sums=None, made_by=""), kind=SPLIT, layout=0, lighting="",
+        photo=capture.photo,
         static=values[:, :, config.num_loops // 2].mean(axis=0, dtype=np.complex128).astype(np.complex64),
         joints_m=joints, joint_velocity_mps=velocity, person=np.zeros(count, int), activity=("",) * count,
         text=("",) * count, split=(SPLIT,) * count, seed=np.zeros(count, int), config=config, values=values,
@@ -164,8 +167,8 @@ def _photo_in(place: Path) -> RgbdPhoto | None:
 def _photo_of_meta(meta: Path) -> RgbdPhoto | None:
     """The photo named in a meta.json of `mmweaver generate`. Raises InputError where it has changed since."""
     try:
-        inputs: dict[str, Any] = json.loads(meta.read_text(encoding="utf-8"))["inputs"]
-    except (OSError, ValueError, KeyError, TypeError):
+        inputs: dict[str, Any] = read_json(meta)["inputs"]
+    except (InputError, KeyError, TypeError):
         return None
     if "sample" in inputs:
         return sample_photo()[0]
@@ -175,7 +178,7 @@ def _photo_of_meta(meta: Path) -> RgbdPhoto | None:
             files[name] = Path(inputs[name]["path"])
             if not files[name].is_file():
                 return None
-            if hashlib.sha256(files[name].read_bytes()).hexdigest() != inputs[name]["sha256"]:
+            if sha256_of_file(files[name]) != inputs[name]["sha256"]:
                 raise InputError(f"{files[name]} has changed since {meta.parent} was written; give --rgb and --depth")
     return (
         read_photo(files["rgb"], files["depth"], files.get("camera"))[0] if {"rgb", "depth"} <= files.keys() else None

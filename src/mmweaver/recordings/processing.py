@@ -1,6 +1,7 @@
 """A recording in; the same cube, points, files and pictures out as for a generated signal."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,18 @@ from mmweaver.core.records import AdcCube, PointCloud, RadarCube
 from mmweaver.core.shapes import Array, PerFrame, PerIndex
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
+from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.detection import check_points, detect, needs_adc
+from mmweaver.dsp.points import point_cloud
+from mmweaver.dsp.slow_time import FEWEST_FRAMES, slow_time_cube
+from mmweaver.dsp.windows import SHORTEST_HANN
 from mmweaver.figures.figure_data import FigureData
+from mmweaver.figures.recording_pages import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.formats.dca_packets import PacketCapture
+from mmweaver.formats.npz_files import write_npz
 from mmweaver.formats.radar_file import load_firmware
+from mmweaver.recordings.analysis import RecordingAnalysis, analyse_recording
+from mmweaver.recordings.plausibility import implausible
 from mmweaver.recordings.read_recording import Recording, as_config, read_recording
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta, save_results
 from mmweaver.scene.photo.capture_photo import photo_folder, photo_times_s
@@ -32,6 +41,7 @@ class ProcessedRecording:
     points: PointCloud
     meta: dict[str, Any]
     stages: Stages
+    analysis: RecordingAnalysis | None = None
 
     def save(
         self, out: str | Path, *, overwrite: bool = False, extra: dict[str, str] | None = None, pictures: bool = True
@@ -40,12 +50,34 @@ class ProcessedRecording:
 
         `extra`: text files to add, by name. Without `pictures` the previews are left out.
         """
-        view = FigureData(
-            title=f"{Path(self.meta['inputs']['recording']['path']).name}", cube=self.cube, points=self.points
-        )
+        title = Path(self.meta["inputs"]["recording"]["path"]).name
+        view = FigureData(title=title, cube=self.cube, points=self.points)
         return save_results(
-            out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra, pictures=pictures
-        )
+            out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra, pictures=pictures,
+            page=_slow_page(view) if pictures else None, more=partial(self._write_analysis, title, pictures),
+        )  # fmt: skip
+
+    def _write_analysis(self, title: str, pictures: bool, folder: Path) -> None:
+        """analysis.npz and its pages."""
+        found = self.analysis
+        if found is None:
+            return
+        if arrays := found.arrays():
+            write_npz(folder / "analysis.npz", **arrays)
+        if not pictures:
+            return
+        time_s = self.cube.grid.frame_time_s
+        if found.cells and found.slow_doppler is not None and found.slow_velocity_mps is not None:
+            signs = found.vital_signs
+            rates = {} if signs is None else {"breathing": signs.breathing, "heart": signs.heart}
+            draw_slow_time(
+                folder / "slow_time.png", title, self.cube.grid.range_m, found.slow_doppler, found.slow_velocity_mps,
+                found.cells, time_s, rates,
+            )  # fmt: skip
+        if found.micro_doppler is not None:
+            draw_micro_doppler(folder / "micro_doppler.png", title, found.micro_doppler)
+        if found.people:
+            draw_people(folder / "people.png", title, found.people, float(self.cube.grid.range_m[-1]))
 
 
 def process_recording(
@@ -56,15 +88,23 @@ def process_recording(
     axes: str | None = None,
     iq_order: str | None = None,
     tx_order: tuple[int, ...] | None = None,
+    range_m: tuple[float, float] | None = None,
+    range_bins: tuple[int, int] | None = None,
     points: str = "cfar",
+    static_removal: str = "none",
+    analyse: bool = True,
+    strict: bool = False,
     stages: Stages | None = None,
 ) -> ProcessedRecording:
     """Reads a recording and takes it through range, Doppler, angle and CFAR.
 
-    `path`, `radar`, `layout`, `axes`, `iq_order` and `tx_order` as in `read_recording`. `points` chooses the point
-    cloud: "cfar", or "firmware" as TI's demo would report it with the settings of the radar's .cfg. Lost packets of a
-    capture folder are zeros and counted; where it has a RealSense too, the meta says which of its photos is nearest in
-    time to each radar frame, by the recorder's clock. Raises InputError for anything that cannot be read so.
+    `path`, `radar`, `layout`, `axes`, `iq_order`, `tx_order`, `range_m` and `range_bins` as in `read_recording`.
+    `static_removal` (see `dsp.cube.remove_static`) takes static clutter away from the cube and its points; `analyse`
+    looks for slow movement, vital signs, micro-Doppler and people. The meta warns of samples that do not fit the
+    settings; if `strict` they are refused (`recordings.plausibility`). `points` chooses the point cloud: "cfar", or
+    "firmware" as TI's demo would report it with the settings of the radar's .cfg. Lost packets of a capture folder are
+    zeros and counted; where it has a RealSense too, the meta says which of its photos is nearest in time to each radar
+    frame, by the recorder's clock. Raises InputError for anything that cannot be read so.
     """
     stages = stages or Stages()
     if radar is not None:  # a point cloud that this radar cannot have is refused before its samples are read
@@ -72,7 +112,8 @@ def process_recording(
         _firmware(points, None if isinstance(radar, RadarConfig) else str(radar))
     with stages("read the recording"):
         recording = read_recording(
-            path, radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order
+            path, radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order, range_m=range_m,
+            range_bins=range_bins,
         )  # fmt: skip
         check_points(points, recording.config)
         if recording.adc is None and points != "firmware" and needs_adc(points):
@@ -81,9 +122,13 @@ def process_recording(
         inputs = {name: _digest(file) for name, file in recording.files.items()}
         of_packets = {} if recording.packets is None else _packets_meta(recording.path, recording.packets)
     with stages("range, Doppler, antennas"):
-        cube = recording.cube
+        whole = recording.cube
+        cube = remove_static(whole, static_removal)
+        warnings = _warnings(recording, strict)
     with stages("point cloud"):
-        cloud = detect(cube, recording.adc, points, firmware)
+        cloud = detect(cube, recording.adc if static_removal == "none" else None, points, firmware)
+    with stages("movement, people"):
+        analysis = analyse_recording(whole, recording.adc) if analyse else None
     meta = {
         "schema_version": META_VERSION,
         "made_by": "mmweaver process",
@@ -93,13 +138,44 @@ def process_recording(
         "tx_order": cube.config.tx_order,
         "axes": recording.axes,
         "points": points,
+        "static_removal": static_removal,
+        "calibration": _calibration_meta(recording),
+        "warnings": warnings,
+        "analysis": None if analysis is None else analysis.meta(),
         "firmware": firmware,
         **radar_meta(cube.config),
         "inputs": inputs,
         **of_packets,
-        "assumed": _assumptions(recording),
+        "assumed": [*_assumptions(recording), *recording.config.notes],
     }
-    return ProcessedRecording(adc=recording.adc, cube=cube, points=cloud, meta=meta, stages=stages)
+    return ProcessedRecording(adc=recording.adc, cube=cube, points=cloud, meta=meta, stages=stages, analysis=analysis)
+
+
+def _calibration_meta(recording: Recording) -> dict[str, Any] | None:
+    """What was compensated of the board's channel errors."""
+    own = recording.calibration
+    if own is None:
+        return None
+    return {"range_bias_m": own.range_bias_m, "factor_abs": np.abs(own.factors), "factor_rad": np.angle(own.factors)}
+
+
+def _warnings(recording: Recording, strict: bool) -> list[str]:
+    if recording.adc is None:
+        return []
+    file = recording.files["recording"] if recording.axes is None else None
+    found = implausible(recording.adc, recording.cube, file)
+    if found and strict:
+        raise InputError(f"{recording.path}: {found[0]} (--strict)")
+    return found
+
+
+def _slow_page(view: FigureData) -> FigureData | None:
+    """What the pictures show of radars with too few loops for a Doppler axis: slow time over runs of frames."""
+    if view.cube.config.num_loops >= SHORTEST_HANN or len(view.cube.values) < FEWEST_FRAMES:
+        return None
+    slow = slow_time_cube(view.cube)
+    points = point_cloud(slow, moving_only=True)
+    return FigureData(title=f"{view.title}   (Doppler over {slow.config.num_loops} frames)", cube=slow, points=points)
 
 
 def nearest_photos(frame_time_s: PerFrame, photo_time_s: Float[Array, " photo"]) -> tuple[PerIndex, PerFrame]:

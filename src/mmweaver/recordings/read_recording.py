@@ -1,6 +1,7 @@
 """The one reader of recordings: raw samples or a cube, in any of the files and folders that are understood.
 
 radar.npz, or a folder that holds one      a cube with its radar.json (mmweaver generate and process write both)
+folder of mmweaver generate --stream       its whole parts as one cube
 capture folder of mmwave-capture-std       radar.cfg, dca.pcap
 adc_data.bin                               raw samples as a DCA1000 stores them
 .npy                                       raw samples with named axes, or the array of another project (layout)
@@ -13,19 +14,24 @@ from pathlib import Path
 
 import numpy as np
 
+from mmweaver.core.channel_calibration import ChannelCalibration
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.range_window import chosen_range
 from mmweaver.core.records import AdcCube, RadarCube
-from mmweaver.dsp.cube import radar_cube, tdm_compensation
+from mmweaver.dsp.cube import cropped, radar_cube, tdm_compensation
 from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
 from mmweaver.formats.dca1000 import read_bin
-from mmweaver.formats.dca_packets import PacketCapture
+from mmweaver.formats.dca_packets import PacketCapture, read_pcap
 from mmweaver.formats.npz_files import read_radar_npz
-from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout, read_hupr, read_mmmesh, read_rf_genesis
+from mmweaver.formats.peer_arrays import LAYOUTS, detect_layout, read_cubelearn, read_hupr, read_mmmesh, read_rf_genesis
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.formats.raw_npy import read_adc_npy
+from mmweaver.formats.ti_calibration import read_ti_calibration
+from mmweaver.stream_folder import is_stream, read_stream_cube
 
 CUBE = "radar.npz"
+PACKET_SUFFIXES = (".pcap", ".pcapng")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +47,8 @@ class Recording:
     iq_order: str | None = None  # of files of int16 pairs
     axes: str | None = None  # of a .npy, where they were given
     radar_source: str | None = None  # preset or file that the radar came from
-    packets: PacketCapture | None = None  # of a capture folder
+    packets: PacketCapture | None = None  # of a capture folder or file
+    calibration: ChannelCalibration | None = None  # whose errors were taken away
 
     @cached_property
     def cube(self) -> RadarCube:
@@ -61,16 +68,35 @@ def read_recording(
     axes: str | None = None,
     iq_order: str | None = None,
     tx_order: tuple[int, ...] | None = None,
+    range_m: tuple[float, float] | None = None,
+    range_bins: tuple[int, int] | None = None,
 ) -> Recording:
     """Reads a recording; which kind it is follows from the path.
+
+    `range_m` (near, far) or `range_bins` (first, last) choose the range bins of its cube; by default those of a preset,
+    or all of a .cfg.
 
     `radar`: a preset, a file that describes one, or its configuration; a capture folder brings its own, a radar.npz
     its radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq" (default)
     or "qi", `tx_order` the order in which transmitters fire (default: the radar's). A .npy needs its `axes`, such as
-    "frame,loop,tx,rx,sample", or a `layout`: "hupr" (recognised by its shape), "mmmesh" or "rf_genesis". Raises
+    "frame,loop,tx,rx,sample", or a `layout`: "hupr" (recognised by its shape), "mmmesh", "rf_genesis" or
+    "cubelearn". Raises
     InputError where the file cannot be read so.
     """
-    path = Path(path)
+    found = _read(Path(path), radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order)
+    return _with_range(found, range_m, range_bins)
+
+
+def _read(
+    path: Path,
+    radar: str | Path | RadarConfig | None,
+    *,
+    layout: str | None,
+    axes: str | None,
+    iq_order: str | None,
+    tx_order: tuple[int, ...] | None,
+) -> Recording:
+    """The recording with the range bins of its radar."""
     if layout is not None and (layout not in LAYOUTS or axes is not None):
         raise InputError(f"give a layout ({', '.join(LAYOUTS)}) or axes, not both; got {layout!r} and {axes!r}")
     if not path.exists():
@@ -84,7 +110,7 @@ def read_recording(
         return _from_cube(path, radar)
     if (path.suffix == ".npy" or path.is_dir()) and axes is None:
         layout = layout or detect_layout(path)
-    source = radar if radar is not None else layout
+    source = radar if radar is not None or layout == "cubelearn" else layout
     if source is None:
         raise InputError(
             f"{path}: which radar recorded it? give --radar, for example --radar awr1843; only a capture folder and"
@@ -96,13 +122,36 @@ def read_recording(
     source = None if isinstance(source, RadarConfig) else str(source)
     if layout is not None:
         return _from_layout(path, config, layout, source)
-    files = {"recording": path}
+    found = _of_samples(path, config, axes, iq_order or "iq", source)
+    return _calibrated(found, None if source is None else read_ti_calibration(source))
+
+
+def _of_samples(path: Path, config: RadarConfig, axes: str | None, iq_order: str, source: str | None) -> Recording:
+    """A .npy with named axes, the packets or the .bin of a DCA1000."""
+    found = Recording(path=path, files={"recording": path}, config=config, radar_source=source)
     if axes is not None:
-        adc = read_adc_npy(path, config, axes)
-        return Recording(path=path, files=files, config=config, adc=adc, axes=axes, radar_source=source)
-    order = iq_order or "iq"
-    adc = read_bin(path, config, iq_order=order)
-    return Recording(path=path, files=files, config=config, adc=adc, iq_order=order, radar_source=source)
+        return replace(found, adc=read_adc_npy(path, config, axes), axes=axes)
+    if path.suffix.lower() in PACKET_SUFFIXES:
+        packets = read_pcap(path, config, iq_order=iq_order)
+        return replace(found, adc=packets.adc, packets=packets, iq_order=iq_order)
+    return replace(found, adc=read_bin(path, config, iq_order=iq_order), iq_order=iq_order)
+
+
+def _calibrated(found: Recording, calibration: ChannelCalibration | None) -> Recording:
+    """Without the channel errors that its .cfg compensates; samples of simultaneous transmitters keep them."""
+    if calibration is None or found.adc is None or found.config.is_coded:
+        return found
+    return replace(found, adc=calibration.compensated(found.adc), calibration=calibration)
+
+
+def _with_range(found: Recording, range_m: tuple[float, float] | None, range_bins: tuple[int, int] | None) -> Recording:
+    """The recording with chosen range bins. Raises InputError for bins that its radar or its stored cube lacks."""
+    config = chosen_range(found.config, range_m, range_bins)
+    if config == found.config:
+        return found
+    adc = None if found.adc is None else replace(found.adc, config=config)
+    cube = None if found.stored_cube is None else cropped(found.stored_cube, config)
+    return replace(found, config=config, adc=adc, stored_cube=cube)
 
 
 def as_config(radar: str | Path | RadarConfig) -> RadarConfig:
@@ -114,6 +163,9 @@ def _from_folder(path: Path, radar: str | Path | RadarConfig | None, given: list
     """A folder's recording; None for a folder of HuPR's frames. Raises InputError where it is none of them."""
     if (path / CUBE).is_file():
         return _from_cube(path / CUBE, radar)
+    if is_stream(path):
+        cube = read_stream_cube(path)
+        return Recording(path=path, files={"recording": path}, config=cube.config, stored_cube=cube)
     if is_capture(path):
         return _from_capture(path, given)
     if any(path.glob("*.npy")):
@@ -136,11 +188,12 @@ def _from_capture(path: Path, given: list[str]) -> Recording:
     if given:
         raise InputError(f"{path} is a capture folder, whose {RADAR} says it all; leave out {given[0]}")
     capture = read_radar_capture(path)
-    return Recording(
+    found = Recording(
         path=capture.folder, files={"recording": capture.folder / PACKETS, "radar": capture.folder / RADAR},
         config=capture.config, adc=capture.packets.adc, iq_order=capture.iq_order,
         radar_source=str(capture.folder / RADAR), packets=capture.packets,
     )  # fmt: skip
+    return _calibrated(found, read_ti_calibration(str(capture.folder / RADAR)))
 
 
 def _from_layout(path: Path, config: RadarConfig, layout: str, source: str | None) -> Recording:
@@ -149,7 +202,7 @@ def _from_layout(path: Path, config: RadarConfig, layout: str, source: str | Non
         cube = read_hupr(path, config)
         cube = replace(cube, values=np.asarray(cube.values * tdm_compensation(config)))
         return Recording(path=path, files=files, config=cube.config, stored_cube=cube, radar_source=source)
-    adc = (read_mmmesh if layout == "mmmesh" else read_rf_genesis)(path, config)
+    adc = {"mmmesh": read_mmmesh, "rf_genesis": read_rf_genesis, "cubelearn": read_cubelearn}[layout](path, config)
     return Recording(
-        path=path, files=files, config=adc.config, adc=adc, compensate_tdm=layout == "mmmesh", radar_source=source
+        path=path, files=files, config=adc.config, adc=adc, compensate_tdm=layout != "rf_genesis", radar_source=source
     )

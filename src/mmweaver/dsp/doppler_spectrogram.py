@@ -1,0 +1,95 @@
+"""Micro-Doppler: the Doppler spectrum over time, by short-time Fourier transforms over the chirps.
+
+Frequencies reach as far as the chirps of one transmitter allow, and the time step is a fraction of a frame; a spectrum
+over frames has neither. Where chirps follow each other from frame to frame without a pause, windows run on over them.
+Reference: Chen, "The Micro-Doppler Effect in Radar", 2nd ed., ch. 2.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy import fft
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import AdcCube
+from mmweaver.dsp.cube import remove_static_adc
+from mmweaver.dsp.windows import SHORTEST_HANN, hann
+
+LONGEST_WINDOW = 64  # loops
+OVERLAP = 4  # windows a window length
+SIGNAL_DB = 15.0  # range bins this far below the strongest still count
+FRAMES_A_BLOCK = 20
+
+
+@dataclass(frozen=True, kw_only=True)
+class MicroDoppler:
+    """A spectrogram: power (time, doppler), mean of the antennas and sum of the range bins that hold movement."""
+
+    power: Float[np.ndarray, "time doppler"]
+    time_s: Float[np.ndarray, " time"]  # middle of each window
+    radial_velocity_mps: Float[np.ndarray, " doppler"]  # ascending
+    range_m: tuple[float, float]  # of the nearest and farthest range bin used
+
+
+def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDoppler:
+    """The spectrogram of a recording less its static clutter, over the radar's range window.
+
+    Clutter is the mean chirp of each frame, or of the recording where windows run on over frames.
+
+    `window_loops`: length of a window (default: the loops of a frame, at most 64). Raises InputError for radars of
+    fewer than four loops a frame that pause between frames (see `dsp.slow_time` for these).
+    """
+    config = adc.config
+    pause_s = config.frame_period_s - config.active_time_s
+    runs_on = pause_s < 0.5 * config.loop_period_s
+    longest = config.num_loops * (len(adc.samples) if runs_on else 1)
+    width = min(window_loops or min(config.num_loops, LONGEST_WINDOW), longest)
+    if width < SHORTEST_HANN:
+        raise InputError(
+            f"radar {config.name!r} has {config.num_loops} loops a frame, too few for a micro-Doppler spectrum"
+        )
+    still = adc.samples.mean(axis=(0, 1), dtype=np.complex128).astype(np.complex64) if runs_on else None
+    chirps, first_bin = _moving_chirps(adc, still)  # (frame, loop, antenna, range)
+    frames, loops = chirps.shape[:2]
+    if runs_on:
+        chirps = chirps.reshape(1, frames * loops, *chirps.shape[2:])
+    hop = max(1, width // OVERLAP)
+    starts = np.arange(0, chirps.shape[1] - width + 1, hop)
+    window = (hann(width) / hann(width).sum()).astype(np.float32)
+    power = np.empty((len(chirps), len(starts), width))
+    for index, start in enumerate(starts):
+        run = chirps[:, start : start + width] * window[:, None, None]
+        spectrum = np.fft.fftshift(np.asarray(fft.fft(run, axis=1)), axes=1)
+        power[:, index] = (np.abs(spectrum) ** 2).mean(axis=2).sum(axis=2)
+    middle_s = (starts + width / 2) * config.loop_period_s
+    frame_s = np.arange(len(chirps)) * config.frame_period_s
+    step_mps = config.wavelength_m / (2 * width * config.loop_period_s)
+    bins = np.arange(power.shape[0] * power.shape[1])
+    last_bin = first_bin + chirps.shape[-1] - 1
+    return MicroDoppler(
+        power=power.reshape(len(bins), width), time_s=(frame_s[:, None] + middle_s).ravel(),
+        radial_velocity_mps=(np.arange(width) - width // 2) * step_mps,
+        range_m=(first_bin * config.range_resolution_m, last_bin * config.range_resolution_m),
+    )  # fmt: skip
+
+
+def _moving_chirps(adc: AdcCube, still: np.ndarray | None) -> tuple[np.ndarray, int]:
+    """Range profiles of every chirp (frame, loop, slot * rx, range) where something moves, and the first range bin.
+
+    `still` (slot, rx, sample) is taken away; without it each frame's mean chirp.
+    """
+    config = adc.config
+    window = hann(config.num_samples)
+    weight = (window / window.sum()).astype(np.float32)
+    kept = slice(config.first_range_bin, config.first_range_bin + config.num_range_bins)
+    blocks = []
+    for start in range(0, len(adc.samples), FRAMES_A_BLOCK):
+        part = AdcCube(samples=adc.samples[start : start + FRAMES_A_BLOCK], config=config, scale=adc.scale)
+        moving = remove_static_adc(part).samples if still is None else part.samples - still
+        profile = np.asarray(fft.fft(moving * weight, axis=-1))[..., kept]
+        blocks.append(profile.reshape(*profile.shape[:2], -1, profile.shape[-1]))
+    level = sum((np.abs(block) ** 2).sum(axis=(0, 1, 2)) for block in blocks)
+    near = np.flatnonzero(level >= np.max(level) * 10 ** (-SIGNAL_DB / 10))
+    some = slice(int(near[0]), int(near[-1]) + 1)
+    return np.concatenate([block[..., some] for block in blocks]), config.first_range_bin + some.start

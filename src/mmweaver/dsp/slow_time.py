@@ -1,0 +1,156 @@
+"""Slow time over frames: Doppler, phase and displacement where a frame has too few loops, or where motion is slow.
+
+Each frame gives one complex value a range bin and antenna, its zero-Doppler value. What moves by less than a range bin
+turns the phase of its cell by 4 pi / wavelength a metre; displacement is positive = moving away.
+Reference: docs/radar_primer.md, equation 7; Taubin, "Estimation of planar curves...", IEEE PAMI 13, 1991 (circle fit).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Complex, Float
+from scipy import fft
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import RadarCube
+from mmweaver.dsp.cube import doppler_weight, tdm_compensation
+from mmweaver.dsp.windows import hann
+
+FEWEST_FRAMES = 8
+WINDOW_FRAMES = 64  # of a slow-time Doppler spectrum, where nobody asks for another length
+MOST_WINDOWS = 60
+NEAREST_BINS = 2.5
+WEAKEST = 1e-3  # moving power of a cell relative to the strongest
+LARGEST_RESIDUAL = 0.35  # of a circle fit, relative to the radius
+LARGEST_RADIUS = 10.0  # relative to the spread of the points: beyond, the arc is too short to have a centre
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlowTimeCell:
+    """A range bin over the frames of a recording, its antennas combined for the strongest movement in it."""
+
+    range_m: float
+    moving_power: float  # mean over the frames, less the mean value, in units of the cube squared
+    signal: Complex[np.ndarray, " frame"]
+    phase_rad: Float[np.ndarray, " frame"]  # unwrapped, about the centre of its circle
+    displacement_m: Float[np.ndarray, " frame"]  # relative to its mean, positive = away
+    has_centre: bool  # whether a circle was found; else the phase is about zero or the mean
+
+
+def zero_doppler(cube: RadarCube) -> Complex[np.ndarray, "frame range antenna"]:
+    """One value a frame: that of zero Doppler, the windowed mean of its loops."""
+    return cube.values[:, :, cube.config.num_loops // 2]
+
+
+def slow_time_cube(cube: RadarCube, *, window_frames: int | None = None) -> RadarCube:
+    """Runs of frames as the loops of longer, overlapping frames: (window, range, doppler, antenna).
+
+    Its configuration has the frames' spacing as loop period, so velocity axes and resolutions follow. Raises
+    InputError for fewer than eight frames.
+    """
+    frames = len(cube.values)
+    width = min(window_frames or WINDOW_FRAMES, frames)
+    if width < FEWEST_FRAMES:
+        raise InputError(f"slow time over frames needs {FEWEST_FRAMES} frames or more, not {width}")
+    own = cube.config
+    config = replace(
+        own, num_loops=width, loop_gap_s=own.frame_period_s - own.num_slots * own.chirp_period_s,
+        frame_period_s=width * own.frame_period_s, name=f"{own.name}, slow time over {width} frames",
+    )  # fmt: skip
+    hop = max(1, width // 8, -(-(frames - width) // (MOST_WINDOWS - 1)))
+    starts = np.arange(0, frames - width + 1, hop)
+    weight = doppler_weight(width)[:, None]
+    compensation = tdm_compensation(config)
+    still = zero_doppler(cube)
+    values = np.empty((len(starts), still.shape[1], width, still.shape[2]), np.complex64)
+    for index, start in enumerate(starts):
+        run = still[start : start + width].transpose(1, 0, 2)
+        values[index] = np.asarray(fft.fft(run * weight, axis=1)) * compensation
+    grid = replace(
+        cube.grid, frame_time_s=cube.grid.frame_time_s[starts], radial_velocity_mps=config.radial_velocity_mps
+    )
+    return RadarCube(values=values, grid=grid, config=config, scale=cube.scale)
+
+
+def slow_time_doppler(cube: RadarCube) -> tuple[Float[np.ndarray, "range doppler"], Float[np.ndarray, " doppler"]]:
+    """Power (range, doppler) of all frames at once, mean of the antennas, and its velocities in m/s, ascending.
+
+    The mean over the frames is removed first. Velocities reach +- wavelength / (4 frame period).
+    """
+    still = zero_doppler(cube)
+    moving = still - still.mean(axis=0)
+    window = hann(len(moving)) if len(moving) > 3 else np.ones(len(moving))
+    spectrum = np.fft.fftshift(np.asarray(fft.fft(moving * (window / window.sum())[:, None, None], axis=0)), axes=0)
+    frequency_hz = np.fft.fftshift(np.fft.fftfreq(len(moving), cube.config.frame_period_s))
+    power = (np.abs(spectrum) ** 2).mean(axis=2).T
+    return power, frequency_hz * cube.grid.wavelength_m / 2
+
+
+def moving_cells(cube: RadarCube, count: int = 3) -> list[SlowTimeCell]:
+    """The range bins with the most movement over the frames, strongest first, each a local maximum along range."""
+    still = zero_doppler(cube)
+    if len(still) < FEWEST_FRAMES:
+        return []
+    moving = still - still.mean(axis=0)
+    power = (np.abs(moving) ** 2).mean(axis=(0, 2))
+    padded = np.pad(power, 1)
+    # the first bins hold the transmitters' leakage, and at zero beat frequency real samples have no phase
+    is_far = cube.grid.range_m >= NEAREST_BINS * cube.config.range_resolution_m
+    is_peak = (
+        is_far
+        & (power > 0)
+        & (power >= padded[:-2])
+        & (power > padded[2:])
+        & (power >= WEAKEST * power[is_far].max(initial=0.0))
+    )
+    order = [index for index in np.argsort(-power) if is_peak[index]][:count]
+    return [_cell(cube, still[:, index], int(index), float(power[index])) for index in order]
+
+
+def _cell(cube: RadarCube, values: np.ndarray, index: int, power: float) -> SlowTimeCell:
+    """Of one range bin's values (frame, antenna)."""
+    moving = (values - values.mean(axis=0)).astype(np.complex128)
+    _, vectors = np.linalg.eigh(moving.conj().T @ moving)
+    signal = values @ vectors[:, -1]
+    centre = circle_centre(signal)
+    around = _steadier(signal) if centre is None else centre
+    phase = np.unwrap(np.angle(signal - around))
+    displacement = phase * cube.grid.wavelength_m / (4 * np.pi)
+    return SlowTimeCell(
+        range_m=float(cube.grid.range_m[index]), moving_power=power, signal=signal, phase_rad=phase,
+        displacement_m=displacement - displacement.mean(), has_centre=centre is not None,
+    )  # fmt: skip
+
+
+def _steadier(signal: np.ndarray) -> complex:
+    """Zero or the mean, whichever the values keep a steadier distance from."""
+    mean = complex(signal.mean())
+    spread = [np.abs(signal - one).std() / max(float(np.abs(signal - one).mean()), 1e-30) for one in (0.0, mean)]
+    return mean if spread[1] < spread[0] else 0j
+
+
+def circle_centre(signal: Complex[np.ndarray, " sample"]) -> complex | None:
+    """Centre of the circle on which complex values lie, by Taubin's fit; None where they lie on none.
+
+    >>> turn = np.exp(1j * np.linspace(0, 2, 50))
+    >>> complex(np.round(circle_centre(3 + 1j + 2 * turn), 6))
+    (3+1j)
+    """
+    mean = signal.mean()
+    x, y = (signal - mean).real.astype(float), (signal - mean).imag.astype(float)
+    square = x**2 + y**2
+    spread = float(np.sqrt(square.mean()))
+    if spread == 0:
+        return None
+    level = square.mean()
+    design = np.stack([(square - level) / (2 * np.sqrt(level)), x, y], axis=1)
+    a, b, c = np.linalg.svd(design, full_matrices=False)[2][-1]
+    if abs(a) < 1e-12:
+        return None
+    a = a / (2 * np.sqrt(level))
+    offset = complex(-b / (2 * a), -c / (2 * a))
+    distance = np.abs(x + 1j * y - offset)
+    radius = float(distance.mean())
+    if radius > LARGEST_RADIUS * spread or distance.std() > LARGEST_RESIDUAL * radius:
+        return None
+    return complex(mean + offset)

@@ -1,0 +1,1 @@
+"""Point clouds as boards and public data sets store them."""

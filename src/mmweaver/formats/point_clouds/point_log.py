@@ -1,0 +1,39 @@
+"""The record of a logged point cloud."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.core.records import PointCloud
+from mmweaver.core.shapes import PerPoint
+
+MISSING = float("nan")
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class LoggedCloud(PointCloud):
+    """A PointCloud that a board or a data set stored: `intensity` in its own unit, nan where it has none.
+
+    x to the right, y away from the radar, z up; `frame` counts from 0 in the order of the file.
+    """
+
+    intensity: PerPoint
+
+
+def logged_cloud(
+    frame: np.ndarray, xyz_m: np.ndarray, velocity_mps: np.ndarray, *,
+    snr_db: np.ndarray | None = None, intensity: np.ndarray | None = None,
+) -> LoggedCloud:  # fmt: skip
+    """Of columns (point,) and places (point, 3); missing columns are nan."""
+    nothing = np.full(len(frame), MISSING)
+    x, y, z = np.asarray(xyz_m, float).reshape(-1, 3).T
+    return LoggedCloud(
+        frame=np.asarray(frame, int), x_m=x, y_m=y, z_m=z, radial_velocity_mps=np.asarray(velocity_mps, float),
+        snr_db=nothing if snr_db is None else np.asarray(snr_db, float),
+        intensity=nothing if intensity is None else np.asarray(intensity, float),
+    )  # fmt: skip
+
+
+def empty_cloud() -> LoggedCloud:
+    """No points."""
+    return logged_cloud(np.zeros(0, int), np.zeros((0, 3)), np.zeros(0))

@@ -1,0 +1,154 @@
+"""The data port of TI's demos, as logged to a .dat: packets of TLVs after a magic word, little-endian.
+
+Out-of-box demos: TLV 1 are detected points, x, y, z in m and velocity in m/s as float32 (SDK 2 and later), or integers
+with a Q format (SDK 1, whose header has no sub-frame number); TLV 7 are SNR and noise in 0.1 dB. 3D People Tracking:
+TLV 1020 are compressed spherical points with their units, TLV 1010 tracked targets. Packets that are cut or whose
+lengths make no sense are skipped and counted.
+
+Reference: mmWave SDK User Guide, "Output data sent out of the demo"; TI, 3D People Tracking, "UART output data format".
+"""
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
+from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud
+
+MAGIC = bytes([2, 1, 4, 3, 6, 5, 8, 7])
+MAX_BYTES = 2000 * MEGABYTE
+HEADER = struct.Struct("<8sIIIIIII")  # magic, version, length, platform, frame, CPU cycles, objects, TLVs
+TLV = struct.Struct("<II")
+MAX_PACKET, MAX_TLVS = 1 << 17, 30
+POINTS, SIDE_INFO, TARGETS, SPHERICAL = 1, 7, 1010, 1020
+SDK1_POINT_BYTES = 12
+TARGET_BYTES = 112
+
+
+@dataclass(frozen=True, kw_only=True)
+class UartLog:
+    """The points of a log, the targets of the people tracker, and what was left out."""
+
+    points: LoggedCloud
+    frame_number: np.ndarray  # (frame,) as the board counts
+    targets: np.ndarray  # (target, 8): frame, id, x, y, z in m, velocity x, y, z in m/s
+    skipped: int  # packets
+
+
+def read_ti_uart(path: Path | str) -> UartLog:
+    """Reads a log of the data port. Raises InputError where it holds no packet."""
+    data = read_bytes(path, max_bytes=MAX_BYTES)
+    columns: list[np.ndarray] = []
+    targets: list[np.ndarray] = []
+    numbers: list[int] = []
+    skipped, at = 0, data.find(MAGIC)
+    while at >= 0:
+        packet = _packet(data, at)
+        if packet is None:
+            skipped += 1
+            at = data.find(MAGIC, at + 1)
+            continue
+        number, points, found, end = packet
+        frame = len(numbers)
+        numbers.append(number)
+        columns.append(np.column_stack([np.full(len(points), frame), points]))
+        targets.append(np.column_stack([np.full(len(found), frame), found]))
+        at = data.find(MAGIC, end)
+    if not numbers:
+        raise InputError(f"{path} holds no packet of a TI demo's data port; log the port at its data rate, in binary")
+    table = np.concatenate(columns)
+    cloud = logged_cloud(table[:, 0], table[:, 1:4], table[:, 4], snr_db=table[:, 5], intensity=table[:, 6])
+    return UartLog(
+        points=cloud, frame_number=np.array(numbers), targets=np.concatenate(targets), skipped=skipped
+    )  # fmt: skip
+
+
+def is_ti_uart(head: bytes) -> bool:
+    """Whether the beginning of a file holds the magic word."""
+    return MAGIC in head
+
+
+def _packet(data: bytes, at: int) -> tuple[int, np.ndarray, np.ndarray, int] | None:
+    """Frame number, points (point, 6), targets (target, 7) and the end of the packet at a place; None if damaged."""
+    if at + HEADER.size > len(data):
+        return None
+    _, version, length, _, number, _, objects, tlvs = HEADER.unpack_from(data, at)
+    if not HEADER.size <= length <= MAX_PACKET or tlvs > MAX_TLVS or at + length > len(data):
+        return None
+    body = at + HEADER.size + (4 if version >> 24 >= 2 else 0)  # the sub-frame's number, from SDK 2 on
+    found: dict[int, bytes] = {}
+    for _ in range(tlvs):
+        if body + TLV.size > at + length:
+            return None
+        kind, size = TLV.unpack_from(data, body)
+        body += TLV.size
+        if body + size > at + length:
+            return None
+        found[kind] = data[body : body + size]
+        body += size
+    points = _points(found, objects, is_integer=version >> 24 < 2)
+    return None if points is None else (number, points, _targets(found.get(TARGETS, b"")), at + length)
+
+
+def _points(found: dict[int, bytes], objects: int, *, is_integer: bool) -> np.ndarray | None:
+    """Columns x, y, z, velocity, SNR in dB and intensity; None where lengths do not agree."""
+    if SPHERICAL in found:
+        return _spherical(found[SPHERICAL])
+    raw = found.get(POINTS, b"")
+    if not raw:
+        return np.zeros((0, 6))
+    if is_integer:
+        return _sdk1_points(raw)
+    if len(raw) == 16 * objects:
+        points = np.frombuffer(raw, "<f4").reshape(-1, 4).astype(float)
+        side = found.get(SIDE_INFO, b"")
+        has_side = len(side) == 4 * objects
+        snr_db = np.frombuffer(side, "<i2").reshape(-1, 2)[:, 0] / 10 if has_side else np.full(objects, np.nan)
+        return np.column_stack([points, snr_db, np.full(objects, np.nan)])
+    return None
+
+
+def _sdk1_points(raw: bytes) -> np.ndarray | None:
+    """Descriptor (count, Q format), then range bin, Doppler bin, peak, x, y, z as 16-bit integers.
+
+    The velocity is left as its Doppler bin's sign and number: its unit is in the board's .cfg alone.
+    """
+    if len(raw) < 4:
+        return None
+    count, q_format = struct.unpack_from("<HH", raw)
+    if len(raw) < 4 + SDK1_POINT_BYTES * count or q_format > 15:
+        return None
+    table = np.frombuffer(raw, "<i2", count=6 * count, offset=4).reshape(-1, 6).astype(float)
+    peak = table[:, 2] % (1 << 16)
+    nothing = np.full(count, np.nan)
+    return np.column_stack([table[:, 3:6] / (1 << q_format), nothing, nothing, peak])
+
+
+def _spherical(raw: bytes) -> np.ndarray | None:
+    """Five units, then a point each: int8 elevation and azimuth, int16 Doppler, uint16 range and SNR."""
+    if len(raw) < 20 or (len(raw) - 20) % 8:
+        return None
+    elevation_unit, azimuth_unit, velocity_unit, range_unit, snr_unit = struct.unpack_from("<5f", raw)
+    kind = np.dtype([("elevation", "i1"), ("azimuth", "i1"), ("doppler", "<i2"), ("range", "<u2"), ("snr", "<u2")])
+    table: Any = np.frombuffer(raw, kind, offset=20)
+    elevation, azimuth = table["elevation"] * elevation_unit, table["azimuth"] * azimuth_unit
+    range_m, snr = table["range"] * range_unit, table["snr"] * snr_unit
+    flat_m = range_m * np.cos(elevation)
+    snr_db = 10 * np.log10(np.maximum(snr, 1e-6))
+    return np.column_stack(
+        [flat_m * np.sin(azimuth), flat_m * np.cos(azimuth), range_m * np.sin(elevation),
+         table["doppler"] * velocity_unit, snr_db, snr]
+    )  # fmt: skip
+
+
+def _targets(raw: bytes) -> np.ndarray:
+    """Columns id, x, y, z, velocity x, y, z of each target of 112 bytes."""
+    rows = [
+        [struct.unpack_from("<I", raw, at)[0], *struct.unpack_from("<6f", raw, at + 4)]
+        for at in range(0, len(raw) - TARGET_BYTES + 1, TARGET_BYTES)
+    ]
+    return np.array(rows, float).reshape(-1, 7)

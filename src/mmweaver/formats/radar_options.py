@@ -1,0 +1,93 @@
+"""What may follow the name of a radar: `profile.cfg#subframe=1;antennas=aop;lanes=4`."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.antenna_tables import ANTENNAS, AntennaTable, Places
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import halfwave_positions
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.safe_text import read_json
+
+EXAMPLE = '{"tx": [[0, 0], [4, 0]], "rx": [[0, 0], [1, 0], [2, 0], [3, 0]]}'
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadarOptions:
+    """Choices that a radar's file leaves open; None: what the file says."""
+
+    sub_frame: int | None = None
+    antennas: AntennaTable | None = None
+    lanes: int | None = None
+
+
+def split_radar(name: str) -> tuple[str, RadarOptions]:
+    """The name or file of a radar, and the options behind its last #. Raises InputError for options it cannot have."""
+    path, mark, rest = name.rpartition("#")
+    if not mark or "=" not in rest:
+        return name, RadarOptions()
+    values: dict[str, str] = {}
+    for part in rest.split(";"):
+        key, _, value = part.partition("=")
+        values[key] = value
+    if unknown := sorted(set(values) - {"subframe", "antennas", "lanes"}):
+        raise InputError(f"{name!r}: unknown option {unknown[0]!r}; known are subframe, antennas and lanes")
+    try:
+        sub_frame, lanes = (int(values[key]) if key in values else None for key in ("subframe", "lanes"))
+    except ValueError:
+        raise InputError(f"{name!r}: subframe and lanes are whole numbers") from None
+    table = None if "antennas" not in values else read_antennas(values["antennas"])
+    return path, RadarOptions(sub_frame=sub_frame, antennas=table, lanes=lanes)
+
+
+def joined_radar(
+    name: str, *, sub_frame: int | None = None, antennas: str | None = None, lanes: int | None = None
+) -> str:
+    """The inverse of `split_radar`, for the command line.
+
+    >>> joined_radar("profile.cfg", sub_frame=1, lanes=4)
+    'profile.cfg#subframe=1;lanes=4'
+    """
+    given = {"subframe": sub_frame, "antennas": antennas, "lanes": lanes}
+    words = ";".join(f"{key}={value}" for key, value in given.items() if value is not None)
+    return f"{name}#{words}" if words else name
+
+
+def read_antennas(name_or_path: str) -> AntennaTable:
+    """A board's table by its name, or a JSON of one's own with places (x, z) in half wavelengths. Raises InputError."""
+    path = Path(name_or_path)
+    if name_or_path in ANTENNAS or path.suffix.lower() != ".json":
+        return ANTENNAS[name_or_path]
+    values: Any = read_json(path)
+    try:
+        inverted = tuple(int(one) for one in values.get("rx_inverted", []))
+        tx, rx = _places(values["tx"]), _places(values["rx"])
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise InputError(f"{path} is no table of antennas; write for example {EXAMPLE}, in half wavelengths") from None
+    return AntennaTable(name=path.stem, tx_halfwaves=tx, rx_halfwaves=rx, rx_inverted=inverted, source=str(path))
+
+
+def with_options(config: RadarConfig, options: RadarOptions) -> RadarConfig:
+    """A preset or radar.json with other antennas or lanes. Raises InputError for what does not fit."""
+    if options.sub_frame is not None:
+        raise InputError(f"radar {config.name!r} has no sub-frames; leave out --subframe")
+    if options.lanes is not None:
+        config = replace(config, lvds_lanes=options.lanes)
+    table = options.antennas
+    if table is None:
+        return config
+    if (config.num_tx, config.num_rx) != (len(table.tx_halfwaves), len(table.rx_halfwaves)):
+        raise InputError(
+            f"antenna table {table.name!r} has {len(table.tx_halfwaves)} transmitters and {len(table.rx_halfwaves)}"
+            f" receivers, radar {config.name!r} has {config.num_tx} and {config.num_rx}"
+        )
+    return replace(
+        config, rx_inverted=table.rx_inverted,
+        tx_position_m=halfwave_positions(table.tx_halfwaves, config.centre_frequency_hz),
+        rx_position_m=halfwave_positions(table.rx_halfwaves, config.centre_frequency_hz),
+    )  # fmt: skip
+
+
+def _places(rows: Any) -> Places:
+    return tuple((float(x), float(z)) for x, z in rows)

@@ -1,0 +1,82 @@
+"""Simultaneous transmitters as a sum over elements: one element is one transmitter in one chirp of the loop.
+
+Everything that computes signals of TDM-MIMO computes those of the elements, which share the chirps' times; the
+elements of a slot are then summed with their weights.
+Reference: `core.transmit_code`.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.transmit_code import weights_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElementRadar(RadarConfig):
+    """A radar whose transmitters are the elements of a coded one; several of them share a slot."""
+
+    slot: tuple[int, ...] = ()  # of each element
+    slots: int = 1  # of a loop
+
+    @property
+    def loop_period_s(self) -> float:
+        return self.slots * self.chirp_period_s + self.loop_gap_s
+
+    @cached_property
+    def tx_delay_s(self) -> np.ndarray:
+        return np.asarray(self.slot) * self.chirp_period_s
+
+
+class TransmitElements:
+    """The elements of a radar, and what is made of their signals. Of a TDM radar: its transmitters themselves."""
+
+    def __init__(self, config: RadarConfig):
+        self.is_coded = config.is_coded
+        self.config = config
+        if not self.is_coded:
+            return
+        weights = weights_of(config.tx_code)
+        slot, tx = np.nonzero(weights)
+        values = {name: getattr(config, name) for name in RadarConfig.__dataclass_fields__}
+        values |= {
+            "tx_code": (), "tx_order": tuple(range(len(tx))),
+            "tx_position_m": tuple(config.tx_position_m[index] for index in tx),
+        }  # fmt: skip
+        self.config = ElementRadar(**values, slot=tuple(slot.tolist()), slots=config.num_slots)
+        self._tx = torch.from_numpy(tx)
+        into = np.zeros((config.num_slots, len(tx)), complex)
+        into[slot, np.arange(len(tx))] = weights[slot, tx]
+        self._into_slots = torch.from_numpy(into).to(torch.complex64)
+        self._into_tx = torch.from_numpy(config.tx_decoder @ into).to(torch.complex64)
+
+    def lengths(self, length_m: Tensor) -> Tensor:
+        """Path lengths (path, tx, rx) of physical transmitters -> of elements (path, element, rx)."""
+        return length_m[:, self._tx] if self.is_coded else length_m
+
+    def slots(self, samples: Tensor, axis: int) -> Tensor:
+        """Sums elements, on an axis of samples, into slots."""
+        return _summed(self._into_slots, samples, axis) if self.is_coded else samples
+
+    def decoded(self, values: Tensor) -> Tensor:
+        """Values (..., element * rx), each compensated for its slot's delay -> (..., antenna) of the coded radar."""
+        if not self.is_coded:
+            return values
+        apart = values.unflatten(-1, (len(self._tx), -1))
+        return _summed(self._into_tx, apart, -2).flatten(-2)
+
+    def with_weights(self, channels: np.ndarray) -> np.ndarray:
+        """Channel factors (tx, rx) -> (slot, rx): of simultaneous transmitters their weighted mean."""
+        if not self.is_coded:
+            return channels
+        share = np.abs(self._into_slots.numpy())
+        return (share @ channels[self._tx.numpy()] / share.sum(axis=1, keepdims=True)).astype(channels.dtype)
+
+
+def _summed(matrix: Tensor, values: Tensor, axis: int) -> Tensor:
+    moved = values.movedim(axis, 0)
+    return torch.tensordot(matrix.to(values.device), moved.to(torch.complex64), dims=1).movedim(0, axis)

@@ -1,0 +1,140 @@
+"""What a recording shows beyond its cube: slow movement, breathing and heart, micro-Doppler, people."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.dsp.doppler_spectrogram import MicroDoppler, micro_doppler
+from mmweaver.dsp.points import point_cloud
+from mmweaver.dsp.slow_time import SlowTimeCell, moving_cells, slow_time_doppler
+from mmweaver.dsp.spectra import moving_doppler, range_doppler_power
+from mmweaver.dsp.tracking import PersonTrack, track_people
+from mmweaver.dsp.vital_signs import Rate, breathing_rate, heart_rate
+
+SHORTEST_VITAL_S = 8.0
+LEAST_CONTRAST = 20.0  # of a spectrogram, its peak over its median: less is noise
+FASTEST_DB = -20.0  # of the spectrogram's peak: what counts as the fastest movement
+
+
+@dataclass(frozen=True, kw_only=True)
+class VitalSigns:
+    """Breathing and heart of somebody who sits, at a range; None where a rate could not be looked for."""
+
+    range_m: float
+    breathing: Rate | None
+    heart: Rate | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordingAnalysis:
+    """Everything that `mmweaver process` finds in a recording; parts that it cannot give are None or empty."""
+
+    slow_doppler: np.ndarray | None  # (range, doppler), power over all frames
+    slow_velocity_mps: np.ndarray | None
+    cells: tuple[SlowTimeCell, ...]  # of most movement, strongest first
+    vital_signs: VitalSigns | None
+    micro_doppler: MicroDoppler | None
+    people: tuple[PersonTrack, ...]
+    static_share: float  # of the cube's energy
+
+    def meta(self) -> dict[str, Any]:
+        """The numbers for meta.json."""
+        return {
+            "static_share": round(self.static_share, 4),
+            "moving_cells": [
+                {
+                    "range_m": cell.range_m, "moving_power": cell.moving_power,
+                    "displacement_peak_to_peak_m": float(np.ptp(cell.displacement_m)), "has_centre": cell.has_centre,
+                }
+                for cell in self.cells
+            ],
+            "vital_signs": self.vital_signs,
+            "fastest_mps": None if self.micro_doppler is None else _fastest(self.micro_doppler),
+            "people": [
+                {
+                    "first_s": float(one.time_s[0]), "last_s": float(one.time_s[-1]),
+                    "from_m": one.place_m[0], "to_m": one.place_m[-1], "mean_speed_mps": one.mean_speed_mps,
+                    "height_m": one.height_m, "points": one.num_points,
+                }
+                for one in self.people
+            ],
+        }  # fmt: skip
+
+    def arrays(self) -> dict[str, np.ndarray]:
+        """The content of analysis.npz, in SI units."""
+        found: dict[str, np.ndarray] = {}
+        if self.slow_doppler is not None and self.slow_velocity_mps is not None:
+            found |= {"slow_doppler_power": self.slow_doppler, "slow_velocity_mps": self.slow_velocity_mps}
+        if self.cells:
+            found["cell_range_m"] = np.array([cell.range_m for cell in self.cells])
+            found["cell_signal"] = np.stack([cell.signal for cell in self.cells])
+            found["cell_phase_rad"] = np.stack([cell.phase_rad for cell in self.cells])
+            found["cell_displacement_m"] = np.stack([cell.displacement_m for cell in self.cells])
+        if self.micro_doppler is not None:
+            found["micro_doppler_power"] = self.micro_doppler.power.astype(np.float32)
+            found["micro_doppler_time_s"] = self.micro_doppler.time_s
+            found["micro_doppler_velocity_mps"] = self.micro_doppler.radial_velocity_mps
+        if self.people:
+            found["track"] = np.concatenate([np.full(len(one.frame), at) for at, one in enumerate(self.people)])
+            found["track_time_s"] = np.concatenate([one.time_s for one in self.people])
+            found["track_place_m"] = np.concatenate([one.place_m for one in self.people])
+            found["track_velocity_mps"] = np.concatenate([one.velocity_mps for one in self.people])
+        return found
+
+
+def analyse_recording(cube: RadarCube, adc: AdcCube | None) -> RecordingAnalysis:
+    """All that a recording of this length, with these loops a frame, can give; micro-Doppler needs its samples."""
+    is_sequence = len(cube.values) > 1
+    slow = slow_time_doppler(cube) if is_sequence else None
+    cells = tuple(moving_cells(cube))
+    return RecordingAnalysis(
+        slow_doppler=None if slow is None else slow[0], slow_velocity_mps=None if slow is None else slow[1],
+        cells=cells, vital_signs=_vital_signs(cells, cube.config.frame_period_s),
+        micro_doppler=_micro_doppler(adc), people=_people(cube), static_share=_static_share(cube),
+    )  # fmt: skip
+
+
+def _vital_signs(cells: tuple[SlowTimeCell, ...], period_s: float) -> VitalSigns | None:
+    """Of the cell whose breathing is clearest; None where no cell shows any."""
+    found: list[VitalSigns] = []
+    for cell in cells:
+        if len(cell.displacement_m) * period_s < SHORTEST_VITAL_S:
+            return None
+        breathing = breathing_rate(cell.displacement_m, period_s)
+        if breathing is not None and breathing.is_clear:
+            heart = heart_rate(cell.displacement_m, period_s, breathing)
+            found.append(VitalSigns(range_m=cell.range_m, breathing=breathing, heart=heart))
+    return max(found, key=lambda one: one.breathing.peak_over_median_db if one.breathing else 0.0, default=None)
+
+
+def _micro_doppler(adc: AdcCube | None) -> MicroDoppler | None:
+    if adc is None:
+        return None
+    try:
+        found = micro_doppler(adc)
+    except InputError:  # too few loops
+        return None
+    return found if found.power.max() > LEAST_CONTRAST * np.median(found.power) else None
+
+
+def _people(cube: RadarCube) -> tuple[PersonTrack, ...]:
+    if len(cube.values) < 2 or moving_doppler(cube).sum() < 2:
+        return ()
+    return tuple(track_people(point_cloud(cube, moving_only=True), cube.grid.frame_time_s))
+
+
+def _static_share(cube: RadarCube) -> float:
+    """Energy in the Doppler bins of static clutter over all energy."""
+    power = range_doppler_power(cube).sum(axis=(0, 1))
+    total = float(power.sum())
+    return float(power[~moving_doppler(cube)].sum()) / total if total > 0 else 0.0
+
+
+def _fastest(spectrogram: MicroDoppler) -> float:
+    """The highest speed in the spectrogram above -20 dB of its peak."""
+    level = spectrogram.power.max(axis=0)
+    shown = level >= level.max() * 10 ** (FASTEST_DB / 10)
+    return float(np.abs(spectrogram.radial_velocity_mps[shown]).max())

@@ -1,0 +1,191 @@
+"""Whether samples and settings of a recording fit each other, and the likelier reading where they do not.
+
+Real echoes have a positive beat frequency, chirps of one transmitter resemble each other, a static cell's antennas see
+a plane wave, and what comes nearer has a negative radial velocity. Each check looks at a few frames only.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import permutations
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.core.safe_files.regular_files import open_regular
+from mmweaver.dsp.cube import remove_static
+from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.dsp.windows import hann
+
+FRAMES_LOOKED_AT = 8
+PROBE_BYTES = 1 << 16
+CLIPPED_SHARE = 1e-3
+MIRRORED_DB = 8.0  # more energy in the last quarter of the beat frequencies than in the first
+LEAST_LIKENESS = 0.4  # of chirps one loop apart
+BETTER_LIKENESS = 0.25  # that another layout must have more
+BETTER_WAVE = 0.06  # of the share of the best plane wave that another order of transmitters must have more
+CELLS = 40
+FEWEST_MOVING_FRAMES = 6
+
+
+def implausible(adc: AdcCube, cube: RadarCube, path: Path | None = None) -> list[str]:
+    """What does not fit, a sentence each with the likelier reading; empty where all is plausible.
+
+    `path`: the .bin that the samples come from.
+    """
+    few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
+    found = [*_number_type(path), *_values(adc)]
+    if any("constant" in text or "numbers of" in text for text in found):
+        return found  # nothing else can be told
+    found += [*_beat_sign(few), *_layout(few)]
+    if not found:
+        found += [*_transmitters(cube), *_velocity_sign(cube)]
+    return found
+
+
+def _number_type(path: Path | None) -> Iterator[str]:
+    """Files of floating-point numbers read as int16."""
+    if path is None or path.suffix.lower() not in (".bin", ".dat", ".raw"):
+        return
+    with open_regular(path) as stream:
+        head = stream.read(PROBE_BYTES)
+    for kind, name in (("<f8", "float64 or complex128"), ("<f4", "float32 or complex64")):
+        values = np.frombuffer(head[: len(head) // 8 * 8], kind)
+        with np.errstate(all="ignore"):
+            size = np.abs(values[values != 0])
+            is_sane = np.isfinite(size) & (size > 1e-9) & (size < 1e9)
+        if len(size) > 0.5 * len(values) and is_sane.mean() > 0.999:
+            yield (
+                f"the file seems to hold numbers of type {name}, but was read as int16; load it with numpy, save it as"
+                " .npy and give --axes"
+            )
+            return
+
+
+def _values(adc: AdcCube) -> Iterator[str]:
+    """Constant frames and clipped samples."""
+    spread = np.array([np.ptp(np.abs(frame)) for frame in adc.samples[:, ::8]])
+    if still := int((spread == 0).sum()):
+        yield f"{still} of {len(spread)} frames are constant: lost data, or a file that was filled up"
+    few = adc.samples[:FRAMES_LOOKED_AT]
+    parts = np.concatenate([np.real(few).ravel(), np.imag(few).ravel()])
+    is_counts = np.isnan(adc.scale)
+    clipped = float((np.abs(parts) >= 32767).mean()) if is_counts else 0.0
+    if clipped > CLIPPED_SHARE:
+        yield f"{100 * clipped:.1f} % of the samples are clipped at full scale; record with less receiver gain"
+
+
+def _beat_sign(adc: AdcCube) -> Iterator[str]:
+    """Energy at negative beat frequencies: I and Q the wrong way round."""
+    if not adc.config.complex_samples:
+        return
+    num = adc.config.num_samples
+    spectrum = np.abs(np.fft.fft(adc.samples * hann(num), axis=-1)) ** 2
+    level = spectrum.mean(axis=(0, 1, 2, 3))
+    near = max(num // 4, 3)
+    positive, negative = level[2:near].sum(), level[num - near + 1 : num - 1].sum()
+    if negative > positive * 10 ** (MIRRORED_DB / 10):
+        yield (
+            f"{10 * np.log10(negative / max(positive, 1e-300)):.0f} dB more energy lies at negative beat frequencies"
+            " than at positive ones, so I and Q are probably the other way round; try --iq-order with the other order"
+        )
+
+
+def _layout(adc: AdcCube) -> Iterator[str]:
+    """Chirps of one transmitter, one loop apart, resemble each other in any room; else the layout is another."""
+    config = adc.config
+    if config.num_loops < 2:
+        return
+    stream = adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)]
+    flat = stream.reshape(len(stream), -1)
+    loop = config.num_slots * config.num_rx * config.num_samples
+    own = _likeness(flat, loop)
+    if own >= LEAST_LIKENESS:
+        return
+    others = {
+        (slots, rx, samples): _likeness(flat, slots * rx * samples)
+        for slots in (1, 2, 3, 4, 6, 12) for rx in (1, 2, 3, 4)
+        for samples in {64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512, config.num_samples}
+        if slots * rx * samples * 4 <= flat.shape[1]
+    }  # fmt: skip
+    best = max(
+        others, key=lambda key: (round(others[key], 2), -abs(key[2] - config.num_samples), -key[1]), default=None
+    )
+    if best is not None and others[best] > own + BETTER_LIKENESS:
+        slots, rx, samples = best
+        yield (
+            f"chirps one loop ({loop} samples) apart are alike to {own:.2f} only, but {slots * rx * samples} samples"
+            f" apart to {others[best]:.2f}, as with {slots} TX x {rx} RX x {samples} samples; --radar is probably not"
+            " the radar that recorded it"
+        )
+
+
+def _likeness(flat: np.ndarray, lag: int) -> float:
+    """Mean normalised correlation of a stream (frame, sample) with itself a lag later."""
+    before, after = flat[:, :-lag], flat[:, lag:]
+    product = np.abs(np.vdot(before, after))
+    return float(product / max(np.linalg.norm(before) * np.linalg.norm(after), 1e-300))
+
+
+def _transmitters(cube: RadarCube) -> Iterator[str]:
+    """Another order of transmitters that makes static cells better plane waves."""
+    config = cube.config
+    if config.is_coded or config.num_tx < 2:
+        return
+    still = cube.values[:FRAMES_LOOKED_AT, :, config.num_loops // 2].mean(axis=0)  # (range, antenna)
+    strongest = np.argsort(-(np.abs(still) ** 2).sum(axis=1))[:CELLS]
+    signal = still[strongest].reshape(-1, config.num_tx, config.num_rx)
+    waves = _plane_waves(config)
+    fired = np.array(config.tx_order)
+    shares = {}
+    for order in permutations(range(config.num_tx)):
+        # the slot that was taken for transmitter tx_order[s] would be transmitter order[s]
+        moved = np.empty_like(signal)
+        moved[:, list(order)] = signal[:, fired]
+        shares[order] = _wave_share(moved.reshape(len(signal), -1), waves)
+    best = max(shares, key=lambda order: shares[order])
+    if shares[best] > shares[config.tx_order] + BETTER_WAVE:
+        yield (
+            f"with the transmitters in the order {','.join(map(str, best))} static cells see plane waves to"
+            f" {shares[best]:.2f}, in the order {','.join(map(str, config.tx_order))} only to"
+            f" {shares[config.tx_order]:.2f}; try --tx-order {','.join(map(str, best))}"
+        )
+
+
+def _plane_waves(config: RadarConfig) -> np.ndarray:
+    """Steering vectors (antenna, direction) of unit norm over the front."""
+    across, up = np.meshgrid(np.linspace(-0.95, 0.95, 61), np.linspace(-0.7, 0.7, 15))
+    direction = np.stack([across.ravel(), np.zeros(across.size), up.ravel()])
+    turns = config.antenna_position_m @ direction / config.wavelength_m
+    return np.exp(-2j * np.pi * turns) / np.sqrt(config.num_antennas)
+
+
+def _wave_share(signal: np.ndarray, waves: np.ndarray) -> float:
+    """Share of the energy of cells (cell, antenna) in their best plane wave, weighted by amplitude."""
+    best = (np.abs(signal.conj() @ waves) ** 2).max(axis=1)
+    energy = (np.abs(signal) ** 2).sum(axis=1)
+    weight = np.sqrt(energy)
+    return float((weight * best / np.maximum(energy, 1e-300)).sum() / max(float(weight.sum()), 1e-300))
+
+
+def _velocity_sign(cube: RadarCube) -> Iterator[str]:
+    """What comes nearer in range must have negative radial velocities."""
+    config = cube.config
+    if config.num_loops < 8 or len(cube.values) < FEWEST_MOVING_FRAMES:
+        return
+    power = range_doppler_power(remove_static(cube))
+    level = power.sum(axis=(1, 2))
+    speed = (power * cube.grid.radial_velocity_mps).sum(axis=(1, 2)) / np.maximum(level, 1e-300)
+    place = (power.sum(axis=2) * cube.grid.range_m).sum(axis=1) / np.maximum(level, 1e-300)
+    travelled = np.diff(place)
+    expected = (speed[1:] + speed[:-1]) / 2 * config.frame_period_s
+    sure = np.abs(expected) > 0.2 * config.range_resolution_m
+    if sure.sum() < FEWEST_MOVING_FRAMES - 1:
+        return
+    agreement = float((travelled[sure] * expected[sure]).sum() / (expected[sure] ** 2).sum())
+    if agreement < -0.5:
+        yield (
+            "what moves nearer in range has positive radial velocities: the loops of a frame are probably in reverse"
+            " order, or I and Q the other way round"
+        )

@@ -1,0 +1,105 @@
+"""Recordings read wrongly are noticed, with the likelier reading; right ones are not."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.cli.main import main
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.formats.dca1000 import write_bin
+from mmweaver.recordings.plausibility import implausible
+from mmweaver.recordings.processing import process_recording
+
+RADAR = replace(AWR1843, num_loops=16, num_samples=64, sample_rate_hz=1.13e6, first_range_bin=0, num_range_bins=64)
+
+
+def room(config: RadarConfig, num_frames: int = 8) -> AdcCube:
+    """Fifteen static points, one that comes nearer at 0.9 m/s, and noise, in counts; held within a chirp."""
+    rng = np.random.default_rng(3)
+    loop_s = np.arange(config.num_loops) * config.loop_period_s
+    time_s = np.arange(num_frames)[:, None] * config.frame_period_s + loop_s
+    time_s = time_s[:, :, None] + config.tx_delay_s  # (frame, loop, tx)
+    samples = np.zeros((*time_s.shape, config.num_rx, config.num_samples), complex)
+    fast = np.arange(config.num_samples) / config.sample_rate_hz - config.num_samples / config.sample_rate_hz / 2
+    antennas = config.antenna_position_m.reshape(config.num_tx, config.num_rx, 3)
+    for index in range(16):
+        range_m = rng.uniform(0.4, 1.1) + 0 * time_s if index else 1.3 - 0.9 * time_s
+        azimuth, elevation = rng.uniform(-0.7, 0.7), rng.uniform(-0.2, 0.2)
+        towards = np.array([np.sin(azimuth), np.cos(azimuth), np.sin(elevation)])
+        path_m = 2 * range_m[..., None] - antennas @ towards
+        delay_s = path_m[..., None] / 299_792_458
+        turns = config.centre_frequency_hz * delay_s + config.chirp_slope_hz_per_s * delay_s * fast
+        samples += (300 if index else 900) * np.exp(2j * np.pi * turns)
+    samples += 5 * (rng.standard_normal(samples.shape) + 1j * rng.standard_normal(samples.shape))
+    return AdcCube(samples=np.rint(samples).astype(np.complex64), config=config, scale=float("nan"))
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("plausible")
+    write_bin(folder / "adc_data.bin", room(RADAR), counts_per_unit=1.0)
+    (folder / "radar.json").write_text(RADAR.to_json())
+    return folder
+
+
+def read(path: Path, config: RadarConfig = RADAR, **options) -> list[str]:
+    return process_recording(path, config, analyse=False, **options).meta["warnings"]
+
+
+def test_a_right_reading_is_plausible(recording: Path):
+    assert read(recording / "adc_data.bin") == []
+
+
+def test_a_wrong_iq_order_is_noticed_and_refused(recording: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path):
+    assert any("--iq-order" in text for text in read(recording / "adc_data.bin", iq_order="qi"))
+    with pytest.raises(InputError, match="--iq-order"):
+        read(recording / "adc_data.bin", iq_order="qi", strict=True)
+    words = ["process", str(recording / "adc_data.bin"), "--radar", str(recording / "radar.json"), "--iq-order", "qi"]
+    words += ["--no-pictures", "--no-analysis", "--out"]
+    assert main([*words, str(tmp_path / "out")]) == 0
+    assert "warning: " in capsys.readouterr().out
+    assert main([*words, str(tmp_path / "none"), "--strict"]) == 2
+    assert not (tmp_path / "none").exists()
+
+
+def test_the_order_of_the_transmitters(recording: Path):
+    found = read(recording / "adc_data.bin", tx_order=(2, 0, 1))
+    assert len(found) == 1
+    assert found[0].endswith("--tx-order 0,2,1")
+
+
+def test_another_radars_layout(recording: Path):
+    """Twice the samples, half the loops: the file has the right size."""
+    other = replace(RADAR, num_samples=128, num_loops=8, sample_rate_hz=2.26e6, num_range_bins=128)
+    other = replace(other, tx_position_m=RADAR.tx_position_m[:2], tx_order=(0, 1), num_loops=12)
+    found = read(recording / "adc_data.bin", other)
+    assert any("768 samples apart" in text for text in found)
+
+
+def test_floating_point_numbers_are_no_counts(recording: Path, tmp_path: Path):
+    for kind in (np.complex128, np.complex64):
+        samples = room(RADAR).samples.astype(kind) / 700
+        samples.tofile(tmp_path / "adc_data.bin")
+        assert any("read as int16" in text for text in read(tmp_path / "adc_data.bin"))
+
+
+def test_constant_and_clipped_frames():
+    adc = room(RADAR)
+    broken = adc.samples.copy()
+    broken[3:5] = 0
+    assert implausible(replace(adc, samples=broken), radar_cube(adc))[0].startswith("2 of 8 frames are constant")
+    loud = np.clip(40 * adc.samples.real, -32768, 32767) + 1j * np.clip(40 * adc.samples.imag, -32768, 32767)
+    loud = replace(adc, samples=loud.astype(np.complex64))
+    assert any("clipped" in text for text in implausible(loud, radar_cube(loud)))
+
+
+def test_loops_in_reverse_order():
+    adc = room(RADAR)
+    backwards = replace(adc, samples=np.ascontiguousarray(adc.samples[:, ::-1]))
+    assert any("reverse order" in text for text in implausible(backwards, radar_cube(backwards)))
