@@ -12,10 +12,12 @@ from mmweaver import Weaver
 
 weaver = Weaver(radar="awr1843", method="physics")
 result = weaver.generate(weaver.sample_room(), "a person jumps", frames=2, keep_adc=True)
-samples = result.adc.samples[0]  # (loop, tx, rx, sample)
+adc = result.adc
+assert adc is not None  # kept
+samples = adc.samples[0]  # (loop, tx, rx, sample)
 window = np.hanning(samples.shape[-1])
 profile = np.abs(np.fft.fft(samples * window)).mean(axis=(0, 1, 2)) / window.sum()  # (sample,)
-range_m = np.arange(len(profile)) * result.adc.config.range_resolution_m
+range_m = np.arange(len(profile)) * adc.config.range_resolution_m
 inside = (range_m > 0.5) & (range_m < range_m[-1] - 0.5)  # without the leakage of the transmitters
 print(f"strongest echo at {range_m[inside][profile[inside].argmax()]:.2f} m")
 

@@ -1,0 +1,250 @@
+"""Makes a labelled set: matched draws, one sequence after another, then the store with its splits and leak report.
+
+Finished sequences are kept in `parts/`, so it may be stopped at any time and started again with the same bits.
+"""
+
+import json
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.activity_sets.activity_list import ActivityList
+from mmweaver.activity_sets.leak_report import leak_report
+from mmweaver.activity_sets.matched_draws import Draw, PlannedSequence, matched_draws, places_of, shuffled
+from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
+from mmweaver.core.checksums import write_sums
+from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import check_output_folder, is_empty
+from mmweaver.core.safe_files.safe_text import parse_json, read_json
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import joint
+from mmweaver.datasets.activity_store import (
+    ACTIVITIES_FILE,
+    LEAKS_FILE,
+    SCHEMA_VERSION,
+    SET_FILE,
+    SPLIT_KEYS,
+    SPLITS,
+    STORE,
+    create_iq,
+    packed_iq,
+    write_set,
+)
+from mmweaver.features import point_table
+from mmweaver.formats.npz_files import read_npz, write_npz
+from mmweaver.generate import Weaver, compose_request
+from mmweaver.generation import Room
+
+PARTS = "parts"
+SHARES = (0.7, 0.15, 0.15)  # of the groups in train, validation and test
+DEFAULT_SECONDS = 3.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class SetOptions:
+    """What is asked for; a set is made anew bit for bit from these, the rooms and the radar."""
+
+    each: int = 20  # sequences a label
+    seconds: float = DEFAULT_SECONDS
+    subjects: int = 10
+    places: int = 12  # a room
+    split_by: str = "subject"
+    seed: int = 0
+    with_iq: bool = True
+
+    def __post_init__(self) -> None:
+        for name, most in (("each", 100_000), ("subjects", 10_000), ("places", 1000)):
+            if not 1 <= getattr(self, name) <= most:
+                raise InputError(f"{name} must be 1 to {most}, not {getattr(self, name)}")
+        if self.split_by not in SPLIT_KEYS:
+            raise InputError(f"splits are by {', '.join(SPLIT_KEYS)}, not {self.split_by!r}")
+        if self.seed < 0:
+            raise InputError(f"the seed must be 0 or above, not {self.seed}")
+
+
+class SetBuilder:
+    """One set: `plan` says what it holds, `make` makes what is missing."""
+
+    def __init__(
+        self, out: Path, activities: ActivityList, rooms: Sequence[Room], weaver: Weaver, options: SetOptions, *,
+        command: str, activities_text: str,
+    ):  # fmt: skip
+        self.out, self.activities, self.rooms, self.weaver, self.options = out, activities, list(rooms), weaver, options
+        self.command, self.activities_text = command, activities_text
+
+    @cached_property
+    def plan(self) -> list[PlannedSequence]:
+        """All sequences in the order of the set. Raises InputError where no place serves all activities."""
+        options, window_m = self.options, self._window_m
+        places = [places_of(room.scene, window_m, options.places, options.seed) for room in self.rooms]
+        sequences: list[PlannedSequence] = []
+        for draw in matched_draws(places, options.each, options.subjects, options.seed, self._can_do):
+            sequences += self._of_draw(draw)
+        return shuffled(sequences, options.seed)
+
+    def _of_draw(self, draw: Draw) -> list[PlannedSequence]:
+        return [
+            PlannedSequence(
+                draw=draw, label=label, sentence=(draw.index + label) % len(sentences),
+                text=sentences[(draw.index + label) % len(sentences)],
+            )
+            for label, sentences in enumerate(self.activities.sentences.values())
+        ]  # fmt: skip
+
+    def _can_do(self, draw: Draw) -> str:
+        """Why a draw does not serve all labels; "" where it does."""
+        for one in self._of_draw(draw):
+            try:
+                compose_request(self._request(one), self.rooms[draw.room].scene)
+            except InputError as error:
+                return f"{one.text!r}: {error}"
+        return ""
+
+    def _request(self, one: PlannedSequence) -> Any:
+        draw = one.draw
+        return self.weaver.request(
+            one.text, seconds=self.options.seconds, seed=draw.seed, at=draw.start_m, heading_rad=draw.heading_rad,
+            subject=draw.subject,
+        )  # fmt: skip
+
+    @property
+    def _window_m(self) -> tuple[float, float]:
+        range_m = self.weaver.radar.range_m
+        return float(range_m[0]), float(range_m[-1])
+
+    # making ----------------------------------------------------------------------------------------------------------
+    def make(self, listener: Callable[[int, int], object] | None = None) -> dict[str, Any]:
+        """Makes what is missing and returns the leak report with the number of sequences. Raises InputError."""
+        self._begin()
+        if not (self.out / STORE).is_dir():
+            for number, one in enumerate(self.plan):
+                self._part(number, one)
+                if listener is not None:
+                    listener(number + 1, len(self.plan))
+            self._assemble()
+        return read_json(self.out / LEAKS_FILE)
+
+    def _begin(self) -> None:
+        check_output_folder(self.out, overwrite=True, files=[SET_FILE, LEAKS_FILE])
+        if self.out.is_dir() and not is_empty(self.out) and not (self.out / SET_FILE).is_file():
+            raise InputError(f"{self.out} is not empty and holds no labelled set; choose another folder")
+        text = json.dumps(self._description(), indent=1, ensure_ascii=False) + "\n"
+        if create_once(self.out / SET_FILE, text) != text:
+            raise InputError(f"{self.out} holds a set of other settings; choose another folder or the same settings")
+        (self.out / PARTS).mkdir(exist_ok=True)
+
+    def _description(self) -> dict[str, Any]:
+        return {
+            "schema_version": SCHEMA_VERSION, "command": self.command, "options": asdict(self.options),
+            "activities": {label: list(texts) for label, texts in self.activities.sentences.items()},
+            "rooms": [room.inputs for room in self.rooms],
+            "method": self.weaver.method_name, "radar": parse_json(self.weaver.radar.to_json(), "the radar"),
+        }  # fmt: skip
+
+    def _part(self, number: int, one: PlannedSequence) -> None:
+        file = self.out / PARTS / f"{number:06d}.npz"
+        if file.is_file():
+            return
+        made = self.weaver.carry_out(self._request(one), self.rooms[one.draw.room])
+        iq, iq_scale = packed_iq(made.cube)
+        power = float(np.mean(np.abs(made.cube.values) ** 2)) * made.cube.scale**2
+        end_m = made.pose.joints_m[-1, 0, :2]
+        arrays = {
+            "joints": made.pose.joints_m.astype(np.float32), "points": point_table(made.points),
+            "point_frame": made.points.frame.astype(np.int32), "iq_scale": np.float64(iq_scale),
+            "height": np.float64(made.pose.height_m), "energy_db": np.float64(10 * np.log10(max(power, 1e-300))),
+            "end_m": np.asarray(end_m, np.float64),
+        } | ({"iq": iq} if self.options.with_iq else {})  # fmt: skip
+        with atomic_file(file) as temporary:
+            write_npz(temporary, **arrays)
+
+    # the store -------------------------------------------------------------------------------------------------------
+    def _assemble(self) -> None:
+        small = ("joints", "points", "point_frame", "iq_scale", "height", "energy_db", "end_m")
+        parts = [
+            {name: np.asarray(stored[name]) for name in small}
+            for stored in (read_npz(self._part_file(number)) for number in range(len(self.plan)))
+        ]
+        columns = self._columns(parts)
+        arrays = {
+            "joints": np.stack([part["joints"] for part in parts]),
+            "points": np.concatenate([part["points"] for part in parts]).astype(np.float32),
+            "point_frame": np.concatenate([part["point_frame"] for part in parts]).astype(np.int32),
+            "point_sequence": np.repeat(np.arange(len(parts)), [len(part["points"]) for part in parts]).astype(
+                np.int32
+            ),
+        }
+        if self.options.with_iq:
+            arrays["iq_scale"] = np.array([float(part["iq_scale"]) for part in parts])
+        config = self._request(self.plan[0]).config
+        with staged_folder(self.out, overwrite=True) as stage:
+            write_set(stage, config, self.activities.labels, columns, arrays)
+            if self.options.with_iq:
+                iq = create_iq(stage, len(parts), config, arrays["joints"].shape[1])
+                for number in range(len(parts)):
+                    iq[number] = read_npz(self._part_file(number))["iq"]
+            report = self._leaks(columns, parts, stage)
+            (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
+            (stage / ACTIVITIES_FILE).write_text(self.activities_text, encoding="utf-8")
+            shutil.copyfile(self.out / SET_FILE, stage / SET_FILE)
+            write_sums(stage)
+        shutil.rmtree(self.out / PARTS)
+
+    def _part_file(self, number: int) -> Path:
+        return self.out / PARTS / f"{number:06d}.npz"
+
+    def _columns(self, parts: list[dict[str, np.ndarray]]) -> dict[str, Any]:
+        plan = self.plan
+        groups = {
+            "subject": [one.draw.subject for one in plan], "place": [(one.draw.room, one.draw.place) for one in plan],
+            "room": [one.draw.room for one in plan], "sentence": [one.sentence for one in plan],
+        }  # fmt: skip
+        splits = {f"split_{key}": split_of(groups[key], key, self.options.seed) for key in SPLIT_KEYS}
+        return {
+            "label": [one.label for one in plan], "label_name": [self.activities.labels[one.label] for one in plan],
+            "text": [one.text for one in plan], "subject": groups["subject"],
+            "place": [one.draw.place for one in plan], "room": groups["room"],
+            "draw": [one.draw.index for one in plan], "heading": [one.draw.heading_rad for one in plan],
+            "height": [float(part["height"]) for part in parts],
+            "split": splits[f"split_{self.options.split_by}"], **splits,
+        }  # fmt: skip
+
+    def _leaks(self, columns: dict[str, Any], parts: list[dict[str, np.ndarray]], stage: Path) -> dict[str, Any]:
+        first_m = np.stack([part["joints"][0] for part in parts])
+        start = np.concatenate([first_m[:, joint("pelvis"), :2], np.array(columns["room"])[:, None]], axis=1)
+        across = first_m[:, joint("right_hip"), :2] - first_m[:, joint("left_hip"), :2]
+        facing = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-9)
+        sizes = [sum(file.stat().st_size for file in (stage / STORE / "iq" / "c" / str(n)).rglob("*") if file.is_file())
+                 for n in range(len(parts))]  # fmt: skip
+        circumstances = {
+            "start_place": start, "heading": facing, "person": [(one.draw.subject,) for one in self.plan],
+            "height": [(value,) for value in columns["height"]],
+            "duration": [(len(part["joints"]),) for part in parts], "file_size": [(size,) for size in sizes],
+            "order": [(number,) for number in range(len(parts))],
+            "order_in_cycle": [(number % len(self.activities.labels),) for number in range(len(parts))],
+            "end_place": [tuple(part["end_m"]) for part in parts],
+            "energy": [(float(part["energy_db"]),) for part in parts],
+        }  # fmt: skip
+        values = {name: np.asarray(rows, np.float64) for name, rows in circumstances.items()}
+        return leak_report(values, np.asarray(columns["label"]), np.asarray(columns["draw"]))
+
+
+def split_of(groups: Sequence[Any], key: str, seed: int) -> list[str]:
+    """The split of each sequence: whole groups go to train, validation or test in about the shares of SHARES.
+
+    With fewer than three groups all are for training: nothing can be held out.
+    """
+    unique = sorted(set(groups))
+    if len(unique) < len(SPLITS):
+        return [SPLITS[0]] * len(groups)
+    order = stream(seed, "activity set", "split", key).permutation(len(unique))
+    held = [max(1, round(share * len(unique))) for share in SHARES[1:]]
+    of: dict[Any, str] = {}
+    for place, group in enumerate(order):
+        of[unique[int(group)]] = SPLITS[1] if place < held[0] else SPLITS[2] if place < held[0] + held[1] else SPLITS[0]
+    return [of[group] for group in groups]

@@ -1,0 +1,90 @@
+"""What a classifier knows without looking at the radar signal: leaks.json.
+
+One-nearest-neighbour classifiers see one circumstance each (start place, person, duration ...) and are tested on people
+that they have not seen. With matched draws they are at chance. What cannot be equal between activities, such as energy
+or where a walk ends, is reported apart: it is part of what the radar sees.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from mmweaver.core.shapes import Array
+
+Z_99 = 2.576
+INHERENT = {
+    "end_place": "where a person ends is part of what is done: a walk leads elsewhere",
+    "energy": "how much a body moves is part of what is done",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Leak:
+    """How well one circumstance predicts the label."""
+
+    accuracy: float
+    low: float  # 99 % interval (Wilson)
+    high: float
+    chance: float
+    number: int
+
+    @property
+    def leaks(self) -> bool:
+        """Whether the accuracy is above chance beyond the interval."""
+        return self.low > self.chance
+
+
+def leak_report(
+    circumstances: dict[str, Float[Array, "sequence column"]],
+    label: Int[Array, " sequence"],
+    group: Int[Array, " sequence"],
+) -> dict[str, Any]:
+    """The report as JSON types: each circumstance with its accuracy, interval and chance, and a verdict.
+
+    `group`: the person (or draw) of each sequence; a classifier is never tested on a group that it has seen.
+    """
+    found = {name: _score(values, label, group) for name, values in circumstances.items()}
+    avoidable = [name for name, leak in found.items() if leak.leaks and name not in INHERENT]
+    rows = {
+        name: {
+            "accuracy": round(leak.accuracy, 4), "interval_99": [round(leak.low, 4), round(leak.high, 4)],
+            "chance": round(leak.chance, 4), "sequences": leak.number, "leaks": leak.leaks,
+            **({"cannot_be_avoided": INHERENT[name]} if name in INHERENT else {}),
+        }
+        for name, leak in found.items()
+    }  # fmt: skip
+    verdict = f"leaks: {', '.join(avoidable)}" if avoidable else "leaks: none found"
+    return {"schema_version": 1, "verdict": verdict, "classifier": "1-nearest neighbour, unseen groups", "of": rows}
+
+
+def _score(values: Float[Array, "sequence column"], label: Array, group: Array) -> Leak:
+    spread = values.std(axis=0)
+    scaled = np.asarray(values / np.where(spread > 0, spread, 1.0), np.float64)
+    right = np.zeros(len(label))
+    for one in np.unique(group):
+        test = group == one
+        if (~test).any():
+            right[test] = _right(scaled[~test], label[~test], scaled[test], label[test])
+    number = len(label)
+    accuracy = float(right.mean())
+    chance = float(np.bincount(label).max() / number)
+    low, high = _wilson(accuracy, number)
+    return Leak(accuracy=accuracy, low=low, high=high, chance=chance, number=number)
+
+
+def _right(train: Array, train_label: Array, test: Array, test_label: Array) -> Float[Array, " sequence"]:
+    """The expected share of right answers of the nearest neighbour; equally near ones are asked in equal parts."""
+    distance = np.linalg.norm(test[:, None] - train[None], axis=-1)
+    nearest: Bool[Array, "test train"] = distance <= distance.min(axis=1, keepdims=True) + 1e-12
+    same = train_label[None, :] == test_label[:, None]
+    return (nearest & same).sum(axis=1) / nearest.sum(axis=1)
+
+
+def _wilson(share: float, number: int) -> tuple[float, float]:
+    """Wilson's score interval."""
+    z2 = Z_99**2
+    centre = (share + z2 / (2 * number)) / (1 + z2 / number)
+    half = Z_99 / (1 + z2 / number) * np.sqrt(share * (1 - share) / number + z2 / (4 * number**2))
+    return float(max(centre - half, 0.0)), float(min(centre + half, 1.0))

@@ -1,0 +1,107 @@
+"""mmweaver dataset --activities: a labelled set in one's own rooms."""
+
+import argparse
+import json
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+from mmweaver.cli.arguments import Options, number, radar_of, whole
+from mmweaver.core.errors import InputError
+
+NEEDS_ACTIVITIES = ("room", "rgb", "depth", "camera", "each", "seconds", "subjects", "split_by", "method")
+
+
+def add_activity_options(group: Options) -> None:
+    """Declares the options; all need --activities."""
+    group.add_argument(
+        "--activities", type=Path, metavar="TOML",
+        help='a file with a table [activities] of lines such as: waving = ["a person waves with the left hand"]',
+    )  # fmt: skip
+    group.add_argument(
+        "--room", type=Path, action="append", metavar="DIR",
+        help="a folder with rgb.png, depth.png and camera.json (mmweaver rooms makes such folders); once more for each"
+        " further room",
+    )  # fmt: skip
+    group.add_argument("--rgb", type=Path, metavar="PNG", help="instead of --room: colour picture of the room")
+    group.add_argument("--depth", type=Path, metavar="FILE", help="its depth")
+    group.add_argument("--camera", type=Path, metavar="JSON", help="its camera")
+    group.add_argument("--each", type=whole, metavar="N", help="sequences of each label (default 20)")
+    group.add_argument("--seconds", type=number, metavar="S", help="length of every sequence (default 3)")
+    group.add_argument("--subjects", type=whole, metavar="N", help="different people (default 10)")
+    group.add_argument(
+        "--split-by",
+        choices=("subject", "place", "room", "sentence"),
+        help="what is held out for tests (default subject)",
+    )
+    group.add_argument("--method", help="weaver, the network (default), or physics")
+    group.add_argument("--no-iq", action="store_true", help="store joints and points, but no signals")
+
+
+def is_activity_set_asked(arguments: argparse.Namespace) -> bool:
+    """Whether --activities is given. Raises InputError where one of its options is given without it."""
+    if arguments.activities is not None:
+        return True
+    given = [name for name in NEEDS_ACTIVITIES if getattr(arguments, name) is not None]
+    if given or arguments.no_iq:
+        name = given[0].replace("_", "-") if given else "no-iq"
+        raise InputError(f"--{name} is for labelled sets; give --activities, too")
+    return False
+
+
+def run_activity_set(arguments: argparse.Namespace) -> int:
+    """Makes what is missing of the set and prints the verdict of its leak report. Raises InputError."""
+    from tqdm import tqdm
+
+    from mmweaver.activity_sets.activity_list import read_activities
+    from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
+    from mmweaver.core.range_window import chosen_range
+    from mmweaver.core.safe_files.safe_text import read_text
+    from mmweaver.formats.radar_file import load_radar
+    from mmweaver.generate import Weaver
+
+    activities = read_activities(arguments.activities)
+    given = {name: getattr(arguments, name) for name in ("each", "seconds", "subjects", "split_by")}
+    options = SetOptions(
+        seed=arguments.seed, with_iq=not arguments.no_iq,
+        **{name: value for name, value in given.items() if value is not None},
+    )  # fmt: skip
+    config = chosen_range(load_radar(radar_of(arguments) or "awr1843"), arguments.range_m, arguments.range_bins)
+    weaver = Weaver(method=arguments.method or "auto", radar=config)
+    builder = SetBuilder(
+        arguments.out, activities, _rooms(arguments, weaver), weaver, options, command=_command(),
+        activities_text=read_text(arguments.activities),
+    )  # fmt: skip
+    with tqdm(unit="sequence", disable=arguments.quiet or None) as bar:
+
+        def show(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        report = builder.make(show)
+    if arguments.json:
+        print(json.dumps({"out": str(arguments.out), "leaks": report}))
+    elif not arguments.quiet:
+        print(f"{len(activities.labels)} labels x {options.each} sequences in {arguments.out}; {report['verdict']}")
+    return 0
+
+
+def _command() -> str:
+    """The command line that makes the set, or the rest of it."""
+    return shlex.join(["mmweaver", *sys.argv[1:]]) if sys.argv[1:2] == ["dataset"] else "mmweaver dataset"
+
+
+def _rooms(arguments: argparse.Namespace, weaver: Any) -> list[Any]:
+    from mmweaver.scene.photo_files import RoomFiles
+
+    if arguments.room and arguments.rgb:
+        raise InputError("give --room folders or --rgb and --depth, not both")
+    if arguments.rgb is not None:
+        if arguments.depth is None:
+            raise InputError("--rgb needs --depth, too: the room is built from the distance of each pixel")
+        return [weaver.read_room(arguments.rgb, arguments.depth, arguments.camera)]
+    if not arguments.room:
+        raise InputError("which room? give --room DIR with rgb.png and depth.png, or --rgb and --depth")
+    files = [RoomFiles.in_folder(folder) for folder in arguments.room]
+    return [weaver.read_room(one.rgb, one.depth, one.camera) for one in files]

@@ -1,0 +1,1 @@
+"""Results in the layouts and containers that other people's tools read."""

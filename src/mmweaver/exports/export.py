@@ -1,0 +1,58 @@
+"""The table of formats, and the one function that writes any of them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from mmweaver.core.atomic_files import staged_folder
+from mmweaver.core.errors import InputError
+from mmweaver.stored_result import read_result
+
+
+@dataclass(frozen=True, kw_only=True)
+class Format:
+    """One format: what it is, and the function that writes it into a folder."""
+
+    what: str
+    module: str
+    function: str
+    needs_samples: bool = False
+
+    def writer(self) -> Callable:
+        """The function, imported at its first use: most formats need a package of their own."""
+        return getattr(import_module(f"mmweaver.exports.{self.module}"), self.function)
+
+
+FORMATS = {
+    "hupr": Format(
+        what="HuPR's range-Doppler-angle arrays", module="tensor_layouts", function="write_hupr", needs_samples=True
+    ),
+    "mmmesh": Format(what="mmMesh's point frames", module="tensor_layouts", function="write_mmmesh"),
+    "rf_genesis": Format(
+        what="RF-Genesis' radar frames", module="tensor_layouts", function="write_rf_genesis", needs_samples=True
+    ),
+    "drai": Format(what="dynamic range-angle images, 32 x 32", module="tensor_layouts", function="write_drai"),
+    "radhar": Format(what="RadHAR's text of points", module="cloud_layouts", function="write_radhar"),
+    "mars": Format(what="MARS's tables of points and joints", module="cloud_layouts", function="write_mars"),
+    "mat": Format(what="MATLAB", module="containers", function="write_mat"),
+    "netcdf": Format(what="netCDF 3, for xarray", module="containers", function="write_netcdf"),
+    "ros2": Format(what="ROS 2 bag", module="robotics", function="write_ros2"),
+    "mcap": Format(what="MCAP, for Foxglove", module="robotics", function="write_mcap"),
+    "rerun": Format(what="Rerun recording (.rrd)", module="rerun_file", function="write_rerun"),
+    "mp4": Format(what="video, H.264", module="videos", function="write_mp4"),
+    "webm": Format(what="video, VP9", module="videos", function="write_webm"),
+}
+
+
+def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False) -> str:
+    """Writes a result folder in another format into the folder `out`, or nothing; says what was written.
+
+    `kind` is a name in FORMATS. Raises InputError for another name, for a folder that is no result, and for a result
+    that the format cannot hold.
+    """
+    if kind not in FORMATS:
+        raise InputError(f"unknown format {kind!r}; known: {', '.join(FORMATS)}")
+    result = read_result(Path(folder))
+    with staged_folder(Path(out), overwrite=overwrite) as stage:
+        return FORMATS[kind].writer()(result, stage)

@@ -1,0 +1,42 @@
+"""A result as a recording of the viewer Rerun."""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.skeleton import BONES
+from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.stored_result import StoredResult
+
+
+def write_rerun(result: StoredResult, out: Path) -> str:
+    """`result.rrd`: points, skeletons and range-Doppler maps over time; usage reports are switched off.
+
+    Raises InputError where rerun-sdk is not installed.
+    """
+    try:
+        rr: Any = import_module("rerun")
+    except ImportError:
+        raise InputError("Rerun's format needs the package rerun-sdk; pip install 'mmweaver[rerun]'") from None
+    recording = rr.RecordingStream("mmweaver", recording_id=f"mmweaver-{result.meta.get('seed', 0)}")
+    recording.save(out / "result.rrd")
+    recording.log("radar", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    power = range_doppler_power(result.cube)
+    points = result.points
+    place = np.stack([points.x_m, points.y_m, points.z_m], axis=-1).reshape(-1, 3)
+    for index, time_s in enumerate(result.cube.grid.frame_time_s):
+        recording.set_time("time", duration=float(time_s))
+        own = points.frame == index
+        recording.log("radar/points", rr.Points3D(place[own], radii=0.03))
+        for person, pose in enumerate(result.poses):
+            recording.log(
+                f"radar/person_{person}", rr.LineStrips3D([pose.joints_m[index][list(bone)] for bone in BONES])
+            )
+        recording.log(
+            "maps/range_doppler_db", rr.Tensor(10 * np.log10(power[index] + 1e-30), dim_names=["range", "doppler"])
+        )
+    recording.flush()
+    return "a recording for Rerun"

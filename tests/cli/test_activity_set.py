@@ -1,0 +1,42 @@
+"""mmweaver dataset --activities: a set on disk, or one line."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from mmweaver.cli.main import main
+from mmweaver.datasets.activity_store import read_activity_set
+
+SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
+ACTIVITIES = '[activities]\nwave = "a person waves"\nstand = "a person stands"\n'
+
+
+def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    room = tmp_path / "room"
+    shutil.copytree(SAMPLE, room)
+    (tmp_path / "a.toml").write_text(ACTIVITIES)
+    told = ["dataset", str(tmp_path / "set"), "--room", str(room), "--activities", str(tmp_path / "a.toml")]
+    assert main([*told, "--each", "1", "--seconds", "2", "--no-iq", "--json", "--quiet"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert report["leaks"]["verdict"].startswith("leaks")
+    stored = read_activity_set(tmp_path / "set")
+    assert stored.label_names == ("wave", "stand")
+    assert stored.iq_scale is None
+    assert len(stored) == 2
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--each", "3"], ["--no-iq"], ["--activities", "missing.toml"], ["--activities", "a.toml"],
+     ["--activities", "a.toml", "--room", "missing"], ["--activities", "a.toml", "--rgb", "rgb.png"]],
+)  # fmt: skip
+def test_what_is_missing_is_said(
+    options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    (tmp_path / "a.toml").write_text(ACTIVITIES)
+    monkeypatch.chdir(tmp_path)
+    assert main(["dataset", "set", *options]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+    assert not (tmp_path / "set").exists()
