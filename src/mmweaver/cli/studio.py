@@ -1,0 +1,60 @@
+"""mmweaver studio: a page in the browser on which radar data is made, watched and exported."""
+
+import argparse
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError
+
+EXAMPLES = """examples:
+  mmweaver studio                                   # the bundled room, at http://127.0.0.1:8765
+  mmweaver studio --room living_room/ --room lab/   # folders with rgb.png, depth.png and camera.json
+  mmweaver studio --host 0.0.0.0                    # for others, who need the token that it prints
+"""
+DEFAULT_PORT = 8765
+LOOPBACK = "127.0.0.1"
+PACKAGES = ("starlette", "uvicorn", "websockets", "multipart", "python_multipart")  # of the extra
+
+
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
+        "studio", help="make and watch radar data in the browser", epilog=EXAMPLES,
+        description="Serves a page on which a sentence makes radar data at once: the room in 3D, maps, micro-Doppler,"
+        " comparison and export. Nothing is fetched from outside. Needs the extra: pip install 'mmweaver[studio]'.",
+    )  # fmt: skip
+    parser.add_argument(
+        "--room", type=Path, action="append", default=[], metavar="DIR",
+        help="a folder with rgb.png, depth.png and camera.json; once more for each further room",
+    )  # fmt: skip
+    parser.add_argument(
+        "--host", default=LOOPBACK, help=f"address to listen on (default {LOOPBACK}: this machine only)"
+    )
+    parser.add_argument(
+        "--port", type=int, default=DEFAULT_PORT, help=f"port (default {DEFAULT_PORT}; 0: any free one)"
+    )
+    parser.add_argument("--workers", type=int, metavar="N", help="sequences made at a time (default: one per core)")
+    parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
+    parser.set_defaults(run=run)
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serves until interrupted. Raises InputError for a port that is taken or a room that is none."""
+    if not 0 <= arguments.port <= 65535:
+        raise InputError(f"the port must be 0 to 65535, not {arguments.port}")
+    if arguments.workers is not None and not 1 <= arguments.workers <= 64:
+        raise InputError(f"--workers must be 1 to 64, not {arguments.workers}")
+    try:
+        from mmweaver.studio.serve import serve
+    except ModuleNotFoundError as error:
+        if error.name not in PACKAGES:
+            raise
+        raise InputError(f"the studio needs the package {error.name}; pip install 'mmweaver[studio]'") from None
+
+    serve(
+        arguments.room, host=arguments.host, port=arguments.port, workers=arguments.workers,
+        announce=partial(print, flush=True), open_browser=not arguments.no_browser,
+    )  # fmt: skip
+    return 0

@@ -1,0 +1,26 @@
+"""The page's player as a widget of a notebook, by anywidget."""
+
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.playback.html_page import page_file
+from mmweaver.playback.sequence import Playback
+from mmweaver.playback.wire import pack
+
+
+def player_widget(sequence: Playback, room: Playback | None) -> Any:
+    """An anywidget.AnyWidget that plays a sequence. Raises InputError where the extra 'notebook' is not installed."""
+    try:
+        import anywidget
+        import traitlets
+    except ModuleNotFoundError as error:
+        raise InputError(f"show() needs the package {error.name}; pip install 'mmweaver[notebook]'") from None
+
+    class PlayerWidget(anywidget.AnyWidget):
+        _esm = page_file("mmweaver.js").decode()
+        sequence = traitlets.Bytes().tag(sync=True)
+        room = traitlets.Bytes(None, allow_none=True).tag(sync=True)
+
+    return PlayerWidget(
+        sequence=pack(sequence.header, sequence.arrays), room=None if room is None else pack(room.header, room.arrays)
+    )

@@ -1,0 +1,61 @@
+"""Live: chunks of a stream, made while the visitor types; a rolling picture of the last seconds in the browser."""
+
+from collections import deque
+from collections.abc import Iterator
+from time import perf_counter
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.generate import Weaver
+from mmweaver.generation import Room
+from mmweaver.playback.sequence import make_playback
+from mmweaver.playback.wire import pack
+from mmweaver.streaming import StreamChunk
+from mmweaver.studio.asked import Asked
+
+CHUNK_FRAMES = 10
+
+
+class Live:
+    """One stream of one session. `next_chunk` is called for each chunk; `say` hands in the next sentence."""
+
+    def __init__(self, weaver: Weaver, room: Room, asked: Asked):
+        if len(asked.text) > 1:
+            raise InputError("Live has one person; leave the second sentence empty")
+        self._sentences: deque[str] = deque(asked.text)
+        self._chunks: Iterator[StreamChunk] = weaver.stream(
+            room, self._next_sentence(), seed=asked.seed, at=asked.at, chunk_frames=CHUNK_FRAMES
+        )
+        self._scale_db: tuple[float, float] | None = None
+        self._frames = 0
+        self._seconds = 0.0
+
+    def say(self, text: str) -> None:
+        """The sentence to go on with when the present one is done."""
+        self._sentences.append(text)
+
+    def _next_sentence(self) -> Iterator[str | None]:
+        while True:
+            yield self._sentences.popleft() if self._sentences else None
+
+    def next_chunk(self) -> bytes:
+        """The next chunk, packed for the page, with how many times faster than real time it was made.
+
+        Raises InputError where the first sentence cannot be carried out.
+        """
+        begun = perf_counter()
+        chunk = next(self._chunks)
+        self._frames += chunk.num_frames
+        self._seconds += perf_counter() - begun
+        shown = make_playback(chunk.cube, chunk.points, chunk.poses, self._meta(chunk), scale_db=self._scale_db)
+        if self._scale_db is None:  # the same scale for as long as it runs
+            self._scale_db = (shown.header["db"]["low"], shown.header["db"]["high"])
+        period_s = chunk.cube.config.frame_period_s
+        live = {
+            "frames": self._frames, "first_frame": chunk.first_frame, "refused": chunk.refused, "text": chunk.text,
+            "times_real_time": self._frames * period_s / max(self._seconds, 1e-6),
+        }  # fmt: skip
+        return pack({**shown.header, "live": live}, shown.arrays)
+
+    def _meta(self, chunk: StreamChunk) -> dict[str, Any]:
+        return {"text": chunk.text, **chunk.meta}

@@ -1,0 +1,241 @@
+"""The studio's server: the page, its calls, and who may make them."""
+
+import asyncio
+import contextlib
+import hmac
+from collections.abc import AsyncIterator, Callable
+from typing import Any, TypeVar
+from urllib.parse import urlsplit
+
+from starlette.applications import Starlette
+from starlette.datastructures import UploadFile
+from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_text import parse_json
+from mmweaver.playback.html_page import page_file
+from mmweaver.studio import exports, uploads
+from mmweaver.studio.asked import Asked
+from mmweaver.studio.jobs import BusyError, Jobs
+from mmweaver.studio.sessions import Session
+from mmweaver.studio.workshop import Workshop
+
+T = TypeVar("T")
+LOOPBACK = {"127.0.0.1", "localhost", "::1"}
+MAX_JSON_BYTES = 100_000
+MOST_IN_FLIGHT = 2  # chunks of a live stream that the page has not taken yet
+SECURITY = {
+    "content-security-policy": "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:;"
+    " connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cache-control": "no-store",
+}
+_INDEX = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>mmWeaver studio</title><link rel="icon" href="data:,">
+<script type="module" src="page/mmweaver.js"></script></head><body data-page="studio"></body></html>
+"""
+
+
+class Door:
+    """Lets in only requests to the host that was announced, from its own pages, with the token where there is one.
+
+    The host's name is checked because a foreign page could have its own name lead to this machine (DNS rebinding).
+    """
+
+    def __init__(self, app: ASGIApp, hosts: set[str], token: str | None):
+        self._app, self._hosts, self._token = app, hosts, token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] in ("http", "websocket"):
+            refusal = self._refusal(HTTPConnection(scope))
+            if refusal is not None:
+                if scope["type"] == "websocket":
+                    await WebSocket(scope, receive, send).close(code=1008)
+                else:
+                    await JSONResponse({"error": refusal}, status_code=403)(scope, receive, send)
+                return
+        await self._app(scope, receive, send)
+
+    def _refusal(self, asked: HTTPConnection) -> str | None:
+        name = urlsplit(f"//{asked.headers.get('host', '')}").hostname
+        if name not in self._hosts:
+            return "this host name is not served; use the address that mmweaver studio printed"
+        origin = asked.headers.get("origin")
+        if origin is not None and urlsplit(origin).netloc != asked.headers.get("host"):
+            return "requests from other pages are not answered"
+        given = asked.headers.get("x-token") or asked.query_params.get("token") or ""
+        needs_token = self._token is not None and asked.url.path.startswith("/api/")
+        if needs_token and not hmac.compare_digest(given.encode(), str(self._token).encode()):
+            return "the token is missing or wrong; use the address that mmweaver studio printed"
+        return None
+
+
+class StudioServer:
+    """The calls of the page. Everything that takes time goes through the one queue."""
+
+    def __init__(self, workshop: Workshop, *, workers: int | None = None):
+        self.workshop = workshop
+        self.jobs = Jobs(workers)
+
+    def app(self, *, hosts: set[str] | None = None, token: str | None = None) -> Starlette:
+        """The ASGI application; `hosts` are the names under which it may be asked for, by default this machine's."""
+        routes = [
+            Route("/", self._index),
+            Route("/page/mmweaver.js", self._script),
+            Route("/api/session", self._open, methods=["POST"]),
+            Route("/api/room/{name}", self._room),
+            Route("/api/generate", self._generate, methods=["POST"]),
+            Route("/api/upload", self._upload, methods=["POST"]),
+            Route("/api/result/{name}", self._result),
+            Route("/api/export/{name}/{kind}", self._export),
+            WebSocketRoute("/api/presence", self._presence),
+            WebSocketRoute("/api/live", self._live),
+        ]
+
+        @contextlib.asynccontextmanager
+        async def lifespan(_: Starlette) -> AsyncIterator[None]:
+            await self.jobs.run(self.workshop.warm_up)
+            yield
+            self.jobs.stop()
+            self.workshop.sessions.end_all()
+
+        return Starlette(
+            routes=routes, lifespan=lifespan, exception_handlers={InputError: _refused, BusyError: _busy},
+            middleware=[Middleware(Door, hosts=hosts or LOOPBACK, token=token)],
+        )  # fmt: skip
+
+    # the page --------------------------------------------------------------------------------------------------------
+    async def _index(self, _: Request) -> Response:
+        return Response(_INDEX, media_type="text/html", headers=SECURITY)
+
+    async def _script(self, _: Request) -> Response:
+        return Response(page_file("mmweaver.js"), media_type="text/javascript", headers=SECURITY)
+
+    # its calls -------------------------------------------------------------------------------------------------------
+    async def _open(self, _: Request) -> Response:
+        session = self.workshop.sessions.open()
+        offered = self.workshop.offer()
+        kinds = [(kind, label) for kind, (label, _) in exports.EXPORTS.items()]
+        return JSONResponse({"session": session.id, "exports": kinds, "live": True, "paths": False, **offered})
+
+    async def _room(self, request: Request) -> Response:
+        session = self._session(request)
+        name, radar = request.path_params["name"], request.query_params.get("radar", "awr1843")
+        return _packed(await self._do(request, lambda: self.workshop.room_bytes(session, name, radar)))
+
+    async def _generate(self, request: Request) -> Response:
+        session = self._session(request)
+        body = await _json(request)
+        return _packed(await self._do(request, lambda: self.workshop.generate(session, body)))
+
+    async def _result(self, request: Request) -> Response:
+        session = self._session(request)
+        name = request.path_params["name"]
+        return _packed(await self._do(request, lambda: self.workshop.result_bytes(session, name)))
+
+    async def _export(self, request: Request) -> Response:
+        session = self._session(request)
+        result = session.result(request.path_params["name"])
+        name, content = await self._do(request, lambda: exports.export(result, request.path_params["kind"]))
+        headers = {**SECURITY, "content-disposition": f'attachment; filename="{name}"'}
+        return Response(content, media_type="application/octet-stream", headers=headers)
+
+    async def _upload(self, request: Request) -> Response:
+        session = self._session(request)
+        if int(request.headers.get("content-length") or uploads.MAX_BYTES + 1) > uploads.MAX_BYTES:
+            raise InputError(f"an upload has at most {uploads.MAX_BYTES // 1_000_000} MB")
+        folder = session.folder / f"upload-{len(list(session.folder.iterdir()))}"
+        folder.mkdir()
+        async with request.form(max_files=uploads.MAX_FILES, max_fields=4) as form:
+            radar = form.get("radar")
+            for sent in form.getlist("files"):
+                if isinstance(sent, UploadFile):
+                    taken = {file.name for file in folder.iterdir()}
+                    with (folder / uploads.safe_name(sent.filename or "file", taken)).open("wb") as file:
+                        while part := await sent.read(1 << 20):
+                            file.write(part)
+        chosen = radar if isinstance(radar, str) and radar in dict(self.workshop.offer()["radars"]) else "awr1843"
+        return JSONResponse(await self._do(request, lambda: uploads.take(session, folder, chosen)))
+
+    async def _presence(self, socket: WebSocket) -> None:
+        """Open as long as the tab; its end is the session's."""
+        try:
+            session = self.workshop.sessions.get(socket.query_params.get("session", ""))
+        except InputError:
+            await socket.close(code=1008)
+            return
+        await socket.accept()
+        with contextlib.suppress(WebSocketDisconnect):
+            while True:
+                await socket.receive_text()
+        self.workshop.sessions.end(session)
+
+    async def _live(self, socket: WebSocket) -> None:
+        """Sentences come, chunks go; a chunk is made when the page has taken the one before the last."""
+        try:
+            session = self.workshop.sessions.get(socket.query_params.get("session", ""))
+        except InputError:
+            await socket.close(code=1008)
+            return
+        await socket.accept()
+        try:
+            live = self.workshop.live(session, parse_json(await socket.receive_text(), "the request"))
+            in_flight = 0
+            while True:
+                if in_flight >= MOST_IN_FLIGHT:
+                    said = parse_json(await socket.receive_text(), "the request")
+                    if isinstance(said, dict) and "ack" in said:
+                        in_flight -= 1
+                    else:
+                        live.say(Asked.of(said).text[0])
+                    continue
+                await socket.send_bytes(await self.jobs.run(live.next_chunk))
+                in_flight += 1
+        except (InputError, BusyError) as error:
+            await socket.send_json({"error": str(error) or "too many are waiting; try again in a minute"})
+            await socket.close()
+        except WebSocketDisconnect:
+            pass
+
+    # what they share -------------------------------------------------------------------------------------------------
+    def _session(self, request: Request) -> Session:
+        return self.workshop.sessions.get(request.headers.get("x-session", ""))
+
+    async def _do(self, request: Request, work: Callable[[], T]) -> T:
+        """Queues `work`; where the client leaves first, nobody waits for it."""
+
+        async def gone() -> bool:
+            return await request.is_disconnected()
+
+        try:
+            return await self.jobs.run(work, gone)
+        except asyncio.CancelledError:
+            raise HTTPException(499, "the client left") from None
+
+
+async def _json(request: Request) -> Any:
+    body = await request.body()
+    if len(body) > MAX_JSON_BYTES:
+        raise InputError("this request is too long")
+    return parse_json(body, "the request")
+
+
+def _packed(content: bytes) -> Response:
+    return Response(content, media_type="application/octet-stream", headers=SECURITY)
+
+
+async def _refused(_: Request, error: Exception) -> Response:
+    ways_on: list[Any] = getattr(error, "ways_on", [])
+    return JSONResponse({"error": " ".join(str(error).split()), "ways_on": ways_on}, status_code=422)
+
+
+async def _busy(_: Request, __: Exception) -> Response:
+    return JSONResponse({"error": "too many are waiting; try again in a minute"}, status_code=503)

@@ -1,0 +1,127 @@
+"""Sessions of the studio: each has its own rooms, results and folder, and takes them along when it ends."""
+
+import secrets
+import shutil
+import tempfile
+from collections import OrderedDict
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Lock
+from time import monotonic
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, Scene
+from mmweaver.generation import Generation, Room
+from mmweaver.playback.sequence import Playback, make_playback
+
+MAX_SESSIONS = 100
+MAX_RESULTS = 6  # of one session; the oldest go first
+MAX_RESULT_BYTES = 1_000_000_000  # cubes and samples of all sessions
+UNUSED_S = 1800.0  # a session that never said goodbye
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """What a session made or brought: a sequence and, for a generated one, all that made it."""
+
+    cube: RadarCube
+    points: PointCloud
+    poses: tuple[PoseSequence, ...]
+    meta: dict
+    scene: Scene | None = None
+    generation: Generation | None = None
+    asked: dict = field(default_factory=dict)  # the request, with `command` and `python`
+
+    @property
+    def num_bytes(self) -> int:
+        adc = None if self.generation is None else self.generation.adc
+        return self.cube.values.nbytes + (0 if adc is None else adc.samples.nbytes)
+
+    def playback(self) -> Playback:
+        """The sequence for the page."""
+        return make_playback(self.cube, self.points, self.poses, self.meta)
+
+
+class Session:
+    """One tab of a browser."""
+
+    def __init__(self) -> None:
+        self.id = secrets.token_urlsafe(16)
+        self.folder = Path(tempfile.mkdtemp(prefix="mmweaver-studio-"))  # readable by this user alone
+        self.rooms: dict[str, tuple[str, Room]] = {}  # by id: label and room
+        self.results: OrderedDict[str, Result] = OrderedDict()
+        self.used_s = monotonic()
+        self.is_open = True
+
+    def add(self, result: Result) -> str:
+        """Keeps a result and returns its id."""
+        name = secrets.token_urlsafe(9)
+        self.results[name] = result
+        while len(self.results) > MAX_RESULTS:
+            self.results.popitem(last=False)
+        return name
+
+    def result(self, name: str) -> Result:
+        """A result by its id. Raises InputError where it is not this session's, or gone."""
+        if name not in self.results:
+            raise InputError("this result is no longer kept; generate it again")
+        return self.results[name]
+
+    def end(self) -> None:
+        """Removes the session's folder; its rooms and results go with it."""
+        self.is_open = False
+        self.rooms.clear()
+        self.results.clear()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class Sessions:
+    """All open sessions, bounded in number and memory."""
+
+    def __init__(self) -> None:
+        self._open: dict[str, Session] = {}
+        self._lock = Lock()
+
+    def open(self) -> Session:
+        """A new session. Raises InputError where there are too many."""
+        with self._lock:
+            for session in [one for one in self._open.values() if monotonic() - one.used_s > UNUSED_S]:
+                self._end(session)
+            if len(self._open) >= MAX_SESSIONS:
+                raise InputError(f"the studio has {MAX_SESSIONS} open sessions; close a tab and load the page again")
+            session = Session()
+            self._open[session.id] = session
+            return session
+
+    def get(self, name: str) -> Session:
+        """A session by its id. Raises InputError where there is none."""
+        session = self._open.get(name)
+        if session is None:
+            raise InputError("this session has ended; load the page again")
+        session.used_s = monotonic()
+        return session
+
+    def end(self, session: Session) -> None:
+        """Ends a session."""
+        with self._lock:
+            self._end(session)
+
+    def end_all(self) -> None:
+        """Ends all, when the server stops."""
+        with self._lock:
+            for session in list(self._open.values()):
+                self._end(session)
+
+    def keep_within_memory(self) -> None:
+        """Drops the oldest results of the largest sessions until all fit."""
+        with self._lock:
+            while True:
+                sizes = {one: sum(r.num_bytes for r in one.results.values()) for one in self._open.values()}
+                if sum(sizes.values()) <= MAX_RESULT_BYTES or not sizes:
+                    return
+                largest = max(sizes, key=lambda one: sizes[one])
+                largest.results.popitem(last=False)
+
+    def _end(self, session: Session) -> None:
+        self._open.pop(session.id, None)
+        session.end()

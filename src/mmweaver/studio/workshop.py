@@ -1,0 +1,112 @@
+"""What the studio does for a session: rooms, sequences, comparisons and exports. Blocking; the server queues it."""
+
+from collections import OrderedDict
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import PRESETS
+from mmweaver.generate import Weaver
+from mmweaver.generation import Room
+from mmweaver.methods import METHODS
+from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.register_activity import load_activity_plugins
+from mmweaver.playback.room import room_playback
+from mmweaver.playback.wire import pack
+from mmweaver.studio.asked import Asked
+from mmweaver.studio.live import Live
+from mmweaver.studio.rooms import DEMO, OfferedRooms
+from mmweaver.studio.sessions import Result, Session, Sessions
+
+FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
+_MOST_WEAVERS = 12  # each keeps the room that it worked in last
+
+
+class Workshop:
+    """Rooms and weights shared by all sessions."""
+
+    def __init__(self, rooms: list[Path] | None = None):
+        self.rooms = OfferedRooms(rooms or [])
+        self.sessions = Sessions()
+        self._weavers: OrderedDict[tuple[str, str, str], Weaver] = OrderedDict()
+        self._lock = Lock()
+
+    def warm_up(self) -> None:
+        """Reads the first room and makes one sequence in it, so that the first visitor does not wait."""
+        name = self.rooms.names[0]
+        self._weaver(Asked(room=name, text=(FIRST_TEXT,))).generate(self.rooms.get(name), FIRST_TEXT)
+
+    def offer(self) -> dict[str, Any]:
+        """What the page's controls hold."""
+        load_activity_plugins()
+        names = {DEMO: "bundled sample"}
+        return {
+            "rooms": [(name, names.get(name, name)) for name in self.rooms.names],
+            "radars": [(name, name) for name in PRESETS],
+            "methods": [("auto", "network"), ("physics", "physics (ray-traced)")],
+            "boards": [],
+            "sentences": [activity.example for activity in BY_KEY.values()],
+            "text": FIRST_TEXT,
+        }
+
+    def room_of(self, session: Session, name: str) -> Room:
+        """A room by its id: the session's own or an offered one. Raises InputError."""
+        return session.rooms[name][1] if name in session.rooms else self.rooms.get(name)
+
+    def room_bytes(self, session: Session, name: str, radar: str) -> bytes:
+        """A room, packed for the page, with the places where this radar sees a person."""
+        label = session.rooms[name][0] if name in session.rooms else name
+        range_m = PRESETS[radar].range_m
+        shown = room_playback(self.room_of(session, name).scene, label, (float(range_m[0]), float(range_m[-1])))
+        return pack(shown.header, shown.arrays)
+
+    def generate(self, session: Session, body: Any) -> bytes:
+        """A sequence, kept in the session and packed for the page. Raises InputError."""
+        asked = Asked.of(body)
+        room = self.room_of(session, asked.room)
+        generation = self._weaver(asked).generate(room, **asked.request)
+        if asked.room in session.rooms:
+            options, call = ["--rgb", "rgb.png", "--depth", "depth.png"], 'read_room("rgb.png", "depth.png")'
+        else:
+            options, call = self.rooms.options(asked.room), self.rooms.call(asked.room)
+        repeated = {"command": asked.command(options), "python": asked.python(call)}
+        result = Result(
+            cube=generation.cube, points=generation.points, poses=generation.poses, meta=generation.meta,
+            scene=generation.scene, generation=generation, asked=repeated,
+        )  # fmt: skip
+        return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
+
+    def result_bytes(self, session: Session, name: str) -> bytes:
+        """A kept result, packed for the page."""
+        return self._packed(session.result(name), name, {})
+
+    def live(self, session: Session, body: Any) -> Live:
+        """A stream in one of the session's rooms. Raises InputError."""
+        asked = Asked.of(body)
+        return Live(self._weaver(asked), self.room_of(session, asked.room), asked)
+
+    def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
+        name = session.add(result)
+        self.sessions.keep_within_memory()
+        return self._packed(result, name, more)
+
+    @staticmethod
+    def _packed(result: Result, name: str, more: dict[str, Any]) -> bytes:
+        shown = result.playback()
+        return pack({**shown.header, **more, "result": name}, shown.arrays)
+
+    def _weaver(self, asked: Asked) -> Weaver:
+        """A generator for this room, radar and method; kept, because it holds what it prepared for the room."""
+        if asked.radar not in PRESETS:
+            raise InputError(f"unknown radar {asked.radar!r}; choose one of the list")
+        if asked.method not in METHODS:
+            raise InputError(f"unknown method {asked.method!r}; choose one of the list")
+        key = (asked.room, asked.radar, asked.method)
+        with self._lock:
+            if key not in self._weavers:
+                self._weavers[key] = Weaver(method=asked.method, radar=asked.radar)
+                while len(self._weavers) > _MOST_WEAVERS:
+                    self._weavers.popitem(last=False)
+            self._weavers.move_to_end(key)
+            return self._weavers[key]

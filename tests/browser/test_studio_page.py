@@ -1,0 +1,257 @@
+"""The studio in a real browser, as a visitor uses it."""
+
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.browser.chromium import FLAGS, needs_browser, running_studio
+
+SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
+READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    path = needs_browser()
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=path, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    needs_browser()
+    with running_studio("--workers", "1", log=tmp_path_factory.mktemp("studio") / "log") as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def visited(browser: Any, address: str) -> Iterator[tuple[Any, list[str], list[str]]]:
+    """The page after loading, all requests it made, and what it complained of."""
+    page = browser.new_page(viewport={"width": 1280, "height": 860}, bypass_csp=True)  # for wait_for_function
+    asked: list[str] = []
+    complaints: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.goto(address)
+    page.wait_for_selector(READY, timeout=120_000)
+    yield page, asked, complaints
+    page.close()
+
+
+@pytest.fixture
+def page(visited: tuple[Any, list[str], list[str]]) -> Any:
+    return visited[0]
+
+
+def ask(page: Any, text: str) -> str:
+    """Types a sentence, presses Enter, and gives the status line."""
+    page.locator(".sentence").first.fill(text)
+    page.locator(".sentence").first.press("Enter")
+    page.wait_for_selector("main[data-busy=true], main[data-busy=false]")
+    page.wait_for_selector(IDLE, timeout=60_000)
+    return page.inner_text(".status")
+
+
+def test_no_request_leaves_this_machine(visited: tuple[Any, list[str], list[str]], address: str):
+    _, asked, complaints = visited
+    assert len(asked) >= 4
+    assert all(url.startswith((address, "data:", "blob:")) for url in asked)
+    assert complaints == []
+
+
+def test_the_room_is_drawn(page: Any):
+    assert page.evaluate("studio.player.scene.paintedShare()") > 0.05
+
+
+def test_a_sentence_makes_new_data(page: Any):
+    said = ask(page, "a person walks to the left")
+    assert "s of radar in" in said
+    assert page.evaluate("studio.result.header.meta.text") == "a person walks to the left"
+
+
+def test_an_unknown_sentence_shows_why_and_keeps_the_result(page: Any):
+    before = ask(page, "a person walks to the left") and page.evaluate("studio.result.header.result")
+    said = ask(page, "a person flies")
+    assert "names no activity" in said
+    assert "did you mean" in said
+    assert page.evaluate("studio.result.header.result") == before
+
+
+def test_a_click_on_the_floor_moves_the_start(page: Any):
+    ask(page, "a person waves with the left hand")
+    target = page.evaluate("studio.player.room.nearestStandable(-0.1, 2.1).place")
+    x, y = page.evaluate(f"studio.player.scene.toPage({target[0]}, {target[1]})")
+    page.mouse.click(x, y)
+    page.wait_for_selector(IDLE, timeout=60_000)
+    said = page.inner_text(".status")
+    start = page.evaluate("studio.result.header.meta.person.starts_at_m")
+    assert math.dist(start, target) < 0.06, said
+    assert "m right and" in said
+
+
+def test_a_click_where_nobody_can_stand_takes_the_nearest_place(page: Any):
+    wall = page.evaluate("studio.player.room.nearestStandable(-5, 9).place")
+    beyond = [wall[0], wall[1] + 0.5]
+    x, y = page.evaluate(f"studio.player.scene.toPage({beyond[0]}, {beyond[1]})")
+    page.mouse.click(x, y)
+    page.wait_for_selector(IDLE, timeout=60_000)
+    assert "nearest free place is" in page.inner_text(".status")
+    at = page.evaluate("studio.asked().at")
+    assert page.evaluate(f"studio.player.room.nearestStandable({at[0]}, {at[1]}).distance") < 0.05
+    page.evaluate("studio.follow({at: null})")
+    page.wait_for_selector(IDLE, timeout=60_000)
+
+
+def test_scrubbing_moves_all_panels(page: Any):
+    box = page.locator(".strip canvas").bounding_box()
+    page.mouse.click(box["x"] + 46 + 0.5 * (box["width"] - 56), box["y"] + box["height"] / 2)
+    frames = page.evaluate("studio.player.shownFrames()")
+    assert len(set(frames.values())) == 1
+    assert 8 <= frames["scene"] <= 12
+
+
+def test_hovering_a_range_draws_its_arc(page: Any):
+    box = page.locator(".maps canvas").first.bounding_box()
+    near, far = page.evaluate("studio.player.sequence.header.range_m")
+    share = 0.4
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + 24 + (1 - share) * (box["height"] - 60))
+    assert abs(page.evaluate("studio.player.scene.arcRangeM()") - (near + share * (far - near))) < 0.05
+    assert "dBm" in page.locator(".maps .readout").first.inner_text()
+    page.mouse.move(5, 5)
+    assert page.evaluate("studio.player.scene.arcRangeM()") is None
+
+
+def test_the_keyboard_plays_and_steps(page: Any):
+    page.locator(".strip canvas").focus()
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowRight")
+    assert page.evaluate("studio.player.frame") == 1
+    page.keyboard.press(" ")
+    assert page.evaluate("studio.player.playing")
+    page.keyboard.press(" ")
+    assert not page.evaluate("studio.player.playing")
+
+
+def test_files_that_are_dropped_become_a_room(page: Any):
+    files = [
+        {"name": file.name, "data": list(file.read_bytes())}
+        for file in sorted(SAMPLE.iterdir())
+        if file.suffix != ".md"
+    ]
+    dropped = "files => studio.upload(files.map(f => new File([new Uint8Array(f.data)], f.name)))"
+    page.evaluate(dropped, files)
+    page.wait_for_selector(IDLE, timeout=60_000)
+    assert "s of radar in" in page.inner_text(".status")
+    assert page.evaluate("studio.player.room.header.name") == "your room 1"
+
+
+def test_hostile_files_leave_one_line(page: Any):
+    page.evaluate("studio.upload([new File(['no picture'], 'rgb.png'), new File(['none'], 'depth.png')])")
+    page.wait_for_selector(".status.error", timeout=60_000)
+    assert "\n" not in page.inner_text(".status")
+    assert "s of radar in" in ask(page, "a person sits down")
+
+
+def test_compare_shows_both_and_their_difference(page: Any):
+    page.get_by_role("button", name="Compare").click()
+    ask(page, "a person walks to the right")
+    assert page.locator(".maps canvas").count() == 10
+    titles = page.evaluate("[...document.querySelectorAll('.maps canvas')].map(c => c.getAttribute('aria-label'))")
+    assert sum("B less A" in title for title in titles) == 3
+    page.get_by_role("button", name="Compare").click()
+    assert page.locator(".maps canvas").count() == 4
+
+
+def test_the_link_restores_the_state(page: Any, browser: Any):
+    ask(page, "a person claps")
+    page.locator(".seed").fill("7")
+    page.locator(".seed").press("Tab")
+    page.wait_for_selector(IDLE, timeout=60_000)
+    page.locator("select[aria-label=Room]").select_option("demo")
+    page.wait_for_selector(IDLE, timeout=60_000)
+    url = page.url
+    again = browser.new_page()
+    again.goto(url)
+    again.wait_for_selector(READY, timeout=120_000)
+    assert again.evaluate("studio.result.header.meta.text") == "a person claps"
+    assert again.evaluate("studio.result.header.meta.seed") == 7
+    again.close()
+
+
+def test_the_details_repeat_the_run(page: Any):
+    page.get_by_role("button", name="Details").click()
+    said = page.inner_text("dialog")
+    assert "mmweaver generate" in said
+    assert "from mmweaver import Weaver" in said
+    page.get_by_role("button", name="Close").click()
+
+
+@pytest.mark.parametrize(("width", "theme"), [(1280, "light"), (390, "dark")])
+def test_everything_has_a_name_and_fits(page: Any, width: int, theme: str):
+    page.set_viewport_size({"width": width, "height": 860})
+    page.emulate_media(color_scheme=theme)
+    nameless = page.evaluate("""[...document.querySelectorAll('button, select, input, canvas')]
+        .filter(e => e.tabIndex >= 0 && e.offsetParent !== null)
+        .filter(e => !(e.getAttribute('aria-label') || e.textContent.trim() || e.closest('label')?.textContent.trim()))
+        .map(e => e.outerHTML)""")
+    assert nameless == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.set_viewport_size({"width": 1280, "height": 860})
+    page.emulate_media(color_scheme="light")
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_axe_finds_no_serious_fault(page: Any, theme: str):
+    axe = pytest.importorskip("axe_playwright_python", reason="axe-playwright-python is not installed")
+    (script,) = Path(axe.__file__).parent.rglob("axe.min.js")
+    page.emulate_media(color_scheme=theme)
+    page.evaluate(script.read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run()")["violations"]
+    page.emulate_media(color_scheme="light")
+    serious = {one["id"]: one["nodes"][0]["html"] for one in found if one["impact"] in ("serious", "critical")}
+    assert serious == {}
+
+
+def test_live_runs_on_and_takes_sentences(page: Any):
+    ask(page, "a person stands")
+    page.get_by_role("button", name="Live").click()
+    page.wait_for_function("() => studio.live && studio.live.frames > 10", timeout=60_000)
+    page.locator(".sentence").first.fill("a person claps")
+    page.locator(".sentence").first.press("Enter")
+    page.wait_for_function("() => studio.live.text.includes('clap')", timeout=60_000)
+    largest = page.evaluate("""(() => { const {data, shape} = studio.result.arrays.joints; let top = 0;
+        for (let f = 1; f < shape[1]; f++) for (let c = 0; c < 3; c++)
+            top = Math.max(top, Math.abs(data[f * 66 + c] - data[(f - 1) * 66 + c]));
+        return top; })()""")
+    assert largest < 0.2  # metres in a tenth of a second: the pelvis does not jump
+    assert page.evaluate("studio.result.frames") <= 200
+    page.get_by_role("button", name="Stop").click()
+    assert "s of radar in" in ask(page, "a person waves")
+
+
+def test_the_offline_page_plays(page: Any, browser: Any, tmp_path: Path):
+    result = page.evaluate("studio.result.header.result")
+    content = page.evaluate(
+        f"fetch('api/export/{result}/html', {{headers: {{'x-session': studio.api.session}}}}).then(r => r.text())"
+    )
+    (tmp_path / "walk.html").write_text(content, encoding="utf-8")
+    context = browser.new_context(offline=True)
+    alone = context.new_page()
+    complaints: list[str] = []
+    alone.on("pageerror", lambda error: complaints.append(str(error)))
+    alone.goto((tmp_path / "walk.html").as_uri())
+    alone.wait_for_selector(".maps canvas")
+    alone.evaluate("player.play()")
+    alone.wait_for_selector("button[aria-label=Pause]")
+    assert alone.evaluate("player.scene.paintedShare()") > 0.05
+    assert json.loads(alone.evaluate("JSON.stringify(player.sequence.header.frames)")) == 20
+    assert complaints == []
+    context.close()

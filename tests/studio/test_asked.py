@@ -1,0 +1,49 @@
+"""What the page asks for is checked before anything is done."""
+
+import shlex
+from typing import Any
+
+import pytest
+
+from mmweaver.cli.main import build_parser
+from mmweaver.core.errors import InputError
+from mmweaver.studio.asked import Asked
+
+GOOD = {"room": "demo", "text": ["a person waves"], "radar": "awr1843", "method": "auto", "seed": 3, "at": [0.2, 2.0]}
+
+
+def test_a_request_is_read():
+    asked = Asked.of(GOOD)
+    assert asked.request == {"text": "a person waves", "seed": 3, "at": (0.2, 2.0)}
+
+
+def test_the_first_of_two_people_starts_at_the_place():
+    asked = Asked.of({**GOOD, "text": ["a person waves", "a person sits"]})
+    assert asked.request["at"] == [(0.2, 2.0), None]
+
+
+def test_the_command_line_asks_for_the_same():
+    words = shlex.split(Asked.of({**GOOD, "text": ["it's a person", "another"], "at": [-0.2, 2.0]}).command(["--demo"]))
+    arguments = build_parser().parse_args(words[1:])
+    assert arguments.demo
+    assert arguments.text == ["it's a person", "another"]
+    assert arguments.at == [(-0.2, 2.0)]
+    assert arguments.seed == 3
+
+
+def test_the_python_is_python():
+    compile(Asked.of({**GOOD, "text": ['it\'s "one"']}).python("sample_room()"), "<python>", "exec")
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        None, [], {**GOOD, "text": []}, {**GOOD, "text": [1]}, {**GOOD, "text": "x" * 501}, {**GOOD, "seed": -1},
+        {**GOOD, "seed": True}, {**GOOD, "seed": 1.5}, {**GOOD, "at": [1]}, {**GOOD, "at": [1, "2"]},
+        {**GOOD, "at": "12"}, {**GOOD, "at": {"0": 1, "1": 2}}, {**GOOD, "room": ["demo"]},
+        {**GOOD, "radar": "x" * 101},
+    ],
+)  # fmt: skip
+def test_anything_else_is_refused(wrong: Any):
+    with pytest.raises(InputError):
+        Asked.of(wrong)

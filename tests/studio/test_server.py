@@ -1,0 +1,213 @@
+"""The studio's calls, without a browser: who may make them, and what they give."""
+
+import io
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("starlette", reason="the studio's extra is not installed")
+pytest.importorskip("httpx", reason="httpx, which starlette's test client needs, is not installed")
+
+from starlette.testclient import TestClient
+
+from mmweaver import Weaver
+from mmweaver.cli.main import main
+from mmweaver.formats.npz_files import read_npz
+from mmweaver.playback.wire import unpack
+from mmweaver.studio.server import StudioServer
+from mmweaver.studio.uploads import safe_name
+from mmweaver.studio.workshop import Workshop
+
+WALK = {"room": "demo", "text": ["a person walks to the left"], "seed": 1}
+HOST = "http://127.0.0.1:8765"
+SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[TestClient]:
+    with TestClient(StudioServer(Workshop(), workers=2).app(), base_url=HOST) as client:
+        yield client
+
+
+def session(page: TestClient) -> dict[str, str]:
+    """The headers of a new session."""
+    return {"x-session": page.post("/api/session").json()["session"]}
+
+
+def generated(page: TestClient, own: dict[str, str], **change: Any) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    return unpack(page.post("/api/generate", json={**WALK, **change}, headers=own).content)
+
+
+# who may ask --------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:8765", "", "127.0.0.1.evil.example"])
+def test_another_host_name_is_not_served(page: TestClient, host: str):
+    answer = page.post("/api/session", headers={"host": host})
+    assert answer.status_code == 403
+    assert "host name" in answer.json()["error"]
+
+
+def test_another_page_is_not_answered(page: TestClient):
+    assert page.post("/api/session", headers={"origin": "http://evil.example"}).status_code == 403
+    assert page.post("/api/session", headers={"origin": HOST}).status_code == 200
+
+
+def test_another_host_needs_the_token():
+    app = StudioServer(Workshop(), workers=1).app(hosts={"lab"}, token="secret")
+    page = TestClient(app, base_url="http://lab:8765")  # not entered: without warming up
+    assert page.get("/").status_code == 200
+    assert page.post("/api/session").status_code == 403
+    assert page.post("/api/session", headers={"x-token": "wrong"}).status_code == 403
+    assert page.post("/api/session", headers={"x-token": "secret"}).status_code == 200
+
+
+def test_nothing_is_loaded_from_elsewhere(page: TestClient):
+    answer = page.get("/")
+    assert "default-src 'self'" in answer.headers["content-security-policy"]
+    assert "http" not in answer.text.replace("http-equiv", "")
+
+
+def test_calls_need_a_session(page: TestClient):
+    answer = page.post("/api/generate", json=WALK)
+    assert answer.status_code == 422
+    assert "load the page again" in answer.json()["error"]
+
+
+# what it gives ------------------------------------------------------------------------------------------------------
+def test_a_sentence_becomes_a_sequence(page: TestClient):
+    header, arrays = generated(page, session(page))
+    weaver = Weaver()
+    expected = weaver.generate(weaver.sample_room(), WALK["text"][0], seed=1)
+    np.testing.assert_allclose(arrays["joints"][0], expected.pose.joints_m, atol=1e-5)
+    assert header["meta"]["seed"] == 1
+    assert "--text 'a person walks to the left'" in header["command"]
+
+
+def test_two_sessions_do_not_see_each_other(page: TestClient):
+    mine, yours = session(page), session(page)
+    header, _ = generated(page, mine)
+    assert page.get(f"/api/result/{header['result']}", headers=mine).status_code == 200
+    assert page.get(f"/api/result/{header['result']}", headers=yours).status_code == 422
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"text": ["a person flies"]}, "names no activity"),
+        ({"room": "/etc"}, "this room is not known"),
+        ({"radar": "/etc/passwd"}, "unknown radar"),
+        ({"method": "magic"}, "unknown method"),
+        ({"seed": -1}, "the seed must be"),
+    ],
+)
+def test_what_cannot_be_is_said_in_one_line(page: TestClient, change: dict[str, Any], said: str):
+    answer = page.post("/api/generate", json={**WALK, **change}, headers=session(page))
+    assert answer.status_code == 422
+    assert said in answer.json()["error"]
+    assert "\n" not in answer.json()["error"]
+
+
+@pytest.mark.parametrize("body", [b"", b"{", b"[" * 5000, b'{"seed": 1' + b"0" * 500 + b"}", b"\xff\xfe"])
+def test_what_is_no_json_is_refused(page: TestClient, body: bytes):
+    assert page.post("/api/generate", content=body, headers=session(page)).status_code == 422
+
+
+def test_exports_equal_the_command_line(page: TestClient, tmp_path: Path):
+    own = session(page)
+    name = generated(page, own)[0]["result"]
+    told = ["generate", "--demo", "--text", WALK["text"][0], "--seed", "1", "--no-pictures", "--quiet"]
+    assert main([*told, "--out", str(tmp_path / "cli")]) == 0
+    cli = tmp_path / "cli"
+    assert page.get(f"/api/export/{name}/npz", headers=own).content == (cli / "radar.npz").read_bytes()
+    archive = zipfile.ZipFile(io.BytesIO(page.get(f"/api/export/{name}/folder", headers=own).content))
+    for file in ("radar.npz", "points.npz", "pose.npz", "radar.json"):
+        assert archive.read(f"result/{file}") == (cli / file).read_bytes(), file
+    assert b"default-src 'none'" in page.get(f"/api/export/{name}/html", headers=own).content
+    assert page.get(f"/api/export/{name}/exe", headers=own).status_code == 422
+
+
+# what is brought ----------------------------------------------------------------------------------------------------
+def upload(page: TestClient, own: dict[str, str], files: dict[str, bytes]) -> Any:
+    sent = [("files", (name, content, "application/octet-stream")) for name, content in files.items()]
+    return page.post("/api/upload", files=sent, data={"radar": "awr1843"}, headers=own)
+
+
+def test_a_photo_with_depth_becomes_the_sessions_room(page: TestClient):
+    mine, yours = session(page), session(page)
+    found = upload(page, mine, {file.name: file.read_bytes() for file in SAMPLE.iterdir()}).json()
+    assert found["kind"] == "room"
+    _, room = unpack(page.get(f"/api/room/{found['id']}", headers=mine).content)
+    assert len(room["free_floor"]) > 100
+    assert generated(page, mine, room=found["id"])[0]["frames"] == 20
+    assert page.get(f"/api/room/{found['id']}", headers=yours).status_code == 422
+
+
+def test_a_result_folder_is_played_again(page: TestClient):
+    own = session(page)
+    header, arrays = generated(page, own)
+    archive = zipfile.ZipFile(io.BytesIO(page.get(f"/api/export/{header['result']}/folder", headers=own).content))
+    files = {name.split("/")[-1]: archive.read(name) for name in archive.namelist() if name.endswith(("npz", "json"))}
+    found = upload(page, other := session(page), files).json()
+    _, again = unpack(page.get(f"/api/result/{found['id']}", headers=other).content)
+    np.testing.assert_array_equal(again["range_doppler"], arrays["range_doppler"])
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"rgb.png": b"no picture", "depth.png": b"no picture"},
+        {"photo.png": b"alone"},
+        {"../../etc/passwd": b"root"},
+        {"radar.npz": b"PK\x03\x04", "radar.json": b"{}"},
+        {"a.bin": b"\0" * 10, "a.cfg": b"profileCfg nonsense"},
+    ],
+)
+def test_hostile_files_leave_one_line_and_the_server_alive(page: TestClient, files: dict[str, bytes]):
+    own = session(page)
+    answer = upload(page, own, files)
+    assert answer.status_code == 422
+    assert 0 < len(answer.json()["error"]) <= 500
+    assert generated(page, own)[0]["frames"] == 20
+
+
+def test_names_stay_in_their_folder():
+    assert safe_name("../../etc/passwd", set()) == "passwd"
+    assert safe_name("C:\\temp\\.bashrc", set()) == "bashrc"
+    assert safe_name("..", set()) == "file"
+    assert safe_name("a/rgb.png", {"rgb.png"}).endswith("-rgb.png")
+    assert len(safe_name("x" * 500 + ".png", set())) == 80
+
+
+def test_uploads_are_taken_with_the_session(page: TestClient):
+    own = session(page)
+    upload(page, own, {"photo.png": b"alone"})
+    with page.websocket_connect(f"{HOST.replace('http', 'ws')}/api/presence?session={own['x-session']}"):
+        pass
+    assert page.post("/api/generate", json=WALK, headers=own).status_code == 422
+
+
+def test_live_waits_for_the_page(page: TestClient):
+    own = session(page)
+    with page.websocket_connect(f"{HOST.replace('http', 'ws')}/api/live?session={own['x-session']}") as socket:
+        socket.send_json(WALK)
+        first, _ = unpack(socket.receive_bytes())
+        second, _ = unpack(socket.receive_bytes())
+        socket.send_json({"ack": 0})
+        third, _ = unpack(socket.receive_bytes())
+    assert first["live"]["first_frame"] < second["live"]["first_frame"] < third["live"]["first_frame"]
+
+
+def test_the_arrays_of_a_room_are_complete(page: TestClient):
+    header, arrays = unpack(page.get("/api/room/demo", headers=session(page)).content)
+    assert header["planes"]
+    assert arrays["room_points"].shape == arrays["room_colours"].shape
+
+
+def test_radar_npz_is_an_archive(page: TestClient, tmp_path: Path):
+    own = session(page)
+    name = generated(page, own)[0]["result"]
+    (tmp_path / "radar.npz").write_bytes(page.get(f"/api/export/{name}/npz", headers=own).content)
+    assert read_npz(tmp_path / "radar.npz")["cube"].dtype == np.complex64

@@ -1,0 +1,325 @@
+// The studio: a sentence, a room and a radar in; the player shows what comes out.
+import { Api, Refused } from "./api";
+import { download, element } from "./dom";
+import { Player } from "./player";
+import { joined, RoomView, Sequence } from "./sequence";
+import { unpack } from "./wire";
+
+const LIVE_CHUNKS = 12; // of the rolling picture
+const HISTORY = "mmweaver.sentences", MAX_HISTORY = 30;
+interface Asked { room: string; text: string[]; radar: string; board?: string; method: string; seed: number; at: [number, number] | null; path: [number, number][] | null }
+
+export class Studio {
+  readonly root = element("main", { class: "mmweaver studio" });
+  readonly player = new Player();
+  ready = false;
+  result: Sequence | null = null;
+  live: any = null;
+  lastSeconds = 0;
+  private api = new Api();
+  private text = element("input", { class: "sentence", type: "text", list: "mmweaver-sentences", "aria-label": "What the person does", spellcheck: "false", autocomplete: "off" });
+  private second = element("input", { class: "sentence", type: "text", list: "mmweaver-sentences", "aria-label": "What the second person does", placeholder: "a second person (empty: none)" });
+  private known = element("datalist", { id: "mmweaver-sentences" });
+  private roomChoice = element("select", { "aria-label": "Room" });
+  private radarChoice = element("select", { "aria-label": "Radar" });
+  private boardChoice = element("select", { "aria-label": "Board" });
+  private methodChoice = element("select", { "aria-label": "Method" });
+  private seed = element("input", { class: "seed", type: "number", min: 0, value: 0, "aria-label": "Seed" });
+  private generateButton = element("button", { class: "main" }, "Generate");
+  private liveButton = element("button", { "aria-pressed": "false" }, "Live");
+  private compareButton = element("button", { "aria-pressed": "false", title: "Keep this result as A and compare the next with it" }, "Compare");
+  private pathButton = element("button", { "aria-pressed": "false", title: "Then drag over the floor" }, "Draw path");
+  private exportChoice = element("select", { "aria-label": "Export" });
+  private status = element("div", { class: "status", role: "status", "aria-live": "polite" });
+  private drawer = element("dialog", { "aria-label": "Details of this result" });
+  private at: [number, number] | null = null;
+  private path: [number, number][] | null = null;
+  private kept: Sequence | null = null;
+  private running: AbortController | null = null;
+  private socket: WebSocket | null = null;
+  private waiting: Sequence[] = [];
+  private chunks: Sequence[] = [];
+  private note = "";
+
+  constructor() {
+    const named = (label: string, control: HTMLElement) => element("label", {}, label, control);
+    this.root.append(
+      element("div", { class: "top" },
+        element("div", { class: "line" }, element("h1", { class: "brand" }, "mmWeaver"), this.text, this.generateButton, this.liveButton, this.compareButton),
+        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("method", this.methodChoice), named("seed", this.seed),
+          this.pathButton, element("button", { click: () => this.openDrawer() }, "Details"), this.exportChoice, this.fileButton(), this.themeButton())),
+      this.status, element("div", { class: "body" }, this.player.root), this.known, this.drawer);
+    this.generateButton.addEventListener("click", () => this.generate());
+    for (const box of [this.text, this.second]) box.addEventListener("keydown", (event) => { if (event.key === "Enter") { if (this.socket) this.say(); else this.generate(); } });
+    this.radarChoice.addEventListener("change", () => this.changeRadar());
+    for (const control of [this.boardChoice, this.methodChoice, this.seed]) control.addEventListener("change", () => this.generate());
+    this.roomChoice.addEventListener("change", () => this.changeRoom());
+    this.liveButton.addEventListener("click", () => (this.socket ? this.stopLive() : this.startLive()));
+    this.compareButton.addEventListener("click", () => this.toggleCompare());
+    this.pathButton.addEventListener("click", () => this.setDrawing(!this.player.scene.drawing));
+    this.exportChoice.addEventListener("change", () => this.exportAs());
+    this.player.scene.onFloor = (place) => this.startAt(place);
+    this.player.scene.onPath = (path) => { this.path = path.map(([x, y]) => [round(x), round(y)]); this.at = null; this.player.scene.showStart(null); this.setDrawing(false); this.generate(); };
+    this.takeDrops();
+    addEventListener("hashchange", () => { if (this.ready && location.hash.slice(1) !== this.state()) this.restore().then(() => this.generate()); });
+  }
+
+  async start(): Promise<void> {
+    try {
+      const offered = await this.api.open();
+      fill(this.radarChoice, offered.radars); fill(this.methodChoice, offered.methods); fill(this.boardChoice, offered.boards);
+      (this.boardChoice.parentElement as HTMLElement).hidden = offered.boards.length < 2;
+      this.pathButton.hidden = !offered.paths; this.liveButton.hidden = !offered.live;
+      fill(this.roomChoice, offered.rooms);
+      this.exportChoice.append(element("option", { value: "" }, "Export…"), ...offered.exports.map(([value, label]: [string, string]) => element("option", { value }, label)));
+      this.offer(offered.sentences);
+      this.text.value = offered.text; this.seed.value = "0";
+      this.api.socket("api/presence"); // when this closes, the session ends
+      await this.restore();
+      await this.loadRoom();
+      await this.generate();
+      this.ready = true;
+      this.root.dataset.state = "ready";
+    } catch (error) { this.fail(error); }
+  }
+
+  /** Asks for the sequence that the controls describe; an earlier question that is still open is dropped. */
+  async generate(): Promise<boolean> {
+    this.running?.abort();
+    const asked = (this.running = new AbortController()), begun = performance.now();
+    this.tell("generating…");
+    try {
+      const sequence = new Sequence(await this.api.packed("api/generate", this.api.post(this.asked(), asked.signal)));
+      if (asked.signal.aborted) return false;
+      this.lastSeconds = (performance.now() - begun) / 1000;
+      this.take(sequence);
+      this.remember(this.text.value);
+      const at = sequence.header.meta.person?.starts_at_m ?? sequence.header.meta.people?.[0]?.person?.starts_at_m;
+      if (this.at && at) this.player.scene.showStart([at[0], at[1]]);
+      history.replaceState(null, "", `#${this.state()}`);
+      this.tell(`${(sequence.frames * sequence.periodS).toFixed(1)} s of radar in ${this.lastSeconds.toFixed(2)} s, ${sequence.arrays.point_frame.data.length} points${this.note ? "; " + this.note : ""}`);
+      return true;
+    } catch (error) { if ((error as Error).name !== "AbortError") this.fail(error); return false; }
+    finally { if (this.running === asked) this.running = null; this.note = ""; }
+  }
+
+  private take(sequence: Sequence): void {
+    this.result = sequence;
+    if (this.kept) this.player.show(this.kept, sequence); else this.player.show(sequence);
+    if (!this.kept) this.player.seek(this.player.frame);
+  }
+
+  private asked(): Asked {
+    const text = [this.text.value, this.second.value].map((one) => one.trim()).filter((one, i) => i === 0 || one);
+    return { room: this.roomChoice.value, text, radar: this.radarChoice.value, board: this.boardChoice.value, method: this.methodChoice.value, seed: Number(this.seed.value), at: this.at, path: this.path };
+  }
+  private state(): string {
+    const { room, text, radar, method, seed, at, board, path } = this.asked(), pairs = new URLSearchParams({ room, radar, method, seed: String(seed) });
+    for (const one of text) pairs.append("text", one);
+    if (board) pairs.set("board", board);
+    if (at) pairs.set("at", at.join(","));
+    if (path) pairs.set("path", path.map((p) => p.join(",")).join(" "));
+    return pairs.toString();
+  }
+  private async restore(): Promise<void> {
+    const pairs = new URLSearchParams(location.hash.slice(1)), before = this.roomChoice.value;
+    if (![...pairs].length) return;
+    const choose = (control: HTMLSelectElement, name: string) => { const value = pairs.get(name); if (value && [...control.options].some((one) => one.value === value)) control.value = value; };
+    choose(this.roomChoice, "room"); choose(this.radarChoice, "radar"); choose(this.methodChoice, "method"); choose(this.boardChoice, "board");
+    const texts = pairs.getAll("text"), at = pairs.get("at")?.split(",").map(Number), path = pairs.get("path")?.split(" ").map((p) => p.split(",").map(Number) as [number, number]);
+    if (texts[0]) this.text.value = texts[0];
+    this.second.value = texts[1] ?? "";
+    if (pairs.get("seed")) this.seed.value = pairs.get("seed")!;
+    this.at = at?.length === 2 && at.every(Number.isFinite) ? [at[0], at[1]] : null;
+    this.path = path ?? null;
+    if (this.ready && this.roomChoice.value !== before) await this.loadRoom();
+  }
+
+  private async loadRoom(): Promise<void> {
+    this.tell("reading the room…");
+    this.player.setRoom(new RoomView(await this.api.packed(`api/room/${encodeURIComponent(this.roomChoice.value)}?radar=${encodeURIComponent(this.radarChoice.value)}`)));
+    this.player.scene.showStart(this.at);
+  }
+  private async changeRoom(): Promise<void> {
+    this.at = this.path = null; this.player.scene.clearPath();
+    try { await this.loadRoom(); await this.generate(); } catch (error) { this.fail(error); }
+  }
+
+  private async changeRadar(): Promise<void> { // another range window lets people stand elsewhere
+    try { await this.loadRoom(); await this.generate(); } catch (error) { this.fail(error); }
+  }
+
+  private startAt(place: [number, number]): void {
+    const free = this.player.room?.nearestStandable(...place);
+    if (!free) { this.fail(new Refused("nobody can stand in this room within the radar's range window; choose another radar or room")); return; }
+    const snaps = free.distance > this.player.room!.header.cell_m * Math.SQRT1_2;
+    const start = snaps ? free.place : place;
+    this.at = [round(start[0]), round(start[1])]; this.path = null; this.player.scene.clearPath();
+    this.note = snaps ? `no one can stand there; the nearest free place is ${this.at[0].toFixed(2)} m right and ${this.at[1].toFixed(2)} m ahead` : `starts ${this.at[0].toFixed(2)} m right and ${this.at[1].toFixed(2)} m ahead`;
+    this.player.scene.showStart(this.at);
+    this.generate();
+  }
+  private setDrawing(on: boolean): void {
+    this.player.scene.drawing = on;
+    this.pathButton.setAttribute("aria-pressed", String(on));
+    if (on) this.tell("drag over the floor: the person will walk along this path");
+  }
+
+  private toggleCompare(): void {
+    if (this.kept) { this.kept = null; if (this.result) this.player.show(this.result); this.tell("one result"); }
+    else if (this.result) { this.kept = this.result; this.tell("kept as A; change the sentence, seed, method, board or room to make B"); }
+    this.compareButton.setAttribute("aria-pressed", String(this.kept !== null));
+  }
+
+  // live ------------------------------------------------------------------------------------------------------------
+  private startLive(): void {
+    const socket = (this.socket = this.api.socket("api/live"));
+    this.liveButton.setAttribute("aria-pressed", "true"); this.liveButton.textContent = "Stop";
+    socket.onopen = () => this.say();
+    socket.onmessage = (event) => {
+      if (event.data instanceof ArrayBuffer) {
+        this.waiting.push(new Sequence(unpack(event.data)));
+        if (this.waiting.length === 1) this.showChunk();
+      } else this.fail(new Refused(JSON.parse(event.data).error));
+    };
+    socket.onclose = () => { if (this.socket === socket) this.stopLive(); };
+  }
+  /** Plays one chunk at the radar's own pace, then takes the next. */
+  private showChunk(): void {
+    const chunk = this.waiting[0];
+    if (!chunk || !this.socket) return;
+    this.chunks = [...this.chunks, chunk].slice(-LIVE_CHUNKS);
+    this.live = chunk.header.live;
+    const rolling = joined(this.chunks);
+    this.result = rolling; this.player.show(rolling); this.player.pause();
+    const first = rolling.frames - chunk.frames, begun = performance.now(), lasts = chunk.frames * chunk.periodS * 1000;
+    this.tell(`live: ${this.live.frames} frames, made ${this.live.times_real_time.toFixed(1)} × faster than real time${this.live.refused ? "; " + this.live.refused : ""}`);
+    const step = () => {
+      if (!this.socket) return;
+      const share = (performance.now() - begun) / lasts;
+      this.player.seek(first + Math.min(Math.floor(share * chunk.frames), chunk.frames - 1));
+      if (share < 1) { requestAnimationFrame(step); return; }
+      this.waiting.shift();
+      if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ ack: this.live.first_frame }));
+      this.showChunk();
+    };
+    requestAnimationFrame(step);
+  }
+  private say(): void { this.socket?.send(JSON.stringify(this.asked())); this.remember(this.text.value); }
+  private stopLive(): void {
+    const socket = this.socket; this.socket = null; socket?.close();
+    this.waiting = []; this.chunks = [];
+    this.liveButton.setAttribute("aria-pressed", "false"); this.liveButton.textContent = "Live";
+  }
+
+  // out -------------------------------------------------------------------------------------------------------------
+  private async exportAs(): Promise<void> {
+    const kind = this.exportChoice.value, result = this.result?.header.result;
+    this.exportChoice.value = "";
+    if (!kind || !result) return;
+    try {
+      this.tell("exporting…");
+      const answer = await this.api.blob(`api/export/${encodeURIComponent(result)}/${encodeURIComponent(kind)}`);
+      download(this.exportName(kind), answer);
+      this.tell("exported");
+    } catch (error) { this.fail(error); }
+  }
+  private exportName(kind: string): string { return { npz: "radar.npz", bin: "adc_data.bin", html: "mmweaver.html" }[kind] ?? `mmweaver-${kind}.zip`; }
+
+  private async openDrawer(): Promise<void> {
+    const header = this.result?.header;
+    if (!header) return;
+    const code = (title: string, text: string) => {
+      const block = element("pre", { tabindex: 0 }, text);
+      return element("section", {}, element("h2", {}, title), block, element("button", { click: () => navigator.clipboard?.writeText(text) }, "Copy"));
+    };
+    const list = (title: string, rows: string[]) => element("section", {}, element("h2", {}, title), element("ul", {}, ...rows.map((row) => element("li", {}, row))));
+    this.drawer.replaceChildren(element("button", { click: () => this.drawer.close() }, "Close"));
+    if (header.command) this.drawer.append(code("Command line", header.command), code("Python", header.python));
+    this.drawer.append(list("Assumed", header.meta.assumed ?? []));
+    if (this.kept && header.result && this.kept.header.result) {
+      try { this.drawer.append(code("A compared with B", await this.compareText(this.kept.header.result, header.result))); } catch (error) { this.drawer.append(list("A compared with B", [(error as Error).message])); }
+    }
+    this.drawer.append(list("Time", Object.entries(header.seconds ?? {}).map(([name, seconds]) => `${name}: ${Number(seconds).toFixed(3)} s`)), code("meta.json", JSON.stringify(header.meta, null, 2)));
+    this.drawer.showModal();
+  }
+  private async compareText(a: string, b: string): Promise<string> { return (await this.api.json(`api/compare/${a}/${b}`)).text; }
+
+  // in --------------------------------------------------------------------------------------------------------------
+  private fileButton(): HTMLElement {
+    const input = element("input", { type: "file", multiple: true, class: "hidden", tabindex: -1, "aria-hidden": "true" });
+    input.addEventListener("change", () => { this.upload([...(input.files ?? [])]); input.value = ""; });
+    return element("span", {}, input, element("button", { click: () => input.click() }, "Open files"));
+  }
+  private themeButton(): HTMLElement {
+    return element("button", { "aria-label": "Light or dark", click: () => {
+      const dark = this.root.classList.contains("dark") || (!this.root.classList.contains("light") && matchMedia("(prefers-color-scheme: dark)").matches);
+      this.root.classList.toggle("dark", !dark); this.root.classList.toggle("light", dark); this.player.draw();
+    } }, "◐");
+  }
+  private takeDrops(): void {
+    this.root.addEventListener("dragover", (event) => { event.preventDefault(); this.root.classList.add("drop"); });
+    this.root.addEventListener("dragleave", (event) => { if (event.relatedTarget === null) this.root.classList.remove("drop"); });
+    this.root.addEventListener("drop", async (event) => {
+      event.preventDefault(); this.root.classList.remove("drop");
+      const entries = [...(event.dataTransfer?.items ?? [])].map((item) => item.webkitGetAsEntry?.()).filter((one): one is FileSystemEntry => !!one);
+      this.upload(entries.length ? (await Promise.all(entries.map(filesOf))).flat() : [...(event.dataTransfer?.files ?? [])]);
+    });
+  }
+  /** Sends files; the server says what they are together: a room, a recording, a motion, or a result. */
+  async upload(files: File[]): Promise<void> {
+    if (!files.length) return;
+    const form = new FormData();
+    for (const file of files) form.append("files", file, file.name);
+    form.append("radar", this.radarChoice.value);
+    this.tell(`reading ${files.length} file${files.length > 1 ? "s" : ""}…`);
+    try {
+      const found = await this.api.json("api/upload", { method: "POST", body: form });
+      if (found.kind === "room") {
+        this.roomChoice.append(element("option", { value: found.id }, found.label)); this.roomChoice.value = found.id;
+        await this.changeRoom();
+      } else {
+        const sequence = new Sequence(await this.api.packed(`api/result/${found.id}`));
+        if (!sequence.people && !found.has_room) this.player.setRoom(null);
+        this.take(sequence);
+        this.tell(`${found.label}: ${sequence.frames} frames`);
+      }
+    } catch (error) { this.fail(error); }
+  }
+
+  // said ------------------------------------------------------------------------------------------------------------
+  private tell(text: string): void { this.root.dataset.busy = String(text.endsWith("…")); this.status.className = "status"; this.status.replaceChildren(text); }
+  private fail(error: unknown): void {
+    this.root.dataset.busy = "false";
+    this.status.className = "status error";
+    this.status.replaceChildren((error as Error).message);
+    if (!(error instanceof Refused)) { console.error(error); return; }
+    for (const way of error.waysOn) this.status.append(element("button", { click: () => this.follow(way.change) }, way.label));
+  }
+  private follow(change: Record<string, unknown>): void {
+    if (Array.isArray(change.at)) { this.at = change.at as [number, number]; this.player.scene.showStart(this.at); }
+    if (change.at === null) { this.at = null; this.player.scene.showStart(null); }
+    if (typeof change.radar === "string") this.radarChoice.value = change.radar;
+    if (typeof change.room === "string") { this.roomChoice.value = change.room; this.changeRoom(); return; }
+    if (typeof change.text === "string") this.text.value = change.text;
+    this.generate();
+  }
+  private offer(sentences: string[]): void {
+    const said = read(HISTORY);
+    this.known.replaceChildren(...[...new Set([...said, ...sentences])].map((one) => element("option", { value: one })));
+  }
+  private remember(text: string): void {
+    const said = [text, ...read(HISTORY).filter((one) => one !== text)].slice(0, MAX_HISTORY);
+    try { localStorage.setItem(HISTORY, JSON.stringify(said)); } catch { /* private windows keep no history */ }
+  }
+}
+
+const round = (value: number) => Math.round(value * 100) / 100;
+const read = (key: string): string[] => { try { return JSON.parse(localStorage.getItem(key) ?? "[]"); } catch { return []; } };
+function fill(control: HTMLSelectElement, options: [string, string][]): void { control.replaceChildren(...options.map(([value, label]) => element("option", { value }, label))); }
+async function filesOf(entry: FileSystemEntry): Promise<File[]> {
+  if (entry.isFile) return [await new Promise<File>((resolve, reject) => (entry as FileSystemFileEntry).file(resolve, reject))];
+  const reader = (entry as FileSystemDirectoryEntry).createReader(), inside: FileSystemEntry[] = [];
+  for (;;) { const some = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject)); if (!some.length) break; inside.push(...some); }
+  return (await Promise.all(inside.map(filesOf))).flat();
+}
