@@ -13,7 +13,7 @@ PYTEST := $(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reor
 bench: export OMP_NUM_THREADS := 1
 bench: export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test test-slow check lint unit bench docs clean
+.PHONY: demo studio test test-slow check lint unit bench fuzz faults docs clean
 
 demo: $(STAMP)  ## the bundled sample, into demo/
 	$(BIN)/mmweaver generate --demo --out demo --overwrite
@@ -23,17 +23,23 @@ test: $(STAMP)  ## exactly what CI runs: linters and tests side by side
 
 check: test
 
-test-slow: $(STAMP)  ## every night: all tests, those marked slow too, with the shapes of every call checked
+test-slow: $(STAMP)  ## every night: pyright, and all tests, those marked slow too, with the shapes of every call checked
+	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(PYTEST) -m "slow or not slow" --check-every-call
 
 lint: $(STAMP)
 	$(BIN)/ruff check --quiet .
 	$(BIN)/ruff format --quiet --check .
 	$(BIN)/lint-imports --no-logo
-	$(BIN)/pyright --pythonpath $(BIN)/python
+	$(BIN)/ty check --no-progress --output-format concise --python $(VENV)
 
 unit: $(STAMP)
 	$(PYTEST)
+
+SECONDS ?= 600
+SEED ?= 0
+fuzz: $(STAMP)  ## damaged files for every reader, for SECONDS; docs/security.md
+	$(BIN)/python -m tests.fuzz --seconds $(SECONDS) --seed $(SEED) --out results/hostile_input.json
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py
@@ -42,6 +48,13 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/weaver.py
 	$(BIN)/python benchmarks/devices.py
 	$(BIN)/python benchmarks/dataset.py
+
+faults: $(STAMP)  ## kills, full disks and failed writes at every event of every command that writes; an hour or more
+	$(BIN)/python -m studies run injected_faults
+	$(BIN)/python -m studies run random_kills
+
+studio:  ## builds the page's bundle from web/; needs Node, and only who changes the page needs it
+	cd web && npm ci --no-audit --no-fund --ignore-scripts && npm run check && npm run build
 
 docs: $(STAMP)  ## the site, into build/docs/site
 	$(BIN)/pip install --quiet --editable '.[docs]'

@@ -30,6 +30,7 @@ from mmweaver.models.scene_tensors import (
     NUM_POINTS,
     PLANE_FEATURES,
     POINT_FEATURES,
+    REFLECTION_COS,
     SceneTensors,
 )
 from mmweaver.paths.adc_synthesis import AdcSynthesis
@@ -135,6 +136,7 @@ def network_seconds(device: str) -> dict[str, float]:
         plane_axes=torch.eye(3).repeat(NUM_PLANES, 1, 1),
         plane_half_m=torch.full((NUM_PLANES, 2), 2.0),
         plane_features=torch.rand(NUM_PLANES, PLANE_FEATURES, generator=generator),
+        plane_reflection=torch.full((NUM_PLANES, len(REFLECTION_COS)), 0.3),
     )
     torch.manual_seed(0)
     room = LearnedRoom(WeaverNetwork().eval(), view, AWR1843, device=device)

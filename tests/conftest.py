@@ -10,11 +10,13 @@ os.environ.update(
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from filelock import FileLock
 from threadpoolctl import threadpool_limits
 
 from tests import shape_checks
+from tests.cpu_summary import CpuSummary
 
 threadpool_limits(1)  # of numpy, which a plugin has imported already
 shape_checks.check_first_calls()
@@ -26,6 +28,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    config.pluginmanager.register(CpuSummary())
     if config.getoption("--check-every-call"):
         shape_checks.check_every_call()
 
@@ -40,6 +43,19 @@ def real_data() -> Path:
     if not REAL_DATA.is_dir():
         pytest.skip(f"no real recordings here: {REAL_DATA} is absent")
     return REAL_DATA
+
+
+@pytest.fixture
+def blank_training_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Trainings write blank pictures: a sheet of matplotlib costs a second at every validation.
+
+    What is drawn is tested in test_validation_sheet.py and test_confusion_sheet.py, and by tests/cli/test_train.py.
+    """
+    for module, name in (
+        ("mmweaver.training.network_training", "draw_sheet"), ("mmweaver.training.activity_training", "draw_confusion"),
+        ("studies.paper.paper_training", "draw_sheet"),
+    ):  # fmt: skip
+        monkeypatch.setattr(f"{module}.{name}", lambda *_, **__: np.zeros((2, 2, 3), np.uint8))
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,8 @@ inner loops are called a million times: with all calls checked, tests of motion 
 import functools
 import sys
 from collections.abc import Callable
-from typing import Any
+from types import CodeType, FunctionType
+from typing import Any, ClassVar
 
 import jaxtyping
 
@@ -17,6 +18,21 @@ FIRST_CALLS = 10  # of each function in each test
 class _Current:
     test = 0  # number of the running test: a new one checks anew
     most_calls = FIRST_CALLS
+
+
+class _Calls:
+    """Of one function of the source; one that is defined anew in each call of another is still the same."""
+
+    of: ClassVar[dict[CodeType, "_Calls"]] = {}
+
+    def __init__(self) -> None:
+        self.test, self.left = -1, 0
+
+    def is_checked(self) -> bool:
+        if self.test != _Current.test:
+            self.test, self.left = _Current.test, _Current.most_calls
+        self.left -= 1
+        return self.left >= 0
 
 
 def next_test() -> None:
@@ -37,28 +53,30 @@ def check_first_calls() -> None:
         if decorated is None:
             return functools.partial(jaxtyped, typechecker=typechecker)
         if not isinstance(decorated, type):
-            return _first_calls(decorated, every_call(decorated, typechecker=typechecker))
+            return _first_calls(decorated, lambda: every_call(decorated, typechecker=typechecker))
         plain = decorated.__init__
         checked = every_call(decorated, typechecker=typechecker)
         if checked.__init__ is not plain:  # a dataclass
-            checked.__init__ = _first_calls(plain, checked.__init__)
+            with_checks = checked.__init__
+            checked.__init__ = _first_calls(plain, lambda: with_checks)
         return checked
 
     jaxtyping.jaxtyped = jaxtyped  # the name that the hook writes before each function
 
 
-def _first_calls(plain: Callable[..., Any], checked: Callable[..., Any]) -> Callable[..., Any]:
-    test, left = -1, 0
+def _first_calls(plain: FunctionType, make_checked: Callable[[], Callable[..., Any]]) -> Callable[..., Any]:
+    """Checks are compiled by the first call that needs them: 2 milliseconds, and most functions are never called."""
+    calls = _Calls.of.setdefault(plain.__code__, _Calls())
+    checked: Callable[..., Any] | None = None
 
     @functools.wraps(plain)
     def function(*args: Any, **kwargs: Any) -> Any:
         __tracebackhide__ = True
-        nonlocal test, left
-        if test != _Current.test:
-            test, left = _Current.test, _Current.most_calls
-        if left:
-            left -= 1
-            return checked(*args, **kwargs)
-        return plain(*args, **kwargs)
+        nonlocal checked
+        if not calls.is_checked():
+            return plain(*args, **kwargs)
+        if checked is None:
+            checked = make_checked()
+        return checked(*args, **kwargs)
 
     return function

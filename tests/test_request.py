@@ -19,7 +19,10 @@ TEXT = "a person walks towards the radar"
         ({"text": " \n"}, "empty"),
         ({"text": "walk " * 2000}, "10000 characters"),
         ({"text": "a person photosynthesises"}, "walk"),
-        ({"text": "a person walks, then squats five times", "frames": 10}, "need at least"),
+        ({"text": "a person squats, then walks", "frames": 2}, r"at least 0\.6 s"),
+        ({"frames": 20, "seconds": 2.0}, "one of them"),
+        ({"seconds": -1.0}, "seconds must be"),
+        ({"seconds": 300.0}, "2000 .* are made"),
         ({"frames": 0}, f"1 to {MAX_FRAMES}"),
         ({"frames": 1_000_000}, f"1 to {MAX_FRAMES}"),
         ({"fps": 0.0}, "fps"),
@@ -70,11 +73,32 @@ def test_one_person_and_several():
 def test_a_sentence_is_parsed_once(monkeypatch: pytest.MonkeyPatch):
     parsed: list[str] = []
 
-    def counting(text: str, *options: float):
+    def counting(text: str):
         parsed.append(text)
-        return plan_motion(text, *options)
+        return parse(text)
 
-    plan_motion = module.plan_motion
-    monkeypatch.setattr(module, "plan_motion", counting)
+    parse = module.parse
+    monkeypatch.setattr(module, "parse", counting)
     parse_request(AWR1843, [TEXT, "a person waves"])
     assert parsed == [TEXT, "a person waves"]
+
+
+def test_the_sentence_decides_how_long_it_takes():
+    assert parse_request(AWR1843, "a person nods").duration_s == pytest.approx(2.0)  # at least
+    long = parse_request(AWR1843, ["a person walks, sits down, drinks and stands up", "a person waves"])
+    plans = [person.plan for person in long.people if person.plan is not None]
+    assert long.duration_s > 7.0
+    assert {plan.duration_s for plan in plans} == {long.duration_s}
+    assert parse_request(AWR1843, TEXT, seconds=3.0).frames == 30
+    assert parse_request(AWR1843, TEXT, seconds=3.0, fps=20.0).frames == 60
+
+
+def test_a_path_is_for_somebody_who_walks():
+    asked = parse_request(AWR1843, "a person walks, then waves", path_m=[(0.0, 3.0), (0.0, 1.5)])
+    plan = asked.people[0].plan
+    assert plan is not None
+    assert plan.steps[0].route_m == ((0.0, 3.0), (0.0, 1.5))
+    with pytest.raises(InputError, match="walks or runs"):
+        parse_request(AWR1843, "a person waves", path_m=[(0.0, 3.0), (0.0, 1.5)])
+    with pytest.raises(InputError, match="at least two points"):
+        parse_request(AWR1843, TEXT, path_m=[(0.0, 3.0)])

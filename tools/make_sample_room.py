@@ -1,4 +1,4 @@
-"""Makes the bundled sample room: a furnished living room, rendered to rgb.png, depth.png and camera.json.
+"""Makes the bundled sample room: a furnished living room, rendered to rgb.webp, depth.png and camera.json.
 
 Everything follows from the seed: `python tools/make_sample_room.py` remakes the bundled files. The room is given in the
 radar's frame (x right, y away, z up), but with z = 0 on the floor.
@@ -529,7 +529,7 @@ def measured_depth(depth_m: np.ndarray, seed: int) -> np.ndarray:
 def write_sample(folder: Path, seed: int, lamp_samples: int, bounce_samples: int, oversampling: int) -> None:
     photo, depth_m = render(seed, lamp_samples, bounce_samples, oversampling)
     folder.mkdir(parents=True, exist_ok=True)
-    Image.fromarray(photo).save(folder / "rgb.png", optimize=True)
+    Image.fromarray(photo).save(folder / "rgb.webp", lossless=True, quality=100, method=6)
     Image.fromarray(measured_depth(depth_m, seed)).save(folder / "depth.png", optimize=True)
     content = {**vars(camera()), "depth_unit_m": DEPTH_UNIT_M}
     (folder / "camera.json").write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")

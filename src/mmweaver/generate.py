@@ -7,13 +7,15 @@
 Only this file knows the order of the packages; they exchange the records of `core/records.py` and nothing else.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mmweaver.core.channel_calibration import ChannelCalibration
+from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.presets import PRESETS
@@ -24,20 +26,31 @@ from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.formats.radar_file import load_firmware, load_radar
+from mmweaver.formats.ti_calibration import read_ti_calibration
 from mmweaver.generation import Generation, Room
 from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Signal
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
+from mmweaver.motion.continuous import ContinuousMotion
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_placement import place_clip
 from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.motion.multi_person import Place, compose_people
+from mmweaver.motion.people import subject_of
 from mmweaver.request import Request, parse_request
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
 from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.streaming import (
+    CHUNK_FRAMES,
+    StreamChunk,
+    Streamer,
+    check_chunk_frames,
+    check_streams,
+    point_detector,
+)
 
 
 class Weaver:
@@ -49,7 +62,9 @@ class Weaver:
     `points` chooses the point cloud: "cfar", this project's own, "firmware", that of TI's demo, which needs ADC
     samples, or a registered detector; `firmware` are the settings of TI's (default: what the radar's .cfg or preset
     says).
-    `weights`: a file or folder of `mmweaver train`, or a Hub name, for the network, which then makes all signals;
+    `calibration`: the channel errors that the radar's firmware compensates (default: those of its .cfg); ADC samples
+    are then as that board records them, cube and points as it compensates them. `weights`: a file or folder of
+    `mmweaver train`, or a Hub name, for the network, which then makes all signals;
     `from_pretrained` is the short form. Raises InputError for unknown names.
     """
 
@@ -62,6 +77,7 @@ class Weaver:
         points: str = "cfar",
         firmware: FirmwareSettings | None = None,
         weights: str | Path | None = None,
+        calibration: ChannelCalibration | None = None,
     ):
         if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
@@ -75,6 +91,8 @@ class Weaver:
             self.method = METHODS[method]() if file is None else Learned(file)
         self.weights = None if file is None else file_digest(file)
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
+        is_named = not isinstance(radar, RadarConfig)
+        self.calibration = read_ti_calibration(str(radar)) if calibration is None and is_named else calibration
         self._listener = listener
         check_points(points, self.radar)
         self.points = points
@@ -170,38 +188,90 @@ class Weaver:
         text: str | Sequence[str] | None = None,
         *,
         motion: MotionClip | None = None,
-        frames: int = 20,
+        frames: int | None = None,
+        seconds: float | None = None,
         fps: float | None = None,
         seed: int = 0,
         at: Place | Sequence[Place | None] | None = None,
         heading_rad: float | None = None,
+        path_m: Sequence[Place] | None = None,
         height_m: float | Sequence[float | None] | None = None,
+        subject: int | Sequence[int | None] | None = None,
         as_recorded: bool = False,
         keep_adc: bool = False,
     ) -> Generation:
         """The signal of people doing in the room what the text says (one text a person), or what a `motion` shows.
 
         A `motion` comes from `read_motion` or a motion model; it is the first person's, and the first text only names
-        it. `heading_rad` (from +x towards +y) is where its body faces first, `as_recorded` takes its positions as the
-        radar's own. `height_m` is the body's height, for several people a list; a recorded body is scaled to it.
+        it. `heading_rad` (from +x towards +y) is where the first body faces first, `path_m` the corners (x, y) of its
+        walk; `as_recorded` takes a motion's positions as the radar's own. `height_m` is the body's height, for several
+        people a list; a recorded body is scaled to it. `subject` chooses the person by number (0 to 9999: skin, build,
+        habits, usual height), for several people a list; drawn by the seed where it is not given.
 
+        The sentence decides how long it takes (at least two seconds), and a recorded motion lasts as long as it is;
+        `frames` or `seconds` fix it: a sentence is then fitted, repeated or cut, which `meta` says.
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
         half a metre apart. `keep_adc` also returns the raw samples, which take several times the cube's memory; the
         cube is the same without. The same seed gives the same bits. Raises InputError for a request that cannot be met.
         """
         request = self.request(
-            text, motion=motion, frames=frames, fps=fps, seed=seed, at=at, heading_rad=heading_rad, height_m=height_m,
+            text, motion=motion, frames=frames, seconds=seconds, fps=fps, seed=seed, at=at,
+            heading_rad=heading_rad, path_m=path_m, height_m=height_m, subject=subject,
             as_recorded=as_recorded, keep_adc=keep_adc,
         )  # fmt: skip
         return self.carry_out(request, room)
 
+    def stream(
+        self,
+        room: Room,
+        sentences: Iterable[str | None],
+        *,
+        seed: int = 0,
+        at: Place | None = None,
+        heading_rad: float | None = None,
+        height_m: float | None = None,
+        subject: int | None = None,
+        fps: float | None = None,
+        chunk_frames: int = CHUNK_FRAMES,
+        keep_adc: bool = False,
+    ) -> Iterator[StreamChunk]:
+        """The signal of one person who does what one sentence after the other says, without a break between them.
+
+        `sentences` is any iterable, a live one too: it is asked for the next sentence when the last is done. None or
+        "" says that there is nothing new: one more chunk of the last activity, or of holding the posture. Each sentence
+        begins where the person is, in the posture that they are in, and takes as long as it needs; its last chunk may
+        have fewer than `chunk_frames` frames. A sentence that is not understood, or has no room, is skipped and said in
+        `StreamChunk.refused`; for the first it is an InputError.
+
+        The same seed and sentences give the same bits, whatever `chunk_frames` is, unless sentences are None, each of
+        which lasts a chunk. Other arguments as for `generate`. Memory does not grow with the length of the stream.
+        """
+        check_streams(self.method, self.method_name)
+        request = self.request(
+            "a person stands", frames=1, fps=fps, seed=seed, at=at, heading_rad=heading_rad, height_m=height_m,
+            subject=subject, keep_adc=keep_adc,
+        )  # fmt: skip
+        motion = ContinuousMotion(
+            room.scene, frame_period_s=request.config.frame_period_s, range_window_m=request.range_window_m, seed=seed,
+            start_m=request.people[0].start_m, heading_rad=heading_rad, height_m=height_m, subject=subject,
+        )  # fmt: skip
+        meta = {"seed": seed, "points": self.points, "weights": self.weights, "inputs": room.inputs}
+        streamer = Streamer(
+            room=room, config=request.config, method=self.method, method_name=self.method_name,
+            detect_points=point_detector(self.points, self.firmware), motion=motion, seed=seed,
+            chunk_frames=check_chunk_frames(chunk_frames), needs_adc=needs_adc(self.points), keep_adc=keep_adc,
+            meta=meta,
+        )  # fmt: skip
+        return streamer.chunks(sentences)
+
+    @single_precision()
     def carry_out(self, request: Request, room: Room) -> Generation:
         """What `generate` does with a request that is already parsed. Raises InputError where the room has no place."""
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            people = _compose(request, room.scene)
+            people = compose_request(request, room.scene)
         motions = tuple(person.pose for person in people)
         signal = self.method(
             room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
@@ -210,8 +280,11 @@ class Weaver:
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)
         poses = tuple(resample(one, signal.cube.grid.frame_time_s) for one in motions)
+        adc = signal.adc if request.keep_adc else None
+        if adc is not None and self.calibration is not None and not request.config.is_coded:
+            adc = self.calibration.recorded(adc)
         return Generation(
-            cube=signal.cube, points=points, adc=signal.adc if request.keep_adc else None, poses=poses,
+            cube=signal.cube, points=points, adc=adc, poses=poses,
             motions=motions, scene=room.scene, meta=self._meta(request, room, people, poses, signal), stages=stages,
         )  # fmt: skip
 
@@ -232,16 +305,20 @@ class Weaver:
             **radar_meta(request.config),
             "inputs": room.inputs | _motion_input(request.motion),
             "placed": {
-                "heading_rad": request.heading_rad, "height_m": request.height_m, "as_recorded": request.as_recorded,
+                "heading_rad": request.heading_rad, "height_m": request.height_m, "subject": request.subject,
+                "as_recorded": request.as_recorded,
             },
             "camera": room.scene.photo.intrinsics,
-            "assumed": _assumed(room.scene, people, signal.assumptions),
+            "assumed": _assumed(room.scene, people, (*signal.assumptions, *request.config.notes)),
             **_people_meta(poses, people),
         }  # fmt: skip
 
 
-def _compose(request: Request, scene: Scene) -> tuple[Motion, ...]:
-    """The motion of each person, the first one's from the recording where there is one."""
+def compose_request(request: Request, scene: Scene) -> tuple[Motion, ...]:
+    """The motion of each person, the first one's from the recording where there is one.
+
+    Raises InputError where the room has no place for it.
+    """
     recorded = None
     first = request.people[0]
     if request.motion is not None:
@@ -250,10 +327,14 @@ def _compose(request: Request, scene: Scene) -> tuple[Motion, ...]:
             clip, scene, duration_s=request.duration_s, seed=request.seed, range_window_m=request.range_window_m,
             start_m=first.start_m, heading_rad=request.heading_rad, as_recorded=request.as_recorded,
         )  # fmt: skip
+        who = subject_of(request.seed) if first.subject is None else first.subject
+        recorded = replace(recorded, pose=replace(recorded.pose, subject=who))
     return compose_people(
         [person.plan for person in request.people], scene, seed=request.seed, range_window_m=request.range_window_m,
         starts_m=[person.start_m for person in request.people],
-        heights_m=[person.height_m for person in request.people], first=recorded,
+        heights_m=[person.height_m for person in request.people],
+        subjects=[person.subject for person in request.people], first=recorded,
+        heading_rad=request.heading_rad,
     )  # fmt: skip
 
 
@@ -272,11 +353,14 @@ def _assumed(scene: Scene, people: tuple[Motion, ...], of_method: tuple[str, ...
 
 
 def _people_meta(poses: tuple[PoseSequence, ...], people: tuple[Motion, ...]) -> dict[str, Any]:
-    """`person` and `plan` of one; `people`, a list of both, of several."""
-    described = [{**_person(pose), "plan": person.plan} for pose, person in zip(poses, people, strict=True)]
+    """`person`, `plan` and `clauses` of one; `people`, a list of all three, of several."""
+    described = [
+        {**_person(pose, person), "plan": person.plan, "clauses": person.clauses}
+        for pose, person in zip(poses, people, strict=True)
+    ]
     if len(described) > 1:
         return {"people": described}
-    return {"person": _person(poses[0]), "plan": people[0].plan}
+    return {"person": _person(poses[0], people[0]), "plan": people[0].plan, "clauses": people[0].clauses}
 
 
 def _motion_input(motion: MotionClip | None) -> dict[str, Any]:
@@ -287,10 +371,15 @@ def _motion_input(motion: MotionClip | None) -> dict[str, Any]:
     return {"motion": {**digest, "name": motion.label, "fps": motion.fps, "first_frame": motion.first_frame}}
 
 
-def _person(pose: PoseSequence) -> dict[str, Any]:
+def _person(pose: PoseSequence, motion: Motion) -> dict[str, Any]:
+    who = motion.person
+    drawn = {} if who is None else {"sex": who.sex, "age": who.age, "pace": round(who.pace, 3), "hand": who.hand}
     path_m = np.round(pose.joints_m[:, joint("pelvis"), :2], 3)
     return {
         "height_m": pose.height_m,
+        "subject": pose.subject,
+        "girth": pose.girth,
+        **drawn,
         "starts_at_m": path_m[0],
         "ends_at_m": path_m[-1],
         "path_length_m": round(float(np.linalg.norm(np.diff(path_m, axis=0), axis=1).sum()), 3),

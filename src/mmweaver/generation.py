@@ -13,13 +13,15 @@ from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import preview_figure
 from mmweaver.geometry.aligned_photo import AlignedPhoto
-from mmweaver.result_folder import file_digest, save_results
+from mmweaver.result_folder import file_digest, plain, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from torch import Tensor
     from xarray import Dataset
+
+    from mmweaver.playback.sequence import Playback
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -100,6 +102,32 @@ class Generation(ShownByFacts):
     def plot(self) -> "Figure":
         """The page of preview.png as a matplotlib figure."""
         return preview_figure(self.figure_data)
+
+    def show(self) -> Any:
+        """Plays the sequence in a notebook: room, people, points and maps. Needs the extra 'notebook'."""
+        from mmweaver.playback.notebook import player_widget
+
+        return player_widget(*self._playback())
+
+    def save_html(self, path: str | Path) -> None:
+        """Writes one HTML file that plays the sequence in any browser, without a server or a network connection.
+
+        Raises InputError where it cannot be written.
+        """
+        from mmweaver.playback.html_page import write_page
+
+        write_page(Path(path), *self._playback(), self.figure_data.title)
+
+    def _playback(self) -> "tuple[Playback, Playback]":
+        """The sequence and its room, for the page."""
+        from mmweaver.playback.html_page import OFFLINE_ROOM_POINTS
+        from mmweaver.playback.room import room_playback
+        from mmweaver.playback.sequence import make_playback
+
+        range_m = self.cube.grid.range_m
+        window_m = float(range_m[0]), float(range_m[-1])
+        sequence = make_playback(self.cube, self.points, self.poses, plain(self.meta))
+        return sequence, room_playback(self.scene, "room", window_m, max_points=OFFLINE_ROOM_POINTS)
 
     def to_xarray(self) -> "Dataset":
         """Cube, joints and points as an xarray Dataset, in SI units; needs the extra 'xarray'.

@@ -46,7 +46,10 @@ class Method(Protocol):
     """A scene and the people moving in it -> the signal.
 
     ADC samples are given where `keep_adc` asks for them. `background` is a recording by the same radar in the same
-    place with nobody present, whose static clutter replaces that of the scene.
+    place with nobody present, whose static clutter replaces that of the scene. `first_frame` is only given for part of
+    a longer signal (`Weaver.stream`): the number of the part's first frame, in the time of the poses, which may begin
+    earlier. Noise must then be another in each part, and phases the same; a method without this argument makes no
+    streams.
     """
 
     def __call__(
@@ -60,6 +63,7 @@ class Method(Protocol):
         keep_adc: bool,
         stages: Stages,
         background: RadarCube | None = None,
+        first_frame: int = 0,
     ) -> Signal: ...
 
 
@@ -80,15 +84,16 @@ class Physics:
         keep_adc: bool,
         stages: Stages,
         background: RadarCube | None = None,
+        first_frame: int = 0,
     ) -> Signal:
         with stages("prepare the room"):
             simulator = self._prepared.get(scene, config, background)
-        grid = CubeGrid.of(config, num_frames)
+        grid = CubeGrid.of(config, num_frames, first_frame)
         values = np.empty(grid.shape, np.complex64)
         samples = np.empty(_adc_shape(config, num_frames if keep_adc else 0), np.complex64)
         scale, done = math.nan, 0
         with stages("simulate"):
-            for chunk in simulator.chunks(poses, num_frames=num_frames, seed=seed):
+            for chunk in simulator.chunks(poses, num_frames=num_frames, seed=seed, first_frame=first_frame):
                 part = slice(done, done + len(chunk.samples))
                 values[part] = radar_cube(chunk).values
                 if keep_adc:
@@ -103,7 +108,7 @@ class Physics:
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:
-    return num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples
+    return num_frames, config.num_loops, config.num_slots, config.num_rx, config.num_samples
 
 
 class Learned:
@@ -128,14 +133,15 @@ class Learned:
         keep_adc: bool,
         stages: Stages,
         background: RadarCube | None = None,
+        first_frame: int = 0,
     ) -> Signal:
         from mmweaver.models.learned_paths import FrameMotion
 
         with stages("encode the room"):
             room = self._encoded.get(scene, config, background)
         with stages("weave the signal"):
-            motions = [FrameMotion.of(pose, config, num_frames) for pose in poses]
-            cube, adc = room.signal(motions, seed=seed, keep_adc=keep_adc)
+            motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
+            cube, adc = room.signal(motions, seed=seed, keep_adc=keep_adc, first_frame=first_frame)
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
         assumptions = (LEARNED_NOTE, *several, *_of_background(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")

@@ -1,5 +1,6 @@
 """What is asked of `Weaver.generate`: checked, parsed and scheduled once, then handed on as one record."""
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -8,15 +9,20 @@ from typing import Any
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.motion.language.plan import MotionPlan
-from mmweaver.motion.language.timing import plan_motion
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.timing import natural_s, repeated, schedule
 from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.mocap.clip_resampling import check_lasts
 from mmweaver.motion.multi_person import MOST_PEOPLE, Place
+from mmweaver.motion.people import check_subject
 from mmweaver.motion.register_activity import load_activity_plugins
 
 MAX_FRAMES = 2000
+NEAREST_PERSON_M = 0.5  # where a radar keeps its range from 0
 FPS_LIMITS = (0.1, 1000.0)
 MAX_SECONDS = 600.0
+TURN_M = 0.6  # a corner of a path takes as long as so many metres
+LEAST_SECONDS = 2.0  # of a sequence whose length the sentence decides
 MAX_BYTES = 2_000_000_000  # of the largest array
 
 
@@ -28,6 +34,7 @@ class PersonRequest:
     plan: MotionPlan | None  # the parsed and scheduled text; None for a recorded motion
     start_m: Place | None = None  # (x, y) on the floor, in the radar's frame
     height_m: float | None = None
+    subject: int | None = None  # who it is
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +46,7 @@ class Request:
     frames: int = 20
     seed: int = 0
     motion: MotionClip | None = None  # the first person's recorded motion
-    heading_rad: float | None = None  # where the recorded body faces first, from +x towards +y
+    heading_rad: float | None = None  # where the first person's body faces first, from +x towards +y
     as_recorded: bool = False  # the recorded positions are kept
     keep_adc: bool = False
 
@@ -49,8 +56,9 @@ class Request:
 
     @property
     def range_window_m(self) -> tuple[float, float]:
-        """First and last range bin that the radar keeps."""
-        return float(self.config.range_m[0]), float(self.config.range_m[-1])
+        """Nearest and farthest distance at which a person is placed: within the range bins that the radar keeps."""
+        near_m, far_m = float(self.config.range_m[0]), float(self.config.range_m[-1])
+        return max(near_m, min(NEAREST_PERSON_M, far_m / 2)), far_m
 
     @property
     def text(self) -> str | list[str]:
@@ -63,6 +71,11 @@ class Request:
         return _one_or_all([person.start_m for person in self.people])
 
     @property
+    def subject(self) -> int | list[int | None] | None:
+        """The number of one person, or a list of several people's; None where all are drawn by the seed."""
+        return _one_or_all([person.subject for person in self.people])
+
+    @property
     def height_m(self) -> float | list[float | None] | None:
         """The height of one person, or a list of several people's; None where all are chosen."""
         return _one_or_all([person.height_m for person in self.people])
@@ -73,12 +86,15 @@ def parse_request(
     text: str | Sequence[str] | None = None,
     *,
     motion: MotionClip | None = None,
-    frames: int = 20,
+    frames: int | None = None,
+    seconds: float | None = None,
     fps: float | None = None,
     seed: int = 0,
     at: Place | Sequence[Place | None] | None = None,
     heading_rad: float | None = None,
+    path_m: Sequence[Place] | None = None,
     height_m: float | Sequence[float | None] | None = None,
+    subject: int | Sequence[int | None] | None = None,
     as_recorded: bool = False,
     keep_adc: bool = False,
     needs_adc: bool = False,
@@ -86,12 +102,10 @@ def parse_request(
     """Checks a request and parses its sentences; takes milliseconds, so it is called before any long work.
 
     The arguments are those of `Weaver.generate`; `needs_adc` says that ADC samples are held in memory although they
-    are not returned. Raises InputError for texts, frames, fps or places outside their limits, for a frame rate that
-    the chirps do not fit into, for more samples than memory holds, for a text that is not understood or does not fit
-    the time, and for a recorded motion that is too short.
+    are not returned. Raises InputError for texts, frames, seconds, fps or places outside their limits, for a frame rate
+    that the chirps do not fit into, for more samples than memory holds, for a text that is not understood or of which
+    nothing fits the time, and for a recorded motion that is shorter than what is asked for.
     """
-    if not 1 <= frames <= MAX_FRAMES:
-        raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
     if fps is not None and not FPS_LIMITS[0] <= fps <= FPS_LIMITS[1]:
         raise InputError(f"fps must be {FPS_LIMITS[0]:g} to {FPS_LIMITS[1]:g}, not {fps:g}")
     if seed < 0:
@@ -101,33 +115,99 @@ def parse_request(
         raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
     starts = _starts(at, len(texts))
     config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
-    _check_size(config, frames, keep_adc or needs_adc)
-    if motion is not None:
-        check_lasts(motion, frames * config.frame_period_s)
-    plans: list[MotionPlan | None] = [
-        None if motion is not None and index == 0 else _scheduled(one, config, frames)
-        for index, one in enumerate(texts)
+    has_adc = keep_adc or needs_adc
+    asked = _frames_asked_for(frames, seconds, config)
+    if asked is not None:
+        _check_size(config, asked, has_adc)
+    parsed: list[MotionPlan | None] = [
+        None if motion is not None and index == 0 else parsed_text(one) for index, one in enumerate(texts)
     ]
-    heights = _heights(height_m, len(texts))
+    if path_m is not None:
+        parsed[0] = _along(parsed[0], path_m)
+    count = asked or min(_frames_needed(parsed, motion, config), _most_frames(config, has_adc))
+    if motion is not None:
+        check_lasts(motion, count * config.frame_period_s)
+    heights, subjects = _one_each(height_m, len(texts), "height"), _one_each(subject, len(texts), "subject")
     people = tuple(
-        PersonRequest(text=text, plan=plan, start_m=start, height_m=height)
-        for text, plan, start, height in zip(texts, plans, starts, heights, strict=True)
+        PersonRequest(
+            text=text,
+            plan=_scheduled(plan, count * config.frame_period_s),
+            start_m=start,
+            height_m=None if height is None else float(height),
+            subject=None if who is None else check_subject(who),
+        )
+        for text, plan, start, height, who in zip(texts, parsed, starts, heights, subjects, strict=True)
     )
     return Request(
-        people=people, config=config, frames=frames, seed=seed, motion=motion, heading_rad=heading_rad,
+        people=people, config=config, frames=count, seed=seed, motion=motion, heading_rad=heading_rad,
         as_recorded=as_recorded, keep_adc=keep_adc,
     )  # fmt: skip
 
 
-def _scheduled(text: str, config: RadarConfig, frames: int) -> MotionPlan:
-    """The parsed and scheduled sentence; activities of plug-ins are looked up where it is not understood without."""
-    duration_s = frames * config.frame_period_s
+def _frames_asked_for(frames: int | None, seconds: float | None, config: RadarConfig) -> int | None:
+    """The number of frames where frames or seconds are given. Raises InputError for both, or outside the limits."""
+    if frames is not None and seconds is not None:
+        raise InputError("frames and seconds both say how long it lasts; give one of them")
+    if seconds is not None:
+        if not (math.isfinite(seconds) and 0 < seconds <= MAX_SECONDS):
+            raise InputError(f"seconds must be above 0 and up to {MAX_SECONDS:g}, not {seconds:g}")
+        frames = max(1, math.ceil(seconds / config.frame_period_s - 1e-6))
+        if frames > MAX_FRAMES:
+            raise InputError(
+                f"{seconds:g} s are {frames} frames at {1 / config.frame_period_s:.3g} a second; at most {MAX_FRAMES}"
+                f" ({MAX_FRAMES * config.frame_period_s:.4g} s) are made"
+            )
+    if frames is not None and not 1 <= frames <= MAX_FRAMES:
+        raise InputError(f"frames must be 1 to {MAX_FRAMES}, not {frames}")
+    return frames
+
+
+def _frames_needed(plans: Sequence[MotionPlan | None], motion: MotionClip | None, config: RadarConfig) -> int:
+    """As many frames as the recorded motion has time for, or as the longest sentence needs and two seconds have."""
+    if motion is not None:
+        return max(1, math.floor(motion.duration_s / config.frame_period_s + 1e-6))
+    needed_s = max(LEAST_SECONDS, *(natural_s(plan) for plan in plans if plan is not None))
+    return max(1, math.ceil(needed_s / config.frame_period_s - 1e-6))
+
+
+def parsed_text(text: str) -> MotionPlan:
+    """The parsed sentence; activities of plug-ins are looked up where it is not understood without.
+
+    Raises InputError where it is not understood at all.
+    """
     try:
-        return plan_motion(text, duration_s, 1 / config.frame_period_s)
+        return parse(text)
     except InputError:
         if not load_activity_plugins():
             raise
-        return plan_motion(text, duration_s, 1 / config.frame_period_s)
+        return parse(text)
+
+
+def _along(plan: MotionPlan | None, path_m: Sequence[Place]) -> MotionPlan:
+    """The plan with its first walk along a path. Raises InputError where nobody walks, or for what is no path."""
+    points = tuple((float(x), float(y)) for x, y in path_m)
+    if len(points) < 2 or not all(math.isfinite(value) for point in points for value in point):
+        raise InputError("a path has at least two points, x and y in metres, such as '0,3 0,1.5 0.8,1.5'")
+    walks = [] if plan is None else [k for k, step in enumerate(plan.steps) if step.lower in ("walk", "jog")]
+    if plan is None or not walks:
+        raise InputError("the path is for a sentence in which the person walks or runs; say so, or leave out --path")
+    length_m = sum(math.dist(one, other) for one, other in itertools.pairwise(points))
+    steps = list(plan.steps)
+    steps[walks[0]] = replace(
+        steps[walks[0]], route_m=points, distance_m=length_m + TURN_M * (len(points) - 1), direction="", target="",
+        place=None, arc_deg=0.0, count=0,
+    )  # fmt: skip
+    return replace(plan, steps=tuple(steps), notes=(*plan.notes, f"the path given is {length_m:.2f} m long"))
+
+
+def _scheduled(plan: MotionPlan | None, duration_s: float) -> MotionPlan | None:
+    return None if plan is None else schedule(repeated(plan, duration_s), duration_s)
+
+
+def _most_frames(config: RadarConfig, has_adc: bool) -> int:
+    """The most frames that limits and memory allow."""
+    numbers = config.num_loops * config.num_antennas * (config.num_samples if has_adc else config.num_range_bins)
+    return max(1, min(MAX_FRAMES, MAX_BYTES // (8 * numbers), int(MAX_SECONDS / config.frame_period_s)))
 
 
 def _check_size(config: RadarConfig, frames: int, has_adc: bool) -> None:
@@ -156,15 +236,14 @@ def _starts(at: Place | Sequence[Place | None] | None, people: int) -> list[Plac
     return [(float(place[0]), float(place[1])) if place else None for place in given] + [None] * (people - len(given))
 
 
-def _heights(height_m: float | Sequence[float | None] | None, people: int) -> list[float | None]:
-    """Each person's height, None = by the seed. Raises InputError for more heights than people."""
-    is_one = isinstance(height_m, int | float)
-    given = [height_m] if height_m is None or isinstance(height_m, int | float) else list(height_m)
-    if len(given) > people:
-        raise InputError(f"{people} people need at most {people} heights, not {len(given)}")
-    if is_one and people > 1:
-        raise InputError(f"{people} people need a list of heights, one for each (--height for each)")
-    return [None if height is None else float(height) for height in given] + [None] * (people - len(given))
+def _one_each(given: Any, people: int, name: str) -> list[Any]:
+    """Each person's own value, None = chosen. Raises InputError for more values than people."""
+    values = [given] if given is None or isinstance(given, int | float) else list(given)
+    if len(values) > people:
+        raise InputError(f"{people} people need at most {people} {name}s, not {len(values)}")
+    if people > 1 and given is not None and values == [given]:
+        raise InputError(f"{people} people need a list of {name}s, one for each (--{name} for each)")
+    return values + [None] * (people - len(values))
 
 
 def _one_or_all(values: list[Any]) -> Any:

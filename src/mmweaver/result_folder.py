@@ -1,16 +1,16 @@
 """The folder of results: the same files and pictures for generated and recorded signals."""
 
 import dataclasses
-import hashlib
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.atomic_files import staged_folder
-from mmweaver.core.errors import InputError
+from mmweaver.core.checksums import SUMS_FILE, sha256_of_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.core.stages import Stages
@@ -29,8 +29,13 @@ FILES = {
     "radar.json": "the radar: chirp, array and frame; --radar reads it",
     "meta.json": "all that is needed to make this again, and the assumptions",
     "request.toml": "the options of this run; --config reads them",
+    SUMS_FILE: "the sha256 of all these files; mmweaver verify checks them",
     "preview.png": "one page of pictures",
     "preview.gif": "the same over time",
+    "analysis.npz": "slow-time Doppler, displacement, micro-Doppler and tracks, in SI units",
+    "slow_time.png": "Doppler over frames, displacement of what moves most, breathing and heart",
+    "micro_doppler.png": "radial velocity over time, by STFT over chirps",
+    "people.png": "tracked people",
 }
 
 
@@ -45,12 +50,15 @@ def save_results(
     stages: Stages | None = None,
     pictures: bool = True,
     extra: dict[str, str] | None = None,
+    page: FigureData | None = None,
+    more: Callable[[Path], object] | None = None,
 ) -> dict[str, Any]:
     """Writes all files into the folder `out`, or none; returns the content of meta.json.
 
     Without `pictures` there are no previews. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
-    `iq_order` says. `extra`: further text files, by name. Raises InputError where `out` holds other files and
-    `overwrite` is not set, or where it cannot be written.
+    `iq_order` says. `extra`: further text files, by name. `page`: what the pictures show instead of `view`. `more`
+    writes further files that FILES knows into a folder. Raises InputError where `out` holds other files and `overwrite`
+    is not set, or where it cannot be written.
     """
     stages = stages or Stages()
     with staged_folder(Path(out), overwrite=overwrite) as stage:
@@ -72,12 +80,14 @@ def save_results(
             (stage / "radar.json").write_text(view.cube.config.to_json(), encoding="utf-8")
             for name, text in (extra or {}).items():
                 (stage / name).write_text(text, encoding="utf-8")
+            if more is not None:
+                more(stage)
         if pictures:
             with stages("draw preview.png"):
-                draw_preview(view, stage / "preview.png")
+                draw_preview(page or view, stage / "preview.png")
             with stages("draw preview.gif"):
-                draw_animation(view, stage / "preview.gif")
-        names = {file.name for file in stage.iterdir()} | {"meta.json"}
+                draw_animation(page or view, stage / "preview.gif")
+        names = {file.name for file in stage.iterdir()} | {"meta.json", SUMS_FILE}
         meta["files"] = {name: text for name, text in FILES.items() if name in names}
         meta["seconds"] = {name: round(seconds, 3) for name, seconds in stages.seconds.items()}
         (stage / "meta.json").write_text(
@@ -89,7 +99,7 @@ def save_results(
 def radar_meta(config: RadarConfig) -> dict[str, Any]:
     """The radar and its resolutions, for meta.json."""
     return {
-        "radar": json.loads(config.to_json()),
+        "radar": config.to_values(),
         "resolution": {
             "range_m": config.range_resolution_m,
             "radial_velocity_mps": config.velocity_resolution_mps,
@@ -122,8 +132,4 @@ def plain(value: Any) -> Any:
 
 def file_digest(path: str | Path) -> dict[str, str]:
     """Path and sha256 of an input file, for meta.json. Raises InputError where it cannot be read."""
-    try:
-        with Path(path).open("rb") as stream:
-            return {"path": str(path), "sha256": hashlib.file_digest(stream, "sha256").hexdigest()}
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
+    return {"path": str(path), "sha256": sha256_of_file(Path(path))}

@@ -43,8 +43,8 @@ def check_method(method: "Method", *, room: Room | None = None, radar: str | Rad
     weaver = Weaver(checked, radar)
     room = room or weaver.sample_room()
 
-    def made(text: str | list[str] = TEXT, **asked: int | bool) -> Generation:
-        return weaver.generate(room, text, frames=FRAMES, **asked)  # type: ignore[arg-type]
+    def made(text: str | list[str] = TEXT, **asked: Any) -> Generation:
+        return weaver.generate(room, text, frames=FRAMES, **asked)
 
     first, again, _ = made(seed=1), made(seed=1), made(seed=2)
     _equal(first.cube.values, again.cube.values, "the same seed must give the same bits of the cube")
@@ -132,7 +132,7 @@ def _check_cube(cube: RadarCube, grid: CubeGrid, config: RadarConfig) -> None:
 
 
 def _check_samples(adc: AdcCube, config: RadarConfig) -> None:
-    wanted = (FRAMES, config.num_loops, config.num_tx, config.num_rx, config.num_samples)
+    wanted = (FRAMES, config.num_loops, config.num_slots, config.num_rx, config.num_samples)
     assert adc.samples.shape == wanted, f"ADC samples must be {wanted}, not {adc.samples.shape}"
     assert adc.samples.dtype == np.complex64, f"ADC samples must be complex64, not {adc.samples.dtype}"
     assert np.isfinite(adc.samples).all(), "ADC samples must be finite"

@@ -270,16 +270,16 @@ def gains(
     return {name: np.array(values) for name, values in found.items()}
 
 
-def rows_of(found: dict[str, np.ndarray], rooms: list[UnseenRoom]) -> list[dict[str, Any]]:
-    """One row a method: accuracy and log loss, and the gain over training on other rooms alone."""
-    names, rows = [room.name for room in rooms][: len(found[ALONE])], []
+def rows_of(found: dict[str, np.ndarray], rooms: list[str]) -> list[dict[str, Any]]:
+    """One row a method: accuracy and log loss of the named rooms, and the gain over training on other rooms alone."""
+    names, rows = rooms[: len(found[ALONE])], []
     for method, values in found.items():
         better = values - found[ALONE]
         columns = {
             "accuracy": (values[:, 0], "1"), "gain": (better[:, 0], "1"),
             "log_loss": (values[:, 1], "nat"), "log_loss_gain": (-better[:, 1], "nat"),
         }  # fmt: skip
-        metrics = {}
+        metrics: dict[str, dict[str, Any]] = {}
         for metric, (each, unit) in columns.items():
             mean, low, high = interval(each, names)
             metrics[metric] = {"value": mean, "interval_95": [low, high], "unit": unit}
@@ -350,17 +350,18 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     files = [digest(file) for file in (weights, options.recogniser, options.paper) if file is not None]
     cache = RoomCache(options.runs, {**about, "files": files, "methods": list(methods)})
     name = "test_room" if options.recordings is None else f"recordings_{options.recordings}"
+    names = [room.name for room in rooms]
 
     def write(found: dict[str, np.ndarray]) -> None:
         rows = complete_rows(
-            rows_of(found, rooms), dataset={**dataset_of(options.data), "split": "test_room"}, baselines=(ALONE,),
+            rows_of(found, names), dataset={**dataset_of(options.data), "split": "test_room"}, baselines=(ALONE,),
             oracles=("true_room",), seeds=list(range(len(found[ALONE]))),
             unknown={"seconds": "see the manifest: all rows together"},
         )  # fmt: skip
         run.write("activity_gain", name, config=about, rows=rows)
-        room = rooms[len(found[ALONE]) - 1].name
+        room = names[len(found[ALONE]) - 1]
         print(f"{room:18}", *(f"{name} {values[-1, 0]:.2f}" for name, values in found.items()), flush=True)
 
-    for row in rows_of(gains(study, rooms, methods, each=options.each, cache=cache, after=write), rooms):
+    for row in rows_of(gains(study, rooms, methods, each=options.each, cache=cache, after=write), names):
         values = (f"{name} {m['value']:.3f} {m['interval_95']}" for name, m in row["metrics"].items())
         print(f"{row['method']:30}", *values)

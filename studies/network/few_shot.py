@@ -8,6 +8,7 @@ half. `realization` (an oracle): the simulator in the true room with other micro
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -68,7 +69,7 @@ def _jumps(room: StoredRoom) -> list[int]:
     return [index for index, (activity, split) in enumerate(pairs) if activity == ACTIVITY and split == SPLIT]
 
 
-def evaluated(method: Method, cases: list[Case]) -> dict[str, dict[str, float | str]]:
+def evaluated(method: Method, cases: list[Case]) -> dict[str, dict[str, Any]]:
     """{column: metric with mean and interval over rooms}."""
     values: dict[str, list[float]] = {name: [] for name in COLUMNS}
     for case in cases:
@@ -96,7 +97,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     known = {room.folder for room in others}
     every = [case for case in cases_of(rooms, SPLIT, 100, plan, 0) if case.room.folder in known]
     cases = [case for case in every if case.room.activity[case.index] == ACTIVITY][: options.most]
-    rows = []
+    rows: list[dict[str, Any]] = []
     for shots in SHOTS:
         network = tuned(options.weights, own, shots, options.runs / f"shots_{shots}", 0)
         metrics = evaluated(learned(network, lambda case: case.room), cases)

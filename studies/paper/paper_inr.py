@@ -58,7 +58,7 @@ class _Gauss(torch.autograd.Function):
         return y
 
     @staticmethod
-    def backward(ctx, slope: torch.Tensor) -> torch.Tensor:  # pyright: ignore[reportIncompatibleMethodOverride]
+    def backward(ctx, slope: torch.Tensor) -> torch.Tensor:  # type: ignore
         z, y = ctx.saved_tensors
         return (slope * z).mul_(y).mul_(-1 / GAUSS_WIDTH**2)
 

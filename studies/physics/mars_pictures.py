@@ -28,8 +28,9 @@ EDGES_M = np.arange(-1.0, 1.05, 0.1)
 
 def setup_of(result: Path) -> Setup:
     """The estimated parameters, from a result of mars."""
-    held = json.loads(result.read_text(encoding="utf-8"))["config"]["estimated_on_validate"]
-    return Setup(**{**held, "shift_m": tuple(held["shift_m"])})
+    held: dict[str, Any] = json.loads(result.read_text(encoding="utf-8"))["config"]["estimated_on_validate"]
+    held["shift_m"] = tuple(held["shift_m"])
+    return Setup(**held)
 
 
 def draw(pieces: list[MarsStretch], real: Clouds, ours: Clouds, setup: Setup, path: Path) -> None:

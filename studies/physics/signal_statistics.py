@@ -198,7 +198,7 @@ def _row(
     name: str, origin: str, values: dict[str, float], spread: dict[str, list[float]] | None,
     parts: dict[str, list[float]], seeds: tuple[int, ...],
 ) -> dict[str, Any]:  # fmt: skip
-    metrics = {}
+    metrics: dict[str, dict[str, Any]] = {}
     for key, value in values.items():
         unit, definition = DEFINITIONS[key]
         metrics[key] = {"value": round(value, 4), "unit": unit, "definition": definition, "version": VERSION}

@@ -39,7 +39,9 @@ METRICS = {
 }
 
 
-def validate(made: TrainingSet, samples: list[VariationSample]) -> dict[str, float]:
+def validate(
+    made: TrainingSet, samples: list[VariationSample], settings: ClassifierSettings | None = None
+) -> dict[str, float]:
     """Balanced accuracy on generated windows under conditions that were held out of training.
 
     Each split trains on one side of a span of conditions and tests on the other; `every_third` is a plain split.
@@ -53,7 +55,7 @@ def validate(made: TrainingSet, samples: list[VariationSample]) -> dict[str, flo
     for name, test in tests.items():
         if test.all():
             continue  # nothing is left to train on: this was not varied
-        model = TrainingSet(features=made.features[~test], labels=made.labels[~test], names=made.names).train()
+        model = TrainingSet(features=made.features[~test], labels=made.labels[~test], names=made.names).train(settings)
         truth, guess = (
             np.unique(made.labels).searchsorted(labels)
             for labels in (made.labels[test], model.predict(made.features[test]))

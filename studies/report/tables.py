@@ -180,6 +180,11 @@ MICRO_DOPPLER = MetricTable(
         ("outside", "{outside}"), ("ours inside", "{metric.share_inside:percent.0}"),
     ),
 )  # fmt: skip
+COMPOSE_TIMES = RowTable(
+    sources=("compose_times/distance_field",),
+    columns=(("room", "{dataset.name}"), ("mean, s", "{metrics.mean_s:number}"),
+             ("slowest, s", "{metrics.worst_s:number}"), ("first, s", "{metrics.first_s:number}")),
+)  # fmt: skip
 REALISM = MetricTable(
     sources=("motion_realism/library",),
     columns=(
@@ -194,12 +199,24 @@ KITML = MetricTable(
     lines=(
         ("understood", "understood, of all"),
         ("understood_checking_half", "understood, of the half not developed on"),
+        ("understood_draw", "understood, of 300 drawn uniformly from that half"),
         ("understood_new_sentences",
          "understood, of those among them whose words occur in no sentence of the other half"),
         ("wrong_first_sample", "wrong by hand, first sample (faults mended since)"),
         ("wrong_second_sample", "wrong by hand, second sample (faults mended since)"),
         ("wrong_third_sample", "wrong by hand, third sample (faults mended since)"),
-        ("wrong", "wrong by hand, fourth sample (as it is now)"),
+        ("wrong_fourth_sample", "wrong by hand, fourth sample (grammar before the freeze)"),
+        ("wrong", "wrong by hand, understood ones among 300 never judged before (the frozen grammar)"),
+    ),
+)  # fmt: skip
+STRANGERS = MetricTable(
+    sources=("strangers/default",),
+    columns=(("200 sentences", "{label}"), ("share", "{metric:percent.1}")),
+    lines=(
+        ("made_before", "made at the default command before (version 0.2.0)"),
+        ("made", "made now"),
+        ("done", "of all: every clause as it was said"),
+        ("approximated", "of all: a clause approximated or not shown, and said so"),
     ),
 )  # fmt: skip
 MOTIONGPT = RowTable(
@@ -224,6 +241,21 @@ LIMBS = PivotTable(
                               ("brightest third", "brightest"))},
 )  # fmt: skip
 
+FAULTS = RowTable(
+    sources=("injected_faults/*",),
+    columns=(
+        ("command", "`{dataset.name}`"), ("events", "{events}"),
+        *((head, f"{{metrics.{kind}:.0f}} of {{tried.{kind}}}") for kind, head in (
+            ("kill", "killed"), ("full", "disk full from there on"), ("once", "one write fails"),
+            ("large", "no larger file"))),
+    ),
+)  # fmt: skip
+DAMAGED_SETS = RowTable(
+    sources=("trust/damaged_sets",),
+    columns=(("set", "{dataset.name}"), ("damage", "{kind}"), ("tried", "{n}"),
+             ("refused in one line", "{metrics.refused:.0f}"), ("accepted", "{metrics.accepted:.0f}")),
+)  # fmt: skip
+
 TABLES: dict[str, Callable[[Path], str]] = {
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
     "rendered_noise": RENDERED_NOISE.render, "scatterer_tracks": TRACKS.render,
@@ -231,8 +263,10 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
     "multi_person": MULTI_PERSON.render, "signal_statistics": statistics_table, "mars": MARS.render,
-    "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render, "kitml": KITML.render,
+    "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
+    "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
+    "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip

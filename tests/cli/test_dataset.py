@@ -25,6 +25,8 @@ def test_a_small_set_and_going_on(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert (shown["rooms_made"], shown["sequences_made"]) == (1, 1)
     assert main([*words, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["rooms_already_there"] == 1
+    assert main(["dataset", "--config", str(tmp_path / "d" / "request.toml"), str(tmp_path / "again"), "--quiet"]) == 0
+    assert contents(tmp_path / "again") == contents(tmp_path / "d")
 
 
 @pytest.mark.parametrize(

@@ -23,10 +23,10 @@ def test_a_sentence_is_read_and_acted_out(tmp_path: Path, capsys: pytest.Capture
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (["a person swings a bat"], "did you mean"),
+        (["a person flies"], "did you mean"),
         (["a person bows", "--out", "m.txt"], ".npz"),
         (["a person bows", "--picture", "m.txt"], ".png"),
-        (["a person bows, then waves", "--seconds", "0.5"], "need at least"),
+        (["a person bows, then waves", "--seconds", "0.5"], "at least 0.7 s"),
     ],
 )
 def test_bad_input_is_one_line(words: list[str], told: str, capsys: pytest.CaptureFixture[str]):

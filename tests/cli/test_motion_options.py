@@ -68,7 +68,7 @@ def test_as_recorded(tmp_path: Path):
     [
         (["--motion", "arm.npy"], "--motion-fps"),
         (["--motion", "none.bvh"], "there is no motion file"),
-        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "20"], r"lasts 1.00 s, 2.00 s are needed"),
+        (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "20"], r"lasts 1 s, 2 s are asked for"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--motion-start", "4"], "cannot start at 4 s"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--frames", "5", "--at", "0.1,9"], "nearest free place"),
         (["--motion", "arm.npy", "--motion-fps", "30", "--motion-unit", "ell"], "no unit of length"),
@@ -76,7 +76,7 @@ def test_as_recorded(tmp_path: Path):
         (["--motion", "arm.npy", "--as-recorded", "--at", "0,2"], "moves nothing"),
         (["--text", "a person walks", "--motion-unit", "cm"], "--motion-unit is about a recorded motion"),
         (["--text", "a person walks", "--as-recorded"], "--as-recorded is about a recorded motion"),
-        (["--text", "a person walks", "--heading", "0"], "--heading is for a recorded"),
+        (["--text", "a person waves", "--path", "0,2 0,1.5"], "walks or runs"),
         (["--motion", "arm.npy", "--motion-model", "m.tar"], "give one of them"),
     ],
 )
@@ -94,5 +94,19 @@ def test_bad_input_is_one_line_and_leaves_nothing(
 
 def test_a_motion_model_acts_out_the_text(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     pytest.importorskip("transformers")
-    assert main(["generate", "--demo", "--motion-model", str(tmp_path / "none.tar"), "--out", str(tmp_path / "o")]) == 2
+    assert (
+        main(
+            [
+                "generate",
+                "--demo",
+                "--motion-model",
+                str(tmp_path / "none.tar"),
+                "--motion-model-for",
+                "all",
+                "--out",
+                str(tmp_path / "o"),
+            ]
+        )
+        == 2
+    )
     assert "there is no checkpoint" in capsys.readouterr().err

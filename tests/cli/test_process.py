@@ -51,7 +51,11 @@ def test_a_bin_becomes_the_files_promised(recording: Path, tmp_path: Path, capsy
     assert "radar.npz" in captured.out
     names = {file.name for file in out.iterdir()}
     pictures = {"preview.png", "preview.gif"}
-    assert names == {"radar.npz", "points.npz", "radar.json", "meta.json", "request.toml"} | pictures
+    assert (
+        names
+        == {"radar.npz", "points.npz", "radar.json", "meta.json", "request.toml", "SHA256SUMS", "analysis.npz"}
+        | pictures
+    )
     cube = read_radar_npz(out / "radar.npz")
     assert cube.values.shape == (2, 64, 32, 12)
     strongest = np.abs(cube.values).sum(axis=(0, 2, 3)).argmax()

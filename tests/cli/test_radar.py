@@ -36,6 +36,14 @@ def test_without_a_radar_every_preset_is_listed(capsys: pytest.CaptureFixture[st
     assert {name: RadarConfig.from_json(json.dumps(one)) for name, one in presets.items()} == dict(PRESETS)
 
 
+def test_a_chosen_range_is_part_of_the_radar(capsys: pytest.CaptureFixture[str]):
+    assert main(["radar", "awr1843", "--range", "0.3,8", "--json"]) == 0
+    config = RadarConfig.from_json(capsys.readouterr().out)
+    assert (config.first_range_bin, config.num_range_bins) == (7, 176)
+    assert main(["radar", "awr1843", "--range", "0.3,80"]) == 2
+    assert "11.2" in capsys.readouterr().err
+
+
 def test_an_unknown_radar_lists_the_known(capsys: pytest.CaptureFixture[str]):
     assert main(["radar", "nope"]) == 2
     assert "awr1843" in capsys.readouterr().err

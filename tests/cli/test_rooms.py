@@ -23,6 +23,16 @@ def test_rooms_are_written_and_generated_from(tmp_path: Path, capsys: pytest.Cap
     assert (tmp_path / "wave" / "radar.npz").is_file()
 
 
+def test_rooms_are_repeated_by_their_request(tmp_path: Path):
+    first, again = tmp_path / "first", tmp_path / "again"
+    options = ["--kinds", "corridor", "--seed", "3", "--lighting", "lamps", "--noise", "--quiet"]
+    assert main(["rooms", str(first), *options]) == 0
+    assert main(["rooms", "--config", str(first / "request.toml"), str(again), "--quiet"]) == 0
+    files = sorted(path.relative_to(first) for path in first.rglob("*") if path.is_file())
+    assert len(files) >= 7
+    assert all((first / file).read_bytes() == (again / file).read_bytes() for file in files)
+
+
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,8 @@ def test_train_then_generate(tiny_signals: Path, tmp_path: Path, capsys: pytest.
     data, run, out = str(tiny_signals), tmp_path / "run", tmp_path / "generated"
     assert main(["train", "weaver", "--data", data, "--out", str(run), "--steps", "2", "--batch", "1", "--json"]) == 0
     weights = json.loads(capsys.readouterr().out)["weights"]
+    request = tomllib.loads((run / "request.toml").read_text())
+    assert request == {"command": "train", "recipe": "weaver", "data": data, "steps": 2, "batch": 1, "seed": 0}
     words = ["generate", "--demo", "--method", "weaver", "--weights", weights, "--frames", "6", "--out", str(out)]
     words += ["--text", "a person walks towards the radar"]
     assert main([*words, "--quiet", "--no-pictures"]) == 0
@@ -82,7 +85,7 @@ def test_killed_and_called_again_it_ends_with_the_same_bits(
     assert not (out / "weights.safetensors").exists()
     done = torch.load(out / "checkpoint.pt", weights_only=True)["done"]
     assert 1 <= done < 6
-    assert main([*words, "--out", str(out)]) == 0
+    assert main(["train", "--config", str(tmp_path / "whole" / "request.toml"), "--out", str(out), "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert again["validation_loss"] == whole["validation_loss"]
     for name in ("weights.safetensors", "best.safetensors"):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
@@ -79,7 +80,7 @@ def two_processes(words: list[str]) -> list[subprocess.Popen[str]]:
     shared["PYTHONPATH"] = str(Path(__file__).parents[2] / "src")
     command = [sys.executable, "-m", "mmweaver", *words]
     environments = (os.environ | shared | {"RANK": rank, "LOCAL_RANK": rank} for rank in "01")
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     return [subprocess.Popen(command, env=environment, **pipes) for environment in environments]
 
 

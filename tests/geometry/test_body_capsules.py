@@ -12,7 +12,7 @@ from mmweaver.geometry.body_capsules import (
     radii_m,
     widths_per_depth,
 )
-from mmweaver.motion.planning import collision, separation
+from mmweaver.motion.planning import body_samples, separation
 from tests.rooms import standing_person
 
 JOINTS = standing_person((0.0, 2.0, -1.2)).joints_m[:1]
@@ -53,11 +53,11 @@ def test_left_and_right_mirror_each_other():
 
 @pytest.mark.parametrize("bone", BONES, ids=lambda bone: JOINT_NAMES[bone[1]])
 def test_the_planner_keeps_people_apart_by_at_least_the_radars_body(bone: tuple[int, int]):
-    """Spheres of `separation` and cylinders of `collision` are no thinner than the capsules' thinner end, in depth."""
+    """Spheres of `separation` and cylinders of `body_samples` are no thinner than the capsules' thinner end."""
     parent, child = (JOINT_NAMES[index] for index in bone)
     capsule = next((one for one in CAPSULES if (one.start, one.end) == (parent, child)), None)
     near, far = separation._bone_radii_m(parent, child)
-    limb = next((radius for start, end, radius in collision._LIMBS if (start, end) == (parent, child)), None)
+    limb = next((radius for start, end, radius in body_samples.LIMBS if (start, end) == (parent, child)), None)
     if capsule is None:
         assert child.endswith(("hip", "collar"))
         assert near > 0.1

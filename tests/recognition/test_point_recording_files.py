@@ -60,7 +60,7 @@ def test_an_npz_file_holds_the_same(tmp_path):
         ("walk_1.txt", b"nothing of the kind", "no points"),
         ("walk_1.txt", text((0, 1, 1, 1, 0)).encode()[:-60], "no RadHAR text file"),
         ("walk_1.txt", b"point_id: 0\nx: a\ny: 1\nz: 1\nvelocity: 1\n", "no RadHAR text file"),
-        ("walk_1.npz", b"PK no archive", "no recording"),
+        ("walk_1.npz", b"PK no archive", "no plain .npz archive"),
         ("swim_1.txt", text((0, 1, 1, 1, 0)).encode(), "does not name its activity"),
         ("walk_boxing_1.txt", text((0, 1, 1, 1, 0)).encode(), "does not name its activity"),
         ("walk_1.txt", text((0, "nan", 1, 1, 0)).encode(), "not finite"),

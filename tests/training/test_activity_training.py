@@ -1,6 +1,7 @@
 """Recipe activity on a tiny data set: it resumes exactly, shares its batches, and its files are read back."""
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.training.activity_examples import activity_examples
-from mmweaver.training.activity_training import TRAIN_SPLITS, ActivityLearner, ActivityRecipe, train_activity
+from mmweaver.training.activity_training import (
+    TRAIN_MAPS,
+    TRAIN_SPLITS,
+    VALIDATION_MAPS,
+    ActivityLearner,
+    ActivityRecipe,
+    train_activity,
+)
 from mmweaver.training.device import ComputeDevice, moved
 from mmweaver.training.trainer import Progress
 from tests.training.tiny_data import StoppedError
@@ -21,12 +29,30 @@ pytest.importorskip("zarr")
 RECIPE = ActivityRecipe(steps=4, batch_size=2, validate_every=2)
 
 
+@pytest.fixture(scope="module")
+def maps(tiny_geometry: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The cached log maps of the data set, which cost more than a training of four steps."""
+    folder = tmp_path_factory.mktemp("maps")
+    activity_examples(tiny_geometry, ("validation",), folder / VALIDATION_MAPS)
+    activity_examples(tiny_geometry, TRAIN_SPLITS, folder / TRAIN_MAPS)
+    return folder
+
+
+def with_maps(maps: Path, out: Path) -> Path:
+    """A folder for a training that finds its maps there."""
+    return Path(shutil.copytree(maps, out, dirs_exist_ok=True))
+
+
 def stop_at_three(progress: Progress) -> None:
     if progress.step == 3:
         raise StoppedError
 
 
-def test_it_resumes_where_it_stopped(tiny_geometry: Path, tmp_path: Path):
+@pytest.mark.slow  # test_network_training.py interrupts the same loop
+@pytest.mark.usefixtures("blank_training_pictures")
+def test_it_resumes_where_it_stopped(tiny_geometry: Path, maps: Path, tmp_path: Path):
+    for name in ("whole", "parts"):
+        with_maps(maps, tmp_path / name)
     whole = train_activity(tiny_geometry, tmp_path / "whole", RECIPE, save_every_s=0.0)
     with pytest.raises(StoppedError):
         train_activity(tiny_geometry, tmp_path / "parts", RECIPE, listener=stop_at_three, save_every_s=0.0)
@@ -51,6 +77,8 @@ def test_maps_are_computed_once_per_data_set(
     monkeypatch.setattr("mmweaver.training.activity_examples.compute_log_maps", none_more)
     again = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=1))
     assert again.step == 1
+    with pytest.raises(InputError, match="other settings"):
+        train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=2))
     (tmp_path / "checkpoint.pt").unlink()
     with pytest.raises(AssertionError, match="made again"):
         train_activity(tiny_signals, tmp_path, replace(RECIPE, steps=1))
@@ -63,8 +91,8 @@ def test_sequences_can_be_picked_by_label(tiny_geometry: Path):
     assert torch.equal(some.doppler[0], every.doppler[0])
 
 
-def test_two_shares_have_the_gradient_of_the_whole_batch(tiny_geometry: Path, tmp_path: Path):
-    initial = train_activity(tiny_geometry, tmp_path, replace(RECIPE, steps=0, batch_size=4))
+def test_two_shares_have_the_gradient_of_the_whole_batch(tiny_geometry: Path, maps: Path, tmp_path: Path):
+    initial = train_activity(tiny_geometry, with_maps(maps, tmp_path), replace(RECIPE, steps=0, batch_size=4))
     learner = initial.learner.eval()  # nothing dropped by chance
     gradients = []
     for shares in ([(0, 1)], [(0, 2), (1, 2)]):
@@ -76,8 +104,9 @@ def test_two_shares_have_the_gradient_of_the_whole_batch(tiny_geometry: Path, tm
     assert torch.allclose(*gradients, atol=1e-6)
 
 
-def test_bf16_and_another_device_take_part(tiny_geometry: Path, tmp_path: Path):
-    trainer = train_activity(tiny_geometry, tmp_path, RECIPE, compute=ComputeDevice(precision="bf16"))
+@pytest.mark.slow  # test_network_training.py: the same loop in mixed precision and on another device
+def test_bf16_and_another_device_take_part(tiny_geometry: Path, maps: Path, tmp_path: Path):
+    trainer = train_activity(tiny_geometry, with_maps(maps, tmp_path), RECIPE, compute=ComputeDevice(precision="bf16"))
     assert torch.isfinite(torch.tensor(trainer.best.value))
     learner = ActivityLearner(ActivityNetwork(AWR1843)).to("meta")
     terms = learner(moved(trainer._train(0, (0, 1)), torch.device("meta")))
@@ -85,9 +114,6 @@ def test_bf16_and_another_device_take_part(tiny_geometry: Path, tmp_path: Path):
     assert {parameter.grad.device.type for parameter in learner.parameters() if parameter.grad is not None} == {"meta"}
 
 
-def test_other_settings_and_folders_without_data_are_refused(tiny_geometry: Path, tmp_path: Path):
-    train_activity(tiny_geometry, tmp_path / "a", replace(RECIPE, steps=1))
-    with pytest.raises(InputError, match="other settings"):
-        train_activity(tiny_geometry, tmp_path / "a", replace(RECIPE, steps=2))
+def test_a_folder_without_data_is_refused(tmp_path: Path):
     with pytest.raises(InputError, match="no data set"):
         train_activity(tmp_path, tmp_path / "out", RECIPE)

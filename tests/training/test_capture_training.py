@@ -7,12 +7,21 @@ import numpy as np
 import pytest
 import torch
 
+from mmweaver.core.tensor_files import sha256_of
 from mmweaver.generate import Weaver
 from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.weights import load_weights, sha256_of
+from mmweaver.models.weights import load_weights
 from mmweaver.recordings.captures import Capture, read_capture, rooms_of
-from mmweaver.training.capture_training import CaptureRecipe, estimate_gain, tune, write_tuned
+from mmweaver.training.capture_training import (
+    STATIC_HEADS,
+    CaptureLearner,
+    CaptureRecipe,
+    estimate_gain,
+    tune,
+    write_tuned,
+)
 
+pytestmark = pytest.mark.usefixtures("blank_training_pictures")
 RECIPE = CaptureRecipe(steps=6, batch_size=1, frames=2, validate_every=3, validation_batches=1, warm_up_steps=1,
                        learning_rate=1e-3)  # fmt: skip
 
@@ -38,6 +47,14 @@ def start() -> dict[str, torch.Tensor]:
     return network.state_dict()
 
 
+def test_which_parameters_are_tuned(captures):
+    for everything in (False, True):
+        learner = CaptureLearner(WeaverNetwork(), captures[0].cube.config, 1e-12, everything=everything)
+        tuned = {name.split(".")[0] for name, one in learner.network.named_parameters() if one.requires_grad}
+        assert tuned >= set(STATIC_HEADS)
+        assert ("pose" in tuned) is everything
+
+
 def test_without_joints_only_static_clutter_changes(captures, start, tmp_path: Path):
     empty = [replace(capture, pose=None) for capture in captures]
     tuned = tune(empty, tmp_path, replace(RECIPE, steps=12, learning_rate=1e-2), start=start)
@@ -55,6 +72,7 @@ def test_without_joints_only_static_clutter_changes(captures, start, tmp_path: P
     assert card.tuned_from in page
 
 
+@pytest.mark.slow  # test_trainer.py: the best weights are those left
 def test_weights_that_do_not_improve_are_not_used(captures, start, tmp_path: Path):
     """Steps far too large: the initial weights stay the best."""
     tuned = tune(captures, tmp_path, replace(RECIPE, learning_rate=3.0, largest_gradient=1e9), start=start)
@@ -63,6 +81,7 @@ def test_weights_that_do_not_improve_are_not_used(captures, start, tmp_path: Pat
                for name, tensor in tuned.trainer.learner.state_dict().items())  # fmt: skip
 
 
+@pytest.mark.slow  # test_which_parameters_are_tuned; tests/cli/test_train.py tunes on captures with joints
 def test_with_joints_all_is_tuned(captures, start, tmp_path: Path):
     tuned = tune(captures, tmp_path, RECIPE, start=start)
     assert tuned.trainer.best.value < tuned.loss_before
@@ -80,6 +99,7 @@ def test_the_gain_of_counts_is_estimated(captures, start):
     assert estimate_gain(network, [room.calibrated(1000.0)]) == pytest.approx(own / 1000, rel=1e-3)
 
 
+@pytest.mark.slow  # test_the_gain_of_counts_is_estimated
 def test_captures_in_counts_are_calibrated(captures, start, tmp_path: Path):
     """A single capture, in ADC counts."""
     cube = captures[0].cube

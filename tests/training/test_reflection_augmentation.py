@@ -3,6 +3,7 @@
 from dataclasses import fields
 
 import numpy as np
+import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
@@ -16,12 +17,12 @@ from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.reflection_augmentation import reflected_joints, reflected_scene
 
 
-def _view() -> SceneTensors:
+@pytest.fixture(scope="module")
+def view() -> SceneTensors:
     return SceneTensors.stack([SceneTensors.of(reconstruct(make_room("office").photo()), AWR1843)])
 
 
-def test_reflecting_twice_changes_nothing():
-    view = _view()
+def test_reflecting_twice_changes_nothing(view: SceneTensors):
     again = reflected_scene(reflected_scene(view))
     for field in fields(SceneTensors):
         torch.testing.assert_close(getattr(again, field.name), getattr(view, field.name), msg=field.name)
@@ -35,10 +36,10 @@ def test_a_raised_right_hand_is_a_raised_left_hand():
     assert reflected_joints(joints)[joint("left_wrist")].tolist() == torch.tensor([-0.4, 2.0, 0.7]).tolist()
 
 
-def test_the_network_s_static_map_is_reflected():
+def test_the_network_s_static_map_is_reflected(view: SceneTensors):
     """Before training the network equals physics, which is symmetric under reflection."""
     torch.manual_seed(0)
-    network, radar, view = WeaverNetwork().eval(), MeanPower(AWR1843), _view()
+    network, radar = WeaverNetwork().eval(), MeanPower(AWR1843)
     with torch.inference_mode():
         maps = [
             radar.maps(points_of(network.encode_room(one).static, radar.response)).range_azimuth

@@ -3,26 +3,30 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from mmweaver.core.seeding import stream
 from mmweaver.scene.segmentation.segmenter_features import CHANNELS, COLOURS, HEIGHT, MEASURED
-from mmweaver.training.segmenter_data import augmented, make_example, make_examples
+from mmweaver.training.segmenter_data import SegmenterExample, augmented, make_example, make_examples
 
 
-def test_cached_rooms_are_read_back(tmp_path: Path):
+@pytest.fixture(scope="module")
+def example() -> SegmenterExample:
+    return make_example("office", 1000)
+
+
+def test_cached_rooms_are_read_back(example: SegmenterExample, tmp_path: Path):
     first = make_examples(("office",), 1, 1000, tmp_path)
     (cached,) = tmp_path.iterdir()
     stamp = cached.stat().st_mtime_ns
     again = make_examples(("office",), 1, 1000, tmp_path)
     assert cached.stat().st_mtime_ns == stamp
     assert np.array_equal(first[0].features, again[0].features)
-    fresh = make_example("office", 1000)
-    assert np.allclose(fresh.features, again[0].features, atol=3e-3)
-    assert np.array_equal(fresh.groups, again[0].groups)
+    assert np.allclose(example.features, again[0].features, atol=3e-3)
+    assert np.array_equal(example.groups, again[0].groups)
 
 
-def test_augmentation_keeps_shapes_and_changes_colours():
-    example = make_example("office", 1000)
+def test_augmentation_keeps_shapes_and_changes_colours(example: SegmenterExample):
     changed, holes = [], []
     for draw in range(12):
         features, groups = augmented(example, stream(draw, "test"))

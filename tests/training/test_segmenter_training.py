@@ -20,7 +20,7 @@ def test_no_kind_is_in_both_splits():
 
 
 def test_it_learns_and_its_weights_are_restored(example: SegmenterExample, tmp_path: Path):
-    recipe = SegmenterRecipe(epochs=6, batch=2)
+    recipe = SegmenterRecipe(epochs=4, batch=2)
     network, losses = train([example] * 4, recipe)
     assert losses[-1] < 0.9 * losses[0]
     again, same = train([example] * 4, recipe)
@@ -35,6 +35,7 @@ def test_it_learns_and_its_weights_are_restored(example: SegmenterExample, tmp_p
         assert torch.allclose(again(cells), network(cells))
 
 
+@pytest.mark.slow  # test_resuming.py stops a training of the same kind
 def test_a_stopped_training_resumes_to_the_same_end(
     example: SegmenterExample, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import socket
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,6 +15,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.training.device import ComputeDevice
 from mmweaver.training.trainer import Progress
 from tests.training.toy_learner import RECIPE, ToyLearner, draw, trainer
+
+SCRIPT = Path(__file__).with_name("toy_learner.py")
 
 
 def weights(out: Path) -> dict[str, torch.Tensor]:
@@ -32,34 +35,54 @@ def test_it_learns_logs_and_saves_pictures(tmp_path: Path):
     assert made.validation_loss() == pytest.approx(made.best.value)  # the best weights are those left
 
 
-def two_processes(*words: str) -> subprocess.CompletedProcess[str]:
-    script = Path(__file__).with_name("toy_learner.py")
+def environment(**more: str) -> dict[str, str]:
     roots = [str(Path(__file__).parents[2]), str(Path(__file__).parents[2] / "src")]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(roots), "OMP_NUM_THREADS": "1"}
-    command = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", str(script)]
-    return subprocess.run([*command, *words], env=environment, capture_output=True, text=True, timeout=120)
+    return os.environ | {"PYTHONPATH": os.pathsep.join(roots), "OMP_NUM_THREADS": "1"} | more
 
 
-def test_two_processes_equal_one_with_the_same_batch_even_after_a_kill(tmp_path: Path):
-    pytest.importorskip("accelerate")
-    killed = two_processes(str(tmp_path / "two"), "5")
-    assert killed.returncode != 0
-    assert torch.load(tmp_path / "two" / "checkpoint.pt", weights_only=True)["done"] == 4
-    done = two_processes(str(tmp_path / "two"))
-    assert done.returncode == 0, done.stderr[-2000:]
-    one = trainer(tmp_path / "one")
-    one.run()
-    both = weights(tmp_path / "two")
-    for name, tensor in weights(tmp_path / "one").items():
+def launched(*words: str) -> subprocess.CompletedProcess[str]:
+    """Two processes, started and ended by torch's launcher."""
+    command = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2", str(SCRIPT)]
+    return subprocess.run([*command, *words], env=environment(), capture_output=True, text=True, timeout=120)
+
+
+def two_processes_equal_one(two: Path, one: Path) -> None:
+    trainer(one).run()
+    both = weights(two)
+    for name, tensor in weights(one).items():
         assert torch.allclose(tensor, both[name], atol=1e-6), name
-    rows = [
-        [json.loads(line) for line in (tmp_path / which / "log.jsonl").read_text().splitlines()]
-        for which in ("one", "two")
-    ]
+    rows = [[json.loads(line) for line in (out / "log.jsonl").read_text().splitlines()] for out in (one, two)]
     assert [row["step"] for row in rows[1]] == [4, 8]  # one process wrote
     for first, second in zip(*rows, strict=True):
         assert first["loss"] == pytest.approx(second["loss"], rel=1e-5)
         assert first["validation"] == pytest.approx(second["validation"], rel=1e-5)
+
+
+def test_two_processes_equal_one_with_the_same_batch(tmp_path: Path):
+    """Without the launcher, which is a third process that imports torch."""
+    pytest.importorskip("accelerate")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        shared = {"WORLD_SIZE": "2", "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": str(free.getsockname()[1])}
+    command = [sys.executable, str(SCRIPT), str(tmp_path / "two")]
+    started = [
+        subprocess.Popen(command, env=environment(**shared, RANK=rank, LOCAL_RANK=rank), stderr=subprocess.PIPE)
+        for rank in "01"
+    ]
+    errors = [process.communicate(timeout=120)[1] for process in started]
+    assert [process.returncode for process in started] == [0, 0], errors
+    two_processes_equal_one(tmp_path / "two", tmp_path / "one")
+
+
+@pytest.mark.slow  # the test above, and test_resuming.py for a run that goes on where it stopped
+def test_two_processes_equal_one_even_after_a_kill(tmp_path: Path):
+    pytest.importorskip("accelerate")
+    killed = launched(str(tmp_path / "two"), "5")
+    assert killed.returncode != 0
+    assert torch.load(tmp_path / "two" / "checkpoint.pt", weights_only=True)["done"] == 4
+    done = launched(str(tmp_path / "two"))
+    assert done.returncode == 0, done.stderr[-2000:]
+    two_processes_equal_one(tmp_path / "two", tmp_path / "one")
 
 
 def test_an_indivisible_batch_is_refused(tmp_path: Path):

@@ -1,12 +1,13 @@
 """The command line's parser: words become values, rare options stay out of the short help, errors are one line."""
 
 import argparse
+import math
 from collections.abc import Callable
 from typing import Any, NoReturn
 
 from mmweaver.core.errors import InputError
 
-SIGNED = ("--at", "--heading", "--motion-up")  # options whose values may begin with a minus
+SIGNED = ("--at", "--path", "--heading", "--motion-up")  # options whose values may begin with a minus
 LOG_LEVELS = ("debug", "info", "warning", "error")
 Options = argparse.ArgumentParser | argparse._ArgumentGroup
 
@@ -50,7 +51,7 @@ class _HelpAllAction(argparse.Action):
     def __init__(self, option_strings: list[str], dest: str, **options: Any):
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, default=argparse.SUPPRESS, help=options["help"])
 
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any, **__: Any) -> None:
         if isinstance(parser, Parser):
             print(parser.format_help_all(), end="")
         parser.exit()
@@ -75,10 +76,15 @@ def glued(argv: list[str]) -> list[str]:
 def place(word: str) -> tuple[float, float]:
     """'0.5,2' -> (0.5, 2.0), metres."""
     try:
-        x, y = (float(part) for part in word.split(","))
-    except ValueError:
+        x, y = (number(part) for part in word.split(","))
+    except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(f"{word!r} is no place; write x,y in metres, for example 0.5,2") from None
     return x, y
+
+
+def points(words: str) -> tuple[tuple[float, float], ...]:
+    """'0,3 0.5,1' -> ((0.0, 3.0), (0.5, 1.0)), metres."""
+    return tuple(place(word) for word in words.split())
 
 
 def landmark(word: str) -> tuple[str, tuple[float, float]]:
@@ -99,20 +105,44 @@ def transmitters(word: str) -> tuple[int, ...]:
         ) from None
 
 
+def span_m(word: str) -> tuple[float, float]:
+    """'0.3,8' -> (0.3, 8.0), metres."""
+    try:
+        near, far = (float(part) for part in word.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{word!r} is no range; write NEAR,FAR in metres, for example 0.3,8") from None
+    return near, far
+
+
+def span_bins(word: str) -> tuple[int, int]:
+    """'0,127' -> (0, 127)."""
+    try:
+        first, last = (int(part) for part in word.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{word!r} names no bins; write FIRST,LAST, for example 0,127") from None
+    return first, last
+
+
 def whole(word: str) -> int:
     """A whole number, with a message that says so."""
     try:
-        return int(word)
+        value = int(word)
     except ValueError:
         raise argparse.ArgumentTypeError(f"{word!r} is no whole number") from None
+    if abs(value) >= 2**63:
+        raise argparse.ArgumentTypeError(f"{word!r} is too large; the largest is {2**63 - 1}")
+    return value
 
 
 def number(word: str) -> float:
     """A number, with a message that says so."""
     try:
-        return float(word)
+        value = float(word)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{word!r} is no number") from None
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{word!r} is no number")
+    return value
 
 
 def source(word: str) -> str:
@@ -155,6 +185,46 @@ def add_layout_options(parser: Options, *, rare: bool = False) -> None:
         "--tx-order", type=transmitters, metavar="N,N,N",
         help=shown("order in which the transmitters fire (default: the radar's)"),
     )  # fmt: skip
+
+
+def add_range_options(parser: Options, *, rare: bool = False) -> None:
+    """The options that choose which ranges a radar keeps."""
+    shown = help_of(rare)
+    parser.add_argument(
+        "--range", type=span_m, metavar="NEAR,FAR", dest="range_m",
+        help=shown("metres to keep (default: a preset's own window; all of a .cfg, up to 4 MiB a frame)"),
+    )  # fmt: skip
+    parser.add_argument("--range-bins", type=span_bins, metavar="FIRST,LAST", help=shown("the same in range bins"))
+
+
+def add_board_options(parser: Options, *, rare: bool = False) -> None:
+    """The options for what a radar's file leaves open; `radar_of` adds them to its name."""
+    shown = help_of(rare)
+    parser.add_argument(
+        "--subframe", type=whole, metavar="N", help=shown("which sub-frame of a .cfg or mmWave Studio file, from 0 on")
+    )
+    parser.add_argument(
+        "--antennas", type=source, metavar="NAME|FILE",
+        help=shown("the board's antennas: isk, boost, boost1642, aop, ods, evm2944, or a JSON with tx and rx in half"
+                   " wavelengths (default: what the .cfg says)"),
+    )  # fmt: skip
+    parser.add_argument(
+        "--lanes", type=whole, metavar="2|4",
+        help=shown("lanes of a DCA1000's .bin: 2 (xWR16xx, 18xx, 68xx) or 4 (xWR12xx, 14xx; default: the radar's)"),
+    )  # fmt: skip
+
+
+def radar_of(arguments: argparse.Namespace, default: str | None = None) -> str | None:
+    """--radar with --subframe, --antennas and --lanes behind it, as `load_radar` reads them. Raises InputError."""
+    from mmweaver.formats.radar_options import joined_radar
+
+    name = arguments.radar or default
+    given = {"sub_frame": arguments.subframe, "antennas": arguments.antennas, "lanes": arguments.lanes}
+    if name is None:
+        if any(value is not None for value in given.values()):
+            raise InputError("--subframe, --antennas and --lanes belong to a radar; give --radar, too")
+        return None
+    return joined_radar(name, **given)
 
 
 def add_points_option(parser: Options) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.config_file import REQUEST_FILE
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_text import read_json, read_text
 
 if TYPE_CHECKING:
     from mmweaver.generate import Weaver
@@ -16,8 +17,9 @@ if TYPE_CHECKING:
     from mmweaver.request import Request
 
 LIST = "sequences.json"
+MAX_TEXTS_BYTES = 16 * 2**20
 MOST = 100_000  # sequences
-FOR_ONE_SEQUENCE = ("text", "motion", "motion_model", "at", "height")
+FOR_ONE_SEQUENCE = ("text", "motion", "motion_model", "at", "height", "subject", "path")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,14 +49,29 @@ class Batch:
         A sentence for which the room has no place is skipped and listed as such. Raises InputError where nothing could
         be generated, or, before anything is, where a folder holds something else.
         """
-        from tqdm import tqdm
-
         from mmweaver.core.atomic_files import atomic_file
 
         out = sequences[0].folder.parent
         finished = set() if self.overwrite else {one.folder for one in sequences if self._is_finished(one)}
         made: list[dict[str, Any]] = []
         refused: list[dict[str, Any]] = []
+        try:
+            self._run_each(sequences, finished, made, refused)
+        except KeyboardInterrupt:
+            kept = f"{len(made)} of {len(sequences)} sequences are finished in {out}"
+            raise KeyboardInterrupt(f"{kept}; the same command makes the rest" if made else "") from None
+        if not made:
+            raise InputError(f"none of {len(sequences)} sequences could be made; the first: {refused[0]['why']}")
+        summary = {"out": str(out), "sequences": made, "refused": refused}
+        with atomic_file(out / LIST) as partial:
+            partial.write_text(json.dumps(summary, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        return summary
+
+    def _run_each(
+        self, sequences: list[BatchSequence], finished: set[Path], made: list[Any], refused: list[Any]
+    ) -> None:
+        from tqdm import tqdm
+
         for one in tqdm(sequences, unit="sequence", delay=2, disable=self.quiet or None):
             entry: dict[str, Any] = {"folder": one.folder.name, "text": one.text, "seed": one.seed}
             try:
@@ -64,40 +81,39 @@ class Batch:
                 refused.append({**entry, "why": str(error)})
                 continue
             made.append(entry)
-        if not made:
-            raise InputError(f"none of {len(sequences)} sequences could be made; the first: {refused[0]['why']}")
-        summary = {"out": str(out), "sequences": made, "refused": refused}
-        with atomic_file(out / LIST) as partial:
-            partial.write_text(json.dumps(summary, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-        return summary
 
     def _generate(self, one: BatchSequence) -> None:
         try:
             result = self.weaver.carry_out(replace(self.requests[one.text], seed=one.seed), self.room)
         except InputError as error:
             raise _NoPlaceError(str(error)) from None
-        result.save(one.folder, overwrite=self.overwrite, extra={REQUEST_FILE: self.request_toml(one)}, **self.output)
+        # only a damaged folder of the same sequence is there without --overwrite
+        overwrite = self.overwrite or one.folder.exists()
+        result.save(one.folder, overwrite=overwrite, extra={REQUEST_FILE: self.request_toml(one)}, **self.output)
 
     def _is_finished(self, one: BatchSequence) -> bool:
-        """Whether an earlier run made this sequence, by its meta.json. Raises InputError where it made another."""
-        if not one.folder.exists():
+        """Whether an earlier run made this sequence and it is undamaged. Raises InputError where it made another."""
+        from mmweaver.core.checksums import damages
+        from mmweaver.core.output_checks import check_output_folder, is_empty
+
+        check_output_folder(one.folder, overwrite=True, files=("radar.npz", "meta.json"))
+        if not one.folder.exists() or is_empty(one.folder):
             return False
         try:
-            found = json.loads((one.folder / "meta.json").read_text(encoding="utf-8"))
-            expected = {**self._expected_meta(), "text": one.text, "seed": one.seed}
+            found = read_json(one.folder / "meta.json")
+            expected = {**self._expected_meta(self.requests[one.text]), "text": one.text, "seed": one.seed}
             is_same = self._expected_files() <= set(found["files"])
             is_same = is_same and all(found[name] == value for name, value in expected.items())
-        except (OSError, ValueError, KeyError, TypeError):
+        except (InputError, KeyError, TypeError):
             is_same = False
         if not is_same:
             raise InputError(f"{one.folder} holds something else; choose another --out or allow it with --overwrite")
-        return True
+        return not damages(one.folder)
 
-    def _expected_meta(self) -> dict[str, Any]:
+    def _expected_meta(self, request: "Request") -> dict[str, Any]:
         from mmweaver.methods import DEFAULT_METHOD
         from mmweaver.result_folder import plain, radar_meta
 
-        request = next(iter(self.requests.values()))
         weaver = self.weaver
         same = {
             "frames": request.frames, "points": weaver.points, "weights": weaver.weights, "inputs": self.room.inputs,
@@ -116,10 +132,7 @@ class _NoPlaceError(Exception):
 
 def read_texts(file: Path) -> list[str]:
     """Sentences, one a line; empty lines and those that begin with # are skipped. Raises InputError."""
-    try:
-        lines = [line.strip() for line in file.read_text(encoding="utf-8").splitlines()]
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{file} cannot be read as text ({error}); give a file with one sentence a line") from None
+    lines = [line.strip() for line in read_text(file, max_bytes=MAX_TEXTS_BYTES).splitlines()]
     texts = [line for line in lines if line and not line.startswith("#")]
     if not texts:
         raise InputError(f"{file} holds no sentence; write one a line")

@@ -1,4 +1,4 @@
-"""mmweaver compress: a radar recording into a small .mmw file."""
+"""mmweaver compress: a radar recording into a small .mmw file, or its raw samples into a .mmwl file without loss."""
 
 import argparse
 import json
@@ -6,13 +6,24 @@ import time
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_layout_options, number, source, whole
+from mmweaver.cli.arguments import (
+    add_board_options,
+    add_layout_options,
+    add_range_options,
+    number,
+    radar_of,
+    source,
+    whole,
+)
 from mmweaver.core.errors import InputError
 
 NUM_STAGES = 4
 EXAMPLES = """examples:
   mmweaver compress walk/radar.npz -o walk.mmw --bytes 10000
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmw --quality 30
+  mmweaver compress adc_data.bin --radar radar.json -o capture.mmwl --lossless
+  mmweaver compress adc_data.bin --radar radar.json -o capture.mmwl --max-error 2
+  mmweaver compress walk/radar.npz --compare --bytes 10000
   mmweaver compress HuPR/single_1/hori -o single_1.mmw --bytes 400000
   mmweaver compress radar_frames.npy --layout rf_genesis -o walk.mmw --quality 40
   mmweaver compress adc.npy --radar profile.cfg --axes frame,loop,tx,rx,sample -o capture.mmw --bytes 40072
@@ -40,18 +51,31 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample"
     )
     source_options.add_argument(
-        "--layout", metavar="NAME", help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis"
+        "--layout",
+        metavar="NAME",
+        help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis, cubelearn",
     )
     add_layout_options(source_options)
+    add_range_options(source_options)
+    add_board_options(source_options)
     size = parser.add_argument_group("size and quality")
-    rate = size.add_mutually_exclusive_group(required=True)
+    rate = size.add_mutually_exclusive_group()
     rate.add_argument("--bytes", type=whole, metavar="N", help="size of the file at most")
     rate.add_argument("--quality", type=number, metavar="DB", help="signal-to-error ratio in the cells with signal")
+    rate.add_argument(
+        "--lossless", action="store_true", help="keep every bit of an adc_data.bin; decompress gives the same file"
+    )
+    rate.add_argument(
+        "--max-error", type=whole, metavar="N", help="change no sample of an adc_data.bin by more than N counts"
+    )
     size.add_argument(
         "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
     )
     output = parser.add_argument_group("output")
-    output.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the .mmw file to write")
+    output.add_argument("-o", "--out", type=Path, metavar="FILE", help="the .mmw or .mmwl file to write")
+    output.add_argument(
+        "--compare", action="store_true", help="print what other codecs make of it in --bytes; write nothing"
+    )
     output.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
     output.add_argument("--json", action="store_true", help="print a machine-readable summary on stdout")
     output.add_argument("--quiet", action="store_true", help="print nothing but errors")
@@ -60,20 +84,30 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Compresses and writes the file. Raises InputError."""
+    """Compresses and writes the file, or compares codecs. Raises InputError."""
+    is_raw = arguments.lossless or arguments.max_error is not None
+    if not is_raw and arguments.bytes is None and arguments.quality is None:
+        raise InputError("say how small with --bytes, how good with --quality, or --lossless")
+    if arguments.compare:
+        if arguments.bytes is None:
+            raise InputError("codecs are compared at a size; give it with --bytes")
+        return _compare(arguments)
+    if arguments.out is None:
+        raise InputError("name the file to write with -o")
+    from mmweaver.core.output_checks import check_output_file
+
+    check_output_file(arguments.out, overwrite=arguments.overwrite, inputs=[arguments.file])
+    return _compress_samples(arguments) if is_raw else _compress_cube(arguments)
+
+
+def _compress_cube(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.progress import StageBar
     from mmweaver.core.atomic_files import atomic_file
 
-    check_output_file(arguments.out, overwrite=arguments.overwrite)
     start = time.monotonic()
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read the recording")
-        from mmweaver.recordings.read_recording import read_recording
-
-        cube = read_recording(
-            arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
-            iq_order=arguments.iq_order, tx_order=arguments.tx_order,
-        ).cube  # fmt: skip
+        cube = _cube_of(arguments)
         from mmweaver.compression.mmw_codec import compress_cube, errors_db
 
         data = compress_cube(
@@ -99,9 +133,71 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def check_output_file(out: Path, *, overwrite: bool) -> None:
-    """Raises InputError where a file may not be written, before long work."""
-    if out.is_dir():
-        raise InputError(f"{out} is a folder; name a file with -o")
-    if out.exists() and not overwrite:
-        raise InputError(f"{out} exists; choose another -o or allow it with --overwrite")
+def _compress_samples(arguments: argparse.Namespace) -> int:
+    """Raw samples without loss, or with a bounded error."""
+    from mmweaver.cli.progress import StageBar
+
+    if arguments.file.suffix != ".bin":
+        raise InputError(f"{arguments.file}: --lossless and --max-error are for the adc_data.bin of a DCA1000")
+    radar = radar_of(arguments)
+    if radar is None:
+        raise InputError("which radar recorded it? give --radar, for example --radar awr1843")
+    start = time.monotonic()
+    with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
+        bar("read the radar")
+        from mmweaver.compression.lossless_file import compress_bin
+        from mmweaver.core.safe_files.regular_files import check_regular
+        from mmweaver.recordings.read_recording import as_config
+
+        size = compress_bin(
+            arguments.file,
+            arguments.out,
+            as_config(radar),
+            max_error=arguments.max_error or 0,
+            progress=bar,
+        )
+    before = check_regular(arguments.file)
+    summary = {
+        "out": str(arguments.out), "bytes": size, "raw_bytes": before, "ratio": round(before / size, 2),
+        "max_error_counts": arguments.max_error or 0, "seconds": round(time.monotonic() - start, 2),
+    }  # fmt: skip
+    if arguments.json:
+        print(json.dumps(summary, indent=2))
+    elif not arguments.quiet:
+        kept = f"every word within {arguments.max_error} counts" if arguments.max_error else "every bit kept"
+        print(
+            f"wrote {arguments.out}: {size:,} bytes, {100 * size / before:.1f} % of {before:,}; {kept}, in"
+            f" {summary['seconds']:.1f} s"
+        )
+    return 0
+
+
+def _compare(arguments: argparse.Namespace) -> int:
+    from mmweaver.cli.progress import StageBar
+    from mmweaver.compression.comparison import RIVALS, compared
+
+    with StageBar(len(RIVALS) + 2, quiet=arguments.quiet) as bar:
+        bar("read the recording")
+        rows = compared(_cube_of(arguments), arguments.bytes, bar)
+    if arguments.json:
+        print(json.dumps(rows, indent=2))
+        return 0
+    print(f"{'codec':14} {'bytes':>8} {'signal dB':>10} {'all dB':>8} {'encode CPU s':>13} {'decode CPU s':>13}")
+    for row in rows:
+        if row["bytes"] is None:
+            print(f"{row['codec']:14} {row.get('missing', 'cannot be so small')}")
+        else:
+            print(
+                f"{row['codec']:14} {row['bytes']:8,} {row['signal_error_db']:10.1f} {row['all_error_db']:8.1f}"
+                f" {row['encode_cpu_s']:13.2f} {row['decode_cpu_s']:13.2f}"
+            )
+    return 0
+
+
+def _cube_of(arguments: argparse.Namespace) -> Any:
+    from mmweaver.recordings.read_recording import read_recording
+
+    return read_recording(
+        arguments.file, radar_of(arguments), layout=arguments.layout, axes=arguments.axes, iq_order=arguments.iq_order,
+        tx_order=arguments.tx_order, range_m=arguments.range_m, range_bins=arguments.range_bins,
+    ).cube  # fmt: skip

@@ -6,14 +6,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import Parser, landmark, source
+from mmweaver.cli.arguments import Parser, landmark, points, source
 from mmweaver.core.errors import InputError
 from mmweaver.core.version import __version__
 
 REQUEST_FILE = "request.toml"
-# options about how a run is shown or where it goes, not about what it makes
+# options about how a run is shown or carried out or where it goes, not about what it makes
 NOT_WRITTEN = {
-    "help", "help_all", "out", "overwrite", "json", "quiet", "verbose", "log_level", "config",
+    "help", "help_all", "out", "overwrite", "json", "quiet", "verbose", "log_level", "config", "workers", "ray_address",
+    "dry_run",
 }  # fmt: skip
 ALWAYS_WRITTEN = {"radar", "frames", "seed", "points", "method"}  # even where they are the default, which may change
 NOT_READ = {"help", "help_all", "config"}
@@ -47,8 +48,17 @@ def request_toml(parser: argparse.ArgumentParser, arguments: argparse.Namespace,
         if action.dest in NOT_WRITTEN or value is None or is_default:
             continue
         written[_key(action)] = _toml(action, value)
-    head = f"# mmweaver {__version__}; the same again: mmweaver {command} --config {REQUEST_FILE} --out DIR\n"
-    return head + tomli_w.dumps(written)
+    has_option = any(action.dest == "out" and action.option_strings for action in parser._actions)
+    again = f"mmweaver {command} --config {REQUEST_FILE} {'--out DIR' if has_option else 'DIR'}"
+    return f"# mmweaver {__version__}; the same again: {again}\n{tomli_w.dumps(written)}"
+
+
+def write_request(folder: Path, arguments: argparse.Namespace) -> None:
+    """Writes the options of a run into its folder, whole or not at all."""
+    from mmweaver.core.atomic_files import atomic_file
+
+    with atomic_file(folder / REQUEST_FILE) as partial:
+        partial.write_text(request_toml(arguments.parser, arguments), encoding="utf-8")
 
 
 def _config_of(argv: list[str]) -> str | None:
@@ -79,14 +89,9 @@ def _words(file: Path, command: str, parser: Parser, given: list[str]) -> list[s
 
 
 def _read(file: Path) -> dict[str, Any]:
-    import tomllib
+    from mmweaver.core.safe_files.safe_text import read_toml
 
-    try:
-        return tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {file}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise InputError(f"{file} is no TOML ({error}); write lines such as: frames = 20") from None
+    return read_toml(file)
 
 
 def _key(action: argparse.Action) -> str:
@@ -95,6 +100,8 @@ def _key(action: argparse.Action) -> str:
 
 
 def _is_given(action: argparse.Action, given: Iterable[str]) -> bool:
+    if not action.option_strings:
+        return action.choices is not None and any(word in action.choices for word in given)
     return any(
         word == option or word.startswith(f"{option}=" if option.startswith("--") else option)
         for option in action.option_strings for word in given
@@ -140,6 +147,8 @@ def _toml_single(action: argparse.Action, value: Any) -> Any:
     if action.type is landmark:
         kind, (x, y) = value
         return f"{kind}={x},{y}"
+    if action.type is points:
+        return " ".join(f"{x},{y}" for x, y in value)
     if isinstance(value, tuple):
         return list(value)
     if action.type is source and _is_file(Path(value), value):

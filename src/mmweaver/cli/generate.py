@@ -6,12 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mmweaver.cli.arguments import radar_of
 from mmweaver.cli.config_file import REQUEST_FILE, request_toml
 from mmweaver.cli.generate_options import (
     DEMO_OUT,
     DEMO_TEXT,
-    DEMO_TEXT_S,
-    SHORT_DEMO_TEXT,
     USAGE,
     add_generate_options,
 )
@@ -38,13 +37,14 @@ EXAMPLES = """examples:
   mmweaver generate --rgb rgb.png --depth depth.png --camera camera.json \\
       --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
-      --frames 40 --radar mmmesh --out drink/ --bin
+      --seconds 8 --radar mmmesh --out drink/ --bin
   mmweaver generate --demo --method physics --out traced/
   mmweaver generate --demo --texts sentences.txt --repeat 20 --no-pictures --out set/       # one sentence a line
+  mmweaver generate --demo --stream --texts - --out live/                   # sentences from standard input, no end
   mmweaver process empty.bin --radar profile.cfg --out empty/       # your room with nobody in it, a few seconds
   mmweaver generate --rgb rgb.png --depth depth.png --background empty/ --text "a person walks" --out walk/
   mmweaver generate --demo --motion walk.bvh --motion-unit cm --at 0.2,2.5 --heading 0 --out walk/
-  mmweaver generate --demo --motion-model small --text "a person waves with the left hand" --out wave/
+  mmweaver generate --demo --motion-model small --motion-model-for all --text "a person waves" --out wave/
 """
 
 
@@ -64,32 +64,63 @@ def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then generates the signal and writes it. Raises InputError."""
     texts, out = _check_inputs(arguments)
     check_motion_options(arguments)
+    if arguments.stream:
+        return _run_stream(arguments, out)
     if arguments.texts is not None:
         return _run_batch(arguments, out)
 
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
-    from mmweaver.core.atomic_files import check_output_folder
+    from mmweaver.core.output_checks import check_output_file, check_output_folder
+    from mmweaver.result_folder import FILES
 
-    check_output_folder(out, overwrite=arguments.overwrite)
+    check_output_folder(out, overwrite=arguments.overwrite, files=FILES, inputs=_inputs(arguments))
+    if arguments.html is not None:
+        check_output_file(arguments.html, overwrite=arguments.overwrite, inputs=_inputs(arguments))
     with StageBar(NUM_STAGES, quiet=arguments.quiet or arguments.verbose) as bar:
         background = _background(arguments)
         weaver = _weaver(arguments, background, bar)
         if texts is None and arguments.motion is None:
-            texts = [DEMO_TEXT if _duration_s(arguments, weaver) >= DEMO_TEXT_S else SHORT_DEMO_TEXT]
+            texts = [DEMO_TEXT]
         text = texts[0] if texts is not None and len(texts) == 1 else texts
         motion = read_own_motion(arguments) or _motion_of_model(arguments, weaver, text)
-        request = weaver.request(text, motion=motion, **_settings(arguments), **placing_options(arguments))
+        placing = placing_options(arguments, of_model=motion is not None and arguments.motion is None)
+        request = weaver.request(text, motion=motion, **_settings(arguments), **placing)
         result = weaver.carry_out(request, _read_room(weaver, arguments, background))
-        written = {REQUEST_FILE: _request_toml(arguments, text=texts)}
+        written = {REQUEST_FILE: _request_toml(arguments, text=texts, frames=request.frames, seconds=None)}
         meta = result.save(out, overwrite=arguments.overwrite, extra=written, **_output(arguments))
+        if arguments.html is not None:
+            result.save_html(arguments.html)
     print_summary(out, meta, as_json=arguments.json, quiet=arguments.quiet, verbose=arguments.verbose)
+    return 0
+
+
+def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
+    """One sentence after the other, written as they come."""
+    from mmweaver.cli.stream import check_stream_options, run_stream
+    from mmweaver.core.output_checks import check_output_folder, is_empty
+    from mmweaver.result_folder import plain
+
+    check_stream_options(arguments)
+    check_output_folder(out, overwrite=False, inputs=_inputs(arguments))
+    if out.is_dir() and not is_empty(out):
+        raise InputError(f"{out} is not empty; a stream needs a folder of its own")
+    background = _background(arguments)
+    weaver = _weaver(arguments, background)
+    meta = run_stream(arguments, weaver, _read_room(weaver, arguments, background), out)
+    if arguments.json:
+        print(json.dumps(plain({"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}), indent=2))
+    elif not arguments.quiet:
+        print(f"wrote {out}: {meta['frames']} frames in {meta['parts']} parts")
     return 0
 
 
 def _run_batch(arguments: argparse.Namespace, out: Path) -> int:
     """Many sequences in one room."""
-    from mmweaver.cli.batch import Batch, parse_texts, sequences_of, summary_text
+    from mmweaver.cli.batch import LIST, Batch, parse_texts, sequences_of, summary_text
+    from mmweaver.core.output_checks import check_output_folder
+
+    check_output_folder(out, overwrite=True, files=[LIST], inputs=_inputs(arguments))
 
     sequences, settings = sequences_of(arguments, out), _settings(arguments)
     background = _background(arguments)
@@ -98,7 +129,10 @@ def _run_batch(arguments: argparse.Namespace, out: Path) -> int:
     batch = Batch(
         weaver=weaver, room=_read_room(weaver, arguments, background), requests=requests, output=_output(arguments),
         overwrite=arguments.overwrite, quiet=arguments.quiet,
-        request_toml=lambda one: _request_toml(arguments, text=[one.text], seed=one.seed, texts=None, repeat=None),
+        request_toml=lambda one: _request_toml(
+            arguments, text=[one.text], seed=one.seed, texts=None, repeat=None, frames=requests[one.text].frames,
+            seconds=None,
+        ),
     )  # fmt: skip
     summary = batch.run(sequences)
     if arguments.json:
@@ -106,6 +140,12 @@ def _run_batch(arguments: argparse.Namespace, out: Path) -> int:
     elif not arguments.quiet:
         print(summary_text(summary))
     return 0
+
+
+def _inputs(arguments: argparse.Namespace) -> list[Path | None]:
+    """Files that an output must not replace."""
+    given = (arguments.rgb, arguments.depth, arguments.background, arguments.motion, arguments.texts)
+    return [None if one is None else Path(one) for one in given]
 
 
 def _request_toml(arguments: argparse.Namespace, **instead: Any) -> str:
@@ -116,23 +156,31 @@ def _request_toml(arguments: argparse.Namespace, **instead: Any) -> str:
 def _weaver(
     arguments: argparse.Namespace, background: "RadarCube | None", listener: "Callable[[str], object] | None" = None
 ) -> "Weaver":
+    from mmweaver.core.range_window import chosen_range
     from mmweaver.formats.radar_file import load_firmware, load_radar
+    from mmweaver.formats.ti_calibration import read_ti_calibration
     from mmweaver.generate import Weaver
 
-    radar = background.config if background and not arguments.radar else load_radar(arguments.radar or DEFAULT_RADAR)
+    radar = (
+        background.config
+        if background and not arguments.radar
+        else load_radar(radar_of(arguments, DEFAULT_RADAR) or "")
+    )
+    radar = chosen_range(radar, arguments.range_m, arguments.range_bins)
     if arguments.tx_order is not None:
         radar = replace(radar, tx_order=arguments.tx_order)
     firmware = load_firmware(arguments.radar or DEFAULT_RADAR) if arguments.points == "firmware" else None
     return Weaver(
         method=arguments.method, radar=radar, listener=listener, points=arguments.points, firmware=firmware,
-        weights=arguments.weights,
+        weights=arguments.weights, calibration=read_ti_calibration(radar_of(arguments, DEFAULT_RADAR) or ""),
     )  # fmt: skip
 
 
 def _settings(arguments: argparse.Namespace) -> dict[str, Any]:
     """The arguments of `Weaver.request` that every sequence shares."""
     return {
-        "frames": arguments.frames, "fps": arguments.fps, "seed": arguments.seed, "keep_adc": arguments.bin,
+        "frames": arguments.frames, "seconds": arguments.seconds, "fps": arguments.fps, "seed": arguments.seed,
+        "keep_adc": arguments.bin,
     }  # fmt: skip
 
 
@@ -151,10 +199,13 @@ def _motion_of_model(
         return None
     if isinstance(text, list):
         raise InputError("--motion-model acts out one text; give --text once")
-    return motion_of_model(arguments.motion_model, text, _duration_s(arguments, weaver), arguments.seed)
+    return motion_of_model(arguments, text, _duration_s(arguments, weaver))
 
 
-def _duration_s(arguments: argparse.Namespace, weaver: "Weaver") -> float:
+def _duration_s(arguments: argparse.Namespace, weaver: "Weaver") -> float | None:
+    """The duration that --frames or --seconds fix."""
+    if arguments.frames is None:
+        return arguments.seconds
     return arguments.frames * (1 / arguments.fps if arguments.fps else weaver.radar.frame_period_s)
 
 
@@ -212,7 +263,7 @@ def _background(arguments: argparse.Namespace) -> "RadarCube | None":
         return None
     from mmweaver.recordings.read_recording import read_recording
 
-    return read_recording(arguments.background).cube
+    return read_recording(arguments.background, range_m=arguments.range_m, range_bins=arguments.range_bins).cube
 
 
 def _photographed_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":

@@ -6,9 +6,11 @@ from pathlib import Path
 from mmweaver.cli.arguments import (
     Options,
     Rare,
+    add_board_options,
     add_layout_options,
     add_output_options,
     add_points_option,
+    add_range_options,
     landmark,
     number,
     place,
@@ -18,8 +20,6 @@ from mmweaver.cli.arguments import (
 from mmweaver.cli.motion_options import add_motion_options
 
 DEMO_TEXT = "a person walks towards the radar, then waves with the left hand"
-DEMO_TEXT_S = 1.6  # what this text needs
-SHORT_DEMO_TEXT = "a person walks towards the radar"  # for less
 DEMO_OUT = "demo"
 USAGE = """mmweaver generate --demo
        mmweaver generate --rgb PNG --depth FILE --text TEXT --out DIR [options]
@@ -104,6 +104,11 @@ def _add_sentence_options(person: Options) -> None:
         " read once, and finished sequences are kept",
     )  # fmt: skip
     person.add_argument(
+        "--stream", action="store_true",
+        help="one recording of one person who does what every --text, line of --texts or of standard input (--texts -)"
+        " says, without a break, written part by part for as long as sentences come",
+    )  # fmt: skip
+    person.add_argument(
         "--repeat", type=whole, default=1, metavar="N", help=Rare("with --texts: N of each, each with its own seed")
     )
     person.add_argument(
@@ -118,7 +123,13 @@ def _add_radar_options(radar: Options) -> None:
         "--radar", type=source, metavar="NAME|FILE",
         help="preset, TI .cfg or radar.json (default awr1843, or what --background was recorded with)",
     )  # fmt: skip
-    radar.add_argument("--frames", type=whole, default=20, help="number of frames (default 20)")
+    add_range_options(radar)
+    add_board_options(radar, rare=True)
+    length = radar.add_mutually_exclusive_group()
+    length.add_argument(
+        "--frames", type=whole, help="number of frames (default: as long as the sentence needs, at least 2 s)"
+    )
+    length.add_argument("--seconds", type=number, metavar="S", help="instead of --frames: how long")
     radar.add_argument("--fps", type=number, help="frames per second (default: the radar's own, 10 for awr1843)")
     add_points_option(radar)
 
@@ -127,5 +138,8 @@ def _add_result_options(output: Options) -> None:
     output.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
     output.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     output.add_argument("--bin", action="store_true", help="also write adc_data.bin, raw samples as a DCA1000 does")
+    output.add_argument(
+        "--html", type=Path, metavar="FILE", help=Rare("also write one HTML file that plays the result in any browser")
+    )
     output.add_argument("--no-pictures", action="store_true", help="leave out preview.png and preview.gif")
     add_output_options(output)

@@ -14,10 +14,10 @@ EXAMPLES = """examples:
 def add_command(commands: Any) -> argparse.ArgumentParser:
     """Declares the command and its options."""
     parser = commands.add_parser(
-        "info", help="print what a .mmw file holds", epilog=EXAMPLES,
+        "info", help="print what a .mmw or .mmwl file holds", epilog=EXAMPLES,
         description="Reads all of a .mmw file, checks it, and says what is in it.",
     )  # fmt: skip
-    parser.add_argument("file", type=Path, metavar="FILE", help="a .mmw file")
+    parser.add_argument("file", type=Path, metavar="FILE", help="a .mmw or .mmwl file")
     parser.add_argument("--json", action="store_true", help="print it for machines")
     parser.set_defaults(run=run)
     return parser
@@ -25,11 +25,36 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the description on stdout. Raises InputError where the file is damaged."""
+    from mmweaver.compression.lossless_file import describe_lossless, is_lossless_file
     from mmweaver.compression.mmw_codec import describe_mmw
 
-    facts = describe_mmw(arguments.file)
-    print(json.dumps(facts, indent=2) if arguments.json else "\n".join(_lines(facts)))
+    is_raw = is_lossless_file(arguments.file)
+    facts = describe_lossless(arguments.file) if is_raw else describe_mmw(arguments.file)
+    if arguments.json:
+        print(json.dumps(facts, indent=2))
+    else:
+        print("\n".join(_lines_of_samples(facts) if is_raw else _lines(facts)))
     return 0
+
+
+def _lines_of_samples(facts: dict[str, Any]) -> list[str]:
+    kept = f"words within {facts['max_error_counts']} counts" if facts["max_error_counts"] else "every bit kept"
+    return [
+        f"{facts['file']}: {facts['bytes']:,} bytes, raw samples, {kept}",
+        f"  radar    {facts['radar']['name']}",
+        f"  frames   {facts['frames']} in {facts['blocks']} blocks",
+        f"  ratio    {facts['ratio']:,} times fewer bytes than the recording",
+        *_cut(facts),
+    ]
+
+
+def _cut(facts: dict[str, Any]) -> list[str]:
+    cut = facts["cut_short_bytes"]
+    return (
+        [f"  cut      the file was cut short: its last {cut:,} bytes are no whole chunk and are left out"]
+        if cut
+        else []
+    )
 
 
 def _lines(facts: dict[str, Any]) -> list[str]:
@@ -42,11 +67,12 @@ def _lines(facts: dict[str, Any]) -> list[str]:
         f" {facts['scale'] if facts['scale'] is not None else 'unknown'}",
         f"  time     {facts['first_frame_s']:.3f} to {facts['last_frame_s']:.3f} s",
         f"  ratio    {facts['ratio']:,} times fewer bytes than complex64",
+        *_cut(facts),
     ]
     for index, chunk in enumerate(facts["chunks"]):
         lines.append(
-            f"  chunk {index}  {chunk['frames']} frames, {chunk['bytes']:,} bytes: {chunk['scatterers']} scatterers,"
-            f" {'a' if chunk['has_static'] else 'no'} static layer, {chunk['residual_values']} residual values, noise"
-            f" {chunk['noise_db']:.1f} dB below the peak"
+            f"  chunk {index}  {chunk['frames']} frames, {chunk['bytes']:,} bytes: {chunk['mode']};"
+            f" {chunk['scatterers']} scatterers, {'a' if chunk['has_static'] else 'no'} static layer,"
+            f" {chunk['residual_values']} residual values, noise {chunk['noise_db']:.1f} dB below the peak"
         )
     return lines

@@ -3,9 +3,12 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import number, whole
+
+if TYPE_CHECKING:
+    from mmweaver.core.records import PoseSequence
 
 EXAMPLES = """examples:
   mmweaver motion "a person walks to the left, then waves"
@@ -23,6 +26,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument("--seconds", type=number, help="how long (default: what the sentence needs)")
     parser.add_argument("--seed", type=whole, default=0, help="the same seed gives the same motion (default 0)")
     parser.add_argument("--height", type=number, metavar="M", help="the person's height (default: by the seed)")
+    parser.add_argument("--subject", type=whole, metavar="N", help="the person, 0 to 9999 (default: by the seed)")
     parser.add_argument("--out", type=Path, metavar="NPZ", help="write 22 joints at 120 Hz, as pose.npz holds them")
     parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the skeleton at ten instants")
     parser.add_argument("--json", action="store_true", help="print the reading for machines")
@@ -35,17 +39,11 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.motion.empty_floor import act_out
 
     _check_files(arguments)
-    motion = act_out(arguments.text, duration_s=arguments.seconds, seed=arguments.seed, height_m=arguments.height)
-    if arguments.out is not None:
-        from mmweaver.core.atomic_files import atomic_file
-        from mmweaver.formats.npz_files import write_pose_npz
-
-        with atomic_file(arguments.out) as temporary:
-            write_pose_npz(temporary, motion.pose)
-    if arguments.picture is not None:
-        from mmweaver.figures.motion_strip import draw_strip
-
-        draw_strip(motion.pose, arguments.picture, title=arguments.text)
+    motion = act_out(
+        arguments.text, duration_s=arguments.seconds, seed=arguments.seed, height_m=arguments.height,
+        subject=arguments.subject,
+    )  # fmt: skip
+    _write_files(arguments, motion.pose)
     steps = [
         {"name": step.name, "start_s": round(step.start_s, 3), "end_s": round(step.end_s, 3), "said": step.clause}
         for step in motion.plan.steps
@@ -56,7 +54,9 @@ def run(arguments: argparse.Namespace) -> int:
             "text": arguments.text,
             "seconds": motion.plan.duration_s,
             "height_m": round(motion.pose.height_m, 3),
+            "subject": motion.pose.subject,
             "steps": steps,
+            "clauses": [vars(clause) for clause in motion.clauses],
         }
         print(json.dumps({**facts, "assumptions": motion.assumptions, "files": files}, indent=2))
         return 0
@@ -67,11 +67,32 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _write_files(arguments: argparse.Namespace, pose: "PoseSequence") -> None:
+    """Writes joints and picture, both or none."""
+    from mmweaver.core.atomic_files import atomic_files
+    from mmweaver.figures.motion_strip import draw_strip
+    from mmweaver.formats.npz_files import write_pose_npz
+
+    files = [file for file in (arguments.out, arguments.picture) if file is not None]
+    if not files:
+        return
+    with atomic_files(*files) as temporaries:
+        for file, temporary in zip(files, temporaries, strict=True):
+            if file is arguments.out:
+                write_pose_npz(temporary, pose)
+            else:
+                draw_strip(pose, temporary, title=arguments.text)
+
+
 def _check_files(arguments: argparse.Namespace) -> None:
     """What is cheap to refuse is refused before anything is made."""
     from mmweaver.core.errors import InputError
+    from mmweaver.core.output_checks import check_output_file
 
     if arguments.out is not None and arguments.out.suffix != ".npz":
         raise InputError(f"{arguments.out} does not end in .npz; joints are written as .npz")
     if arguments.picture is not None and arguments.picture.suffix not in (".png", ".pdf", ".svg"):
         raise InputError(f"{arguments.picture} does not end in .png, .pdf or .svg; choose one of these")
+    for file in (arguments.out, arguments.picture):
+        if file is not None:
+            check_output_file(file, overwrite=True)

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mmweaver.cli.arguments import Options, Rare, number, source
+from mmweaver.cli.arguments import Options, Rare, number, points, source, whole
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,7 +19,13 @@ def add_motion_options(parser: Options) -> None:
     """Declares --motion and what goes with it."""
     parser.add_argument(
         "--height", type=number, action="append", metavar="M",
-        help="the person's height (default: by seed, or recorded); of several people once for each",
+        help="the person's height (default: as the text says, else by seed, or recorded); of several people once for"
+        " each",
+    )  # fmt: skip
+    parser.add_argument(
+        "--subject", type=whole, action="append", metavar="N",
+        help="the person, 0 to 9999: skin, build, habits and usual height (default: by seed); of several people once"
+        " for each",
     )  # fmt: skip
     parser.add_argument(
         "--motion", type=Path, metavar="FILE",
@@ -28,8 +34,12 @@ def add_motion_options(parser: Options) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--motion-model", type=source, metavar="PATH|NAME",
-        help=Rare("a MotionGPT that acts out --text instead of the built-in library: a checkpoint's file, folder or"
-        " name on the Hub, or 'small'; needs the extra 'motiongpt'"),
+        help=Rare("a motion model for a --text that the built-in library does not know: MotionGPT (a checkpoint's file,"
+        " folder or name on the Hub, or 'small'; needs the extra 'motiongpt'), a plug-in's name, or module:attribute"),
+    )  # fmt: skip
+    parser.add_argument(
+        "--motion-model-for", choices=("unknown", "all"), default="unknown",
+        help=Rare("which sentences the motion model acts out: unknown ones (default) or all"),
     )  # fmt: skip
     parser.add_argument(
         "--motion-fps", type=number, metavar="N", help=Rare("its frames per second, where the file does not say")
@@ -50,8 +60,12 @@ def add_motion_options(parser: Options) -> None:
     )
     parser.add_argument(
         "--heading", type=number, metavar="DEG",
-        help=Rare("the direction that the motion faces first: 0 towards the radar, 90 to the picture's right, 180 away"
-        " (default: chosen)"),
+        help=Rare("the direction that the person faces first: 0 towards the radar, 90 to the picture's right, 180 away"
+        " (default: as the text says, else by seed)"),
+    )  # fmt: skip
+    parser.add_argument(
+        "--path", type=points, metavar="'X,Y X,Y ...'",
+        help=Rare("where the person walks: corners in metres right of and ahead of the radar"),
     )  # fmt: skip
     parser.add_argument(
         "--as-recorded", action="store_true",
@@ -66,6 +80,8 @@ def check_motion_options(arguments: argparse.Namespace) -> None:
     if arguments.motion_model is not None and arguments.text is None and not arguments.demo:
         raise InputError("--motion-model acts out a text; give --text")
     if arguments.motion is not None:
+        if arguments.path is not None:
+            raise InputError("--path is for a sentence; a recorded --motion has its own path, leave one of them out")
         if arguments.as_recorded and not (arguments.at is None and arguments.heading is None):
             raise InputError("--as-recorded moves nothing; leave out --at and --heading, or leave out --as-recorded")
         return
@@ -73,8 +89,6 @@ def check_motion_options(arguments: argparse.Namespace) -> None:
     given += ["as_recorded"] if arguments.as_recorded else []
     if given:
         raise InputError(f"--{given[0].replace('_', '-')} is about a recorded motion; give --motion too")
-    if arguments.heading is not None and arguments.motion_model is None:
-        raise InputError("--heading is for a recorded --motion; with --text say it in the sentence ('facing left')")
 
 
 def read_own_motion(arguments: argparse.Namespace) -> "MotionClip | None":
@@ -90,20 +104,43 @@ def read_own_motion(arguments: argparse.Namespace) -> "MotionClip | None":
     return clip.after(arguments.motion_start) if arguments.motion_start is not None else clip
 
 
-def motion_of_model(model: str, text: str | None, duration_s: float, seed: int) -> "MotionClip":
-    """The motion that a --motion-model generates from the text."""
-    from mmweaver.motion.motiongpt.motiongpt import MotionGPT
+def motion_of_model(arguments: argparse.Namespace, text: str | None, seconds: float | None) -> "MotionClip | None":
+    """The motion that --motion-model makes of the text; None of a text that the library knows."""
+    from mmweaver.motion.motion_models import MotionTask, clip_of, load_motion_model
 
-    return MotionGPT.load(model).generate(text or "", seconds=duration_s, seed=seed)
+    if arguments.motion_model_for == "unknown" and _is_known(text or ""):
+        return None
+    path_m, at = arguments.path or (), arguments.at
+    start_m = path_m[0] if path_m else at[0] if at else None
+    task = MotionTask(sentence=text or "", start_m=start_m, path_m=path_m, seconds=seconds, seed=arguments.seed)
+    return clip_of(load_motion_model(arguments.motion_model), task)
 
 
-def placing_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The arguments of `Weaver.request` about body and place."""
+def _is_known(text: str) -> bool:
+    from mmweaver.motion.language.sentence import parse
+
+    try:
+        parse(text)
+    except InputError:
+        return False
+    return True
+
+
+def placing_options(arguments: argparse.Namespace, *, of_model: bool = False) -> dict[str, Any]:
+    """The arguments of `Weaver.request` about body and place; `of_model`: of a motion that a model made."""
+    if of_model and arguments.path:
+        from mmweaver.motion.motion_models import heading_of
+
+        return {
+            "at": arguments.path[0], "heading_rad": heading_of(arguments.path),
+            "height_m": _one_or_all(arguments.height, 1), "subject": _one_or_all(arguments.subject, 1),
+        }  # fmt: skip
     people = len(arguments.text or [""])
     heading = None if arguments.heading is None else math.radians(arguments.heading) - math.pi / 2
     return {
-        "at": _one_or_all(arguments.at, people), "heading_rad": heading,
-        "height_m": _one_or_all(arguments.height, people), "as_recorded": arguments.as_recorded,
+        "at": _one_or_all(arguments.at, people), "heading_rad": heading, "path_m": arguments.path,
+        "height_m": _one_or_all(arguments.height, people), "subject": _one_or_all(arguments.subject, people),
+        "as_recorded": arguments.as_recorded,
     }  # fmt: skip
 
 

@@ -4,14 +4,24 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import add_layout_options, add_output_options, add_points_option, source
+from mmweaver.cli.arguments import (
+    add_board_options,
+    add_layout_options,
+    add_output_options,
+    add_points_option,
+    add_range_options,
+    radar_of,
+    source,
+)
 from mmweaver.cli.config_file import REQUEST_FILE, request_toml
 from mmweaver.core.errors import InputError
 
-NUM_STAGES = 6
+NUM_STAGES = 7
 EXAMPLES = """examples:
   mmweaver process adc_data.bin --radar radar.json --iq-order iq --tx-order 0,2,1 --out capture/
   mmweaver process capture_00000/ --out capture/
+  mmweaver process sitting.bin --radar profile.cfg --range 0.3,3 --out sitting/     # breathing, heart, displacement
+  mmweaver process walk.bin --radar adv.cfg --subframe 1 --antennas aop --remove-static auto --out walk/
   mmweaver process adc.npy --radar profile.cfg --axes frame,loop,tx,rx,sample --out capture/
 """
 
@@ -24,8 +34,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument(
         "file", type=Path, nargs="?", metavar="FILE|DIR",
-        help="adc_data.bin of a DCA1000, raw ADC samples as .npy, radar.npz, a HuPR, mmMesh or RF-Genesis array, or a"
-        " capture folder of mmwave-capture-std (radar.cfg, dca.pcap)",
+        help="adc_data.bin of a DCA1000, its packets as .pcap or .pcapng, raw ADC samples as .npy, radar.npz,"
+        " a HuPR, mmMesh, RF-Genesis or CubeLearn array, or a capture folder of"
+        " mmwave-capture-std (radar.cfg, dca.pcap)",
     )  # fmt: skip
     recording = parser.add_argument_group("input")
     recording.add_argument(
@@ -34,13 +45,28 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     )  # fmt: skip
     recording.add_argument("--axes", metavar="NAMES", help="axes of the .npy in their order: frame,loop,tx,rx,sample")
     recording.add_argument(
-        "--layout", metavar="NAME", help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis"
+        "--layout",
+        metavar="NAME",
+        help="whose .npy it is: hupr (a frame or a folder of them), mmmesh, rf_genesis, cubelearn",
     )
     add_layout_options(recording)
+    add_range_options(recording)
+    recording.add_argument(
+        "--strict", action="store_true", help="refuse samples that do not fit the settings (default: a warning)"
+    )
+    add_board_options(recording)
     output = parser.add_argument_group("output")
     output.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     add_points_option(output)
-    output.add_argument("--no-pictures", action="store_true", help="leave out preview.png and preview.gif")
+    output.add_argument(
+        "--remove-static", choices=("auto", "mean_chirp", "mean_frame"), default="none",
+        help="take static clutter away from the cube and its points: the mean over each frame's chirps, or over all"
+        " frames (auto: over frames where a frame has fewer than four loops)",
+    )  # fmt: skip
+    output.add_argument(
+        "--no-analysis", action="store_true", help="do not look for slow movement, breathing, micro-Doppler and people"
+    )
+    output.add_argument("--no-pictures", action="store_true", help="leave out all pictures")
     add_output_options(output)
     parser.set_defaults(run=run)
     return parser
@@ -50,18 +76,23 @@ def run(arguments: argparse.Namespace) -> int:
     """Processes the recording and writes the results. Raises InputError."""
     from mmweaver.cli.progress import StageBar
     from mmweaver.cli.summary import print_summary
-    from mmweaver.core.atomic_files import check_output_folder
+    from mmweaver.core.output_checks import check_output_folder
 
     if arguments.file is None:
         raise InputError("which recording? give a file or a capture folder (see mmweaver process --help)")
-    check_output_folder(arguments.out, overwrite=arguments.overwrite)
+    from mmweaver.result_folder import FILES
+
+    check_output_folder(arguments.out, overwrite=arguments.overwrite, files=FILES, inputs=[arguments.file])
     with StageBar(NUM_STAGES, quiet=arguments.quiet or arguments.verbose) as bar:
         from mmweaver.core.stages import Stages
         from mmweaver.recordings.processing import process_recording
 
         recording = process_recording(
-            arguments.file, arguments.radar, layout=arguments.layout, axes=arguments.axes,
-            iq_order=arguments.iq_order, tx_order=arguments.tx_order, points=arguments.points, stages=Stages(bar),
+            arguments.file, radar_of(arguments), layout=arguments.layout, axes=arguments.axes,
+            iq_order=arguments.iq_order, tx_order=arguments.tx_order, range_m=arguments.range_m,
+            range_bins=arguments.range_bins, points=arguments.points, static_removal=arguments.remove_static,
+            analyse=not arguments.no_analysis,
+            strict=arguments.strict, stages=Stages(bar),
         )  # fmt: skip
         written = {REQUEST_FILE: request_toml(arguments.parser, arguments)}
         meta = recording.save(

@@ -4,6 +4,8 @@ import argparse
 import json
 from typing import Any
 
+from mmweaver.cli.arguments import add_board_options, add_range_options, radar_of
+
 EXAMPLES = """examples:
   mmweaver radar                                # lists the presets
   mmweaver radar awr1843
@@ -20,6 +22,8 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument(
         "radar", nargs="?", metavar="NAME|FILE", help="preset, TI .cfg or radar.json (default: list the presets)"
     )
+    add_range_options(parser)
+    add_board_options(parser)
     parser.add_argument("--json", action="store_true", help="print what --radar reads back; of all presets by name")
     parser.set_defaults(run=run)
     return parser
@@ -27,12 +31,13 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Prints the radar on stdout. Raises InputError."""
+    from mmweaver.core.range_window import chosen_range
     from mmweaver.formats.radar_file import describe_radar, load_radar
 
     if arguments.radar is None:
         print(_presets(as_json=arguments.json))
         return 0
-    config = load_radar(arguments.radar)
+    config = chosen_range(load_radar(radar_of(arguments) or ""), arguments.range_m, arguments.range_bins)
     text = config.to_json() if arguments.json else describe_radar(config)
     print(text.rstrip("\n"))
     return 0
@@ -43,7 +48,7 @@ def _presets(*, as_json: bool) -> str:
     from mmweaver.core.presets import PRESETS
 
     if as_json:
-        return json.dumps({name: json.loads(config.to_json()) for name, config in PRESETS.items()}, indent=2)
+        return json.dumps({name: config.to_values() for name, config in PRESETS.items()}, indent=2)
     head = ("preset", "GHz", "antennas", "range bin", "to", "velocity bin", "up to")
     rows = [
         (

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.cli.arguments import add_output_options, whole
+from mmweaver.cli.config_file import write_request
 from mmweaver.core.errors import InputError
 
 EXAMPLES = """examples:
@@ -23,7 +24,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "rooms", help="generate furnished rooms with photo, depth and ground truth", epilog=EXAMPLES,
         description="Generates furnished rooms from a seed. Each is a folder: rgb.png, depth.png and camera.json, which"
         " generate reads; classes.png with its names in classes.json (COCO-Stuff); truth.json with the floor, seats,"
-        " landmarks and every box of furniture.",
+        " landmarks and every box of furniture. request.toml repeats the run.",
     )  # fmt: skip
     parser.add_argument("out", type=Path, metavar="OUT", help="folder for the rooms, one folder each")
     parser.add_argument("--kinds", metavar="KIND,...", help="kinds of rooms, with commas (default: all)")
@@ -41,7 +42,8 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then makes all rooms or none. Raises InputError."""
     from mmweaver.cli.progress import StageBar
-    from mmweaver.core.atomic_files import check_output_folder, staged_folder
+    from mmweaver.core.atomic_files import staged_folder
+    from mmweaver.core.output_checks import check_output_folder
     from mmweaver.scene.procedural.lighting import LIGHTINGS
     from mmweaver.scene.procedural.procedural_room import MAX_LAYOUTS, make_room
     from mmweaver.scene.procedural.room_files import write_room
@@ -69,6 +71,7 @@ def run(arguments: argparse.Namespace) -> int:
                 (stage / name).mkdir()
                 write_room(stage / name, room, room.photo(lighting, arguments.noise), lighting)
                 names.append(name)
+        write_request(stage, arguments)
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), "rooms": names, "seed": arguments.seed}, indent=2))
     elif not arguments.quiet:

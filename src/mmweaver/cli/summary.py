@@ -21,6 +21,7 @@ def machine_summary(out: str | Path, meta: dict[str, Any]) -> dict[str, Any]:
     """The same for machines: paths of the files, assumptions, seconds of each stage."""
     files = {name: str(Path(out) / name) for name in meta["files"]}
     method = {"method": meta["method"]} if "method" in meta else {}
+    method |= {"warnings": meta["warnings"]} if "warnings" in meta else {}
     return {"out": str(out), "files": files, **method, "assumed": meta["assumed"], "seconds": meta["seconds"]}
 
 
@@ -32,6 +33,7 @@ def summary_lines(out: str | Path, meta: dict[str, Any], *, verbose: bool = Fals
     lines += [f"  {paths[name]:<{width}}  {text}" for name, text in meta["files"].items()]
     lines += [f"method:  {MADE_BY.get(meta['method'], meta['method'])}"] if "method" in meta else []
     lines.append(_radar_line(meta))
+    lines += [f"warning: {sentence}" for sentence in meta.get("warnings", [])]
     people = [meta["person"]] if "person" in meta else meta.get("people", [])
     lines += [_person_line(person) for person in people]
     shown = [one for one in meta["assumed"] if verbose or not isinstance(one, UsualAssumption)]

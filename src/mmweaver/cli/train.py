@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli import train_recipes
 from mmweaver.cli.arguments import Rare, number, source, whole
+from mmweaver.cli.config_file import REQUEST_FILE, write_request
 from mmweaver.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from mmweaver.training.device import ComputeDevice
     from mmweaver.training.trainer import Listener, Progress
 
+# what a run writes: none may be a folder, or the weights that it starts from
+RUN_FILES = ("weights.safetensors", "best.safetensors", "checkpoint.pt", "log.jsonl", "README.md", REQUEST_FILE)
 EXAMPLES = """examples:
   mmweaver dataset data/ --layouts 10 --sequences 20 --workers 4
   mmweaver train weaver --data data/ --out run/ --tensorboard
@@ -96,11 +99,16 @@ def run(arguments: argparse.Namespace) -> int:
     import json
 
     _check(arguments)
+    from mmweaver.core.output_checks import check_output_folder
     from mmweaver.training.device import ComputeDevice
 
     place = ComputeDevice.chosen(arguments.device, arguments.precision)
     is_quiet = arguments.quiet or not place.is_first
-    summary = _on_captures(arguments, place, is_quiet) if arguments.captures else _on_data(arguments, place, is_quiet)
+    check_output_folder(arguments.out, overwrite=True, files=RUN_FILES, inputs=[_file(arguments.start)])
+    try:
+        summary = _trained(arguments, place, is_quiet)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_kept(arguments.out)) from None
     if not place.is_first:
         return 0
     if arguments.json:
@@ -109,6 +117,24 @@ def run(arguments: argparse.Namespace) -> int:
         where = summary.get("evaluated_on", "unseen rooms")
         print(f"{summary['weights']}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}")
     return 0
+
+
+def _trained(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
+    summary = _on_captures(arguments, place, is_quiet) if arguments.captures else _on_data(arguments, place, is_quiet)
+    if place.is_first:
+        write_request(arguments.out, arguments)
+    return summary
+
+
+def _file(start: str | None) -> Path | None:
+    return Path(start) if start is not None and Path(start).is_file() else None
+
+
+def _kept(out: Path) -> str:
+    """What an interrupted training leaves; the empty message is that of a command which has written nothing."""
+    if not (out / "checkpoint.pt").is_file():
+        return ""
+    return f"{out / 'checkpoint.pt'} is kept: the same command resumes from it"
 
 
 def _check(arguments: argparse.Namespace) -> None:
@@ -219,5 +245,5 @@ def _start(source: str) -> "tuple[dict[str, Tensor], WeightsCard]":
     return network.state_dict(), card
 
 
-def _encoder_of(card: "WeightsCard") -> dict[str, str]:
+def _encoder_of(card: "WeightsCard") -> dict[str, Any]:
     return {"encoder": card.settings["encoder"]} if "encoder" in card.settings else {}

@@ -118,9 +118,13 @@ def scale_of(height_m: float) -> float:
     return height_m / REFERENCE_HEIGHT_M
 
 
-def radii_m(height_m: float) -> Float[Array, "capsule 2"]:
-    """Radii at start and end of every capsule, in metres, half the depth where it is wider than deep."""
-    return np.array([(c.start_radius_m, c.end_radius_m) for c in CAPSULES]) * scale_of(height_m)
+def radii_m(height_m: float, girth: float = 1.0) -> Float[Array, "capsule 2"]:
+    """Radii at start and end of every capsule, in metres, half the depth where it is wider than deep.
+
+    `girth` is the body's thickness relative to the average one of its height; the head's is always average.
+    """
+    wider = np.array([1.0 if "head" in (c.start, c.end) else girth for c in CAPSULES])
+    return np.array([(c.start_radius_m, c.end_radius_m) for c in CAPSULES]) * scale_of(height_m) * wider[:, None]
 
 
 def widths_per_depth() -> Float[Array, " capsule"]:
@@ -160,11 +164,13 @@ def pose_capsules(joints_m: Float[Array, "time 22 3"], height_m: float) -> Posed
     return PosedCapsules(start_m=np.stack(starts, 1), axis_m=np.stack(axes, 1), rotation=np.stack(rotations, 1))
 
 
-def hull(posed: PosedCapsules, height_m: float) -> tuple[Float[Array, "time vertex 3"], Int[Array, "face 3"]]:
+def hull(
+    posed: PosedCapsules, height_m: float, girth: float = 1.0
+) -> tuple[Float[Array, "time vertex 3"], Int[Array, "face 3"]]:
     """Low-poly hull of all capsules: vertices in metres for each time, and the faces that they share."""
     angles = np.arange(HULL_CORNERS) * 2 * np.pi / HULL_CORNERS
     circle = np.stack([np.cos(angles), np.sin(angles), np.zeros(HULL_CORNERS)], -1)
-    radii, widths = radii_m(height_m), widths_per_depth()
+    radii, widths = radii_m(height_m, girth), widths_per_depth()
     rings = []
     for end in (0, 1):
         offset = circle[None] * radii[:, end, None, None]

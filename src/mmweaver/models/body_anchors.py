@@ -14,6 +14,7 @@ from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.geometry.pinhole import pixel_coordinates
 from mmweaver.models.precision import in_full_precision
 from mmweaver.models.scene_tensors import NUM_PLANES, SceneTensors
+from mmweaver.paths.image_method import mirrored
 
 # from joint, to joint, how far along (above 1: past the second)
 _MIDDLE = (
@@ -96,8 +97,7 @@ def ghost_anchors(joints_m: Tensor, velocity_mps: Tensor, room: SceneTensors) ->
     normal = axes[..., 2, :]
     height = ((place - centre) * normal).sum(-1)
     own_height = -(centre * normal).sum(-1)  # of the radar above the face
-    image = place - 2 * height[..., None] * normal
-    moving = speed - 2 * (speed * normal).sum(-1, keepdim=True) * normal
+    image, moving = mirrored(place, height, normal), mirrored(speed, (speed * normal).sum(-1), normal)
     far, near = image.norm(dim=-1).clamp(min=0.2), place.norm(dim=-1).clamp(min=0.2)
     to_image, to_place = image / far[..., None], place / near[..., None]
     # where the mirrored ray meets the face

@@ -13,6 +13,7 @@ from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Sc
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.dsp.cube import adc_from_cube, cube_values, static_samples, tdm_compensation
+from mmweaver.dsp.windows import doppler_window_middle
 from mmweaver.fields.scatterers.cell_noise import cell_noise
 from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers
@@ -36,29 +37,38 @@ from mmweaver.paths.receiver import quantise
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
 ADC_FRAMES_AT_ONCE = 20
+HISTORY_FRAMES = 10  # before part of a longer signal, which the pose encoder sees, too
 
 
 @dataclass(frozen=True, kw_only=True)
 class FrameMotion:
     """One person at the middle of each radar frame: joints and their velocities, (frame, 22, 3).
 
-    Where chirps last long, at the middle of each time segment of each frame: (frame * segment, 22, 3).
+    Where chirps last long, at the middle of each time segment of each frame: (frame * segment, 22, 3). The first
+    `num_before` frames are only there for the pose encoder, which looks at motion before and after a frame.
     """
 
     joints_m: np.ndarray
     velocity_mps: np.ndarray
     subject: int
     num_segments: int = 1
+    num_before: int = 0
 
     @classmethod
-    def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int) -> "FrameMotion":
-        """A dense motion at so many radar frames."""
+    def of(cls, pose: PoseSequence, config: RadarConfig, num_frames: int, first_frame: int = 0) -> "FrameMotion":
+        """A dense motion at so many radar frames from a first one, and before it as far as the motion is known."""
         middle_s = FrameClock(config).middle_s
         if len(middle_s) == 1:
             middle_s = np.array([config.active_time_s / 2])
-        time_s = np.arange(num_frames)[:, None] * config.frame_period_s + middle_s
+        known = first_frame - int(np.ceil(pose.time_s[0] / config.frame_period_s - 1e-6))
+        before = max(0, min(HISTORY_FRAMES, known, first_frame))
+        frames = np.arange(first_frame - before, first_frame + num_frames)
+        time_s = frames[:, None] * config.frame_period_s + middle_s
         joints_m, velocity_mps = joints_and_velocities(pose, time_s.ravel())
-        return cls(joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject, num_segments=len(middle_s))
+        return cls(
+            joints_m=joints_m, velocity_mps=velocity_mps, subject=pose.subject, num_segments=len(middle_s),
+            num_before=before,
+        )  # fmt: skip
 
     def segments(self, clock: FrameClock) -> tuple[Tensor, Tensor]:
         """Joints and velocities, (frame, segment, 22, 3); extrapolated where known at the frame's middle alone."""
@@ -73,8 +83,9 @@ class FrameMotion:
 
     @property
     def middle_joints_m(self) -> Tensor:
-        """Joints at the middle of each frame, float32 (frame, 22, 3)."""
-        return torch.from_numpy(self.joints_m[self.num_segments // 2 :: self.num_segments]).float()
+        """Joints at the middle of each frame whose signal is wanted, float32 (frame, 22, 3)."""
+        middle_m = self.joints_m[self.num_segments // 2 :: self.num_segments]
+        return torch.from_numpy(middle_m[self.num_before :]).float()
 
 
 class LearnedRoom:
@@ -98,6 +109,8 @@ class LearnedRoom:
         self.network, self.config, self.device = network.to(device), config, device
         self.radar, self.renderer = MeanPower(config), CubeRenderer(config)
         self.noise_power, self.background = self.radar.noise, None
+        gain = np.repeat(config.tx_noise_gain / config.tx_noise_gain.mean(), config.num_rx)
+        self._noise_factor = (np.sqrt(gain) * tdm_compensation(config)).astype(np.complex64)  # (doppler, antenna)
         view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)
         with torch.inference_mode(), one_thread():
             self.code: SceneEncoding = network.encode_room(view[None].to(device))
@@ -135,12 +148,17 @@ class LearnedRoom:
         clock = self.renderer.clock
         joints, velocity = motion.segments(clock)
         count = joints.shape[1]
+        wanted = None
+        if motion.num_before:
+            wanted = torch.arange(motion.num_before, len(joints), device=self.device)[None]
         each = []
         for index in range(count):  # each segment's frames are a sequence of the frame rate the network knows
             at = joints[None, :, index], velocity[None, :, index]
-            each.append(self.network.moving(self.code, *(part.to(self.device) for part in at))[0].to("cpu"))
+            on_device = (part.to(self.device) for part in at)
+            each.append(self.network.moving(self.code, *on_device, frames=wanted)[0].to("cpu"))
+        joints = joints[motion.num_before :]
         echoes = MeanEchoes.stack(each).map(lambda tensor: tensor.transpose(0, 1))  # (frame, segment, echo)
-        others_m = [other.segments(clock)[0] for other in others]
+        others_m = [other.segments(clock)[0][other.num_before :] for other in others]
         shown = [
             self._shown(one, joints[:, index], [other[:, index] for other in others_m])
             for index, one in enumerate(each)
@@ -169,7 +187,8 @@ class LearnedRoom:
     def _from_reference(self, paths: Paths) -> Paths:
         """Paths whose places are those of the middle loop's first chirp, at the middle of all chirps."""
         clock = self.renderer.clock
-        late_s = clock.middle_s[0] - (clock.chirp_s.min() + self.config.num_loops / 2 * self.config.loop_period_s)
+        middle_loop = doppler_window_middle(self.config.num_loops)
+        late_s = clock.middle_s[0] - (clock.chirp_s.min() + middle_loop * self.config.loop_period_s)
 
         def moved(end):
             return replace(end, position_m=end.position_m + late_s * end.velocity_mps)
@@ -195,27 +214,33 @@ class LearnedRoom:
         """
         return self.signal(motions, seed=seed, keep_adc=False)[0]
 
-    def signal(self, motions: Sequence[FrameMotion], *, seed: int, keep_adc: bool) -> tuple[RadarCube, AdcCube | None]:
-        """The cube, and with `keep_adc`, on which it does not depend, ADC samples of the same paths and noise."""
+    def signal(
+        self, motions: Sequence[FrameMotion], *, seed: int, keep_adc: bool, first_frame: int = 0
+    ) -> tuple[RadarCube, AdcCube | None]:
+        """The cube, and with `keep_adc`, on which it does not depend, ADC samples of the same paths and noise.
+
+        `first_frame`: where in a longer signal this part begins; each part has noise of its own.
+        """
         with torch.inference_mode(), one_thread():
             paths = self._paths(motions)
-            grid = CubeGrid.of(self.config, len(paths.occluded))
-            noise = cell_noise(stream(seed, "scatterer field noise"), self.config, len(paths.occluded), 0)
-            noise *= np.float32(math.sqrt(self.noise_power)) * tdm_compensation(self.config)
+            grid = CubeGrid.of(self.config, len(paths.occluded), first_frame)
+            part = (first_frame,) if first_frame else ()
+            noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, len(paths.occluded), 0)
+            noise *= np.float32(math.sqrt(self.noise_power)) * self._noise_factor
             values = self.renderer.moving(paths.moving)
             lost = paths.occluded[:, : self._num_noticed].bool()
             occluded_layers = [self._noticed[row].layer() for row in lost]
             self.renderer.add_static(values, self.layer - torch.stack(occluded_layers))
             values += torch.from_numpy(noise)
             cube = RadarCube(values=values.numpy(), grid=grid, config=self.config, scale=1.0)
-            adc = self._adc(paths, replace(cube, values=noise), seed) if keep_adc else None
+            adc = self._adc(paths, replace(cube, values=noise), seed, first_frame) if keep_adc else None
         unit = 1.0 if self.background is None else self.background.unit
         if unit == 1.0:
             return cube, adc
         cube = replace(cube, values=cube.values / np.float32(unit), scale=unit)
         return cube, None if adc is None else replace(adc, samples=adc.samples / np.float32(unit), scale=unit)
 
-    def _adc(self, paths: ScenePaths, noise: RadarCube, seed: int) -> AdcCube:
+    def _adc(self, paths: ScenePaths, noise: RadarCube, seed: int, first_frame: int) -> AdcCube:
         """Samples of the paths with noise whose own cube is `noise`, and white in what no cell holds."""
         config = self.config
         if self._synthesis is None:
@@ -223,13 +248,15 @@ class LearnedRoom:
             self._synthesis = synthesis, self._static_adc(synthesis)
         synthesis, static = self._synthesis
         frames, count = len(paths.occluded), len(synthesis.clock.segments)
-        samples = np.empty((frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples), np.complex64)
+        samples = np.empty(
+            (frames, config.num_loops, config.num_slots, config.num_rx, config.num_samples), np.complex64
+        )
         for first in range(0, frames, ADC_FRAMES_AT_ONCE):
             some = slice(first, min(first + ADC_FRAMES_AT_ONCE, frames))
             moving = paths.moving[some.start * count : some.stop * count]
             here = replace(paths, moving=moving, occluded=paths.occluded[some])
             clean = synthesis.moving(moving) + (static - synthesis.occluded(here))[:, None]
-            clean = clean.numpy() + self._sample_noise(noise.values[some], first, seed)
+            clean = clean.numpy() + self._sample_noise(noise.values[some], first_frame + first, seed)
             samples[some] = clean if config.complex_samples else np.real(clean)
         count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
         quantise(torch.from_numpy(samples), count_sqrt_mw)
@@ -247,7 +274,7 @@ class LearnedRoom:
         White noise, less what the cube's cells hold of it, plus the samples of least energy that give those cells.
         """
         config = self.config
-        shape = (len(cells), config.num_loops, config.num_tx, config.num_rx, config.num_samples, 2)
+        shape = (len(cells), config.num_loops, config.num_slots, config.num_rx, config.num_samples, 2)
         white = stream(seed, "learned receiver noise", first).standard_normal(shape, dtype=np.float32)
         power_mw = config.noise_power_mw if self.background is None else self.background.sample_noise_mw
         white = white.view(np.complex64)[..., 0] * np.float32(math.sqrt(power_mw / 2))

@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.virtual_array import azimuth_row
-from mmweaver.dsp.windows import hann
+from mmweaver.dsp.windows import noise_share
 
 NUM_AZIMUTHS, WIDEST_DEG = 32, 60.0
 NUM_ANGLE_MAPS = 2  # all that is there, and what moves
@@ -30,7 +30,7 @@ class LogMaps(nn.Module):
         sine = torch.linspace(-WIDEST_DEG, WIDEST_DEG, NUM_AZIMUTHS).deg2rad().sin()
         x = torch.tensor(2 * math.pi / config.wavelength_m * place[row, 0], dtype=torch.float32)
         moving = (torch.arange(config.num_loops) - config.num_loops // 2).abs() > STATIC_BINS
-        self.noise_mw = config.noise_power_mw * _noise_share(config.num_samples) * _noise_share(config.num_loops)
+        self.noise_mw = config.noise_power_mw * noise_share(config.num_samples, config.num_loops)
         self.row: Tensor
         self.steering: Tensor
         self.is_moving: Tensor
@@ -50,9 +50,3 @@ class LogMaps(nn.Module):
 
 def _numbers(ratio: Tensor) -> Tensor:
     return (10 * torch.log10(ratio + 1) - MIDDLE_DB) / SPREAD_DB
-
-
-def _noise_share(num: int) -> float:
-    """Power of white noise after a normalised Hann window and its transform."""
-    window = hann(num)
-    return float((window**2).sum() / window.sum() ** 2)

@@ -22,7 +22,7 @@ def in_full_precision(function: Function) -> Function:
         with exactly(next(argument for argument in arguments if isinstance(argument, Tensor))):
             return function(*(_exact(argument) for argument in arguments))
 
-    return exact  # type: ignore[return-value]
+    return exact  # type: ignore
 
 
 def exactly(values: Tensor) -> AbstractContextManager[Any]:

@@ -4,7 +4,6 @@ The header holds format, recipe, version, licence, data set and radar, of which 
 sha256 of the tensors.
 """
 
-import hashlib
 import json
 from dataclasses import MISSING, asdict, dataclass, field, fields
 from importlib import resources
@@ -14,8 +13,10 @@ from typing import Any
 import torch
 from torch import nn
 
-from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_tensors import read_tensor_metadata
+from mmweaver.core.safe_files.safe_text import parse_json
+from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import WeaverNetwork
 
@@ -43,8 +44,6 @@ class WeightsCard:
 
 def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: bool = True) -> None:
     """Writes a network, whole or not at all; in half precision it is half as large and as good."""
-    from safetensors.torch import save_file
-
     dtype = torch.float16 if half else torch.float32
     tensors = {
         name: (tensor.to(dtype) if tensor.is_floating_point() else tensor).contiguous()
@@ -52,20 +51,8 @@ def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: boo
     }
     header = {
         "format": FORMAT, "format_version": str(FORMAT_VERSION), "card": json.dumps(asdict(card)),
-        "sha256": sha256_of(tensors),
     }  # fmt: skip
-    with atomic_file(file) as partial:
-        save_file(tensors, partial, metadata=header)
-
-
-def sha256_of(tensors: dict[str, torch.Tensor]) -> str:
-    """The sha256 of names, types, shapes and values."""
-    digest = hashlib.sha256()
-    for name in sorted(tensors):
-        tensor = tensors[name].detach().cpu().contiguous()
-        digest.update(f"{name} {tensor.dtype} {tuple(tensor.shape)}\n".encode())
-        digest.update(tensor.numpy().tobytes())
-    return digest.hexdigest()
+    write_tensors(file, tensors, header)
 
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
@@ -115,36 +102,27 @@ def shipped_weights() -> Path:
 
 
 def _read(file: Path) -> tuple[WeightsCard, dict[str, torch.Tensor]]:
-    from safetensors import SafetensorError, safe_open
-
-    if not file.is_file():
+    if not file.exists():
         raise InputError(f"{file} does not exist; give a .safetensors file that mmweaver train wrote")
-    with file.open("rb") as opened:
-        first = opened.read(2)
-    if first in (b"PK", b"\x80\x02", b"\x80\x04"):
-        raise InputError(f"{file} holds pickled objects, which can run any program; mmweaver reads only safetensors")
-    try:
-        with safe_open(file, framework="pt") as opened:
-            header: dict[str, str] = opened.metadata() or {}
-            if header.get("format") != FORMAT:
-                raise InputError(f"{file} is not a weight file of mmweaver; give one that mmweaver train wrote")
-            if header.get("format_version") != str(FORMAT_VERSION):
-                raise InputError(
-                    f"{file} has weights of format {header.get('format_version')}, this mmweaver reads {FORMAT_VERSION}"
-                )
-            tensors = {name: opened.get_tensor(name) for name in opened.keys()}  # noqa: SIM118 - no mapping
-        if header.get("sha256", "") not in ("", sha256_of(tensors)):
-            raise InputError(f"{file} is damaged: its values are not those that were written; fetch or write it again")
-    except (SafetensorError, OSError, ValueError) as error:
-        raise InputError(f"{file} is damaged or no safetensors file ({error}); fetch or write it again") from None
-    return _card(header["card"], file), tensors
+    header = read_tensor_metadata(file)
+    if header.get("format") != FORMAT:
+        raise InputError(f"{file} is not a weight file of mmweaver; give one that mmweaver train wrote")
+    if header.get("format_version") != str(FORMAT_VERSION):
+        raise InputError(
+            f"{file} has weights of format {header.get('format_version')}, this mmweaver reads {FORMAT_VERSION}"
+        )
+    tensors, _ = read_tensors(file)
+    return _card(header.get("card", ""), file), tensors
 
 
 def _card(text: str, file: Path) -> WeightsCard:
+    values: Any = parse_json(text, f"the card of {file}")
     try:
-        values: dict[str, Any] = json.loads(text)
         wanted = [own.name for own in fields(WeightsCard) if own.default is own.default_factory is MISSING]
         known = [own.name for own in fields(WeightsCard) if own.name in values or own.name in wanted]
-        return WeightsCard(**{name: values[name] for name in known})
-    except (ValueError, KeyError, TypeError) as error:
+        card = WeightsCard(**{name: values[name] for name in known})
+    except (KeyError, TypeError) as error:
         raise InputError(f"{file} has a header that cannot be read ({error}); fetch or write it again") from None
+    if not isinstance(card.recipe, str) or not isinstance(card.settings, dict):
+        raise InputError(f"{file} has a header that cannot be read; fetch or write it again")
+    return card

@@ -11,6 +11,7 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.recognition.zero_shot import TrainingSet, read_training_set, write_training_set
 
@@ -42,7 +43,7 @@ def load_frozen(name: str) -> Frozen:
     settings = FOLDER / f"{name}.json"
     if not settings.is_file():
         raise InputError(f"no frozen recogniser is called {name!r}; known: {', '.join(NAMES)}")
-    held = json.loads(settings.read_text(encoding="utf-8"))
+    held = read_json(settings)
     training = read_training_set(FOLDER / f"{name}.npz")
     return Frozen(
         training=training,

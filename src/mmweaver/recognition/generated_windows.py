@@ -12,6 +12,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence
+from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.dsp.firmware import firmware_points
@@ -19,6 +20,7 @@ from mmweaver.dsp.firmware_cfar import counts_per_db
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import schedule
+from mmweaver.motion.people import Person
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
 from mmweaver.recognition.diffuse_clutter import diffuse_clutter
@@ -161,7 +163,7 @@ def _pose(
     start_m = None if moves and rng.random() < 0.5 else now.start_m
     pose = compose(
         schedule(plan, whole_s), scene, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,
-        start_m=start_m, height_m=now.height_m,
+        start_m=start_m, person=Person(height_m=now.height_m), is_varied=False,
     ).pose  # fmt: skip
     joints_m = _scaled_excursion(pose.joints_m, now.vigour)
     if moves and tempo * _speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
@@ -270,8 +272,9 @@ def write_window(path: Path, recording: PointRecording) -> None:
 
 def read_window(path: Path, label: str, recipe: GenerationRecipe) -> PointRecording:
     """Reads a window of `write_window`."""
-    with np.load(path, allow_pickle=False) as held:
-        frame, columns = held["frame"], held["columns"].astype(float)
+    held = read_npz(path)
+    frame = held.numbers("frame", ("point",), kinds="iu")
+    columns = held.numbers("columns", ("point", 5)).astype(float)
     names = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
     cloud = PointCloud(frame=frame, **dict(zip(names, columns.T, strict=True)))
     return PointRecording(

@@ -5,7 +5,6 @@ Human Activity Recognition from Point Clouds Generated through a Millimeter-wave
 """
 
 import re
-import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -13,6 +12,9 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud
+from mmweaver.core.safe_files.regular_files import read_bytes
+from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.core.safe_files.safe_text import MAX_TEXT_BYTES
 from mmweaver.recognition.point_recording import PointRecording
 
 FRAME_RATE_HZ = 30.0
@@ -68,20 +70,18 @@ def _label(path: Path, folder: Path, known: tuple[str, ...]) -> str:
 
 def _from_npz(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """`frame` (point,) and `pts` (point, 8): x, y, z, range, velocity, Doppler bin, bearing, intensity."""
-    try:
-        with np.load(path, allow_pickle=False) as held:
-            frame, points = held["frame"].astype(int), held["pts"]
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile):
-        raise InputError(f"{path} is no recording; frame (point) and pts (point, 8) are expected in it") from None
-    if points.ndim != 2 or points.shape[1] < 5 or frame.shape != points.shape[:1]:
-        raise InputError(f"{path} is no recording; frame has shape {frame.shape}, pts {points.shape}")
+    held = read_npz(path, only=("frame", "pts"))
+    frame = held.numbers("frame", ("point",), low=0, high=1e9).astype(int)
+    points = held.numbers("pts", ("point", "column"), low=-1e9, high=1e9)
+    if points.shape[1] < 5:
+        raise InputError(f"{path} is no recording; pts has shape {points.shape}, (point, 8) is expected")
     return frame, points[:, [0, 1, 2, 4]]
 
 
 def _from_text(path: Path) -> tuple[np.ndarray, np.ndarray]:
     """One message per point, as `rostopic echo` prints it; point 0 starts a frame."""
     found: dict[bytes, list[bytes]] = {name.encode(): [] for name in NUMBERS}
-    for name, value in LINE.findall(path.read_bytes()):
+    for name, value in LINE.findall(read_bytes(path, max_bytes=MAX_TEXT_BYTES)):
         found[name].append(value)
     try:
         point, *columns = (np.array(found[name.encode()], float) for name in NUMBERS)

@@ -13,6 +13,8 @@ from jaxtyping import Float
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.seeding import stream
 from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.recognition.generated_windows import GenerationRecipe, generate_windows
@@ -73,7 +75,7 @@ def check_cache(cache: Path, recipe: GenerationRecipe) -> None:
     """Writes the recipe into a cache, or checks the existing one. Raises InputError for another recipe."""
     note = cache / "recipe.json"
     text = recipe.as_json()
-    if note.exists() and note.read_text(encoding="utf-8") != text:
+    if note.exists() and read_text(note) != text:
         raise InputError(f"{cache} holds windows of another recipe; choose another folder or empty it")
     with atomic_file(note) as temporary:
         temporary.write_text(text, encoding="utf-8")
@@ -81,11 +83,17 @@ def check_cache(cache: Path, recipe: GenerationRecipe) -> None:
 
 # files --------------------------------------------------------------------------------------------------------------
 def write_training_set(path: Path, training: TrainingSet) -> None:
-    """An .npz of features (float32), labels and names; the same arrays give the same bytes."""
-    with atomic_file(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-        arrays = {"features": _small(training.features), "labels": training.labels, "names": np.array(training.names)}
+    """An .npz of features (float16 or float32), labels and names; the same arrays give the same values.
+
+    LZMA, feature by feature: 0.6 of the size of windows row by row in the usual compression.
+    """
+    features = np.asfortranarray(_small(training.features))
+    arrays = {"features": features, "labels": training.labels, "names": np.array(training.names)}
+    with atomic_file(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         for name, array in arrays.items():
-            with archive.open(zipfile.ZipInfo(f"{name}.npy", (1980, 1, 1, 0, 0, 0)), "w") as file:
+            member = zipfile.ZipInfo(f"{name}.npy", (1980, 1, 1, 0, 0, 0))
+            member.compress_type = zipfile.ZIP_LZMA
+            with archive.open(member, "w") as file:
                 np.lib.format.write_array(file, array, allow_pickle=False)
 
 
@@ -97,14 +105,9 @@ def _small(features: np.ndarray) -> np.ndarray:
 
 def read_training_set(path: Path) -> TrainingSet:
     """Reads a file of `write_training_set`. Raises InputError for other files."""
-    try:
-        with np.load(path, allow_pickle=False) as held:
-            return TrainingSet(
-                features=held["features"].astype(np.float32),
-                labels=held["labels"],
-                names=tuple(str(name) for name in held["names"]),
-            )
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile):
-        raise InputError(
-            f"{path} is not a training set; make one with mmweaver.recognition.zero_shot.training_set"
-        ) from None
+    held = read_npz(path)
+    return TrainingSet(
+        features=held.numbers("features", ("window", "name"), nan=True).astype(np.float32, order="C"),
+        labels=held.take("labels"),
+        names=held.texts("names"),
+    )

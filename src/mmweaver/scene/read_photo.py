@@ -10,7 +10,7 @@ from mmweaver.core.records import ClassMask, RgbdPhoto
 from mmweaver.core.shapes import DepthPixels, RgbPixels
 from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, read_camera_file
 from mmweaver.scene.photo.estimated_depth import EXAMPLE, estimate_depth
-from mmweaver.scene.photo.picture_files import read_depth, read_rgb
+from mmweaver.scene.photo.picture_files import Turned, read_depth, read_rgb
 from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
 from mmweaver.scene.segmentation.builtin_segmenter import segment_builtin
 from mmweaver.scene.segmentation.class_file import read_class_file
@@ -50,13 +50,14 @@ def read_photo(
     rgb = _existing(rgb, "--rgb")
     camera = None if camera is None else _existing(camera, "--camera")
     numbers = {} if camera is None else read_camera_file(camera)
-    pixels, stored_size, rotated = read_rgb(rgb)
+    pixels, turned = read_rgb(rgb)
     rgb_size = (pixels.shape[1], pixels.shape[0])
     notes: list[str] = []
     if depth is not None:
         depth = _existing(depth, "--depth")
-        depth_m = read_depth(depth, numbers.get("depth_unit_m"))
-        _check_same_view(rgb, depth, rgb_size, depth_m, unrotated_size=stored_size if rotated else None)
+        depth_m, depth_turned = read_depth(depth, numbers.get("depth_unit_m"))
+        _check_same_view(rgb, depth, rgb_size, depth_m, turned)
+        _check_turned(rgb, depth, turned, depth_turned)
     elif depth_model is not None:
         depth_m = estimate_depth(pixels, depth_model)
         notes.append(f"The depth was estimated from the colours by {depth_model}; it may err by tens of per cent.")
@@ -72,7 +73,9 @@ def read_photo(
     intrinsics = d455_intrinsics(width, height) if camera is None else intrinsics_for(camera, numbers, width, height)
     photo = RgbdPhoto(rgb=pixels, depth_m=depth_m, intrinsics=intrinsics)
     photo = replace(photo, classes=classes_of(photo, classes=classes, segmenter=segmenter, sam=sam))
-    assumptions = _assumptions(photo, has_camera=camera is not None, rotated=rotated and depth is not None)
+    assumptions = _assumptions(
+        photo, has_camera=camera is not None, rotated=turned.orientation != 1 and depth is not None
+    )
     return photo, (*assumptions, *fill_notes, *size_notes, *notes)
 
 
@@ -92,9 +95,7 @@ def classes_of(
     return None if segmenter is None else segment(photo.rgb, segmenter, sam)
 
 
-def _check_same_view(
-    rgb: Path, depth: Path, rgb_size: tuple[int, int], depth_m: DepthPixels, *, unrotated_size: tuple[int, int] | None
-) -> None:
+def _check_same_view(rgb: Path, depth: Path, rgb_size: tuple[int, int], depth_m: DepthPixels, turned: Turned) -> None:
     height, width = depth_m.shape
 
     def has_aspect(size: tuple[int, int]) -> bool:
@@ -103,9 +104,23 @@ def _check_same_view(
     if has_aspect(rgb_size):
         return
     hint = "depth must be aligned to the colour picture: the same view with the same aspect ratio"
-    if unrotated_size is not None and has_aspect(unrotated_size):
+    if turned.orientation != 1 and has_aspect(turned.stored_size):
         hint = "the EXIF tag rotates the colour picture but not the depth; rotate both upright and save them so"
     raise InputError(f"{rgb} has {rgb_size[0]} x {rgb_size[1]} pixels but {depth} {width} x {height}; {hint}")
+
+
+def _check_turned(rgb: Path, depth: Path, colours: Turned, depths: Turned) -> None:
+    """Raises InputError where the EXIF tag of the colours turns them, and no sign says whether the depth is upright.
+
+    A quarter turn is visible in the depth's shape; a half turn and a mirror image are not.
+    """
+    width, height = colours.stored_size
+    is_visible = colours.orientation >= 5 and abs(width / height - 1) > SAME_ASPECT
+    if colours.orientation != 1 and depths.orientation == 1 and not is_visible:
+        raise InputError(
+            f"the EXIF tag turns {rgb} (orientation {colours.orientation}), but nothing says whether {depth} is upright"
+            " too; save both upright and without the tag"
+        )
 
 
 def _to_common_size(pixels: np.ndarray, depth_m: np.ndarray) -> tuple[RgbPixels, DepthPixels, tuple[str, ...]]:

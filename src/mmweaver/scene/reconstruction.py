@@ -1,6 +1,7 @@
 """Reconstructs a room from a photo. Read `reconstruct` first: it names the steps in order."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
@@ -10,6 +11,7 @@ from mmweaver.core.records import Plane, RgbdPhoto, Scene
 from mmweaver.core.shapes import Array, Faces, PerFace, Vertices
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.geometry.pinhole import viewing_rays
+from mmweaver.scene.affordances.assumed_floor import find_assumed_floor
 from mmweaver.scene.affordances.free_space import find_free_space
 from mmweaver.scene.affordances.landmarks import find_landmarks
 from mmweaver.scene.affordances.seats import find_seats
@@ -67,7 +69,10 @@ def reconstruct(photo: RgbdPhoto, *, assumptions: tuple[str, ...] = ()) -> Scene
     is_rough = cells_of(grid, photo, ROUGH)
     smooth = [plane for plane, surface in zip(planes, surfaces, strict=True) if not _is_mostly(surface, is_rough)]
     layout = estimate_layout(aligned, smooth, cells_of(grid, photo, WALLS))
-    panels = find_wall_panels(view, [plane for plane in layout.planes if plane.kind == "wall"])
+    walls = [plane for plane in layout.planes if plane.kind == "wall"]
+    panels = find_wall_panels(view, walls)
+
+    free_space = replace(free_space, is_assumed=find_assumed_floor(height_map, view, walls, free_space.is_free))
 
     # 5. Mesh for the ray caster.
     rays = viewing_rays(grid.intrinsics) @ room.radar_from_camera.T

@@ -10,4 +10,4 @@ SAMPLE_FOLDER = Path(__file__).resolve().parents[1] / "sample"
 
 def sample_photo() -> tuple[RgbdPhoto, tuple[str, ...]]:
     """The sample room's photo, and the assumptions of `read_photo`."""
-    return read_photo(SAMPLE_FOLDER / "rgb.png", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")
+    return read_photo(SAMPLE_FOLDER / "rgb.webp", SAMPLE_FOLDER / "depth.png", SAMPLE_FOLDER / "camera.json")

@@ -9,10 +9,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
+from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_rooms
 from mmweaver.models.activity_network import ACTIVITY_NAMES
 from mmweaver.models.log_maps import LogMaps
@@ -95,24 +95,16 @@ def _mark(folder: Path, chosen: list[tuple[StoredRoom, int]]) -> str:
 
 
 def _read(file: Path, mark: str) -> tuple[Tensor, Tensor] | None:
-    from safetensors import SafetensorError, safe_open
-
-    if not file.is_file():
-        return None
+    """The maps of a file, None where they are of other sequences or damaged."""
     try:
-        with safe_open(file, framework="pt") as opened:
-            if (opened.metadata() or {}).get("mark") != mark:
-                return None
-            return opened.get_tensor("doppler"), opened.get_tensor("angle")
-    except (SafetensorError, OSError):
+        tensors, header = read_tensors(file)
+    except InputError:
         return None
+    return (tensors["doppler"], tensors["angle"]) if header.get("mark") == mark else None
 
 
 def _write(file: Path, maps: tuple[Tensor, Tensor], mark: str) -> None:
-    from safetensors.torch import save_file
-
-    with atomic_file(file) as temporary:
-        save_file({"doppler": maps[0], "angle": maps[1]}, temporary, metadata={"mark": mark})
+    write_tensors(file, {"doppler": maps[0], "angle": maps[1]}, {"mark": mark})
 
 
 def augmented(doppler: Tensor, angle: Tensor, rng: np.random.Generator) -> tuple[Tensor, Tensor]:

@@ -85,7 +85,7 @@ def train_activity(
     those of signals that are not stored cost more than the training. Raises InputError for a folder without data.
     """
     place = compute or ComputeDevice()
-    cache = {"keep": place.is_first, "device": str(place.device)}
+    cache: dict[str, Any] = {"keep": place.is_first, "device": str(place.device)}
     unseen = activity_examples(data, ("validation",), out / VALIDATION_MAPS, **cache)
     examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **cache)
     torch.manual_seed(recipe.seed)

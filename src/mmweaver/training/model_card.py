@@ -1,10 +1,10 @@
 """Model cards: what a weights file is, its data, its scores, and its limits."""
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from mmweaver.core.checksums import sha256_of_file
 from mmweaver.models.weights import WeightsCard
 
 Figures = Mapping[str, Mapping[str, float]]  # {method: {column: value}}
@@ -80,7 +80,7 @@ def model_card(
         *_table(figures, page.unit), "",
         f"The loss there is {card.validation_loss:.3f}, the least of the run.", "", "## Facts", "",
         "| | |", "| --- | --- |",
-        f"| file | `{file.name}`, {file.stat().st_size:,} bytes, sha256 `{_sha256(file)}` |",
+        f"| file | `{file.name}`, {file.stat().st_size:,} bytes, sha256 `{sha256_of_file(file)}` |",
         f"| licence | {card.licence} |",
         f"| data | sha256 of its plan `{card.dataset_sha256}` |" if not card.tuned_from else
         f"| data | sha256 of the captures `{card.dataset_sha256}` |",
@@ -103,7 +103,3 @@ def _table(figures: Figures, unit: str) -> list[str]:
     digits = 2 if unit == "dB" else 4
     rows = {who: " | ".join(f"{row[column]:.{digits}f}" for column in columns) for who, row in figures.items()}
     return head + [f"| {who} | {cells} |" for who, cells in rows.items()]
-
-
-def _sha256(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()

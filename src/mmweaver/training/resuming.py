@@ -1,5 +1,6 @@
 """Trainings that may be interrupted: state is saved regularly and resumed from there."""
 
+import io
 import logging
 import time
 from collections.abc import Iterator
@@ -10,6 +11,7 @@ import torch
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_tensors import read_checkpoint
 
 SAVE_EVERY_S, REPORT_EVERY = 60.0, 50
 log = logging.getLogger(__name__)
@@ -56,13 +58,15 @@ class Resumable:
         if self.file is None or not self.writes:
             return
         states = {name: part.state_dict() for name, part in self.parts.items()}
+        state = {"done": self.done, "cpu_s": self.cpu_s, "history": self.history, "parts": states}
+        packed = io.BytesIO()  # for torch's own writing to a full disk ends in errors of all kinds
+        torch.save(state | {"threads": torch.get_num_threads()}, packed)
         with atomic_file(self.file) as temporary:
-            state = {"done": self.done, "cpu_s": self.cpu_s, "history": self.history, "parts": states}
-            torch.save(state | {"threads": torch.get_num_threads()}, temporary)
+            temporary.write_bytes(packed.getbuffer())
 
     def _load(self, file: Path) -> None:
+        saved = read_checkpoint(file, what="no checkpoint ({reason}); delete it to start over")
         try:
-            saved = torch.load(file, weights_only=True, map_location="cpu")
             for name, part in self.parts.items():
                 part.load_state_dict(saved["parts"][name])
         except Exception as error:

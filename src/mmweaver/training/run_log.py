@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.atomic_files import append_line, atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_text import parse_json, read_text
 
 ROW_EVERY = 50  # steps
 LOG, PICTURES, BOARD = "log.jsonl", "pictures", "tensorboard"
@@ -24,7 +25,7 @@ class RunLog:
         self.out, self.file = out, out / LOG
         self.board = _writer(out / BOARD, done) if tensorboard else None
         if self.file.is_file():
-            kept = [line for line in self.file.read_text(encoding="utf-8").splitlines() if _step_of(line) <= done]
+            kept = [line for line in read_text(self.file).splitlines() if _step_of(line) <= done]
             with atomic_file(self.file) as temporary:
                 temporary.write_text("".join(f"{line}\n" for line in kept), encoding="utf-8")
 
@@ -33,8 +34,7 @@ class RunLog:
         step = figures["step"]
         if step % ROW_EVERY and figures["validation"] is None:
             return
-        with self.file.open("a") as log:
-            log.write(json.dumps(figures) + "\n")
+        append_line(self.file, json.dumps(figures))
         if self.board is not None:
             for name, value in _scalars(figures).items():
                 self.board.add_scalar(name, value, step)
@@ -68,7 +68,7 @@ def _scalars(figures: dict[str, Any]) -> dict[str, float]:
 
 def _step_of(line: str) -> float:
     try:
-        return float(json.loads(line)["step"])
+        return float(parse_json(line, "a line of the log")["step"])
     except (ValueError, KeyError, TypeError):
         return float("inf")  # an incomplete line of a killed process
 

@@ -8,6 +8,7 @@ from jaxtyping import Float, Int
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import Array
 from mmweaver.scene.photo.depth_grid import make_grid
@@ -75,10 +76,10 @@ def _cached_example(kind: str, seed: int, folder: Path | None) -> SegmenterExamp
         folder.mkdir(parents=True, exist_ok=True)
         with atomic_file(path) as temporary, temporary.open("wb") as file:
             np.savez(file, features=example.features.astype(np.float16), groups=example.groups.astype(np.uint8))
-    with np.load(path, allow_pickle=False) as stored:
-        return SegmenterExample(
-            kind=kind, features=stored["features"].astype(np.float32), groups=stored["groups"].astype(np.int64)
-        )
+    held = read_npz(path)
+    return SegmenterExample(
+        kind=kind, features=held.numbers("features").astype(np.float32), groups=held.numbers("groups").astype(np.int64)
+    )
 
 
 def augmented(example: SegmenterExample, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.seeding import stream
+from mmweaver.core.tensor_files import write_tensors
 from mmweaver.scene.segmentation.builtin_segmenter import GROUP_NAMES, groups_of_cells, make_network
 from mmweaver.training.resuming import Resumable
 from mmweaver.training.segmenter_data import SegmenterExample, augmented, make_examples
@@ -82,13 +82,8 @@ def _class_weights(examples: list[SegmenterExample]) -> np.ndarray:
 
 def save_weights(network: Any, path: Path) -> None:
     """All weights as float16 safetensors."""
-    from safetensors.torch import save_file
-
-    state = {
-        name: value.half().contiguous() for name, value in network.state_dict().items() if value.is_floating_point()
-    }
-    with atomic_file(path) as temporary:
-        save_file(state, temporary)
+    state = {name: value.half() for name, value in network.state_dict().items() if value.is_floating_point()}
+    write_tensors(path, state)
 
 
 def run(out: Path, recipe: SegmenterRecipe, work: Path | None = None) -> dict[str, Any]:

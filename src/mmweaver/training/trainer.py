@@ -21,9 +21,10 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.seeding import stream
+from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.training.device import ComputeDevice, Share
 from mmweaver.training.resuming import Resumable
 from mmweaver.training.run_log import RunLog
@@ -129,7 +130,6 @@ class Trainer:
         self.optimiser = torch.optim.AdamW(chosen, lr=recipe.learning_rate, weight_decay=recipe.weight_decay)
         self.best = BestValidation({**asdict(recipe), "precision": self.compute.precision})
         self.skips, self.is_tuning = 0, is_tuning
-        out.mkdir(parents=True, exist_ok=True)
         parts = {"network": learner, "optimiser": self.optimiser, "best": self.best}
         first = self.compute.is_first
         self.resumable = Resumable(out / "checkpoint.pt", parts, every_s=save_every_s, writes=first)
@@ -205,7 +205,7 @@ class Trainer:
         is_better = self.best.improved_by(value, figures)
         if self.log is not None:
             if is_better:
-                save_tensors(self.learner.state_dict(), self.out / BEST_FILE)
+                write_tensors(self.out / BEST_FILE, self.learner.state_dict())
             with torch.inference_mode():
                 picture = self.learner.picture()
             if picture is not None:
@@ -241,10 +241,8 @@ class Trainer:
         return loss, dict(zip(list(rows[0])[1:], others, strict=True))
 
     def _load_best(self) -> None:
-        from safetensors.torch import load_file
-
         if (self.out / BEST_FILE).is_file():
-            self.learner.load_state_dict(load_file(self.out / BEST_FILE))
+            self.learner.load_state_dict(read_tensors(self.out / BEST_FILE)[0])
         self.learner.eval()
 
 
@@ -253,7 +251,7 @@ class BestValidation:
 
     def __init__(self, recipe: dict[str, Any]):
         # as restored from a checkpoint
-        self.recipe, self.value, self.since = json.loads(json.dumps(recipe)), math.inf, 0
+        self.recipe, self.value, self.since = parse_json(json.dumps(recipe), "the recipe"), math.inf, 0
         self.figures: dict[str, float] = {}
 
     def improved_by(self, value: float, figures: dict[str, float] | None = None) -> bool:
@@ -275,11 +273,3 @@ class BestValidation:
         if before != self.recipe:
             raise InputError("it has other settings")
         self.value, self.since, self.figures = state["value"], state["since"], state.get("figures", {})
-
-
-def save_tensors(tensors: dict[str, Tensor], file: Path) -> None:
-    """Writes tensors as safetensors, atomically."""
-    from safetensors.torch import save_file
-
-    with atomic_file(file) as temporary:
-        save_file({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}, temporary)

@@ -1,6 +1,5 @@
 """Pictures of a training: range-Doppler and range-azimuth maps of ground truth and network, and their difference."""
 
-import io
 from typing import Any
 
 import numpy as np
@@ -51,11 +50,8 @@ def draw_sheet(truth: PowerMaps, network: PowerMaps, config: RadarConfig, made: 
 
 def canvas_image(canvas: Any) -> np.ndarray:
     """A canvas of matplotlib as an image (row, column, 3) uint8."""
-    from PIL import Image
-
-    buffer = io.BytesIO()
-    canvas.print_png(buffer)
-    return np.asarray(Image.open(buffer).convert("RGB"))
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
 def differences_db(truth: PowerMaps, network: PowerMaps) -> dict[str, float]:

@@ -44,7 +44,7 @@ def test_own_numbers_are_defined_by_a_json(path: Path):
 @pytest.mark.parametrize(
     ("table", "message"),
     [
-        ("{", "not a JSON object"),
+        ("{", "no JSON"),
         ("[1]", "not a JSON object"),
         ('{"3": "gobbledygook"}', "not a class"),
         ('{"4": "bed"}', "class number 3"),

@@ -12,6 +12,7 @@ from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.generate_rooms import generate_dataset
 from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.models.network import WeaverNetwork
+from studies.network import activity_gain
 from studies.network.activity_gain import (
     ALONE,
     GainStudy,
@@ -45,6 +46,7 @@ def _base(per_class: int, width: int) -> Labelled:
     return Labelled(frames=torch.randn(len(label), 4, width), label=label)
 
 
+@pytest.mark.slow  # a whole study of one room; its scores and rows: the tests below
 def test_rows_of_a_room(data: Path, tmp_path: Path):
     (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)
     assert room.name == "living_room_0"
@@ -62,15 +64,26 @@ def test_rows_of_a_room(data: Path, tmp_path: Path):
     assert reported == [1]
     again = gains(study, [room], {}, each=1, cache=cache)  # of what was cache
     assert np.array_equal(again["true_room"], found["true_room"])
-    rows = rows_of(found, [room])
+    rows = rows_of(found, [room.name])
     assert [row["method"] for row in rows] == [ALONE, "true_room"]
     assert rows[0]["metrics"]["gain"]["value"] == 0
     gain = rows[1]["metrics"]["gain"]["value"]
     assert gain == pytest.approx(float(found["true_room"][0, 0] - found[ALONE][0, 0]))
 
 
-def test_data_of_the_room_helps_where_the_room_differs():
+def test_rows_hold_the_gain_over_training_elsewhere():
+    alone, helped = (np.array(values) for values in ([[0.2, 2.0], [0.4, 1.0]], [[0.5, 1.0], [0.6, 0.5]]))
+    rows = rows_of({ALONE: alone, "true_room": helped}, ["kitchen_0", "kitchen_1"])
+    assert [(row["method"], row["num_rooms"]) for row in rows] == [(ALONE, 2), ("true_room", 2)]
+    assert rows[0]["metrics"]["gain"]["value"] == 0
+    assert rows[1]["metrics"]["gain"]["value"] == pytest.approx(0.25)
+    assert rows[1]["metrics"]["log_loss_gain"]["value"] == pytest.approx(0.75)
+    assert rows[1]["metrics"]["accuracy"]["baseline"] == {"chance": pytest.approx(1 / 12)}
+
+
+def test_data_of_the_room_helps_where_the_room_differs(monkeypatch: pytest.MonkeyPatch):
     """In the room every activity looks like nothing elsewhere: only its own data can report."""
+    monkeypatch.setattr(activity_gain, "STEPS", 60)
     torch.manual_seed(0)
     network = ActivityNetwork(AWR1843)
     width = network.head.first.in_features
@@ -104,6 +117,7 @@ def test_a_few_recordings_are_of_all_activities_and_a_head_that_begins_anew_know
     assert not torch.equal(new["first.weight"], old["first.weight"])
 
 
+@pytest.mark.slow  # tests/paths/test_background.py and test_generate.py: the room of a recording in a generated signal
 def test_a_recorded_room_is_the_same_in_every_signal(data: Path):
     """The network that was given the empty room has the truth's own resting echoes."""
     (room,) = unseen_rooms(read_rooms(data), read_plan(data), 5)

@@ -3,11 +3,14 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 import torch
 
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.seeding import stream
 from mmweaver.models.activity_network import ActivityNetwork
+from mmweaver.recognition.activity_classifier import ClassifierSettings
+from studies.network import real_or_simulated
 from studies.network.cube_statistics import cube_statistics
 from studies.network.real_or_simulated import folds_of, real_or_simulated_scores
 from tests.cubes import point_cube
@@ -24,11 +27,18 @@ def test_no_room_is_learned_from_and_judged():
     assert sum(len(fold) for fold in folds) == len(set().union(*folds)) == 20
 
 
+@pytest.fixture
+def few_trees(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(real_or_simulated, "SETTINGS", ClassifierSettings(num_trees=60, boosting_rounds=20))
+
+
+@pytest.mark.usefixtures("few_trees")
 def test_alike_is_half_and_different_is_told():
     assert abs(real_or_simulated_scores(_sampled(0, 0.0), _sampled(1, 0.0), ROOMS).mean() - 0.5) < 0.15
     assert real_or_simulated_scores(_sampled(0, 0.0), _sampled(1, 2.0), ROOMS).mean() > 0.9
 
 
+@pytest.mark.usefixtures("few_trees")
 def test_what_is_learned_of_a_room_does_not_help_in_another():
     """Each room's true and generated cubes lie far apart, but nowhere in the same way."""
     rng = stream(0, "test offsets")

@@ -26,10 +26,10 @@ def test_a_method_that_writes_zeros_scores_as_zeros_do(tmp_path: Path, monkeypat
     for name in ("_scores", "_name"):  # cases of a test are not quite cases
         monkeypatch.setattr(paper_scores, name, getattr(paper_scores, name).__wrapped__)
     cases, cache = [_case(seed) for seed in (0, 1)], RoomCache(tmp_path, {})
-    scores = scores_of.__wrapped__(  # type: ignore[attr-defined]
+    scores = scores_of.__wrapped__(  # type: ignore
         cases, lambda case: all_zeros(case.room.cube(0)), cache
     )
-    rows = rows_of.__wrapped__(scores, cases)  # type: ignore[attr-defined]
+    rows = rows_of.__wrapped__(scores, cases)  # type: ignore
     assert [row["method"] for row in rows] == ["zeros", "static_mean", "paper"]
     zeros, _, paper = (row["metrics"] for row in rows)
     assert paper["cssim"]["value"] == zeros["cssim"]["value"] > 0.8
@@ -37,7 +37,7 @@ def test_a_method_that_writes_zeros_scores_as_zeros_do(tmp_path: Path, monkeypat
     assert paper["energy_db"]["value"] < -100
     assert rows[0]["num_rooms"] == 2
     assert np.isfinite([metric["value"] for metric in paper.values()]).all()
-    again = scores_of.__wrapped__(cases, None, cache)  # type: ignore[attr-defined]
+    again = scores_of.__wrapped__(cases, None, cache)  # type: ignore
     assert np.array_equal(again["paper"]["cssim"], scores["paper"]["cssim"])  # nothing is done twice
 
 

@@ -18,6 +18,7 @@ from studies.paper.paper_training import PaperLearner, PaperRecipe, train_paper
 from tests.training.tiny_data import StoppedError
 
 pytest.importorskip("zarr")
+pytestmark = pytest.mark.usefixtures("blank_training_pictures")
 RECIPE = PaperRecipe(steps=2, batch_size=2, validate_every=1, validation_batches=1)
 
 
@@ -36,6 +37,7 @@ def stop_at_one(progress: Progress) -> None:
         raise StoppedError
 
 
+@pytest.mark.slow  # test_network_training.py interrupts the same loop; test_train_paper.py trains this network once
 def test_it_goes_on_where_it_stopped(tiny_geometry: Path, features: Path, tmp_path: Path):
     options = {"features": features, "save_every_s": 0.0}
     whole = train_paper(tiny_geometry, tmp_path / "whole", RECIPE, **options)
@@ -63,6 +65,7 @@ def test_a_longer_run_goes_on_and_no_other_setting_may_change(tiny_geometry: Pat
         train_paper(tiny_geometry, tmp_path, replace(RECIPE, steps=3, learning_rate=1e-3), features=features)
 
 
+@pytest.mark.slow  # test_network_training.py: the same loop in mixed precision and on another device
 def test_bf16_does_no_harm_and_nothing_stays_on_the_cpu(tiny_geometry: Path, features: Path):
     from mmweaver.models.activity_network import load_activity
 

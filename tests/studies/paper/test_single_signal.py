@@ -75,10 +75,10 @@ def test_the_training_pass_is_the_field(cube: RadarCube):
     with torch.no_grad():
         network.gamma += 0.2 * torch.randn(network.gamma.shape, generator=torch.Generator().manual_seed(0))
         network.beta += 0.2
-        every = torch.arange(np.prod(cube.grid.shape[1:])).expand(3, -1)
+        every = torch.arange(int(np.prod(cube.grid.shape[1:]))).expand(3, -1)
         iq = network._at(every).numpy()
     field = network.field(replace(cube), 1.0)
-    field.is_centred = False  # pyright: ignore[reportAttributeAccessIssue]
+    field.is_centred = False  # type: ignore
     values = field.cube().values.reshape(3, -1)
     assert np.allclose(iq[..., 0] + 1j * iq[..., 1], values, atol=1e-5 * np.abs(values).max())
 

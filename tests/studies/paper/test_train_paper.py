@@ -6,6 +6,7 @@ import socket
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -61,7 +62,6 @@ def test_weights_of_another_recipe_are_refused(
     assert "recipe 'activity'" in capsys.readouterr().err
 
 
-@pytest.mark.slow
 @pytest.mark.slow  # tests/training/test_trainer.py does the same with a learner of two numbers
 def test_two_processes_train_it(tiny_geometry: Path, features: Path, tmp_path: Path):
     """The fast test of two processes is in tests/training/test_trainer.py, of the same loop."""
@@ -72,7 +72,7 @@ def test_two_processes_train_it(tiny_geometry: Path, features: Path, tmp_path: P
     shared = {"WORLD_SIZE": "2", "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port, "OMP_NUM_THREADS": "1"}
     shared["PYTHONPATH"] = os.pathsep.join([str(ROOT / "src"), str(ROOT)])
     command = [sys.executable, "-m", "studies", *words(tiny_geometry, features, tmp_path)]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     started = [
         subprocess.Popen(command, env=os.environ | shared | {"RANK": rank, "LOCAL_RANK": rank}, **pipes)
         for rank in "01"

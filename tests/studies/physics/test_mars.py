@@ -78,6 +78,7 @@ def test_floors_and_ceiling(pieces: list[MarsStretch]):
     assert neighbour[0][0] is real[0][1]
 
 
+@pytest.mark.slow  # a whole study; its parts: the tests above and test_cloud_scores.py
 def test_the_whole_run(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """Small: it writes one file a method, and estimates on validate alone."""
     monkeypatch.setattr(mars, "PIECES", 1)

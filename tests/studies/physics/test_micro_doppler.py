@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from mmweaver.core.skeleton import joint
+from studies.motion.motion_realism import cadence_hz
 from studies.physics.micro_doppler import (
     NEAREST_M,
     RADAR,
@@ -15,8 +16,10 @@ from studies.physics.micro_doppler import (
     placed,
     recorded,
     simulator,
+    spectrogram,
     summary,
 )
+from studies.physics.micro_doppler_measures import STEP_S, gait_figures, spread_figures
 
 SECONDS, SPEED_MPS = 1.8, 1.2
 
@@ -61,10 +64,22 @@ def test_who_goes_nowhere_faces_the_radar_or_turns_the_back_on_it(walk: Recorded
 
 def test_a_walk_is_wider_than_the_same_body_frozen_and_its_cadence_is_found(walk: RecordedMotion):
     shown_by = simulator()
-    found, seen = figures(walk, "walking", shown_by, 0)
-    assert found["cadence_ratio"] == pytest.approx(1, abs=0.15)
+    seen, rigid = (spectrogram(motion, shown_by, 0, is_away=False) for motion in (walk, frozen(walk)))
+    found, still = gait_figures(seen, STEP_S["walking"]), spread_figures(rigid)
+    joints = {name: walk.joints_m[:, joint(name)] for name in ("pelvis", "left_ankle", "right_ankle")}
+    assert found["cadence_hz"] == pytest.approx(cadence_hz(joints), rel=0.15)
     assert found["torso_ratio"] == pytest.approx(1, abs=0.12)
     np.testing.assert_allclose(seen.share.sum(axis=1), 1)
+    assert still["limb_share"] < 0.02 < found["limb_share"]
+    assert still["spread_mps"] < 0.5 < found["spread_mps"]
+
+
+@pytest.mark.slow  # the test above, of one direction
+def test_figures_are_of_both_directions(walk: RecordedMotion):
+    shown_by = simulator()
+    found, _ = figures(walk, "walking", shown_by, 0)
+    assert found["cadence_ratio"] == pytest.approx(1, abs=0.15)
+    assert found["torso_ratio"] == pytest.approx(1, abs=0.12)
     rigid, _ = figures(frozen(walk), "jumping", shown_by, 0)
     assert rigid["limb_share"] < 0.02 < found["limb_share"]
     assert rigid["spread_mps"] < 0.5 < found["spread_mps"]

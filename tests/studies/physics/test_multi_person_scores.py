@@ -5,12 +5,15 @@ import pytest
 from mmweaver.core.presets import AWR1843
 from mmweaver.paths.ray_traced import Simulator
 from studies.fields.field_signals import sample_scene
+from studies.physics import multi_person_scores
 from studies.physics.multi_person_scores import ARRANGEMENTS, Pair, make_pair, row_of, scores_of
 
 
 @pytest.fixture(scope="module")
 def behind() -> Pair:
-    return make_pair(Simulator(sample_scene(), AWR1843), ARRANGEMENTS["one behind the other"], 0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(multi_person_scores, "NUM_FRAMES", 8)
+        return make_pair(Simulator(sample_scene(), AWR1843), ARRANGEMENTS["one behind the other"], 0)
 
 
 def test_who_stands_behind_is_dimmed_and_the_plain_sum_does_not_know_it(behind: Pair):

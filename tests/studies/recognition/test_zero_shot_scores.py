@@ -7,9 +7,12 @@ import pytest
 
 pytest.importorskip("sklearn")
 
+from mmweaver.recognition.activity_classifier import ClassifierSettings
 from mmweaver.recognition.radhar import radhar_recipe
 from mmweaver.recognition.zero_shot import TrainingSet
 from studies.recognition.zero_shot_scores import digest, first_draws, in_first_half, validate
+
+FEW_TREES = ClassifierSettings(num_trees=10, boosting_rounds=5, repetitions=1)
 
 
 def test_the_two_groups_of_recordings():
@@ -23,7 +26,7 @@ def test_a_feature_that_tells_the_label_scores_in_every_split():
     draws = [replace(one, wall_m=1.0 + index % 7) for index, one in enumerate(first_draws(radhar_recipe(), 16, seed=1))]
     labels = np.array(list(radhar_recipe().activities) * 16)
     features = np.unique(labels, return_inverse=True)[1].astype(np.float32)[:, None] + np.zeros((1, 4), np.float32)
-    scores = validate(TrainingSet(features=features, labels=labels, names=("a", "b", "c", "d")), draws)
+    scores = validate(TrainingSet(features=features, labels=labels, names=("a", "b", "c", "d")), draws, FEW_TREES)
     assert {"every_third", "tempo_low", "noise_db_high"} <= set(scores)
     assert min(scores.values()) > 0.9
 

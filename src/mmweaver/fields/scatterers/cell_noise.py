@@ -8,7 +8,7 @@ import numpy as np
 import torch
 
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.dsp.windows import hann
+from mmweaver.dsp.windows import SHORTEST_HANN, doppler_window
 
 MIXED_POWER = 1.5  # of 1, -1/2, -1/2
 
@@ -21,7 +21,7 @@ def cell_noise(rng: np.random.Generator, config: RadarConfig, num_frames: int, h
     out = np.empty(shape, np.complex64)
     samples = torch.empty(_num_sampled_bins(config), config.num_loops, 2 * config.num_antennas)
     generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times as fast as numpy's
-    mixes_loops = config.num_loops > 1
+    mixes_loops = config.num_loops >= SHORTEST_HANN
     power = 2 * MIXED_POWER * (MIXED_POWER if mixes_loops else 1.0)
     for frame in out:  # one at a time stays in the cache
         lines = _range_bins(samples.normal_(generator=generator).numpy(), config)
@@ -46,7 +46,7 @@ def _of_shared_loops(rng: np.random.Generator, config: RadarConfig, shape: tuple
         (_num_sampled_bins(config), loops + hop * (frames - 1), 2 * antennas), dtype=np.float32
     )
     lines = np.ascontiguousarray(_range_bins(samples, config)).view(np.complex64)
-    window = hann(loops)
+    window = doppler_window(loops)
     window = (window / np.sqrt(2 * MIXED_POWER * np.sum(window**2))).astype(np.float32)
     cut = np.stack([lines[:, hop * at :][:, :loops] for at in range(frames)])
     return np.fft.fft(cut * window[:, None], axis=2).astype(np.complex64)

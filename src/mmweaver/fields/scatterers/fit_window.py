@@ -16,7 +16,7 @@ from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.cube import tdm_compensation
 from mmweaver.dsp.point_response import Axes, PointResponse
-from mmweaver.dsp.windows import hann
+from mmweaver.dsp.windows import doppler_window
 
 WHOLE = 1e-3  # tolerance in loops for hops of an integer number of loops
 CONSISTENT = 1e-4  # share of the energy by which overlapping frames may disagree about shared chirps
@@ -51,7 +51,9 @@ class FitWindow:
     def long_window(self) -> np.ndarray:
         """Window over the loops of a working frame (loop,)."""
         return (
-            _long_window(self.config.num_loops, self.num_frames, self.hop) if self.hop else hann(self.config.num_loops)
+            _long_window(self.config.num_loops, self.num_frames, self.hop)
+            if self.hop
+            else doppler_window(self.config.num_loops)
         )
 
     def working(self, values: CubeValues) -> Tensor:
@@ -68,7 +70,7 @@ class FitWindow:
 def overlap_hop(cube: RadarCube) -> int:
     """Loops from one frame to the next if the frames overlap and agree about their shared chirps, else 0."""
     config, time_s = cube.config, cube.grid.frame_time_s
-    if len(time_s) < 2:
+    if len(time_s) < 2 or config.is_coded:
         return 0
     hops = np.diff(time_s) / config.loop_period_s
     hop = int(np.rint(hops[0]))
@@ -82,14 +84,14 @@ def overlap_hop(cube: RadarCube) -> int:
 def _long_window(num_loops: int, num_frames: int, hop: int) -> np.ndarray:
     square = np.zeros(num_loops + hop * (num_frames - 1))
     for frame in range(num_frames):
-        square[frame * hop :][:num_loops] += hann(num_loops) ** 2
+        square[frame * hop :][:num_loops] += doppler_window(num_loops) ** 2
     return np.sqrt(square)
 
 
 def _joined(values: np.ndarray, config: RadarConfig, hop: int) -> np.ndarray:
     """Least-squares chirps of overlapping frames, as one long frame (1, range, doppler, antenna)."""
     num_frames, _, num_loops, _ = values.shape
-    window = hann(num_loops)
+    window = doppler_window(num_loops)
     uncompensated = values.astype(np.complex128) * tdm_compensation(config).conj()
     windowed = np.fft.ifft(uncompensated, axis=2) * window.sum() * _doppler_phasor(num_loops).conj()[:, None]
     long = _long_window(num_loops, num_frames, hop)
@@ -103,7 +105,7 @@ def _joined(values: np.ndarray, config: RadarConfig, hop: int) -> np.ndarray:
 def _cut(frame: np.ndarray, config: RadarConfig, num_frames: int, hop: int) -> np.ndarray:
     """One long frame (range, doppler, antenna) -> overlapping frames, complex64."""
     num_loops = config.num_loops
-    window, long = hann(num_loops), _long_window(num_loops, num_frames, hop)
+    window, long = doppler_window(num_loops), _long_window(num_loops, num_frames, hop)
     uncompensated = frame * _compensation(config, len(long)).conj()
     weighted = np.fft.ifft(uncompensated, axis=1) * long.sum() * _doppler_phasor(len(long)).conj()[:, None]
     chirps = weighted * _reciprocal(long)[:, None]
@@ -124,4 +126,4 @@ def _doppler_phasor(num_loops: int) -> np.ndarray:
 def _compensation(config: RadarConfig, num_loops: int) -> np.ndarray:
     """TDM compensation (doppler, antenna) of a frame of `num_loops` loops."""
     doppler_hz = (np.arange(num_loops) - num_loops // 2) / (num_loops * config.loop_period_s)
-    return np.exp(-2j * np.pi * doppler_hz[:, None] * np.repeat(config.tx_delay_s, config.num_rx))
+    return np.exp(-2j * np.pi * doppler_hz[:, None] * config.antenna_delay_s)

@@ -20,7 +20,7 @@ from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.seeding import stream
 from mmweaver.core.shapes import CubeValues
 from mmweaver.dsp.point_response import PointResponse, Points
-from mmweaver.dsp.windows import hann
+from mmweaver.dsp.windows import doppler_window, doppler_window_middle
 from mmweaver.fields.field import SignalField
 from mmweaver.fields.sampling import Coordinates, antenna_at, coordinates_on
 from mmweaver.fields.scatterers.cell_noise import cell_noise
@@ -158,13 +158,13 @@ class ScattererField(SignalField):
         if self.fit_window.hop:
             index = np.zeros(len(frame), int)
             step_s = self.fit_window.hop * self.config.loop_period_s
-            middle_s = self.fit_window.response.num_loops * self.config.loop_period_s / 2
+            middle_s = self.fit_window.response.doppler_kernel.middle * self.config.loop_period_s
         else:
             index = np.abs(frame[:, None] - starts).argmin(axis=1)
             time_s = self.grid.frame_time_s
             step_s = time_s[1] - time_s[0] if len(time_s) > 1 else 0.0
-            middle_s = self.config.active_time_s / 2
-        late_s = (frame - index) * step_s + response.config.active_time_s / 2 - middle_s
+            middle_s = doppler_window_middle(self.config.num_loops) * self.config.loop_period_s
+        late_s = (frame - index) * step_s + response.doppler_kernel.middle * response.config.loop_period_s - middle_s
         return _propagated(
             self.layers.points[torch.from_numpy(index)], self.fit_window.response, response, torch.from_numpy(late_s)
         )
@@ -205,7 +205,7 @@ class ScattererField(SignalField):
         """Noise power per cell of the native grid, in units of peak squared."""
         if not self.fit_window.hop:
             return self.layers.noise_power
-        window, long = hann(self.config.num_loops), self.fit_window.long_window
+        window, long = doppler_window(self.config.num_loops), self.fit_window.long_window
         return self.layers.noise_power * float(
             np.sum(window**2) / window.sum() ** 2 / (np.sum(long**2) / long.sum() ** 2)
         )

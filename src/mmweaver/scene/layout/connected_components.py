@@ -1,4 +1,4 @@
-"""Connected components and dilation of masks: thin, typed wrappers of scipy.ndimage."""
+"""Connected components and dilation of masks."""
 
 from typing import cast
 
@@ -53,7 +53,15 @@ def bounding_slices(labels: Labels) -> list[tuple[slice, slice]]:
 
 
 def dilated(mask: Mask, steps: int = 1) -> Mask:
-    """The mask and the cells within `steps` of it."""
-    from scipy import ndimage
+    """The mask and the cells within `steps` of it, along rows and columns.
 
-    return np.asarray(ndimage.binary_dilation(mask, iterations=steps), bool)
+    scipy's costs ten times as much on the small masks here.
+    """
+    grown = mask.copy()
+    for _ in range(steps):
+        before = grown.copy()
+        grown[1:] |= before[:-1]
+        grown[:-1] |= before[1:]
+        grown[:, 1:] |= before[:, :-1]
+        grown[:, :-1] |= before[:, 1:]
+    return grown

@@ -90,7 +90,8 @@ def _up_direction(normals: Points) -> Vec3 | None:
         return None
     hypotheses = candidates[np.linspace(0, len(candidates) - 1, min(150, len(candidates))).astype(int)]
     alignment = hypotheses @ normals.T
-    horizontal, vertical = (alignment > _HORIZONTAL).sum(axis=1), (np.abs(alignment) < _VERTICAL).sum(axis=1)
+    horizontal = np.count_nonzero(alignment > _HORIZONTAL, axis=1)
+    vertical = np.count_nonzero(np.abs(alignment, out=alignment) < _VERTICAL, axis=1)
     # Walls distinguish a horizontal surface from a sloped one, to which few others are perpendicular.
     best = hypotheses[np.argmax(np.minimum(horizontal, len(normals) // 4) + 0.7 * vertical)]
     for _ in range(4):

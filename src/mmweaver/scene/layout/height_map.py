@@ -158,10 +158,10 @@ def _lines_of_sight(
     shape = (len(y_m), len(x_m))
     num_in_view, num_passed = np.zeros(shape, int), np.zeros(shape, int)
     for height_m in _PROBE_HEIGHTS_M:
-        in_view, behind_m = _surface_behind_m(x_m, y_m, height_m, view)
+        in_view, behind_m = surface_behind_m(x_m, y_m, height_m, view)
         num_in_view += in_view
         num_passed += behind_m > -0.015
-    clear_at = [_surface_behind_m(x_m, y_m, height_m, view)[1] > 0.08 for height_m in SEAT_LEVELS_M]
+    clear_at = [surface_behind_m(x_m, y_m, height_m, view)[1] > 0.08 for height_m in SEAT_LEVELS_M]
     seen_through = (num_passed >= 1) & (2 * num_passed >= num_in_view)
 
     first_floor_m = _first_visible_floor_m(view)
@@ -170,7 +170,7 @@ def _lines_of_sight(
     return seen_through, np.stack(clear_at), below & ((num_in_view == 0) | seen_through)
 
 
-def _surface_behind_m(
+def surface_behind_m(
     x_m: Float[Array, " x"], y_m: Float[Array, " y"], height_m: float, view: AlignedPhoto
 ) -> tuple[GridMask, GridMetres]:
     """For the squares' centres at a height above the floor: whether they are in view, and how far behind them the

@@ -24,6 +24,7 @@ _MAX_VERTICAL, _MAX_HORIZONTAL = 16, 12  # planes that are searched for
 _WALL_TOLERANCE = 2.0  # times the tolerance of a cell: real sensors bend walls by more than their noise
 _HOUGH_BIN_M = 0.05
 _HOUGH_ANGLES = 120
+_HOUGH_REACH = 3  # angles: normals are noisy
 _HEIGHT_WEIGHT = np.array([1.0, 1.0, 5.0])  # in the distance of neighbours: steps in height separate surfaces
 
 
@@ -109,12 +110,17 @@ def _strongest_vertical(points: Points, normals: Points) -> tuple[Vec3, float] |
     if len(points) < _MIN_CELLS:
         return None
     direction = np.arctan2(normals[:, 1], normals[:, 0])
-    angle_bin = np.round(direction / (2 * np.pi) * _HOUGH_ANGLES).astype(int)
+    angle_bin = np.round(direction / (2 * np.pi) * _HOUGH_ANGLES).astype(int) % _HOUGH_ANGLES
+    window = np.arange(-_HOUGH_REACH, _HOUGH_REACH + 1)
+    count = np.bincount(angle_bin, minlength=_HOUGH_ANGLES)
+    num_near = count[(np.arange(_HOUGH_ANGLES)[:, None] + window) % _HOUGH_ANGLES].sum(axis=1)
     best = (0.0, 0, 0.0)
     for candidate in range(_HOUGH_ANGLES):
-        near = np.abs((angle_bin - candidate + _HOUGH_ANGLES // 2) % _HOUGH_ANGLES - _HOUGH_ANGLES // 2) <= 3
-        if near.sum() < _MIN_CELLS or near.sum() < best[0]:
+        if num_near[candidate] < max(_MIN_CELLS, best[0]):
             continue
+        is_near = np.zeros(_HOUGH_ANGLES, bool)
+        is_near[(candidate + window) % _HOUGH_ANGLES] = True
+        near = is_near[angle_bin]
         theta = 2 * np.pi * candidate / _HOUGH_ANGLES
         offset = points[near, 0] * np.cos(theta) + points[near, 1] * np.sin(theta)
         bins = np.floor(offset / _HOUGH_BIN_M).astype(int)

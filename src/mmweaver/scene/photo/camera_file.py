@@ -1,17 +1,22 @@
 """camera.json: focal lengths, principal point and the unit of the depth picture."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.geometry.pinhole import resized
 
 # RealSense D455, colour: 1280 x 800 pixels, 90 degrees horizontally (Intel's data sheet of the D400 series). Its
 # smaller pictures are centred crops of that, scaled: 640 x 480 has a focal length of 384 pixels.
 _D455_WIDTH, _D455_HEIGHT, _D455_FOCAL = 1280, 800, 640.0
+
+
+LIMITS = {
+    "fx": (1e-3, 1e6), "fy": (1e-3, 1e6), "width": (8, 1e5), "height": (8, 1e5), "depth_unit_m": (1e-6, 1.0),
+}  # fmt: skip
 
 
 def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
@@ -31,12 +36,7 @@ def read_camera_file(path: Path) -> dict[str, float]:
 
     Other keys are ignored. Raises InputError where a key is missing or a value is not a plausible number.
     """
-    try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read the camera file {path}: {error.strerror or error}") from error
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path} is not a JSON file: {error}; it needs fx, fy, cx, cy") from error
+    content: Any = read_json(path)
     if not isinstance(content, dict):
         raise InputError(f"{path} must be a JSON object with fx, fy, cx, cy")
     if missing := [key for key in ("fx", "fy", "cx", "cy") if key not in content]:
@@ -45,9 +45,9 @@ def read_camera_file(path: Path) -> dict[str, float]:
     for key in ("width", "height", "depth_unit_m"):
         if content.get(key) is not None:
             numbers[key] = _number(path, key, content[key])
-    for key in ("fx", "fy", "width", "height", "depth_unit_m"):
-        if key in numbers and numbers[key] <= 0:
-            raise InputError(f"{path}: {key} is {numbers[key]:g}; it must be positive")
+    for key, (low, high) in LIMITS.items():
+        if key in numbers and not low <= numbers[key] <= high:
+            raise InputError(f"{path}: {key} is {numbers[key]:g}; it must be positive, {low:g} to {high:g}")
     return numbers
 
 

@@ -6,8 +6,6 @@ colour from the colour camera, which a D455 has 59 mm to the side.
 Reference: mmwave-capture-std, capture/realsense (facts of the format only).
 """
 
-import json
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +15,8 @@ from jaxtyping import UInt8
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
+from mmweaver.core.safe_files.regular_files import open_regular
+from mmweaver.core.safe_files.safe_text import read_json, read_toml
 from mmweaver.core.shapes import Array, DepthPixels, PerFrame, RgbPixels
 from mmweaver.geometry.pinhole import project, rotated_clockwise, unproject
 from mmweaver.scene.photo.picture_files import read_rgb
@@ -56,7 +56,7 @@ def photo_times_s(folder: Path) -> PerFrame:
 
     Raises InputError where depth_metadata.json is missing or has no times.
     """
-    entries = _json(folder / "depth_metadata.json")
+    entries = read_json(folder / "depth_metadata.json")
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{folder / 'depth_metadata.json'} lists no photos")
     for key in ("time_of_arrival", "timestamp"):
@@ -79,7 +79,7 @@ def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None
         raise InputError(f"{path} does not exist; give a capture folder")
     if folder is None:
         raise InputError(f"{path} holds no RealSense ({DEPTH}); give --rgb and --depth instead")
-    depth_config, colour_config = (_json(folder / f"{name}_config.json") for name in ("depth", "color"))
+    depth_config, colour_config = (read_json(folder / f"{name}_config.json") for name in ("depth", "color"))
     intrinsics, colour_intrinsics = (
         _intrinsics(folder / f"{name}_config.json", content)
         for name, content in (("depth", depth_config), ("color", colour_config))
@@ -144,7 +144,7 @@ def _depth_frame(path: Path, index: int, intrinsics: CameraIntrinsics) -> np.nda
     if index < 0 or (index + 1) * size > MAX_BYTES:
         raise InputError(f"{path} cannot hold a photo {index}; choose one from 0")
     try:
-        with path.open("rb") as file, zstandard.ZstdDecompressor().stream_reader(file) as stream:
+        with open_regular(path) as file, zstandard.ZstdDecompressor().stream_reader(file) as stream:
             for number in range(index + 1):
                 content = _read_fully(stream, size)
                 if len(content) < size:
@@ -172,9 +172,11 @@ def _intrinsics(path: Path, content: Any) -> CameraIntrinsics:
         own = content["intrinsics"]
         width, height = int(own["width"]), int(own["height"])
         fx, fy, ppx, ppy = (float(own[key]) for key in ("fx", "fy", "ppx", "ppy"))
-    except (KeyError, TypeError, ValueError):
+    except (KeyError, TypeError, ValueError, OverflowError):
         raise InputError(f"{path} lacks intrinsics with width, height, fx, fy, ppx, ppy") from None
-    if not (32 <= width <= 8000 and 32 <= height <= 8000 and fx > 1 and fy > 1):
+    if not (
+        32 <= width <= 8000 and 32 <= height <= 8000 and 1 < fx < 1e6 and 1 < fy < 1e6 and max(abs(ppx), abs(ppy)) < 1e5
+    ):
         raise InputError(f"{path}: no camera has {width} x {height} pixels with fx {fx:g}, fy {fy:g}")
     return CameraIntrinsics(fx=fx, fy=fy, cx=ppx, cy=ppy, width=width, height=height)
 
@@ -182,19 +184,10 @@ def _intrinsics(path: Path, content: Any) -> CameraIntrinsics:
 def _is_rotated(folder: Path) -> bool:
     """Whether config.toml says that the camera's pictures were rotated."""
     try:
-        content = tomllib.loads((folder.parent / "config.toml").read_text(encoding="utf-8"))
+        content = read_toml(folder.parent / "config.toml")
         return bool(content["hardware"][folder.name].get("rotate", False))
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (InputError, KeyError, TypeError, AttributeError):
         return False
-
-
-def _json(path: Path) -> Any:
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path} is not a JSON file ({error})") from None
 
 
 def _camera_folders(parent: Path) -> list[Path]:

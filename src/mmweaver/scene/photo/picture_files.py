@@ -1,58 +1,87 @@
 """Reads colour pictures as 8-bit RGB and depth pictures in metres; anything else is refused in one line."""
 
-import warnings
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import foreign_errors
+from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.core.safe_files.safe_pictures import MAX_PIXELS, open_picture
 from mmweaver.core.shapes import DepthPixels, RgbPixels
 
-MAX_PIXELS = 50_000_000
 _MIN_SIDE = 32
 _PLAUSIBLE_MEDIAN_M = (0.2, 20.0)
 _MAX_HOLES = 0.9
+_POSSIBLE_M = (0.01, 100.0)  # no depth camera measures beyond
+_MAX_IMPOSSIBLE = 0.01
 # Units in use: metres, centimetres, millimetres, TUM's 1/5000 m, 1/4000 m, 0.1 mm.
 _KNOWN_UNITS_M = (1.0, 0.01, 0.001, 0.0002, 0.00025, 0.0001)
 _UINT16_SATURATED = 65535
 
 
-def read_rgb(path: Path) -> tuple[RgbPixels, tuple[int, int], bool]:
-    """The upright picture, uint8 (height, width, 3), the (width, height) of the file, and whether EXIF rotated it."""
-    from PIL import ImageOps
+@dataclass(frozen=True, kw_only=True)
+class Turned:
+    """How a picture lay in its file."""
 
-    image = open_picture(path)
-    stored_size = image.size
-    rotated = image.getexif().get(0x0112, 1) in range(2, 9)
-    if rotated:
-        image = ImageOps.exif_transpose(image)
+    stored_size: tuple[int, int]  # (width, height)
+    orientation: int  # EXIF's; 1 = it was upright
+
+
+def read_rgb(path: Path) -> tuple[RgbPixels, Turned]:
+    """The upright picture, uint8 (height, width, 3), and how it lay in the file."""
+    picture = open_picture(path)
+    image, turned = picture.image, Turned(stored_size=picture.stored_size, orientation=picture.orientation)
     if image.mode.startswith("I;16") or image.mode == "I":
         grey = np.clip(np.asarray(image).astype(np.int64) // 256, 0, 255).astype(np.uint8)
-        return np.repeat(grey[:, :, None], 3, axis=2), stored_size, rotated
+        return np.repeat(grey[:, :, None], 3, axis=2), turned
     if image.mode == "F":
         raise InputError(f"{path} holds floating-point values, not colours; --rgb needs a photo (PNG or JPEG)")
-    return np.array(_on_white(image)), stored_size, rotated
+    with foreign_errors(path, "damaged ({reason}); give a whole picture file"):
+        return np.array(_on_white(image)), turned
 
 
-def read_depth(path: Path, unit_m: float | None) -> DepthPixels:
-    """Depth in metres, (height, width), nan where there is no measurement.
+def read_depth(path: Path, unit_m: float | None) -> tuple[DepthPixels, Turned]:
+    """Depth in metres, (height, width), nan where there is no measurement, and how it lay in the file.
 
     Integers are in units of `unit_m` metres (millimetres if None). Raises InputError for what cannot be depth: 8-bit or
-    colour pictures, pictures without measurements, a wrong unit.
+    colour pictures, pictures without measurements, a wrong unit, or more than a few values that no room has.
     """
-    raw = _raw_npy(path) if path.suffix.lower() == ".npy" else _raw_picture(path)
+    if path.suffix.lower() == ".npy":
+        raw = _raw_npy(path)
+        turned = Turned(stored_size=(raw.shape[1], raw.shape[0]), orientation=1)
+    else:
+        raw, turned = _raw_picture(path)
     if raw.size > MAX_PIXELS or min(raw.shape) < _MIN_SIDE:
         raise InputError(f"{path} has {raw.shape[1]} x {raw.shape[0]} pixels; make it {_MIN_SIDE} to 8000 on a side")
     counts = raw.dtype.kind in "ui"
     used_unit_m = (0.001 if unit_m is None else unit_m) if counts else 1.0
-    depth = raw.astype(np.float64) * used_unit_m
-    measured = np.isfinite(depth) & (depth > 0)
-    if raw.dtype == np.uint16:
-        measured &= raw < _UINT16_SATURATED
-    _check_measured(path, raw, measured)
-    _check_unit(path, float(np.median(depth[measured])), used_unit_m, counts)
-    return np.where(measured, depth, np.nan)
+    with np.errstate(all="ignore"):  # float64 of a signalling NaN or a longer float
+        depth = raw.astype(np.float64)
+        depth *= used_unit_m
+        measured = np.isfinite(depth) & (depth > 0)
+        if raw.dtype == np.uint16:
+            measured &= raw < _UINT16_SATURATED
+        _check_measured(path, raw, measured)
+        _check_unit(path, float(np.median(depth[measured])), used_unit_m, counts)
+        possible = measured & (depth >= _POSSIBLE_M[0]) & (depth <= _POSSIBLE_M[1])
+    _check_possible(path, depth, measured, possible)
+    depth[~possible] = np.nan
+    return depth, turned
+
+
+def _check_possible(path: Path, depth: np.ndarray, measured: np.ndarray, possible: np.ndarray) -> None:
+    """A few impossible values are holes; many are another unit, another mark of a hole, or damage."""
+    low, high = _POSSIBLE_M
+    share = 1 - np.count_nonzero(possible) / np.count_nonzero(measured)
+    if share > _MAX_IMPOSSIBLE:
+        odd = float(np.median(depth[measured & ~possible]))
+        raise InputError(
+            f"{path}: {100 * share:.1f} % of the depth values are not within {low:g} to {high:g} m (such as {odd:.4g}"
+            " m); set pixels without a measurement to 0, or give an undamaged file"
+        )
 
 
 def _check_measured(path: Path, raw: np.ndarray, measured: np.ndarray) -> None:
@@ -88,25 +117,20 @@ def _check_unit(path: Path, median_m: float, unit_m: float, counts: bool) -> Non
     )
 
 
-def _raw_picture(path: Path) -> np.ndarray:
-    image = open_picture(path)
+def _raw_picture(path: Path) -> tuple[np.ndarray, Turned]:
+    picture = open_picture(path)
+    image = picture.image
     if image.mode in ("1", "L", "P"):
         raise InputError(f"{path} has 8 bits a pixel; depth must be a 16-bit PNG or a .npy in metres")
     if not (image.mode.startswith("I;16") or image.mode in ("I", "F")):
         raise InputError(f"{path} is a colour picture ({image.mode}), not depth; give a 16-bit PNG or a .npy in metres")
     raw = np.array(image)
-    return raw.astype(np.uint16) if image.mode.startswith("I;16") else raw
+    turned = Turned(stored_size=picture.stored_size, orientation=picture.orientation)
+    return raw.astype(np.uint16) if image.mode.startswith("I;16") else raw, turned
 
 
 def _raw_npy(path: Path) -> np.ndarray:
-    try:
-        raw: Any = np.load(path, allow_pickle=False, mmap_mode="r")
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from error
-    except (ValueError, EOFError) as error:
-        raise InputError(f"{path} is not a plain .npy array ({_first_line(error)}); save it with numpy.save") from error
-    if not isinstance(raw, np.ndarray):
-        raise InputError(f"{path} is an archive, not a .npy array; save the depth alone with numpy.save")
+    raw = read_npy(path, mapped=True)
     if raw.dtype.kind not in "fui":
         raise InputError(f"{path} holds values of type {raw.dtype}; depth must be real numbers")
     if raw.dtype == np.uint8 or raw.dtype == np.int8:
@@ -120,35 +144,6 @@ def _raw_npy(path: Path) -> np.ndarray:
     return np.array(raw)
 
 
-def open_picture(path: Path) -> Any:
-    """Opens and decodes a picture. Raises InputError where it cannot be read, is too small or too large."""
-    from PIL import Image, UnidentifiedImageError
-
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)
-            image = Image.open(path)
-        if image.width * image.height > MAX_PIXELS:
-            raise Image.DecompressionBombError
-        if min(image.size) < _MIN_SIDE:
-            raise InputError(f"{path} has only {image.width} x {image.height} pixels; give a larger picture")
-        image.load()
-    except UnidentifiedImageError as error:
-        if path.suffix.lower() == ".exr":
-            raise InputError(f"{path} is OpenEXR, which is not supported; save it as a float TIFF or a .npy") from error
-        raise InputError(f"{path} is not a picture that can be read; give a PNG or JPEG") from error
-    except Image.DecompressionBombError as error:
-        raise InputError(f"{path} is too large; make it smaller than {MAX_PIXELS / 1e6:.0f} million pixels") from error
-    except InputError:
-        raise
-    except OSError as error:
-        reason = error.strerror or _first_line(error)
-        raise InputError(f"cannot read {path}: {reason}; give a whole picture file") from error
-    except (ValueError, SyntaxError, EOFError) as error:
-        raise InputError(f"{path} is damaged ({_first_line(error)}); give a whole picture file") from error
-    return image
-
-
 def _on_white(image: Any) -> Any:
     """Converts any colour mode to RGB, transparent pixels over white."""
     from PIL import Image
@@ -158,7 +153,3 @@ def _on_white(image: Any) -> Any:
     layer = image.convert("RGBA")
     white = Image.new("RGBA", layer.size, (255, 255, 255, 255))
     return Image.alpha_composite(white, layer).convert("RGB")
-
-
-def _first_line(error: BaseException) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]

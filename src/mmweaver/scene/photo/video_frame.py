@@ -3,7 +3,11 @@
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.regular_files import foreign_errors, open_regular
+from mmweaver.core.safe_files.safe_pictures import MAX_PIXELS
 from mmweaver.core.shapes import RgbPixels
+
+NO_VIDEO = "damaged or no video ({reason}); is it whole? or give the picture with --rgb"
 
 
 def read_video_frame(path: Path, index: int) -> RgbPixels:
@@ -14,7 +18,6 @@ def read_video_frame(path: Path, index: int) -> RgbPixels:
     """
     try:
         import av
-        from av.error import FFmpegError
     except ImportError:
         raise InputError(
             f"{path} is a video; install the reader: pip install 'mmweaver[capture]', or give the picture with --rgb"
@@ -22,21 +25,16 @@ def read_video_frame(path: Path, index: int) -> RgbPixels:
     if index < 0:
         raise InputError(f"{path} has no frame {index}; choose one from 0")
     count = 0
-    try:
-        with av.open(str(path)) as container:
-            if not container.streams.video:
-                raise InputError(f"{path} holds no video")
-            # A damaged frame is an error; by default it would be filled from its neighbours.
-            container.streams.video[0].codec_context.options = {"err_detect": "explode"}
-            for frame in container.decode(video=0):
-                if count == index:
-                    return frame.to_ndarray(format="rgb24")
-                count += 1
-    except FileNotFoundError as error:
-        raise InputError(f"cannot read {path}: {error.strerror}") from None
-    except FFmpegError as error:
-        raise InputError(
-            f"cannot read frame {index} of {path}: {error.strerror or error}; is it a whole video? or give the picture"
-            " with --rgb"
-        ) from None
+    # one format, from the opened file: a playlist, which names other files and hosts, is not followed
+    with open_regular(path) as file, foreign_errors(path, NO_VIDEO), av.open(file, "r", format="avi") as container:
+        if not container.streams.video:
+            raise InputError(f"{path} holds no video")
+        # A damaged frame is an error; by default it would be filled from its neighbours.
+        container.streams.video[0].codec_context.options = {"err_detect": "explode"}
+        for frame in container.decode(video=0):
+            if count == index:
+                if frame.width * frame.height > MAX_PIXELS:
+                    raise InputError(f"{path} has frames of {frame.width} x {frame.height} pixels; give a smaller one")
+                return frame.to_ndarray(format="rgb24")
+            count += 1
     raise InputError(f"{path} has {count} frames; choose one from 0 to {count - 1}")

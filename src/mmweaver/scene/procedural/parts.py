@@ -187,7 +187,7 @@ def bounding_boxes(placed: Sequence[PlacedPiece]) -> Boxes:
         piece = item.piece
         if len(piece.parts) > _MANY_PARTS:
             low, high = (tuple(float(v) for v in end) for end in (piece.low_m, piece.high_m))
-            piece = replace(piece, parts=(Part(low, high, piece.parts[0].appearance),))  # type: ignore[arg-type]
+            piece = replace(piece, parts=(Part(low, high, piece.parts[0].appearance),))  # type: ignore
         whole.append(replace(item, piece=piece))
     return part_boxes(whole)
 

@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.records import ClassMask, RgbdPhoto
+from mmweaver.core.safe_files.regular_files import foreign_errors
+from mmweaver.core.safe_files.safe_tensors import read_tensors
 from mmweaver.core.shapes import Array
 from mmweaver.scene.coco_stuff import NAMES
 from mmweaver.scene.photo.depth_grid import make_grid
@@ -87,14 +88,10 @@ def make_network() -> Any:
 
 def load_network(path: Path = WEIGHTS) -> Any:
     """The trained network in evaluation mode. Raises InputError where its file is missing or holds something else."""
-    from safetensors.torch import load_file
-
     network = make_network()
-    try:
-        network.load_state_dict({name: value.float() for name, value in load_file(path).items()}, strict=False)
-    except Exception as error:
-        reason = str(error).splitlines()[0][:120]
-        raise InputError(f"{path} holds no weights of the built-in segmenter ({reason}); reinstall mmweaver") from None
+    tensors, _ = read_tensors(path)
+    with foreign_errors(path, "no file of weights of the built-in segmenter ({reason}); reinstall mmweaver"):
+        network.load_state_dict({name: value.float() for name, value in tensors.items()}, strict=False)
     return network.eval()
 
 

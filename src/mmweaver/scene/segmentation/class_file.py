@@ -1,6 +1,5 @@
 """Reads a class mask from a picture of class numbers."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +7,9 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import ClassMask
+from mmweaver.core.safe_files.safe_pictures import open_picture
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.scene.coco_stuff import NAMES, UNLABELED, coco_class
-from mmweaver.scene.photo.picture_files import open_picture
 
 
 def read_class_file(path: Path, width: int, height: int) -> ClassMask:
@@ -21,7 +21,7 @@ def read_class_file(path: Path, width: int, height: int) -> ClassMask:
     """
     from PIL import Image
 
-    image = open_picture(path)
+    image = open_picture(path).image
     if image.mode not in ("L", "P"):
         raise InputError(
             f"{path} is a picture of mode {image.mode}; class numbers need 8 bits a pixel (grey or palette)"
@@ -53,10 +53,10 @@ def _coco_table() -> dict[int, str]:
 
 
 def _table(path: Path) -> dict[int, str]:
+    content: Any = read_json(path)
     try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
         pairs = [(int(number), str(label)) for number, label in content.items()]
-    except (OSError, ValueError, AttributeError) as error:
+    except (ValueError, AttributeError) as error:
         raise InputError(
             f'{path} is not a JSON object of numbers and names, such as {{"1": "couch"}} ({error})'
         ) from None

@@ -1,0 +1,46 @@
+"""The files of a room in a folder: photo, depth and camera, by their names."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+
+COLOUR, DEPTH, CAMERA = (
+    ("rgb.png", "rgb.jpg", "rgb.jpeg", "rgb.webp"),
+    ("depth.png", "depth.npy", "depth.tif", "depth.tiff"),
+    "camera.json",
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoomFiles:
+    """A photo, its depth and its camera."""
+
+    rgb: Path
+    depth: Path
+    camera: Path | None
+
+    @classmethod
+    def in_folder(cls, folder: Path) -> "RoomFiles":
+        """The files of a folder, by name. Raises InputError where the photo or the depth is missing."""
+        rgb = next((folder / name for name in COLOUR if (folder / name).is_file()), None)
+        depth = next((folder / name for name in DEPTH if (folder / name).is_file()), None)
+        if rgb is None or depth is None:
+            missing, names = ("colour picture", COLOUR) if rgb is None else ("depth", DEPTH)
+            raise InputError(
+                f"{folder.name}: the {missing} is missing; a room needs {names[0]} (or {', '.join(names[1:])})"
+            )
+        camera = folder / CAMERA
+        return cls(rgb=rgb, depth=depth, camera=camera if camera.is_file() else None)
+
+    @property
+    def options(self) -> list[str]:
+        """The same on a command line."""
+        camera = [] if self.camera is None else ["--camera", str(self.camera)]
+        return ["--rgb", str(self.rgb), "--depth", str(self.depth), *camera]
+
+    @property
+    def call(self) -> str:
+        """The same in Python."""
+        camera = "" if self.camera is None else f", {str(self.camera)!r}"
+        return f"read_room({str(self.rgb)!r}, {str(self.depth)!r}{camera})"
