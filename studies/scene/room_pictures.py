@@ -11,7 +11,7 @@ import numpy as np
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import Scene
-from mmweaver.figures.skeleton_drawing import project
+from mmweaver.figures.body_in_photo import project
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.scene.procedural.lighting import LIGHTINGS
 from mmweaver.scene.procedural.procedural_room import make_room

@@ -1,4 +1,4 @@
-"""Pictures of six sentences in each photographed room: skeleton in the photo, top view, spectrograms.
+"""Pictures of six sentences in each photographed room: the body in the photo, top view, spectrograms.
 
 python -m studies run room_sentences --rooms /path/to/rooms --out docs/images
 """
@@ -8,10 +8,13 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from mmweaver.core.errors import InputError
+from mmweaver.figures.body_in_photo import BodyPainter, PhotoPixels
+from mmweaver.figures.body_rasteriser import bodies_of
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import draw_doppler_time, draw_range_time
-from mmweaver.figures.skeleton_drawing import SkeletonInPhoto
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.generation import Generation, Room
@@ -43,7 +46,7 @@ SENTENCES = {
         "she walks towards the radar", "he stands up and waves", "someone turns around",
     ),
 }  # fmt: skip
-_POSES = ((0.0, 0.35), (0.5, 0.6), (1.0, 1.0))
+_SHARES = (0.0, 0.5, 1.0)  # of the time at which the body is shown
 
 
 def draw_room(path: Path, name: str, weaver: Weaver, room: Room, sentences: tuple[str, ...]) -> list[str]:
@@ -89,13 +92,16 @@ def _say(row: "list[Axes]", text: str, error: str) -> None:
 def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
     photo, scene = result.photo, result.scene
     height, width = photo.rgb.shape[:2]
-    row[0].imshow(small(photo.rgb), extent=(-0.5, width - 0.5, height - 0.5, -0.5))
+    picture = small(photo.rgb).copy()
+    painter = BodyPainter(PhotoPixels.whole(AlignedPhoto.of(scene), picture.shape[:2]))
+    instants = np.round(np.array(_SHARES) * (len(result.pose.time_s) - 1)).astype(int)
+    bodies = bodies_of(result.pose, instants)
+    painter.paint(
+        picture, [(body, (0.3 + 0.6 * share, 0.85, 0.4)) for body, share in zip(bodies, _SHARES, strict=True)]
+    )
+    row[0].imshow(picture, extent=(-0.5, width - 0.5, height - 0.5, -0.5))
     row[0].set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
     row[0].set_title(textwrap.shorten(text, 40, placeholder="..."))
-    for share, alpha in _POSES:
-        skeleton = SkeletonInPhoto(row[0], AlignedPhoto.of(scene), width=1.3)
-        index = round(share * (len(result.pose.time_s) - 1))
-        skeleton.show(result.pose.joints_m[index], (0.2 + 0.6 * share, 0.9, 0.3), alpha=alpha)
     draw_top(row[1], scene, pose=result.motion)
     row[1].set_title("from above (m)")
     view = FigureData(

@@ -28,7 +28,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument("--height", type=number, metavar="M", help="the person's height (default: by the seed)")
     parser.add_argument("--subject", type=whole, metavar="N", help="the person, 0 to 9999 (default: by the seed)")
     parser.add_argument("--out", type=Path, metavar="NPZ", help="write 22 joints at 120 Hz, as pose.npz holds them")
-    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the skeleton at ten instants")
+    parser.add_argument("--picture", type=Path, metavar="PNG", help="draw the body at ten instants")
     parser.add_argument("--json", action="store_true", help="print the reading for machines")
     parser.set_defaults(run=run)
     return parser

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mmweaver.figures.body_in_photo import BodyPainter, PhotoPixels
+from mmweaver.figures.body_rasteriser import bodies_of
 from mmweaver.figures.figure_data import Fan, FigureData, decibels
-from mmweaver.figures.skeleton_drawing import SkeletonInPhoto
 from mmweaver.figures.theme import POWER_MAP, SPAN_DB, STYLE, label_axes, person_colour, shortened
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -18,7 +20,7 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 DPI = 100
-SKELETON_COLOUR = (0.99, 0.90, 0.14)
+BODY_COLOUR = (0.99, 0.80, 0.30)
 SHORTEST_MS, LONGEST_MS = 40, 1000  # duration of one picture
 
 
@@ -53,10 +55,36 @@ def render_pictures(view: FigureData) -> list[np.ndarray]:
         for place, values_db in zip(maps, shown, strict=True):
             place.paint(pixels, values_db)
         for mover in movers:
+            if mover.paint is not None:
+                mover.paint(pixels, index)
             for artist in mover.update(index):
                 (mover.axes or figure).draw_artist(artist)
         pictures.append(pixels[:, :, :3].copy())
     return pictures
+
+
+@dataclass(frozen=True)
+class PixelsOnScreen:
+    """The pixels inside the frame of an axes, and where each is in the axes."""
+
+    rows: slice
+    columns: slice
+    across: np.ndarray  # (pixel column,) share of the width, 0 at the left
+    up: np.ndarray  # (pixel row,) share of the height, 0 at the bottom
+
+    @classmethod
+    def of(cls, axes: "Axes") -> "PixelsOnScreen":
+        """Once the figure is laid out."""
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        height = round(figure.bbox.height)
+        left, bottom, right, top = axes.bbox.extents
+        columns = np.arange(int(left) + 1, int(right) + 1)
+        rows = np.arange(int(height - top) + 1, int(height - bottom) + 1)
+        return cls(
+            slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1),
+            (columns + 0.5 - left) / (right - left), (height - rows - 0.5 - bottom) / (top - bottom),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -74,22 +102,12 @@ class CellsOnScreen:
         """For a map (up, right) that fills the axes, once the figure is laid out; the frame around it stays."""
         from matplotlib import colormaps
 
-        figure = axes.get_figure(root=True)
-        assert figure is not None
-        height = round(figure.bbox.height)
-        left, bottom, right, top = axes.bbox.extents
-        columns = np.arange(int(left) + 1, int(right) + 1)
-        rows = np.arange(int(height - top) + 1, int(height - bottom) + 1)
-        across = (columns + 0.5 - left) / (right - left)
-        up = (height - rows - 0.5 - bottom) / (top - bottom)
+        place = PixelsOnScreen.of(axes)
         row_cell, column_cell = (
             np.clip((share * count).astype(int), 0, count - 1)
-            for share, count in ((up, cells.shape[0]), (across, cells.shape[1]))
+            for share, count in ((place.up, cells.shape[0]), (place.across, cells.shape[1]))
         )
-        return cls(
-            slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1), row_cell, column_cell,
-            colormaps[POWER_MAP](np.arange(256), bytes=True),
-        )  # fmt: skip
+        return cls(place.rows, place.columns, row_cell, column_cell, colormaps[POWER_MAP](np.arange(256), bytes=True))
 
     def paint(self, pixels: np.ndarray, values_db: np.ndarray) -> None:
         """Writes a map (up, right) in dB into the picture (height, width, 4); nan leaves the picture as it is."""
@@ -111,6 +129,7 @@ class Mover:
     axes: Any  # Axes or None
     update: Callable[[int], list[Any]]  # the artists to draw at a frame
     cells: np.ndarray | None = None  # (frame, up, right) in dB
+    paint: Callable[[np.ndarray, int], None] | None = None  # into the picture (height, width, 4) at a frame
 
 
 def _lay_out(figure: "Figure", view: FigureData) -> list[Mover]:
@@ -135,26 +154,41 @@ def _lay_out(figure: "Figure", view: FigureData) -> list[Mover]:
 
 
 def _photo_mover(axes: "Axes", view: FigureData) -> Mover:
+    """The photo; people are painted into the pixels that show it."""
     assert view.aligned is not None
+    aligned = view.aligned
+    height, width = aligned.photo.rgb.shape[:2]
+    axes.imshow(aligned.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
+    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
+    return Mover(axes, lambda _: [], paint=_people_painter(axes, view, aligned))
+
+
+def _people_painter(axes: "Axes", view: FigureData, aligned: AlignedPhoto) -> Callable[[np.ndarray, int], None]:
+    """Paints all people at a frame into the picture (height, width, 4), the nearest last."""
     from matplotlib.colors import to_rgb
 
-    height, width = view.aligned.photo.rgb.shape[:2]
-    axes.imshow(view.aligned.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
-    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
     people = view.shown_poses
-    skeletons = [SkeletonInPhoto(axes, view.aligned, width=2.2) for _ in people]
     count = len(people)
-    colours = [SKELETON_COLOUR] if count == 1 else [to_rgb(person_colour(index, count)) for index in range(count)]
-    artists: list[Artist] = [artist for skeleton in skeletons for artist in skeleton.artists]
-    for artist in artists:
-        artist.set_animated(True)
+    colours = [BODY_COLOUR] if count == 1 else [to_rgb(person_colour(index, count)) for index in range(count)]
+    bodies = [bodies_of(person, np.arange(len(person.time_s))) for person in people]
+    distance_m = np.array([np.linalg.norm(person.joints_m[:, 0], axis=1) for person in people])
+    place: PixelsOnScreen | None = None
+    painter: BodyPainter | None = None
 
-    def update(index: int) -> "list[Artist]":
-        for skeleton, person, colour in zip(skeletons, people, colours, strict=True):
-            skeleton.show(person.joints_m[index], colour)
-        return artists
+    def paint(pixels: np.ndarray, index: int) -> None:
+        nonlocal place, painter
+        if place is None or painter is None:  # the layout is known once the figure is drawn
+            place = PixelsOnScreen.of(axes)
+            low_x, high_x = axes.get_xlim()
+            low_y, high_y = axes.get_ylim()
+            column, row = low_x + place.across * (high_x - low_x), low_y + place.up * (high_y - low_y)
+            painter = BodyPainter(PhotoPixels(aligned, column, row))
+        order = np.argsort(-distance_m[:, index]) if count else []
+        shown = np.ascontiguousarray(pixels[place.rows, place.columns, :3])
+        painter.paint(shown, [(bodies[one][index], colours[one]) for one in order])
+        pixels[place.rows, place.columns, :3] = shown
 
-    return Mover(axes, update)
+    return paint
 
 
 def _doppler_mover(axes: "Axes", view: FigureData) -> Mover:

@@ -1,4 +1,4 @@
-"""A motion as a strip: the skeleton at evenly spaced times, side by side; left limbs blue, right limbs red."""
+"""A motion as a strip: the shaded body at evenly spaced times, side by side; left limbs blue, right limbs red."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,16 +8,20 @@ from jaxtyping import Float
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.records import PoseSequence
-from mmweaver.core.skeleton import BONES, JOINT_NAMES, joint
-from mmweaver.figures.theme import INK, STYLE
+from mmweaver.figures.body_rasteriser import Body, CapsulesInPicture, bodies_of, rasterise, seen_width
+from mmweaver.figures.theme import STYLE
+from mmweaver.geometry.body_capsules import CAPSULES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LEFT_COLOUR, RIGHT_COLOUR = "#2b7bba", "#c8442f"
+LEFT_COLOUR, RIGHT_COLOUR, TRUNK_COLOUR = (0.27, 0.55, 0.82), (0.86, 0.36, 0.28), (0.72, 0.72, 0.74)
 SPACING_M = 0.85
 AZIMUTH_RAD = np.radians(35.0)  # azimuth of the viewpoint relative to the radar
 TILT = 0.18  # upward shift per metre of distance
+PX_PER_M = 110.0
+BELOW_M, ABOVE_M = 0.25, 0.12  # shown below the floor and above the highest point
+SHADOW_HEIGHT_M = 0.2  # limbs so high above the floor darken it by a third of what they do on it
 
 
 def draw_strip(pose: PoseSequence, path: Path, *, title: str = "", count: int = 10) -> None:
@@ -46,26 +50,83 @@ def draw_sheet(motions: list[tuple[str, PoseSequence]], path: Path, *, columns: 
 def _draw(axes: "Axes", pose: PoseSequence, count: int) -> None:
     """Draws each instant at its own place along the strip; locomotion is removed."""
     instants = np.linspace(0, len(pose.time_s) - 1, count).round().astype(int)
-    middle = (pose.joints_m[..., :2].min(axis=(0, 1)) + pose.joints_m[..., :2].max(axis=(0, 1))) / 2
-    floor = float(np.percentile(pose.joints_m[..., 2].min(axis=1), 5))
-    wide = np.ptp(_flat(pose.joints_m[instants] - [*middle, floor])[..., 0], axis=1)
-    reach = max(SPACING_M, 1.05 * float(wide.max()))
-    axes.axhline(0.0, color="0.85", linewidth=0.6)
-    for k, index in enumerate(instants):
-        joints = pose.joints_m[index] - [*pose.joints_m[index, 0, :2], floor]
-        points = _flat(joints) + np.array([k * reach, 0.0])
-        for parent, child in BONES:
-            name = JOINT_NAMES[child]
-            colour = LEFT_COLOUR if name.startswith("left") else RIGHT_COLOUR if name.startswith("right") else INK
-            axes.plot(*points[[parent, child]].T, color=colour, linewidth=1.3, solid_capstyle="round")
-        axes.plot(*points[joint("head")], "o", color=INK, markersize=4)
-        axes.text(k * reach, -0.16, f"{abs(pose.time_s[index]):.1f} s", ha="center", va="top", fontsize=6, color="0.4")
+    floor_m = float(np.percentile(pose.joints_m[..., 2].min(axis=1), 5))
+    bodies = bodies_of(pose, instants)
+    places_m = [
+        _flat(body.ends_m - [*pose.joints_m[k, 0, :2], floor_m]) for body, k in zip(bodies, instants, strict=True)
+    ]
+    wide = max(float(np.ptp(place[..., 0])) for place in places_m)
+    reach, top_m = max(SPACING_M, 1.05 * wide + 0.1), max(float(place[..., 1].max()) for place in places_m) + ABOVE_M
+    left_m, right_m = -reach / 2, (count - 0.5) * reach
+    picture = np.full((round((top_m + BELOW_M) * PX_PER_M), round((right_m - left_m) * PX_PER_M), 3), 255, np.uint8)
+    for number, (body, index) in enumerate(zip(bodies, instants, strict=True)):
+        middle_m = pose.joints_m[index, 0, :2]
+        origin_px = np.array([(number * reach - left_m) * PX_PER_M, top_m * PX_PER_M])
+        _paint(picture, body, np.array([*middle_m, floor_m]), origin_px)
+        seconds = f"{abs(pose.time_s[index]):.1f} s"
+        axes.text(number * reach, -0.16, seconds, ha="center", va="top", fontsize=6, color="0.4")
+    axes.axhline(0.0, color="0.85", linewidth=0.6, zorder=0)
+    axes.imshow(picture, extent=(left_m, right_m, -BELOW_M, top_m), alpha=(picture < 255).any(axis=2).astype(float))
+    axes.set(xlim=(left_m, right_m), ylim=(-BELOW_M, top_m))
     axes.set_aspect("equal")
 
 
-def _flat(joints_m: Float[np.ndarray, "*shape 3"]) -> Float[np.ndarray, "*shape 2"]:
+def _paint(picture: np.ndarray, body: Body, origin_m: Float[np.ndarray, "3"], origin_px: Float[np.ndarray, "2"]):
+    """Paints a body into a picture (row, column, 3) uint8; `origin_m`, on the floor, appears at `origin_px`."""
+    ends_m = body.ends_m - origin_m
+    down = np.array([PX_PER_M, -PX_PER_M])
+    _darken(picture, ends_m, body.radius_m, origin_px)
+    ends_px, wide_px = _flat(ends_m) * down + origin_px, _flat(body.wide) * [1.0, -1.0]
+    wider = seen_width(ends_px[:, 1] - ends_px[:, 0], wide_px, body.width_per_depth)
+    seen = rasterise(
+        CapsulesInPicture(
+            ends_px=ends_px, depth_m=_away_m(ends_m), radius_px=body.radius_m * wider[:, None] * PX_PER_M,
+            radius_m=body.radius_m,
+        ),
+        (picture.shape[0], picture.shape[1]),
+    )  # fmt: skip
+    if seen is None:
+        return
+    shown = picture[seen.rows, seen.columns]
+    colour = 255.0 * COLOURS[seen.capsule] * seen.light[:, :, None]
+    shown[:] = np.rint(shown + seen.cover[:, :, None] * (colour - shown)).astype(np.uint8)
+
+
+def _darken(
+    picture: np.ndarray, ends_m: Float[np.ndarray, "capsule 2 3"], radius_m: Float[np.ndarray, "capsule 2"],
+    origin_px: Float[np.ndarray, "2"],
+) -> None:  # fmt: skip
+    """A soft shadow on the floor below what is near it."""
+    row = np.arange(picture.shape[0])
+    band = np.flatnonzero(np.abs(row - origin_px[1]) < 1.2 * TILT * PX_PER_M + 6)
+    columns = np.arange(picture.shape[1])
+    columns = columns[np.abs(columns - origin_px[0]) < 1.3 * PX_PER_M]
+    ends, radius = ends_m.reshape(-1, 3), radius_m.reshape(-1)
+    height_m = np.maximum(ends[:, 2] - radius, 0.0)
+    place_px = _flat(ends * [1.0, 1.0, 0.0]) * [PX_PER_M, -PX_PER_M] + origin_px
+    wide_px = (radius + 0.03 + 0.3 * height_m) * PX_PER_M
+    across = (columns[None, None, :] - place_px[:, 0, None, None]) / wide_px[:, None, None]
+    along = (band[None, :, None] - place_px[:, 1, None, None]) / (2.0 * TILT * wide_px[:, None, None] + 1.0)
+    dark = (0.3 * np.exp(-height_m / SHADOW_HEIGHT_M))[:, None, None] * np.exp(-(across**2) - along**2)
+    light = np.exp(-dark.sum(axis=0))
+    block = np.ix_(band, columns)
+    picture[block] = (picture[block] * light[:, :, None]).astype(np.uint8)
+
+
+def _flat(points_m: Float[np.ndarray, "*shape 3"]) -> Float[np.ndarray, "*shape 2"]:
     """Projection seen from the side of the radar, slightly from above."""
     cos, sin = np.cos(AZIMUTH_RAD), np.sin(AZIMUTH_RAD)
-    across = joints_m[..., 0] * cos + joints_m[..., 1] * sin
-    away = -joints_m[..., 0] * sin + joints_m[..., 1] * cos
-    return np.stack([across, joints_m[..., 2] + TILT * away], axis=-1)
+    across = points_m[..., 0] * cos + points_m[..., 1] * sin
+    return np.stack([across, points_m[..., 2] + TILT * _away_m(points_m)], axis=-1)
+
+
+def _away_m(points_m: Float[np.ndarray, "*shape 3"]) -> Float[np.ndarray, "*shape"]:
+    """Distance from the viewer, but for a constant."""
+    return -points_m[..., 0] * np.sin(AZIMUTH_RAD) + points_m[..., 1] * np.cos(AZIMUTH_RAD) - TILT * points_m[..., 2]
+
+
+def _colour_of(name: str) -> tuple[float, float, float]:
+    return LEFT_COLOUR if name.startswith("left") else RIGHT_COLOUR if name.startswith("right") else TRUNK_COLOUR
+
+
+COLOURS = np.array([_colour_of(capsule.end) for capsule in CAPSULES], np.float32)

@@ -9,8 +9,9 @@ import numpy as np
 
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.skeleton import joint
+from mmweaver.figures.body_in_photo import BodyPainter, Colour, PhotoPixels
+from mmweaver.figures.body_rasteriser import Body, bodies_of
 from mmweaver.figures.figure_data import Fan, FigureData, decibels
-from mmweaver.figures.skeleton_drawing import SkeletonInPhoto, project
 from mmweaver.figures.theme import (
     GROUND_TRUTH,
     INK,
@@ -25,6 +26,7 @@ from mmweaver.figures.theme import (
     person_colour,
     shortened,
 )
+from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,8 +34,9 @@ if TYPE_CHECKING:
     from matplotlib.image import AxesImage
 
 DPI = 100
-SHOWN_POSES = 7  # skeletons drawn over the photo
-SHOWN_POSES_OF_MANY = 3  # skeletons per person of several people
+PHOTO_WIDTH_PX = 720  # about the width of the photo on the page
+SHOWN_POSES = 7  # bodies drawn into the photo
+SHOWN_POSES_OF_MANY = 3  # bodies per person of several people
 DB_LABEL = "dB relative to peak"
 
 
@@ -90,55 +93,59 @@ def _layout(figure: "Figure", photo: bool) -> "list[tuple[Callable[[Axes, Figure
 
 # photo --------------------------------------------------------------------------------------------------------------
 def draw_photo(axes: "Axes", view: FigureData) -> None:
-    """The photo with skeletons at several times; parts occluded by furniture are faint."""
+    """The photo with the bodies at several times; what furniture occludes is hidden but for a hint."""
     import matplotlib
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize, to_rgb
 
     assert view.aligned is not None
-    height, width = view.aligned.photo.rgb.shape[:2]
-    axes.imshow(view.aligned.photo.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
-    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
-    axes.set_anchor("NW")
     people = view.shown_poses
     if len(people) == 1:
-        axes.set_title("The room, and the person at several times (faint: occluded)", y=1.0)
         colours = matplotlib.colormaps[TIME_MAP]
-        _draw_person(axes, view, people[0], SHOWN_POSES, lambda share: _time_colour(colours, share))
+        bodies = _bodies(people[0], SHOWN_POSES, lambda share: _time_colour(colours, share))
+        axes.set_title("The room, and the person at several times", y=1.0)
+    else:
+        bodies = []
+        for index, person in enumerate(people):
+            bodies += _bodies(
+                person, SHOWN_POSES_OF_MANY, partial(_brightened, to_rgb(person_colour(index, len(people))))
+            )
+        axes.set_title("The room, and the people at several times, the last the brightest", y=1.0)
+    _show_photo(axes, view.aligned, bodies)
+    if len(people) == 1:
         low_s, high_s = float(people[0].time_s[0]), float(people[0].time_s[-1])
         span = Normalize(low_s, high_s if high_s > low_s else low_s + 1)
         colour_bar(axes, ScalarMappable(norm=span, cmap=_time_map()), "time (s)")
-        return
-    axes.set_title("The room, and the people at several times, the last the brightest (faint: occluded)", y=1.0)
-    for index, person in enumerate(people):
-        own = to_rgb(person_colour(index, len(people)))
-        _draw_person(axes, view, person, SHOWN_POSES_OF_MANY, partial(_constant, own))
 
 
-def _constant(colour: tuple[float, float, float], _share: float) -> tuple[float, float, float]:
-    return colour
+def _show_photo(axes: "Axes", aligned: AlignedPhoto, bodies: list[tuple[Body, Colour]]) -> None:
+    """The photo with bodies painted into it, at about the size that the page has for it."""
+    from PIL import Image
+
+    height, width = aligned.photo.rgb.shape[:2]
+    size = (max(round(height * PHOTO_WIDTH_PX / width), 1), PHOTO_WIDTH_PX)
+    picture = np.array(Image.fromarray(aligned.photo.rgb).resize(size[::-1], Image.Resampling.BILINEAR))
+    BodyPainter(PhotoPixels.whole(aligned, size)).paint(picture, bodies)
+    axes.imshow(picture, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="antialiased")
+    axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5), xticks=[], yticks=[])
+    axes.set_anchor("NW")
 
 
-def _draw_person(
-    axes: "Axes",
-    view: FigureData,
-    pose: PoseSequence,
-    most: int,
-    colour_at: Callable[[float], tuple[float, float, float]],
-) -> None:
-    """One person at several times, and the path of the pelvis."""
-    assert view.aligned is not None
+def _bodies(pose: PoseSequence, most: int, colour_at: Callable[[float], Colour]) -> list[tuple[Body, Colour]]:
+    """One person at several times, in colours by the share of the time."""
     count = len(pose.time_s)
     chosen = np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
-    for step, index in enumerate(chosen):
-        share = step / max(len(chosen) - 1, 1)
-        skeleton = SkeletonInPhoto(axes, view.aligned, width=1.6 + 1.4 * share)
-        skeleton.show(pose.joints_m[index], colour_at(share), alpha=0.45 + 0.55 * share)
-    pelvis = project(pose.joints_m[:, joint("pelvis")], view.aligned)
-    axes.plot(pelvis[:, 0], pelvis[:, 1], color="white", linewidth=0.8, alpha=0.8)
+    shares = np.arange(len(chosen)) / max(len(chosen) - 1, 1)
+    return [(body, colour_at(float(share))) for body, share in zip(bodies_of(pose, chosen), shares, strict=True)]
 
 
-def _time_colour(colours: "Callable[[float], tuple[float, ...]]", share: float) -> tuple[float, float, float]:
+def _brightened(colour: Colour, share: float) -> Colour:
+    """A person's colour, darker at earlier times."""
+    red, green, blue = (one * (0.5 + 0.5 * share) for one in colour)
+    return red, green, blue
+
+
+def _time_colour(colours: "Callable[[float], tuple[float, ...]]", share: float) -> Colour:
     red, green, blue, _ = colours(0.25 + 0.75 * share)  # the dark end of the map is invisible on a photo
     return float(red), float(green), float(blue)
 

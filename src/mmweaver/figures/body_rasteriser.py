@@ -1,0 +1,126 @@
+"""A shaded body of capsules in numpy: which pixels it covers, how bright and how deep they are.
+
+A capsule appears as the discs of all spheres along its axis. A pixel takes the sphere that is nearest to it in the
+picture, and its depth and normal there; a depth buffer decides between capsules.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from mmweaver.core.records import PoseSequence
+from mmweaver.geometry.body_capsules import pose_capsules, radii_m, widths_per_depth
+
+Array = np.ndarray
+LIGHT = np.array([-0.45, -0.62, 0.64])  # unit vector to the light: from the left, above and behind the viewer
+AMBIENT = 0.46  # brightness of a surface along which the light falls; what is turned away is darker
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """Axes and thickness of one person's capsules at one time, in the frame of the joints."""
+
+    ends_m: Float[Array, "capsule 2 3"]
+    radius_m: Float[Array, "capsule 2"]  # half the depth of the cross-section
+    wide: Float[Array, "capsule 3"]  # unit vector along which the cross-section is wider
+    width_per_depth: Float[Array, " capsule"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CapsulesInPicture:
+    """A body's capsules as a camera sees them; the last two axes of `ends_px` are the end and (column, row)."""
+
+    ends_px: Float[Array, "capsule 2 2"]
+    depth_m: Float[Array, "capsule 2"]
+    radius_px: Float[Array, "capsule 2"]
+    radius_m: Float[Array, "capsule 2"]  # how far the surface bulges towards the viewer
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyPixels:
+    """The smallest part of a picture that holds a body."""
+
+    rows: slice
+    columns: slice
+    cover: Float[Array, "row column"]  # share of the pixel that the body covers
+    depth_m: Float[Array, "row column"]  # inf where it covers nothing
+    light: Float[Array, "row column"]  # brightness, 0 to 1
+    capsule: Int[Array, "row column"]  # the capsule that is seen
+
+
+def bodies_of(pose: PoseSequence, instants: Int[Array, " instant"]) -> list[Body]:
+    """The body of a person at some indices of `time_s`."""
+    posed = pose_capsules(pose.joints_m[instants], pose.height_m)
+    ends_m = np.stack([posed.start_m, posed.start_m + posed.axis_m], axis=2)
+    radius_m, wider = radii_m(pose.height_m, pose.girth), widths_per_depth()
+    return [
+        Body(ends_m=ends, radius_m=radius_m, wide=rotation[:, :, 0], width_per_depth=wider)
+        for ends, rotation in zip(ends_m, posed.rotation, strict=True)
+    ]
+
+
+def seen_width(
+    along_px: Float[Array, "capsule 2"], wide_px: Float[Array, "capsule 2"], width_per_depth: Float[Array, " capsule"]
+) -> Float[Array, " capsule"]:
+    """Half the width of elliptic cross-sections in the picture, relative to the radius.
+
+    `wide_px` is the picture of the unit vector along which a cross-section is wider, in units of the picture's scale.
+    """
+    length = np.maximum(np.hypot(*along_px.T), 1e-9)
+    across = (wide_px[:, 1] * along_px[:, 0] - wide_px[:, 0] * along_px[:, 1]) / length
+    return np.sqrt(1.0 + (width_per_depth**2 - 1.0) * np.clip(across**2, 0.0, 1.0))
+
+
+def rasterise(body: CapsulesInPicture, size: tuple[int, int]) -> BodyPixels | None:
+    """The pixels that a body covers in a picture of (rows, columns); None where it is outside."""
+    low = np.floor((body.ends_px - body.radius_px[:, :, None]).min(axis=1)).astype(int)
+    high = np.ceil((body.ends_px + body.radius_px[:, :, None]).max(axis=1)).astype(int) + 1
+    last = np.array([size[1], size[0]])
+    low, high = np.clip(low, 0, last), np.clip(high, 0, last)
+    drawn = np.flatnonzero((high > low).all(axis=1))
+    if not len(drawn):
+        return None
+    left, top = low[drawn].min(axis=0)
+    right, bottom = high[drawn].max(axis=0)
+    shape = (bottom - top, right - left)
+    cover, light = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+    depth_m, capsule = np.full(shape, np.inf, np.float32), np.zeros(shape, np.int16)
+    columns, rows = np.arange(left, right, dtype=np.float32), np.arange(top, bottom, dtype=np.float32)[:, None]
+    for one in drawn.tolist():
+        place = (slice(low[one, 1] - top, high[one, 1] - top), slice(low[one, 0] - left, high[one, 0] - left))
+        own_cover, own_depth_m, own_light = _one(body, one, columns[place[1]], rows[place[0]])
+        nearer = (own_cover > 0.0) & (own_depth_m < depth_m[place])
+        np.copyto(depth_m[place], own_depth_m, where=nearer)
+        np.copyto(light[place], own_light, where=nearer)
+        np.copyto(capsule[place], np.int16(one), where=nearer)
+        np.maximum(cover[place], own_cover, out=cover[place])
+    light = AMBIENT + (1.0 - AMBIENT) * light
+    return BodyPixels(
+        rows=slice(top, bottom), columns=slice(left, right), cover=cover, depth_m=depth_m, light=light, capsule=capsule
+    )
+
+
+def _one(
+    body: CapsulesInPicture, one: int, columns: Float[Array, " column"], rows: Float[Array, "row 1"]
+) -> tuple[Float[Array, "row column"], Float[Array, "row column"], Float[Array, "row column"]]:
+    """Cover, depth and cosine to the light of one capsule in a rectangle of pixels."""
+    (x, y), (x_end, y_end) = body.ends_px[one].astype(np.float32)
+    dx, dy = x_end - x, y_end - y
+    length = np.float32(max(dx * dx + dy * dy, 1e-6))
+    share = (columns - x) * (dx / length) + (rows - y) * (dy / length)
+    np.maximum(share, 0.0, out=share)
+    np.minimum(share, 1.0, out=share)
+    radius = _between(body.radius_px[one], share)
+    right = (columns - x - share * dx) / radius
+    down = (rows - y - share * dy) / radius
+    inside = 1.0 - right * right - down * down
+    cover = np.minimum(inside * radius * np.float32(0.5) + np.float32(0.5), 1.0)  # exact to first order at the edge
+    bulge = np.sqrt(np.maximum(inside, 0.0))
+    depth_m = _between(body.depth_m[one], share) - _between(body.radius_m[one], share) * bulge
+    light = right * np.float32(LIGHT[0]) + down * np.float32(LIGHT[1]) + bulge * np.float32(LIGHT[2])
+    return cover, depth_m, light
+
+
+def _between(ends: Float[Array, "2"], share: Float[Array, "row column"]) -> Float[Array, "row column"]:
+    return np.float32(ends[0]) + np.float32(ends[1] - ends[0]) * share
