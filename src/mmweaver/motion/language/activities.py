@@ -17,7 +17,8 @@ class Activity:
     clearance_m: float = 0.5  # free floor around the body
     moves: bool = False  # changes the position on the floor
     hands: bool = False
-    posture: str = "feet"  # what the body rests on at its end: feet | seat | knees | floor
+    posture: str = "feet"  # what the body rests on at its end: feet | seat | couch | knees | floor
+    uses_seat: bool = False  # needs a seat, bed or couch
 
 
 def _body(key: str, name: str, example: str, least_s: float, natural_s: float, **more) -> Activity:
@@ -42,9 +43,10 @@ BODY: tuple[Activity, ...] = (
     _body("turn", "turning", "a person turns around", 0.7, 1.2, once=True, clearance_m=0.4),
     _body("stumble", "stumbling", "a person is pushed from behind and stumbles", 1.0, 1.5, once=True, clearance_m=0.4,
           moves=True),
-    _body("sit", "sitting", "a person sits on the couch", 0.4, 1.5, clearance_m=0.4, posture="seat"),
-    _body("sit_down", "sitting down", "a person sits down", 0.95, 1.6, once=True, posture="seat"),
-    _body("stand_up", "standing up", "a person stands up from the chair", 0.9, 1.4, once=True),
+    _body("sit", "sitting", "a person sits on the couch", 0.4, 1.5, clearance_m=0.4, posture="seat",
+          uses_seat=True),
+    _body("sit_down", "sitting down", "a person sits down", 0.95, 1.6, once=True, posture="seat", uses_seat=True),
+    _body("stand_up", "standing up", "a person stands up from the chair", 0.9, 1.4, once=True, uses_seat=True),
     _body("squat", "squatting", "a person does three squats", 1.1, 2.0, counted_s=(1.1, 2.0, 0.0), clearance_m=0.6),
     _body("crouch", "crouching", "a person crouches down", 1.0, 2.0, clearance_m=0.6),
     _body("lunge", "lunging", "a person does a lunge", 1.6, 2.4, counted_s=(1.6, 2.2, 0.1), clearance_m=0.8),
@@ -83,6 +85,19 @@ BODY: tuple[Activity, ...] = (
           counted_s=(1.3, 2.6, 0.1), clearance_m=0.9),
     _body("push_ups", "push-ups", "a person does push-ups", 1.0, 4.0, counted_s=(0.9, 1.8, 0.2), clearance_m=0.6,
           posture="floor"),
+    _body("lie_on_seat", "lying on furniture", "a person lies on the sofa", 0.4, 2.0, posture="couch", uses_seat=True),
+    _body("recline", "lying down on furniture", "a person lies down on the bed", 1.6, 2.4, once=True, posture="couch",
+          uses_seat=True),
+    _body("sit_up", "sitting up on furniture", "a person lying on the bed sits up", 1.6, 2.2, once=True, posture="seat",
+          uses_seat=True),
+    _body("fall_off", "falling off a seat", "a person falls off the chair", 1.1, 1.5, once=True, posture="floor",
+          uses_seat=True),
+    _body("stairs", "stepping up and down", "a person steps up and down", 1.8, 4.6, counted_s=(1.8, 2.3, 0.1),
+          clearance_m=0.6),
+    _body("tree_pose", "the tree pose", "a person stands in the tree pose", 1.8, 5.0, clearance_m=0.6),
+    _body("warrior_pose", "the warrior pose", "a person holds the warrior pose", 1.6, 5.0, clearance_m=1.0),
+    _body("downward_dog", "the downward dog", "a person does the downward dog", 1.8, 5.0, clearance_m=0.9),
+    _body("plank", "holding a plank", "a person holds a plank", 0.6, 4.0, posture="floor"),
     _body("crawl", "crawling", "a person crawls to the left", 1.0, 3.0, clearance_m=0.5, moves=True, posture="knees"),
 )  # fmt: skip
 

@@ -114,6 +114,14 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (rf"\b(?:roll|tilt|mov|rotat)(?:s|es|ing) {_OWN}head\b", "shakes the head", f"{_AS} shaking the head"),
         (rf"\blean(?:s|ing)? back(?:wards?)?(?: in {_OWN}chair)?\b", "stretches", "leaning back is shown as stretching"),
         (r"\byawn(?:s|ing)?\b", "stretches", f"{_AS} stretching"),
+        # stairs and poses
+        (r"\b(?:climb|walk|go|run|step|jog|ascend|descend|com|mov|hurr|march|rac|jump)(?:s|es|ing|ies|ping|ning)?(?: (?:slowly|quickly|carefully|back))*"
+         r"(?: (?:straight |back )?(?:up and down|up|down|on|onto|over|to))?(?: (?:of|on|onto))?(?: (?:the|an?|some|a few|one|two|three|four|five|several|small|little|high|short))*"
+         r" (?:flight of )?(?:stairs?|staircases?|stairways?|stairwell|steps(?= (?:up|down)\b)|ladders?|upstairs|downstairs|podest|platform|curb|stepladder)(?: steps?)?(?: (?:up|down))?\b"
+         r"|\b(?:up|down)(?: the| some| a few| two| three| four| five)* steps\b|\b(?:upstairs|downstairs)\b",
+         "step_up_and_down", "stairs are shown as stepping up and down on the spot"),
+        (r"\b(?:does|doing|practi[cs]es|performs?|performing) (?:some )?yoga(?: exercises?| poses?| positions?)?\b|\byoga (?:exercises?|poses?|positions?)\b",
+         "in the tree pose, then the warrior pose", "yoga is shown as two of its poses"),
         # sport
         (r"\b(?:exercises|works? out|training|(?:warm(?:ing|s)?[- ]?up|fitness|floor|gym(?:nastic)?s?) (?:exercises?|training)|"
          r"does (?:some )?(?:warm[- ]?ups?|exercises?|gymnastics|yoga|pilates)|gymnastics|yoga|pilates)\b", "circles the arms", f"{_AS} circling the arms"),

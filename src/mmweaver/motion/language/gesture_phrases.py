@@ -16,6 +16,17 @@ _LUNGE = r"(?:side|lateral|sideways?)[- ]?lunge"
 
 # Replaced in this order, before `phrases.ACTIVITY_PHRASES`.
 GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
+    # Seats, stairs and poses
+    (r"\b(?:falls?|falling|slips?|slipping|slides?|tumbles?|drops?) (?:down )?(?:off|from|out of|down from)(?: of)? (?:the |a |his |her |their )?"
+     r"(chair|stool|sofa|couch|bed|bench|seat|armchair)\b", r" fall_off \1 "),
+    (r"\bsteps? up and (?:then )?(?:steps? )?(?:back )?down(?: again)?\b|\bstepping up and down\b|\bstep[- ]ups?\b"
+     r"|\bsteps? (?:up )?on(?:to)? an? (?:small |low )?(?:box|stepper|aerobic step) and (?:back )?down(?: again)?\b", " step_up_and_down "),
+    (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*tree[- ]pose\b", " tree_pose "),
+    (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*warrior(?:[- ](?:one|two|1|2|i|ii))?[- ](?:pose|position)\b", " warrior_pose "),
+    (r"\b(?:(?:stands?|standing|holds?|holding|goes|gets|is|does|doing|keeps) )?(?:in |into |the |a |an |yoga )*down(?:ward|wards)?(?:[- ]facing)?[- ]dog(?:[- ](?:pose|position))?\b", " downward_dog "),
+    (r"\b(?:holds?|does|doing|holding|in|is in) (?:an? |the )?(?:forearm |high )?plank(?: pose| position)?\b|\bplanks\b|\bplanking\b", " hold_plank "),
+    (r"\b(?:carr(?:y|ies|ying)) (?:an? |the |some |two |his |her )(?:[a-z]+ )?(?:box|boxes|crate|parcel|tray|bag|suitcase|chair|bucket|basket|pile|stack)(?:es)?"
+     r"(?: of [a-z]+)?\b", " carry a thing "),
     # Exercises
     (rf"\b{_LUNGE}(?:s|d|ing)? {_OF_LEG}\b", r" side_lunge \1_leg "),
     (rf"\b(left|right) {_LUNGE}(?:s|d|ing)?\b", r" side_lunge \1_leg "),

@@ -59,8 +59,13 @@ class Step:
         return BY_KEY[self.lower].moves and self.direction != "spot"
 
     @property
+    def uses_seat(self) -> bool:
+        """Whether it needs a seat, bed or couch."""
+        return BY_KEY[self.lower].uses_seat
+
+    @property
     def posture(self) -> str:
-        """What the body rests on at the end: feet, seat, knees or floor."""
+        """What the body rests on at the end: feet, seat, couch (lying on furniture), knees or floor."""
         return BY_KEY[self.lower].posture
 
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 from mmweaver.motion.language.plan import Step
 
-RISING = {"seat": "stand_up", "knees": "kneel_up", "floor": "get_up"}
-STILL = {"seat": "sit", "knees": "kneel", "floor": "lie"}
-ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down"}
+RISING = {"seat": ("stand_up",), "knees": ("kneel_up",), "floor": ("get_up",), "couch": ("sit_up", "stand_up")}
+STILL = {"seat": "sit", "knees": "kneel", "floor": "lie", "couch": "lie_on_seat"}
+ENTERING = {"sit": "sit_down", "kneel": "kneel_down", "lie": "lie_down", "lie_on_seat": "recline"}
 
 
 def with_postures(steps: list[Step]) -> list[Step]:
@@ -33,7 +33,7 @@ def _with_transitions(step: Step, posture: str, before: list[Step]) -> list[Step
 
 def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
     if posture in RISING:
-        return [replace(step, lower=RISING[posture])]
+        return [replace(step, lower=lower, seat="") for lower in RISING[posture]]
     if not before:
         return [step]
     if before[-1].lower in ("squat", "pick_up", "put_down", "bow", "bend", "lunge"):
@@ -43,6 +43,8 @@ def _rising(step: Step, posture: str, before: list[Step]) -> list[Step]:
 
 def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
     """Sitting, kneeling, lying: stays so, or goes down first."""
+    if step.lower in ("recline", "lie_on_seat", "fall_off") or (posture, step.posture) == ("couch", "seat"):
+        return _by_the_seat(step, posture, anything_before)
     if posture == step.posture:
         if step.lower in ("sit_down", "kneel_down", "lie_down", "fall"):
             step = replace(step, lower=STILL[posture])
@@ -62,19 +64,44 @@ def _going_down(step: Step, posture: str, anything_before: bool) -> list[Step]:
     return [*first, replace(step, lower=down)]
 
 
+def _by_the_seat(step: Step, posture: str, anything_before: bool) -> list[Step]:
+    """Lying on furniture and falling off it, both from sitting there; sitting up from lying."""
+    if posture == "couch" and step.lower in ("recline", "lie_on_seat"):
+        return [replace(step, lower="lie_on_seat")]
+    if step.lower == "lie_on_seat" and not anything_before:
+        return [step]
+    about = replace(step, upper="", count=0, seconds=0.0)
+    entered = [replace(step, lower="recline")] if step.lower == "lie_on_seat" and not step.upper else [step]
+    if step.lower == "lie_on_seat" and step.upper:
+        entered = [replace(about, lower="recline"), step]
+    if posture == "couch":
+        up = replace(about, lower="sit_up")
+        return (
+            [up]
+            if step.posture == "seat" and not step.upper
+            else [up, replace(step, lower="sit")]
+            if step.posture == "seat"
+            else [up, step]
+        )
+    if posture == "seat":
+        return entered
+    sits = "sit" if not anything_before and step.lower == "fall_off" else "sit_down"
+    return [*_up_from(posture, step), replace(about, lower=sits), *entered]
+
+
 def _up_from(posture: str, step: Step) -> list[Step]:
-    return [Step(lower=RISING[posture], clause=step.clause)] if posture in RISING else []
+    return [Step(lower=lower, clause=step.clause) for lower in RISING.get(posture, ())]
 
 
 def _styled(steps: list[Step]) -> list[Step]:
     """Lying on back or belly as the person went down; kneeling on the knee that was named."""
     style, foot = "", ""
     for k, step in enumerate(steps):
-        if step.lower in ("lie_down", "fall") or (step.lower in ("lie", "get_up") and not style):
+        if step.lower in ("lie_down", "fall", "fall_off") or (step.lower in ("lie", "get_up") and not style):
             style = step.style or "back"
         if step.posture == "knees":
             foot = step.foot or foot
-        if step.lower in ("lie", "get_up", "lie_down", "fall"):
+        if step.lower in ("lie", "get_up", "lie_down", "fall", "fall_off"):
             steps[k] = replace(step, style=style)
         if step.lower in ("kneel", "kneel_up"):
             steps[k] = replace(step, foot=foot)
@@ -101,11 +128,17 @@ def merged(steps: list[Step]) -> list[Step]:
     result: list[Step] = []
     for step in steps:
         plain = (
-            step.lower in ("sit", "stand", "kneel", "lie") and not step.upper and not step.seconds and not step.facing
+            step.lower in ("sit", "stand", "kneel", "lie", "lie_on_seat")
+            and not step.upper
+            and not step.seconds
+            and not step.facing
         )
-        same = {"sit": ("sit", "sit_down"), "kneel": ("kneel", "kneel_down"), "lie": ("lie", "lie_down", "fall")}.get(
-            step.lower, (step.lower,)
-        )
+        same = {
+            "sit": ("sit", "sit_down"),
+            "kneel": ("kneel", "kneel_down"),
+            "lie": ("lie", "lie_down", "fall", "fall_off"),
+            "lie_on_seat": ("lie_on_seat", "recline"),
+        }.get(step.lower, (step.lower,))
         if not (plain and result and result[-1].lower in same and not result[-1].upper):
             result.append(step)
     return result

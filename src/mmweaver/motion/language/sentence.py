@@ -59,9 +59,9 @@ def _parsed(text: str, given_text: str) -> MotionPlan:
     if not parsed_clauses:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
     sequence = _in_sequence(parsed_clauses)
-    for before, step in pairwise(sequence):
-        if step.lower in ("lie", "lie_down") and before.seat:
-            raise InputError(f"{step.clause!r}: lying is known on the floor only; leave out the {before.seat}")
+    for number, (before, step) in enumerate(pairwise(sequence), start=1):
+        if step.lower in ("lie", "lie_down") and before.seat and not step.style:
+            sequence[number] = replace(step, lower="recline", seat=before.seat)
     steps = carried_over(with_postures(sequence))
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")

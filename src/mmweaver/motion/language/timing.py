@@ -76,8 +76,8 @@ def repeated(plan: MotionPlan, duration_s: float) -> MotionPlan:
 
 def _posture_before(step: Step) -> str:
     """The posture in which a step begins."""
-    rising = {"stand_up": "seat", "kneel_up": "knees", "get_up": "floor"}
-    held = {"sit": "seat", "kneel": "knees", "lie": "floor"}
+    rising = {"stand_up": "seat", "kneel_up": "knees", "get_up": "floor", "sit_up": "couch"}
+    held = {"sit": "seat", "kneel": "knees", "lie": "floor", "lie_on_seat": "couch", "recline": "seat"}
     return rising.get(step.lower) or held.get(step.lower, "feet")
 
 

@@ -27,6 +27,9 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     step = _arms_step(step, texts)
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
         step = replace(step, lower="sit")  # "reads a book on the sofa"
+    if step.upper == "carry" and step.lower == "stand" and _goes_somewhere(step, words):
+        walk = _going_step(replace(step, lower="walk", upper=""), words, at)
+        return replace(walk, upper="carry", hand=step.hand)
     if step.lower in ("walk", "jog") and texts & {"drunken", "drunk"}:
         step = replace(step, lower="stagger")
     if step.lower in _BY_LOWER:
@@ -49,6 +52,11 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
     if step.upper in ("drink", "eat", "phone") and step.hand == "both":
         step = replace(step, hand="")
     return step
+
+
+def _goes_somewhere(step: Step, words: list[Word]) -> bool:
+    """Whether somebody who carries something walks: a direction or a place to go to is named."""
+    return bool(_target(words)) or step.direction not in ("", "spot", "backwards")
 
 
 def _in_place(step: Step, words: list[Word]) -> Step:
@@ -165,13 +173,22 @@ def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
 
 
 def _floor_step(step: Step, words: list[Word], at: int) -> Step:
-    """Lying and falling: on the back unless the clause says forwards, belly or one's own side; not on furniture."""
+    """Lying and falling: on the back unless the clause says forwards, belly or one's own side."""
+    if step.seat and step.lower in ("lie", "lie_down"):
+        lower = "lie_on_seat" if step.lower == "lie" else "recline"
+        return replace(step, lower=lower, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
     if step.seat:
-        raise InputError(f"{step.clause!r}: lying and falling are known on the floor only; leave out the {step.seat}")
+        raise InputError(f"{step.clause!r}: falling is known on the floor and off a seat; leave out the {step.seat}")
     if step.lower == "fall" and (step.direction in SIDES or "sideways" in {word.text for word in words}):
         own_side = step.direction if step.direction in SIDES else "right"
         return replace(step, style=own_side, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
     style = step.style or ("front" if step.direction in ("forwards", "towards") else "back")
+    return replace(step, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
+
+
+def _falling_off_step(step: Step, words: list[Word], at: int) -> Step:
+    """To the own side that is named, else to the right."""
+    style = step.direction if step.direction in SIDES else "right"
     return replace(step, style=style, direction="", count=0, arc_deg=0.0, turn_deg=0.0)
 
 
@@ -214,6 +231,7 @@ _BY_LOWER = {
     "stumble": _stumbling_step,
     **dict.fromkeys(("lie", "lie_down", "fall", "get_up"), _floor_step),
     **dict.fromkeys(("kneel", "kneel_up"), _kneeling_step),
+    "fall_off": _falling_off_step,
     **dict.fromkeys(("kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
     "sidestep": _sideways_step,
 }

@@ -22,6 +22,7 @@ from mmweaver.motion.planning.seating import (
     Sitting,
     any_variation,
     fitting,
+    long_enough_to_lie_on,
     preferred,
     random_subset,
     reachable,
@@ -47,6 +48,9 @@ Array = np.ndarray
 FAVOURITE_COST_PER_M = 0.7
 CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who gets up
 _SAME_PLACE_M = 0.1
+_FALLS_OFF_STOOL = (
+    0.5  # share of the falls tried from a stool: before a seat of the room there may be no floor for them
+)
 _NEAR_START_M = 1.0  # a seat so near to the requested start is the one meant
 _SEAT_AT_PLACE_M = 0.7  # from the free floor of a place
 _SEAT_DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
@@ -56,7 +60,12 @@ _WALK_TO_SEAT_MPS = (0.45, 1.6)
 
 def starts_seated(plan: MotionPlan) -> bool:
     """Whether the person sits at the start."""
-    return plan.steps[0].lower in ("sit", "sit_down", "stand_up")
+    return plan.steps[0].uses_seat
+
+
+def lies_on_seat(plan: MotionPlan) -> bool:
+    """Whether the person lies on furniture."""
+    return any(step.posture == "couch" for step in plan.steps)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,13 +103,15 @@ class CandidateSampler:
             trajectory.from_seat = trajectory.from_seat or step.lower == "stand_up"
             if step.lower == "sit_down" and k:
                 sitting = sitting or self._seat_behind(trajectory)
-                sitting = sitting or _stool_at_end(trajectory, self.body, previous=self.plan.steps[k - 1])
+                sitting = sitting or _stool_at_end(
+                    trajectory, self.body, previous=self.plan.steps[k - 1], is_bed=lies_on_seat(self.plan)
+                )
                 trajectory.turn_to(sitting.facing_rad, step.start_s - 0.3)
             trajectory.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
             if sitting is not None:
                 trajectory.seats_m.append((float(sitting.seat_m[0]), float(sitting.seat_m[1])))
                 trajectory.cost += sitting.cost
-            if not step.moves and step.lower not in ("sit", "sit_down", "stand_up"):
+            if not step.moves and not step.uses_seat:
                 wanted = max(CLEARANCE_M[step.lower], CLEARANCE_M.get(step.upper, 0.0))
                 trajectory.cost += 2.0 * max(0.0, wanted - float(self.floor.clearance_at(trajectory.position_m)))
                 trajectory.cost += float(self.floor.cost_at(trajectory.position_m))
@@ -117,6 +128,8 @@ class CandidateSampler:
     def _seats(self) -> list[Sitting]:
         """The scene's seats with sampled ways to sit on them, as `attempt` allows."""
         seats = self._usable_seats
+        if lies_on_seat(self.plan):
+            return long_enough_to_lie_on(seats, self.floor.scene)
         if not self.attempt:
             return [usual_variation(seat, self.rng) for seat in seats]
         named = next((step.seat for step in self.plan.steps if step.seat), "")
@@ -141,7 +154,7 @@ class CandidateSampler:
             if first.place is not None:
                 cells = self.floor.place_cells[first.place]
                 usable = [seat for seat in usable if np.hypot(*(cells - seat.seat_m).T).min() < _SEAT_AT_PLACE_M]
-            if any(step.lower not in ("sit", "sit_down") for step in self.plan.steps):
+            if any(step.lower not in ("sit", "sit_down", "lie_on_seat") for step in self.plan.steps):
                 # Getting up needs room in front of the seat, where a table may stand.
                 usable = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
             return self._start_seated(usable)
@@ -191,7 +204,8 @@ class CandidateSampler:
         """Starts on a seat of the scene, near the requested start; else on a stool, roughly facing the radar."""
         cost, notes = 0.0, []
         near = [s for s in seats if self.start_m is None or np.hypot(*(s.seat_m - self.start_m)) < _NEAR_START_M]
-        if near:
+        falls_off = any(step.lower == "fall_off" for step in self.plan.steps)
+        if near and not (falls_off and self.rng.random() < _FALLS_OFF_STOOL):
             sitting = near[int(self.rng.integers(len(near)))]
             is_blocked = not self.floor.clearance_at(sitting.feet_m) > 0
             cost += float(self.floor.cost_at(sitting.seat_m)) + 2.0 * is_blocked
@@ -203,9 +217,10 @@ class CandidateSampler:
             spot = np.array(self.start_m, dtype=float) if self.start_m else cells[int(self.rng.integers(len(cells)))]
             facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.3), -0.6, 0.6))
             sitting = stool_at(spot, facing, self.body)
-            if not stool_fits(sitting, self.floor):
+            if not stool_fits(sitting, self.floor, is_bed=lies_on_seat(self.plan)):
                 raise NoTrajectory("no room for a stool")
-            notes.append(stool_note(sitting, none_at_all=not self.floor.scene.seats))
+            notes.append(stool_note(sitting, none_at_all=not self.floor.scene.seats, is_bed=lies_on_seat(self.plan)))
+            cost += 3.0 * bool(near)
             cost += float(self.floor.cost_at(spot)) + 2.0 * max(0.0, 0.5 - float(self.floor.clearance_at(spot)))
         trajectory = Trajectory(
             floor=self.floor, rng=self.rng, position_m=sitting.feet_m, heading_rad=sitting.facing_rad, cost=cost,
@@ -312,8 +327,8 @@ def _lay_turn(trajectory: Trajectory, step: Step, *, first: bool) -> None:
     trajectory.turn_to(heading, step.start_s)
 
 
-def _stool_at_end(trajectory: Trajectory, body: SkeletonProportions, *, previous: Step) -> Sitting:
-    """A stool at the end of a walk, a quarter turn away at most, or behind somebody who stands."""
+def _stool_at_end(trajectory: Trajectory, body: SkeletonProportions, *, previous: Step, is_bed: bool) -> Sitting:
+    """A stool (or bed) at the end of a walk, a quarter turn away at most, or behind somebody who stands."""
     to_radar = float(np.arctan2(-trajectory.position_m[1], -trajectory.position_m[0]))
     options = (
         [trajectory.heading_rad]
@@ -323,8 +338,8 @@ def _stool_at_end(trajectory: Trajectory, body: SkeletonProportions, *, previous
     options.sort(key=lambda angle: abs(signed_angle_rad(angle, to_radar)))
     for facing in options:
         stool = stool_at(trajectory.position_m, facing + float(trajectory.rng.normal(0, 0.08)), body)
-        if stool_fits(stool, trajectory.floor):
+        if stool_fits(stool, trajectory.floor, is_bed=is_bed):
             trajectory.cost += 3.0
-            trajectory.notes.append(stool_note(stool, none_at_all=not trajectory.floor.scene.seats))
+            trajectory.notes.append(stool_note(stool, none_at_all=not trajectory.floor.scene.seats, is_bed=is_bed))
             return stool
     raise NoTrajectory("no room for a stool")

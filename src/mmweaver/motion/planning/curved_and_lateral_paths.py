@@ -3,6 +3,7 @@
 import numpy as np
 from jaxtyping import Float
 
+from mmweaver.motion.animation.library.on_furniture import OFF_SEAT_AHEAD_M
 from mmweaver.motion.animation.library.on_the_floor import BACK_BEHIND_M, BELLY_AHEAD_M, SIDE_AWAY_M
 from mmweaver.motion.animation.root_path import Move, Turn
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
@@ -158,7 +159,9 @@ def check_floor_space(trajectory: Trajectory, step: Step, body: SkeletonProporti
         heading_rad += 0.5 * np.pi * (1 if step.style == "left" else -1)
         low, high = -0.1 * h, (SIDE_AWAY_M + 0.55) * h
     along = np.linspace(low, high, 24)[:, None] * np.array([np.cos(heading_rad), np.sin(heading_rad)])
-    places = trajectory.position_m + along
+    ahead_m = OFF_SEAT_AHEAD_M if step.lower == "fall_off" else 0.0
+    ahead = np.array([np.cos(trajectory.heading_rad), np.sin(trajectory.heading_rad)])
+    places = trajectory.position_m + ahead_m * ahead + along
     if float(trajectory.floor.clearance_at(places).min()) < LYING_ROOM_M:
         raise NoTrajectory("no floor to lie on")
     trajectory.cost += float(trajectory.floor.cost_at(places).mean())

@@ -62,7 +62,7 @@ class Placement:
     def _last_seat_height_m(self) -> float | None:
         """Of the seat on which the body sits at the end, or from which it has just got up; None without one."""
         for placed in reversed(self.steps):
-            if placed.step.lower in ("sit", "sit_down", "stand_up"):
+            if placed.step.uses_seat:
                 return placed.seat_height_m
             if placed.moves or placed.step.lower == "turn":
                 return None

@@ -15,6 +15,7 @@ Array = np.ndarray
 LOWEST_M, HIGHEST_M = 0.3, 0.65  # seats that a person can use
 _COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
 _COUCH_M = 0.8  # a seat so wide is a couch, a narrower one a chair
+LYING_M = 1.35  # a seat so wide can be lain on
 _BED_RADIUS_M = 1.2  # a seat so near to a bed's centre is on it
 _TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter may face past the table
 _WIDEST_TURN_RAD = 1.4
@@ -51,6 +52,11 @@ def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
     if word in _CHAIRS:
         return [seat for seat in seats if seat.width_m < _COUCH_M and not _on_bed(seat, scene)]
     return [seat for seat in seats if not _on_bed(seat, scene)]
+
+
+def long_enough_to_lie_on(seats: list[Sitting], scene: Scene) -> list[Sitting]:
+    """Couches and beds on which a person can lie, along the edge where one sits."""
+    return [seat for seat in seats if seat.width_m >= LYING_M or _on_bed(seat, scene)]
 
 
 def _on_bed(seat: Sitting, scene: Scene) -> bool:
@@ -130,16 +136,20 @@ def stool_at(feet_m: Float[Array, "2"], facing_rad: float, body: SkeletonProport
     return Sitting(feet_m=feet_m, facing_rad=facing_rad, height_m=STOOL_HEIGHT_M, seat_m=feet_m - behind)
 
 
-def stool_fits(stool: Sitting, floor: FloorMap) -> bool:
-    """Whether there is free floor in view for a stool."""
-    return bool(floor.clearance_at(stool.seat_m) >= 0.2) and bool(floor.sees(stool.seat_m))
+def stool_fits(stool: Sitting, floor: FloorMap, *, is_bed: bool = False) -> bool:
+    """Whether there is free floor in view for a stool, or for a bed along whose edge the person sits."""
+    aside = np.array([-np.sin(stool.facing_rad), np.cos(stool.facing_rad)])
+    reach = np.linspace(-0.9, 0.9, 5) if is_bed else np.zeros(1)
+    places = stool.seat_m + reach[:, None] * aside
+    return bool((floor.clearance_at(places) >= 0.2).all()) and bool(floor.sees(stool.seat_m))
 
 
-def stool_note(stool: Sitting, *, none_at_all: bool) -> str:
-    """What is reported about an assumed stool."""
+def stool_note(stool: Sitting, *, none_at_all: bool, is_bed: bool = False) -> str:
+    """What is reported about an assumed stool or bed."""
     why = "no seat was found in the photo" if none_at_all else "no seat of the photo can be reached"
+    why, what = ("no bed or long couch of the photo can be lain on", "bed") if is_bed else (why, "stool")
     x, y = stool.seat_m
-    return f"{why}, a stool {stool.height_m:.2f} m high is assumed at x {x:.2f} m, y {y:.2f} m"
+    return f"{why}, a {what} {stool.height_m:.2f} m high is assumed at x {x:.2f} m, y {y:.2f} m"
 
 
 def reachable(floor: FloorMap, place: Float[Array, "2"], sitting: Sitting) -> bool:

@@ -5,6 +5,7 @@ import pytest
 
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.empty_floor import RADAR_HEIGHT_M, act_out
+from mmweaver.motion.language.sentence import parse
 
 
 def feet(text: str, seconds: float = 3.0, seed: int = 0) -> dict[str, np.ndarray]:
@@ -39,3 +40,13 @@ def test_hops_are_counted_and_about_two_a_second(count: int):
     z = np.minimum(*feet(f"hops {count} times", seconds=0.6 + 0.5 * count).values())
     air = z > z.min() + 0.03
     assert (np.diff(air.astype(int)) == 1).sum() == count
+
+
+def test_stepping_up_lifts_the_body_by_a_stair_and_returns():
+    motion = act_out("a person steps up and down twice", seed=1)
+    height_m = motion.pose.joints_m[2:-2, 0, 2]
+    assert 0.12 < np.ptp(height_m) < 0.25
+    assert abs(height_m[-1] - height_m[0]) < 0.03
+    plan = parse("she walks up the stairs")
+    assert plan.steps[0].lower == "stairs"
+    assert "stairs are shown as" in plan.clauses[0].how

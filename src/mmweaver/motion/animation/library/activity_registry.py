@@ -17,6 +17,7 @@ from mmweaver.motion.animation.library import (
     household,
     jumping,
     legs,
+    on_furniture,
     on_the_floor,
     pointing_and_nodding,
     rehabilitation,
@@ -24,6 +25,7 @@ from mmweaver.motion.animation.library import (
     standing,
     throwing_and_carrying,
     uneven_gait,
+    yoga,
 )  # fmt: skip
 from mmweaver.motion.animation.step_context import StepContext
 
@@ -70,6 +72,15 @@ POSTURES: Registry[Callable[[StepContext], Controls]] = Registry(
         ("limb_extension", rehabilitation.limb_extension),
         ("push_ups", floor_exercises.push_ups),
         ("crawl", floor_exercises.crawling),
+        ("lie_on_seat", on_furniture.lying_on_seat),
+        ("recline", on_furniture.reclining),
+        ("sit_up", on_furniture.sitting_up),
+        ("fall_off", on_furniture.falling_off),
+        ("stairs", legs.stepping_up_and_down),
+        ("tree_pose", yoga.tree_pose),
+        ("warrior_pose", yoga.warrior_pose),
+        ("downward_dog", yoga.downward_dog),
+        ("plank", floor_exercises.plank),
     ],
 )
 GESTURES: Registry[Callable[[StepContext, Controls], Controls]] = Registry(

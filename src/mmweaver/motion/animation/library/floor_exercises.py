@@ -1,6 +1,7 @@
 """On hands and feet: push-ups and crawling. On the floor already, as in the middle of the exercise."""
 
 import numpy as np
+from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.kinematics import ankle_from_foot
@@ -16,12 +17,21 @@ _ON_TOES_RAD = 1.35  # pitch of the feet
 _STRIDE_M, _SHIN = 0.35, 0.318  # of crawling; from the knee back to the ankle, of the height
 
 
+def plank(context: StepContext) -> Controls:
+    """The upper position of a push-up, held."""
+    return _on_hands(context, np.zeros_like(context.time_s))
+
+
 def push_ups(context: StepContext) -> Controls:
     """The body stays straight from the heels to the head and goes down and up on the arms; the root is at the feet."""
-    controls, body, h = upright(context), context.body, context.body.height_m
     rate, end = cycles(context, context.tempo(0.35, 0.55, 0.8), 0.3, 1.1)
     phase = 2 * np.pi * rate * (np.minimum(context.time_s, end) - context.start_s)
-    down = 0.5 - 0.5 * np.cos(phase)
+    return _on_hands(context, 0.5 - 0.5 * np.cos(phase))
+
+
+def _on_hands(context: StepContext, down: Float[np.ndarray, " n"]) -> Controls:
+    """down (n,) = 0 arms stretched, 1 bent."""
+    controls, body, h = upright(context), context.body, context.body.height_m
     depth = vary(context, 0.92, 0.05)
     slope = _UP_RAD + np.minimum(depth, 1.0) * down * (_DOWN_RAD - _UP_RAD)
     leg, pitch = 0.995 * (body.leg_m + body.hip_below_pelvis_m), np.array([_ON_TOES_RAD])

@@ -10,6 +10,7 @@ from mmweaver.motion.animation.library.jumping import bounce
 from mmweaver.motion.animation.library.movement_primitives import (
     OUTWARD,
     crouched,
+    cycles,
     lean_over,
     leg_side,
     lift_weight,
@@ -20,7 +21,7 @@ from mmweaver.motion.animation.library.movement_primitives import (
     vary,
 )  # fmt: skip
 from mmweaver.motion.animation.library.standing import upright
-from mmweaver.motion.animation.profiles import plateau, rise
+from mmweaver.motion.animation.profiles import bump, plateau, rise
 from mmweaver.motion.animation.step_context import StepContext
 
 
@@ -178,3 +179,27 @@ def marching(context: StepContext) -> Controls:
     )  # fmt: skip
     spot = replace(context, step=replace(context.step, direction="spot"))
     return gait.stepping(spot, style, jog=True)
+
+
+def stepping_up_and_down(context: StepContext) -> Controls:
+    """On the spot, up a stair of 17 cm that is not there and backwards down again, one foot after the other."""
+    controls, h = upright(context), context.body.height_m
+    first = leg_side(context)
+    rate, _ = cycles(context, context.tempo(0.33, 0.45, 0.62), 0.25, 0.8)
+    share = 4.0 * rate * (context.time_s - context.start_s)  # a foot moves in each quarter of a cycle
+    if context.step.count:
+        share = np.clip(share, 0.0, 4.0 * context.step.count)
+    share = share % 4.0
+    height_m, tread_m = 0.17, 0.15 * h
+    for side, begin in ((first, 0.0), (1 - first, 1.0)):
+        on = rise(share - begin) - rise(share - begin - 2.0)
+        air = bump(share - begin) + bump(share - begin - 2.0)
+        shift_foot(controls, side, tread_m * on, 0.0, height_m * on + 0.06 * air)
+        controls.contact[:, side] -= air
+        controls.foot_rad[:, side, 1] += 0.25 * bump(share - begin) - 0.1 * bump(share - begin - 2.0)
+        controls.arm_rad[:, side, 0] += 0.3 * (bump((share - 1.0 + begin) / 2.0) - 0.5)
+    up = rise((share - 0.7) / 1.2) - rise((share - 2.2) / 1.2)
+    shift_pelvis(controls, tread_m * (rise(share / 1.7) - rise((share - 2.0) / 1.7)), 0.0, height_m * up)
+    controls.knee_room[:] = 0.8
+    controls.spine_rad[:, 1] += 0.12 + 0.08 * bump(share / 2.0)
+    return controls

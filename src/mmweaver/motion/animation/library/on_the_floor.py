@@ -79,11 +79,11 @@ def getting_up(context: StepContext) -> Controls:
 
 def _down(context: StepContext, u: PerTime, *, falls: bool) -> Controls:
     if context.step.style in ("left", "right"):
-        return _on_side(context, u)
+        return on_side(context, u)
     return _on_belly(context, u, falls=falls) if context.step.style == "front" else _on_back(context, u, falls=falls)
 
 
-def _on_side(context: StepContext, u: PerTime) -> Controls:
+def on_side(context: StepContext, u: PerTime) -> Controls:
     """To one's own left or right: that knee gives way, the hip and then the trunk land, knees bent, an arm ahead."""
     controls, body, h = upright(context), context.body, context.body.height_m
     side = LEFT if context.step.style == "left" else RIGHT
@@ -100,7 +100,7 @@ def _on_side(context: StepContext, u: PerTime) -> Controls:
     controls.knee_room[:] = np.maximum(controls.knee_room, rise(3 * u))
     controls.knee_out_rad[:] *= 1 - rise(u / 0.6)[:, None]
     controls.arm_rad[:, side, 0] += spline_through(u, at, [0.0, 0.3, 1.0, 1.4, 1.5])
-    controls.arm_rad[:, side, 1] += spline_through(u, at, [0.0, 0.7, 0.5, 0.1, 0.0])
+    controls.arm_rad[:, side, 1] += spline_through(u, at, [0.0, 0.7, 0.45, 0.0, -0.17])
     controls.arm_rad[:, 1 - side, 0] += spline_through(u, at, [0.0, 0.5, 0.8, 0.7, 0.6])
     controls.arm_rad[:, :, 3] += spline_through(u, at, [0.0, 0.3, 0.5, 0.5, 0.5])[:, None]
     return controls
