@@ -39,7 +39,7 @@ unit: $(STAMP)
 SECONDS ?= 600
 SEED ?= 0
 fuzz: $(STAMP)  ## damaged files for every reader, for SECONDS; docs/security.md
-	$(BIN)/python -m tests.fuzz --seconds $(SECONDS) --seed $(SEED) --out results/hostile_input.json
+	$(BIN)/python -m tests.fuzz --seconds $(SECONDS) --seed $(SEED)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/physics.py

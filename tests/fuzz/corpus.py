@@ -9,9 +9,13 @@ import zlib
 import numpy as np
 from PIL import Image
 
+from mmweaver.compression.chunk import PREFIX
+from mmweaver.compression.mmw_codec import compress_cube
 from mmweaver.core.presets import PRESETS
 from tests import captures
+from tests.cubes import point_cube
 from tests.fuzz import mutators as m
+from tests.fuzz.set_readers import BOMB, GOLDEN, archive_of, summed
 
 RADAR = json.loads(PRESETS["awr1843"].to_json())
 CUT_HEADER = m.lying_npy("{'descr': '<f8', 'fortran_order': False, 'shape': (48, 64", bytes(24576))
@@ -19,7 +23,7 @@ CUT_HEADER = m.lying_npy("{'descr': '<f8', 'fortran_order': False, 'shape': (48,
 
 def corpus() -> list[tuple[str, str, bytes]]:
     """All of them."""
-    return [*_radars(), *_arrays(), *_pictures(), *_containers()]
+    return [*_radars(), *_arrays(), *_motions(), *_pictures(), *_containers(), *_sets()]
 
 
 def _radars() -> list[tuple[str, str, bytes]]:
@@ -68,6 +72,24 @@ def _arrays() -> list[tuple[str, str, bytes]]:
     ]
 
 
+def _motions() -> list[tuple[str, str, bytes]]:
+    """Of the first run of a seed nobody had used."""
+    joints = np.zeros((3, 22, 3))
+    names = np.array([f"joint_{k}" for k in range(22)])
+    names.view(np.uint32)[3] = 0x7FFFFFFF
+    smpl = {"poses": np.zeros((3, 66)), "trans": np.zeros((3, 3))}
+    archives = {
+        "names beyond Unicode": {"joints_m": joints, "joint_names": names},
+        "places that are texts": {"joints_m": joints.astype("S3"), "joint_names": np.array(["a"] * 22)},
+        "complex frame rate": {**smpl, "mocap_framerate": np.array(60j)},
+        "poses that are texts": {**smpl, "poses": np.full((3, 66), "x")},
+    }
+    return [
+        ("motion npz", what, m.npz_bytes({name: m.npy_bytes(values) for name, values in arrays.items()}))
+        for what, arrays in archives.items()
+    ]
+
+
 def _pictures() -> list[tuple[str, str, bytes]]:
     stream = io.BytesIO()
     Image.new("RGB", (64, 48)).save(stream, "EPS")
@@ -89,7 +111,34 @@ def _containers() -> list[tuple[str, str, bytes]]:
         ("mmw", "scale 10**400", m.mmw_bytes({**one, "scale": 10**400}, [(1, 0, b"abcd")])),
         ("mmw", "frame time 10**400", m.mmw_bytes({**one, "frame_time_s": [10**400]}, [(1, 0, b"abcd")])),
         ("mmw", "no chunks", m.mmw_bytes({**one, "chunks": [], "frame_time_s": []}, [])),
+        ("mmw", "record of an unknown kind at the end", m.mmw_bytes(one, []) + bytes.fromhex("00000000010009")),
+        ("mmw", "steps of 3e38", _with_large_steps()),
         ("mmw", "preset is a list", m.mmw_bytes({**one, "radar": {"preset": ["x"]}}, [(1, 0, b"abcd")])),
         ("dca.pcap", "one packet at byte 1e9", far),
         ("safetensors", "header of 2**60 bytes", struct.pack("<Q", 2**60) + b"{}"),
     ]
+
+
+def _with_large_steps() -> bytes:
+    """A sound .mmw file whose chunk multiplies everything by 3e38."""
+    cube = point_cube(num_frames=2)
+    head, records = m.mmw_parts(compress_cube(cube, num_bytes=2000))
+    frames, kind, payload = records[0]
+    prefix = list(PREFIX.unpack_from(payload))
+    prefix[3] = 3e38
+    return m.mmw_bytes(head, [(frames, kind, PREFIX.pack(*prefix) + payload[PREFIX.size :]), *records[1:]])
+
+
+def _sets() -> list[tuple[str, str, bytes]]:
+    name = "office_000/seed/zarr.json"
+    with zipfile.ZipFile(GOLDEN) as archive:
+        metadata = json.loads(archive.read(f"dataset/{name}"))
+    grid = {"name": "regular", "configuration": {"chunk_shape": [2**40]}}
+    pickles = [{"name": "bytes"}, {"name": "numcodecs.pickle"}]
+    changes = {
+        "a terabyte in one chunk": {"shape": [2**40], "chunk_grid": grid}, "a terabyte of chunks": {"shape": [2**40]},
+        "pickles": {"codecs": pickles}, "a million chunks": {"shape": [10**6]}, "no shape": {"shape": None},
+    }  # fmt: skip
+    cases = {what: {name: json.dumps({**metadata, **change}).encode()} for what, change in changes.items()}
+    cases["50 MB from 2 kB"] = {name.replace("zarr.json", "c/0"): summed(BOMB)}
+    return [("zarr set", what, archive_of(members)) for what, members in cases.items()]

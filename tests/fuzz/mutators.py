@@ -1,5 +1,6 @@
 """Damages files so that the damage reaches the decoder: bytes, text, JSON, arrays, and checksums made right again."""
 
+import copy
 import io
 import json
 import random
@@ -85,24 +86,30 @@ def mutated_bytes(data: bytes, rng: random.Random) -> bytes:
 
 def mutated_json(value: Any, rng: random.Random) -> Any:
     """A copy with one or two values replaced, removed, added or nested."""
-    copy = json.loads(json.dumps(value))
+    damaged = json.loads(json.dumps(value))
     for _ in range(rng.choice((1, 1, 2))):
-        places = list(_places(copy))
+        places = list(_places(damaged))
         if not places:
-            return rng.choice(ODD_VALUES)
+            return odd_value(rng)
         holder, key = rng.choice(places)
         kind = rng.randrange(8)
         if kind <= 3:
-            holder[key] = rng.choice(ODD_VALUES)
+            holder[key] = odd_value(rng)
         elif kind == 4 and isinstance(holder, dict):
             del holder[key]
         elif kind == 5 and isinstance(holder[key], (int, float)) and not isinstance(holder[key], bool):
-            holder[key] = holder[key] * rng.choice((-1, 0.5, 2, 1000, 1e-6, 1e9, 1e300))
+            factor = rng.choice((-1, 0.5, 2, 1000, 1e-6, 1e9, 1e300))
+            holder[key] = holder[key] * (factor if abs(holder[key]) < 1e300 else 2)
         elif kind == 6:
             holder[key] = [holder[key]] * rng.choice((0, 1, 2, 300))
         elif isinstance(holder, dict):
             holder[rng.choice(("x", "", "a" * 300))] = holder[key]
-    return copy
+    return damaged
+
+
+def odd_value(rng: random.Random) -> Any:
+    """One of `ODD_VALUES`, a copy: what is put into it later must not appear in other cases."""
+    return copy.deepcopy(rng.choice(ODD_VALUES))
 
 
 def json_bytes(value: Any, rng: random.Random) -> bytes:
@@ -191,8 +198,8 @@ def mutated_array(array: np.ndarray, rng: random.Random) -> np.ndarray:
             return array.T
         if array.dtype.kind not in "fc" or not array.size:
             return array[:1] if array.ndim else array
-        copy = np.array(array)
-        flat = copy.reshape(-1) if copy.ndim else copy[None]
+        whole = np.array(array)
+        flat = whole.reshape(-1) if whole.ndim else whole[None]
         share = rng.choice((1, 10, len(flat)))
         flat[rng.randrange(share) :: share] = rng.choice((np.nan, np.inf, -np.inf, 1e30, -1e30, 1e-30, 0, -1, 1e5))
         return flat.reshape(array.shape)

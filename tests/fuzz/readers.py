@@ -41,6 +41,7 @@ from tests import captures
 from tests.formats.test_mmwave_studio import SETUP
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader
+from tests.fuzz.set_readers import set_readers
 
 WIDTH, HEIGHT = 64, 48
 STUDIO = {"mmWaveDevices": [{"rfConfig": SETUP, "rawDataCaptureConfig": {"rlDevDataFmtCfg_t": {"iqSwapSel": 0}}}]}
@@ -61,6 +62,7 @@ def make_readers(folder: Path) -> list[Reader]:
         *_recordings(folder, config, adc),
         *_results(folder, config, adc),
         *_others(folder),
+        *set_readers(folder),
     ]
 
 

@@ -102,7 +102,7 @@ class DecodedChunk:
     def cube_values(self) -> CubeValues:
         """The frames of the cube, complex64."""
         if self.exact is not None:
-            return self.exact
+            return finite(self.exact)
         working = np.zeros(self.frames.working_shape, np.complex64)
         if self.layers is not None:
             with torch.inference_mode():
@@ -110,7 +110,7 @@ class DecodedChunk:
                 working = working + rendered(self.layers, window.response, window.axes).numpy()
         if self.residual is not None:
             working = working + self.residual
-        return self.frames.cube_values(working * np.float32(self.peak))
+        return finite(self.frames.cube_values(working * np.float32(self.peak)))
 
 
 @dataclass(kw_only=True)
@@ -270,6 +270,13 @@ def decode_chunk(data: bytes, config: RadarConfig, *, with_residual: bool = True
         raise InputError(f"a chunk of the .mmw file is malformed ({error}); compress the recording again") from None
 
 
+def finite(values: np.ndarray) -> np.ndarray:
+    """The values of a chunk. Raises InputError where steps or peak were so large that some are not finite."""
+    if not np.isfinite(values).all():
+        raise InputError("a chunk of the .mmw file holds values that are not finite; compress the recording again")
+    return values
+
+
 def frames_of_chunk(data: bytes) -> int:
     """Number of frames of a chunk, of its first bytes."""
     return PREFIX.unpack_from(data)[0]
@@ -317,7 +324,8 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         rest = transform.inverse(cells.values(step, 1 << coarse).astype(np.complex64))
         residual = rest if residual is None else residual + rest
     return DecodedChunk(
-        frames=frames, layers=layers, residual=residual, peak=peak, noise_power=noise_power,
+        frames=frames, layers=layers, residual=None if residual is None else finite(residual), peak=peak,
+        noise_power=noise_power,
         num_residual_values=num_values, rank=rank, transform=None if transform is None else transform.choice,
     )  # fmt: skip
 

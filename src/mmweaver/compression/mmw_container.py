@@ -233,10 +233,11 @@ class MmwFile:
             length, num, kind = RECORD.unpack(head)
             extra = {FROM_FIRST: TIME.size, ALL_TIMES: TIME.size * num}.get(kind, 0)
             offset = at + RECORD.size + extra + HEAD_CHECK.size
-            if offset > self.num_bytes and kind <= ALL_TIMES:
+            is_possible = kind <= ALL_TIMES and num > 0
+            if offset > self.num_bytes and is_possible:
                 break
             times, check = stream.read(extra), stream.read(HEAD_CHECK.size)
-            if HEAD_CHECK.unpack(check)[0] != _head_check(head + times) or kind > ALL_TIMES or not num:
+            if not is_possible or HEAD_CHECK.unpack(check)[0] != _head_check(head + times):
                 raise self._damaged(f"record {len(records)} fails its checksum")
             if offset + length + CHECK.size > self.num_bytes:
                 break

@@ -17,7 +17,6 @@ CRC-32C, and all files are checked against SHA256SUMS before they are used. Refe
 
 import json
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PointCloud, RadarCube
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
+from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.zarr_arrays import zarr_module
@@ -41,6 +41,8 @@ NUMBERS = {"label": "int32", "subject": "int32", "place": "int32", "room": "int3
            "heading": "float32", "height": "float32"}  # fmt: skip
 UNITS = {"heading": "rad", "height": "m", "joints": "m", "frame_time": "s", "range": "m", "radial_velocity": "m/s"}
 IQ_DIMENSIONS = ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
+MOST = 2**31 - 1  # of a number that counts something
+FARTHEST_M = 1000.0  # of joints and points; what is beyond is damage
 _PEAK = 16384.0  # of the largest float16 of a sequence
 
 
@@ -119,6 +121,7 @@ class ActivitySet:
     """A stored set: everything but the signals in memory."""
 
     files: CheckedFolder
+    arrays: ZarrFolder
     config: RadarConfig
     label_names: tuple[str, ...]
     columns: dict[str, np.ndarray]  # along the sequences
@@ -131,20 +134,15 @@ class ActivitySet:
     def __len__(self) -> int:
         return len(self.columns["label"])
 
-    @cached_property
-    def _iq(self) -> Any:
-        self.files.check(f"{STORE}/iq/zarr.json")
-        with self.files.reading():
-            return zarr_module().open_group(self.files.folder / STORE, mode="r")["iq"]
-
     def cube(self, index: int) -> RadarCube:
         """The cube of one sequence in sqrt(mW). Raises InputError where none is stored, or its file is damaged."""
         if self.iq_scale is None:
             raise InputError(f"{self.files.folder} was made without signals; only joints and points are stored")
-        self.files.check(f"{STORE}/iq/c/{index}/")
+        self.files.check(f"{STORE}/iq/zarr.json", f"{STORE}/iq/c/{index}/")
+        grid = CubeGrid.of(self.config, self.joints_m.shape[1])
         with self.files.reading():
-            pairs = np.asarray(self._iq[index]).astype(np.float32) * np.float32(self.iq_scale[index])
-        values = np.ascontiguousarray(pairs).view(np.complex64)[..., 0]
+            pairs = self.arrays.row("iq", index, (*grid.shape, 2), kinds="f").astype(np.float32)
+        values = np.ascontiguousarray(pairs * np.float32(self.iq_scale[index])).view(np.complex64)[..., 0]
         return RadarCube(values=values, grid=CubeGrid.of(self.config, len(values)), config=self.config, scale=1.0)
 
     def cloud(self, index: int) -> PointCloud:
@@ -164,22 +162,34 @@ def read_activity_set(folder: Path) -> ActivitySet:
     if not is_activity_set(folder):
         raise InputError(f"{folder} holds no labelled set (no {SET_FILE}); make one: mmweaver dataset OUT --activities")
     plan = read_json(folder / SET_FILE)
-    made_by = plan.get("command", "mmweaver dataset") if isinstance(plan, dict) else "mmweaver dataset"
+    made_by = str(plan.get("command", "mmweaver dataset")) if isinstance(plan, dict) else "mmweaver dataset"
     if not (folder / STORE).is_dir():
         raise InputError(f"{folder} is not complete; make the rest with: {made_by}")
     files = CheckedFolder.of(folder, made_by)
     files.require_sums()
     files.check(but=(f"{STORE}/iq/c/",))
     with files.reading():
-        group: Any = zarr_module().open_group(folder / STORE, mode="r")
-        attrs = dict(group.attrs)
-        if attrs["schema_version"] != SCHEMA_VERSION:
-            raise InputError(f"{folder} has version {attrs['schema_version']} of its layout; this mmweaver reads 1")
-        columns = {name: np.asarray(group[name][...]) for name in (*STRINGS, *NUMBERS)}
-        return ActivitySet(
-            files=files, config=RadarConfig.from_json(json.dumps(attrs["radar"])),
-            label_names=tuple(attrs["label_names"]), columns=columns, joints_m=np.asarray(group["joints"]),
-            points=np.asarray(group["points"]), point_sequence=np.asarray(group["point_sequence"]),
-            point_frame=np.asarray(group["point_frame"]),
-            iq_scale=np.asarray(group["iq_scale"]) if "iq" in group else None,
-        )  # fmt: skip
+        group = open_zarr(folder / STORE)
+        if group.attr("schema_version", int) != SCHEMA_VERSION:
+            raise InputError(
+                f"{folder} has version {group.attrs['schema_version']} of its layout; this mmweaver reads 1"
+            )
+        return _activity_set(files, group)
+
+
+def _activity_set(files: CheckedFolder, group: ZarrFolder) -> ActivitySet:
+    each, labels = ("sequence",), group.words("label_names")
+    columns = {name: group.texts(name, "sequence") for name in STRINGS}
+    for name, kind in NUMBERS.items():
+        limits = {"low": -FARTHEST_M, "high": FARTHEST_M} if kind[0] == "f" else {"low": -1, "high": MOST}
+        columns[name] = group.numbers(name, each, kinds=kind[0], **limits)
+    group.numbers("label", each, kinds="i", low=0, high=len(labels) - 1)
+    pose, near = ("sequence", "frame_time", len(JOINT_NAMES), 3), {"low": -FARTHEST_M, "high": FARTHEST_M}
+    return ActivitySet(
+        files=files, arrays=group, config=RadarConfig.from_json(json.dumps(group.attr("radar", dict))),
+        label_names=labels, columns=columns, joints_m=group.numbers("joints", pose, kinds="f", **near),
+        points=group.numbers("points", ("point", len(POINT_COLUMNS)), kinds="f", **near),
+        point_sequence=group.numbers("point_sequence", ("point",), kinds="iu", low=0, high=len(columns["label"])),
+        point_frame=group.numbers("point_frame", ("point",), kinds="iu", low=0, high=MOST),
+        iq_scale=group.numbers("iq_scale", each, kinds="f", low=0) if "iq" in group else None,
+    )  # fmt: skip

@@ -1,6 +1,7 @@
 """Plan of a data set: room, person, activity, seed and split of every sequence."""
 
 import json
+import re
 import shlex
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -35,6 +36,7 @@ PEOPLE_HEIGHT_M = (1.63, 1.70, 1.75, 1.80, 1.87, 1.96)
 SPLITS = ("train", "validation", "test_room", "test_layout", "test_person", "test_activity")
 
 
+_KIND = re.compile(r"\w[\w -]{0,99}")  # of room: part of the name of a folder
 MOST = 100_000  # of layouts, sequences of a room, and frames
 
 
@@ -174,6 +176,18 @@ def command_of(plan: dict[str, Any], folder: Path) -> str:
         f"--radar {shlex.quote(radar)}", f"--seed {plan['seed']}",
     ]  # fmt: skip
     return " ".join([*words, *(["--geometry-only"] if plan.get("geometry_only") else []), "--repair"])
+
+
+def check_plan(plan: Any, place: Path) -> dict[str, Any]:
+    """The content of a plan.json, if rooms can be listed from it. Raises InputError otherwise; `place` names it."""
+    names = ("num_layouts", "sequences_a_room", "num_frames")
+    is_plan = isinstance(plan, dict) and isinstance(plan.get("radar"), str) and type(plan.get("seed")) is int
+    if not is_plan or not all(type(plan.get(name)) is int and 1 <= plan[name] <= MOST for name in names):
+        raise InputError(f"{place} is damaged (its radar, seed or counts); make the data set anew")
+    kinds = plan.get("kinds")
+    if not isinstance(kinds, list) or not all(isinstance(kind, str) and _KIND.fullmatch(kind) for kind in kinds):
+        raise InputError(f"{place} is damaged (its kinds of rooms); make the data set anew")
+    return plan
 
 
 def room_name(kind: str, layout: int) -> str:

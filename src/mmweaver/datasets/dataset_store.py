@@ -18,6 +18,7 @@ it is opened, signals and geometry when they are first read. Written by `dataset
 
 import json
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +29,14 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CameraIntrinsics, ClassMask, CubeGrid, RadarCube, RgbdPhoto
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
+from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder
-from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, command_of, room_name
+from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, check_plan, command_of, room_name
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
-from mmweaver.datasets.zarr_arrays import zarr_module
+from mmweaver.scene.photo.camera_file import camera_numbers
 
 PLAN_FILE = "plan.json"
+FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # of joints and depths; what is beyond is damage
 
 
 def is_done(folder: Path, name: str) -> bool:
@@ -91,15 +94,24 @@ class StoredRoom:
         person = int(self.person[index])
         return self.geometry.motion(index, person=person, height_m=PEOPLE_HEIGHT_M[person], seed=int(self.seed[index]))
 
+    @cached_property
+    def _arrays(self) -> ZarrFolder:
+        with self.files.reading():
+            return open_zarr(self.folder)
+
+    @cached_property
+    def _iq_scale(self) -> np.ndarray:
+        with self.files.reading():
+            return self._arrays.numbers("iq_scale", (len(self.seed),), kinds="f", low=0)
+
     def _stored(self, index: int) -> np.ndarray:
         self.files.check("iq/zarr.json")
+        grid = CubeGrid.of(self.config, self.joints_m.shape[1])
         with self.files.reading():
-            group: Any = zarr_module().open_group(self.folder, mode="r")
-            iq = group["iq"]
-            shard = index // (iq.shards or iq.chunks)[0]
+            shard = index // self._arrays.rows_a_file("iq")
             self.files.check(f"iq/c/{shard}/")
-            pairs = np.asarray(iq[index]).astype(np.float32) * np.float32(group["iq_scale"][index])
-        return np.ascontiguousarray(pairs).view(np.complex64)[..., 0]
+            pairs = self._arrays.row("iq", index, (*grid.shape, 2), kinds="f").astype(np.float32)
+        return np.ascontiguousarray(pairs * np.float32(self._iq_scale[index])).view(np.complex64)[..., 0]
 
 
 def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
@@ -124,10 +136,10 @@ def read_radar(folder: Path) -> RadarConfig:
     root = CheckedFolder.of(folder, command_of(read_plan(folder), folder))
     root.check()
     with root.reading():
-        attrs = zarr_module().open_group(folder, mode="r").attrs
-        if "checksums" in attrs:
+        group = open_zarr(folder)
+        if "checksums" in group.attrs:
             root.require_sums()
-        return RadarConfig.from_json(json.dumps(attrs["radar"]))
+        return RadarConfig.from_json(json.dumps(group.attr("radar", dict)))
 
 
 def plan_text(folder: Path) -> str:
@@ -140,46 +152,51 @@ def plan_text(folder: Path) -> str:
 
 def read_plan(folder: Path) -> dict[str, Any]:
     """The plan of a data set as a dictionary. Raises InputError as `plan_text` does."""
-    try:
-        plan = parse_json(plan_text(folder), str(folder / PLAN_FILE))
-        command_of(plan, folder)
-    except (ValueError, KeyError, TypeError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{folder / PLAN_FILE} is damaged ({error}); make the data set anew") from None
-    return plan
+    return check_plan(parse_json(plan_text(folder), str(folder / PLAN_FILE)), folder / PLAN_FILE)
 
 
 def _room(files: CheckedFolder, config: RadarConfig, device: str) -> StoredRoom | None:
     """A room whose files are sound, None where no sequence found a place in it."""
     files.check(but=("iq/c/", f"{GEOMETRY}/"))
     with files.reading():
-        group: Any = zarr_module().open_group(files.folder, mode="r")
-        attrs: dict[str, Any] = dict(group.attrs)
-        if "checksums" in attrs:
+        group = open_zarr(files.folder)
+        if "checksums" in group.attrs:
             files.require_sums()
         elif not (files.folder / "iq").is_dir() and not (files.folder / GEOMETRY / "visibility").is_dir():
             return None
-        if not attrs["text"]:
-            return None
-        return _stored_room(files, group, attrs, config, device)
+        return _stored_room(files, group, config, device) if group.words("text") else None
 
 
-def _stored_room(
-    files: CheckedFolder, group: Any, attrs: dict[str, Any], config: RadarConfig, device: str
-) -> StoredRoom:
-    names = tuple(attrs["class_names"])
-    classes = ClassMask(index=np.asarray(group["photo_class"]), names=names) if names else None
-    static = np.asarray(group["empty_iq"])
+def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, device: str) -> StoredRoom:
+    pose, one_each = ("sequence", "frame", 22, 3), ("sequence",)
+    joints_m = group.numbers("joints_m", pose, kinds="f", low=-FARTHEST_M, high=FARTHEST_M)
+    static_shape = (len(config.range_m), len(config.antenna_position_m), 2)
+    static = group.numbers("empty_iq", static_shape, kinds="f")
+    words = {name: group.words(name) for name in ("activity", "text", "split")}
+    for name, values in words.items():
+        group.check_shape(name, (len(values),), one_each)
     return StoredRoom(
-        files=files, kind=attrs["kind"], layout=attrs["layout"], lighting=attrs["lighting"],
-        photo=RgbdPhoto(
-            rgb=np.asarray(group["photo_rgb"]), depth_m=np.asarray(group["photo_depth_m"]).astype(np.float64),
-            intrinsics=CameraIntrinsics(**attrs["camera"]), classes=classes,
-        ),
-        static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64),
-        joints_m=np.asarray(group["joints_m"]), joint_velocity_mps=np.asarray(group["joint_velocity_mps"]),
-        person=np.asarray(group["person"]), activity=tuple(attrs["activity"]), text=tuple(attrs["text"]),
-        split=tuple(attrs["split"]), seed=np.asarray(group["seed"]), config=config,
-        geometry=StoredGeometry(files=files, config=config) if GEOMETRY in group else None, device=device,
+        files=files, kind=group.attr("kind", str), layout=group.attr("layout", int),
+        lighting=group.attr("lighting", str), photo=_photo(group),
+        static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64), joints_m=joints_m,
+        joint_velocity_mps=group.numbers("joint_velocity_mps", pose, kinds="f", low=-FASTEST_MPS, high=FASTEST_MPS),
+        person=group.numbers("person", one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1), **words,
+        seed=group.numbers("seed", one_each, kinds="iu", low=0), config=config,
+        geometry=StoredGeometry(files=files, config=config) if group.has_group(GEOMETRY) else None, device=device,
     )  # fmt: skip
+
+
+def _photo(group: ZarrFolder) -> RgbdPhoto:
+    rgb = group.numbers("photo_rgb", ("row", "column", 3), kinds="u", high=255).astype(np.uint8)
+    depth_m = group.numbers("photo_depth_m", ("row", "column"), kinds="f", low=0, high=FARTHEST_M, nan=True)
+    names, classes = group.words("class_names"), None
+    if names:
+        index = group.numbers("photo_class", ("row", "column"), kinds="u", high=len(names) - 1)
+        classes = ClassMask(index=index.astype(np.uint8), names=names)
+    height, width = depth_m.shape
+    numbers = camera_numbers(group.attr("camera", dict), group.path)
+    camera = CameraIntrinsics(
+        fx=numbers["fx"], fy=numbers["fy"], cx=numbers["cx"], cy=numbers["cy"],
+        width=round(numbers.get("width", width)), height=round(numbers.get("height", height)),
+    )  # fmt: skip
+    return RgbdPhoto(rgb=rgb, depth_m=depth_m.astype(np.float64), intrinsics=camera, classes=classes)

@@ -5,7 +5,6 @@ follows from plan.json, which the first process creates; each completes what is 
 """
 
 import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -19,6 +18,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write, is_empty, resolved
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid
+from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
+from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.staging import is_staged, remove, staging_path, sync, sync_tree
 from mmweaver.datasets.dataset_plan import RADAR_FILE, DatasetPlan
@@ -28,6 +29,7 @@ from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, 
 from mmweaver.datasets.zarr_arrays import put_array, zarr_module
 
 SEQUENCES_A_SHARD = 8
+LARGEST_ROOT_FILE = 64 * MEGABYTE
 AXES = {
     "frame_time_s": ("frame",), "range_m": ("range",), "radial_velocity_mps": ("doppler",),
     "antenna_position_m": ("antenna", "axis"),
@@ -53,7 +55,7 @@ def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
             _move_entries(stage, target)
         elif not (target / RADAR_FILE).is_file():
             raise InputError(f"{target / RADAR_FILE} is missing; make it anew with the same command and --repair")
-        elif (target / RADAR_FILE).read_bytes() != (stage / RADAR_FILE).read_bytes():
+        elif _read(target / RADAR_FILE) != _read(stage / RADAR_FILE):
             raise InputError(f"{folder} holds a data set of another radar; choose another folder or the same radar")
     except OSError as error:
         raise cannot_write(folder, error) from error
@@ -75,7 +77,7 @@ def _write_root(stage: Path, plan: DatasetPlan, config: RadarConfig) -> None:
     for name, dimensions in AXES.items():
         put_array(root, name, getattr(grid, name), dimensions)
     root.attrs.update(
-        {"made_by": "mmweaver dataset", "radar": json.loads(config.to_json()), "joints": list(JOINT_NAMES),
+        {"made_by": "mmweaver dataset", "radar": parse_json(config.to_json(), "the radar"), "joints": list(JOINT_NAMES),
          "wavelength_m": config.wavelength_m, "checksums": SUMS_FILE}
     )  # fmt: skip
     (stage / PLAN_FILE).write_text(plan.to_json(), encoding="utf-8")
@@ -102,7 +104,11 @@ def _move_entries(stage: Path, target: Path) -> None:
 
 def _contents(place: Path) -> dict[str, bytes]:
     files = [place] if place.is_file() else sorted(file for file in place.rglob("*") if file.is_file())
-    return {file.relative_to(place).as_posix(): file.read_bytes() for file in files}
+    return {file.relative_to(place).as_posix(): _read(file) for file in files}
+
+
+def _read(file: Path) -> bytes:
+    return read_bytes(file, max_bytes=LARGEST_ROOT_FILE)
 
 
 def remove_damaged(folder: Path, plan: DatasetPlan) -> list[str]:
@@ -116,7 +122,7 @@ def remove_damaged(folder: Path, plan: DatasetPlan) -> list[str]:
     sums = _sums_or_none(folder)
     if sums is None or damages(folder):
         is_ours = (sums or {}).get(PLAN_FILE) == hashlib.sha256(text.encode()).hexdigest()
-        if not is_ours and (folder / PLAN_FILE).read_bytes() != text.encode():
+        if not is_ours and _read(folder / PLAN_FILE) != text.encode():
             raise InputError(f"{folder} holds a data set of another plan; give the settings it was made with")
         remove(folder / SUMS_FILE)
         with atomic_file(folder / PLAN_FILE) as temporary:

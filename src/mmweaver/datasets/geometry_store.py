@@ -17,6 +17,7 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.room_generation import RoomGeometry, TracedSequence
 from mmweaver.datasets.zarr_arrays import put_array
@@ -24,12 +25,20 @@ from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody
 from mmweaver.paths.body_paths import GHOST_POINTS, ghost_points
 from mmweaver.paths.frame_clock import FrameClock
+from mmweaver.paths.paths import STATIC_KINDS, Interaction
 from mmweaver.paths.static_paths import PreparedRoom
 from mmweaver.paths.static_paths_store import room_arrays, room_of, room_words
 from mmweaver.paths.visibility import Visibility
 
 GEOMETRY = "geometry"
 ROOMS = ("room", "photographed")
+FARTHEST_M = 1e4  # of joints and of what a room is made of; what is beyond is damage
+# Arrays of a prepared room (`room_arrays`): shape and kind of numbers.
+ROOM_ARRAYS: dict[str, tuple[tuple[int | str, ...], str]] = {
+    "count": ((len(STATIC_KINDS),), "iu"), "place_m": (("path", 3), "f"), "amplitude": (("path", 2), "f"),
+    "mirrored_last_m": (("mirrored", 3), "f"), "mirrored_way_m": (("mirrored", "tx", "rx"), "f"),
+    "face": (("face", 4, 3), "f"), "face_half_m": (("face", 2), "f"),
+}  # fmt: skip
 
 
 def write_geometry(group: Any, geometry: RoomGeometry, sequences: tuple[TracedSequence, ...]) -> None:
@@ -76,11 +85,15 @@ class StoredGeometry:
     @cached_property
     def node_joints_m(self) -> np.ndarray:
         """(sequence, frame, node, 22, 3)."""
-        return self._array("node_joints_m")
+        shape = ("sequence", "frame", "node", 22, 3)
+        with self.files.reading():
+            return self._arrays.numbers("node_joints_m", shape, kinds="f", low=-FARTHEST_M, high=FARTHEST_M)
 
     @cached_property
     def _visibility(self) -> np.ndarray:
-        return self._array("visibility")
+        bits = DEFAULT_NUM_POINTS + len(self.room.reflectors) * GHOST_POINTS + len(self.room.paths)
+        with self.files.reading():
+            return self._arrays.numbers("visibility", ("sequence", "frame", -(-bits // 8)), kinds="u", high=255)
 
     @cached_property
     def room(self) -> PreparedRoom:
@@ -117,31 +130,44 @@ class StoredGeometry:
         return TracedMotion(joints_m=joints_m, visibility=seen, subject=person, height_m=height_m, seed=seed)
 
     @cached_property
-    def _group(self) -> Any:
-        import zarr
-
+    def _arrays(self) -> ZarrFolder:
         self.files.check(f"{GEOMETRY}/")
         with self.files.reading():
-            group: Any = zarr.open_group(self.files.folder / GEOMETRY, mode="r")
-        if group.attrs.get("skin") != skin_mark():
-            raise InputError(
-                f"{self.files.folder} was made by another version of mmweaver, whose people have another skin; make the"
-                " data set again"
-            )
-        num_nodes = len(FrameClock(self.config).node_s)
-        if group["node_joints_m"].shape[2] != num_nodes:
-            raise InputError(
-                f"{self.files.folder} was made by another version of mmweaver, which kept joints at"
-                f" {group['node_joints_m'].shape[2]} instants a frame, not {num_nodes}; make the data set again"
-            )
-        return group
+            arrays = open_zarr(self.files.folder / GEOMETRY)
+            if arrays.attrs.get("skin") != skin_mark():
+                raise InputError(
+                    f"{self.files.folder} was made by another version of mmweaver, whose people have another skin; make"
+                    " the data set again"
+                )
+            num_nodes, stored = len(FrameClock(self.config).node_s), arrays.promise("node_joints_m").shape
+            if len(stored) == 5 and stored[2] != num_nodes:
+                raise InputError(
+                    f"{self.files.folder} was made by another version of mmweaver, which kept joints at {stored[2]}"
+                    f" instants a frame, not {num_nodes}; make the data set again"
+                )
+        return arrays
 
     def _read(self, name: str) -> PreparedRoom:
         with self.files.reading():
-            group = self._group[name]
-            arrays = {key: np.asarray(array) for key, array in group.arrays()}
-            return room_of(arrays, group.attrs["faces"], self.config)
+            group = self._arrays.group(name)
+            arrays = {
+                key: group.numbers(key, shape, kinds=kinds, low=-FARTHEST_M, high=FARTHEST_M)
+                for key, (shape, kinds) in ROOM_ARRAYS.items()
+            }
+            words = group.attr("faces", list)
+            group.check_shape("mirrored_way_m", (self.config.num_tx, self.config.num_rx), ("tx", "rx"))
+            _check_room(group, arrays, words)
+            return room_of(arrays, words, self.config)
 
-    def _array(self, name: str) -> np.ndarray:
-        with self.files.reading():
-            return np.asarray(self._group[name])
+
+def _check_room(group: ZarrFolder, arrays: dict[str, np.ndarray], words: list[Any]) -> None:
+    """Raises InputError where counts do not add up, lengths are not positive, or a face has no kind and material."""
+    group.check_shape("faces", (len(words),), ("face",))
+    group.check_shape("count", (int(arrays["count"].sum()),), ("path",))
+    mirrored = int(arrays["count"][STATIC_KINDS.index(Interaction.SPECULAR)])
+    group.check_shape("count", (mirrored,), ("mirrored",))
+    is_named = all(
+        isinstance(pair, list) and len(pair) == 2 and {type(word) for word in pair} == {str} for pair in words
+    )
+    if not is_named or (arrays["count"] < 0).any() or (arrays["mirrored_way_m"] <= 0).any():
+        raise InputError(f"{group.path} is damaged (its counts, lengths or faces); make it again")

@@ -99,7 +99,7 @@ def test_what_is_no_pose_is_refused():
 
 
 def test_rates():
-    assert rate_of({"mocap_frame_rate": np.array(59.94)}) == pytest.approx(59.94)
-    assert rate_of({"fps": np.array([30])}) == 30.0
-    assert rate_of({"mocap_framerate": np.array(0.0)}) is None
-    assert rate_of({"fps": np.array("fast")}) is None
+    assert rate_of({"mocap_frame_rate": np.array(59.94)}, HERE) == pytest.approx(59.94)
+    assert rate_of({"fps": np.array([30])}, HERE) == 30.0
+    assert rate_of({"mocap_framerate": np.array(0.0)}, HERE) is None
+    assert rate_of({"fps": np.array("fast")}, HERE) is None

@@ -9,6 +9,11 @@ from mmweaver.core.errors import InputError
 _WORDS = {"f": "real numbers", "fiu": "real numbers", "iu": "whole numbers", "c": "complex numbers"}
 
 
+def real_numbers(path: Path | str, name: str, values: np.ndarray) -> np.ndarray:
+    """An array of a file as float64; NaN is allowed. Raises InputError where it holds anything but real numbers."""
+    return ArrayChecks(path).numbers(name, values, nan=True).astype(np.float64)
+
+
 class ArrayChecks:
     """Checks arrays of one file. Axes of one name have one length in all of them."""
 
@@ -37,7 +42,7 @@ class ArrayChecks:
                 f"{self.path}: {name} is of type {values.dtype}; it must hold {_WORDS.get(kinds, 'numbers')}"
             )
         if shape is not None:
-            self._check_shape(name, values, shape)
+            self.shape(name, values.shape, shape)
         if values.size and values.dtype.kind in "fc":
             for part in (np.real(values), np.imag(values)) if values.dtype.kind == "c" else (values,):
                 self._check_range(name, part, low, high, nan)
@@ -45,14 +50,15 @@ class ArrayChecks:
             self._check_range(name, values, low, high, nan)
         return values
 
-    def _check_shape(self, name: str, values: np.ndarray, shape: tuple[int | str, ...]) -> None:
-        wanted = f"({', '.join(str(axis) for axis in shape)})"
-        if values.ndim != len(shape):
-            raise InputError(f"{self.path}: {name} has shape {values.shape}; it must be {wanted}")
-        for axis, length in zip(shape, values.shape, strict=True):
+    def shape(self, name: str, found: tuple[int, ...], wanted: tuple[int | str, ...]) -> None:
+        """Raises InputError where the shape `found` of an array is not `wanted`, as in `numbers`."""
+        words = f"({', '.join(str(axis) for axis in wanted)})"
+        if len(found) != len(wanted):
+            raise InputError(f"{self.path}: {name} has shape {found}; it must be {words}")
+        for axis, length in zip(wanted, found, strict=True):
             if isinstance(axis, int):
                 if axis != length:
-                    raise InputError(f"{self.path}: {name} has shape {values.shape}; it must be {wanted}")
+                    raise InputError(f"{self.path}: {name} has shape {found}; it must be {words}")
                 continue
             known, first = self._lengths.setdefault(axis, (length, name))
             if known != length:

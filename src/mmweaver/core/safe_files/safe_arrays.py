@@ -20,6 +20,7 @@ from mmweaver.core.safe_files.regular_files import MEGABYTE, check_regular, fore
 
 MAGIC = b"\x93NUMPY"
 MAX_HEADER_BYTES = 10_000
+UNICODE_END = 0x110000
 KINDS = "biufcUS"  # what mmWeaver reads: no objects, dates or records
 # A compressed archive may grow to this, or to this many times its own size, whichever is more.
 INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
@@ -184,6 +185,9 @@ def _filled(file: Any, dtype: np.dtype, shape: tuple[int, ...], order: Any) -> n
             raise ValueError(f"it ends after {at} of {len(view)} bytes")
         view[at : at + len(piece)] = piece
         at += len(piece)
+    letters = np.dtype(np.uint32).newbyteorder(dtype.byteorder)
+    if dtype.kind == "U" and array.size and array.view(letters).max() >= UNICODE_END:  # Python raises SystemError
+        raise ValueError("it holds text that is none")
     return array.reshape(shape, order=order)
 
 

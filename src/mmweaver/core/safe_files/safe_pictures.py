@@ -4,6 +4,7 @@ Pillow would hand an EPS to Ghostscript whatever the file is called, and rare fo
 """
 
 import contextlib
+import logging
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -42,7 +43,11 @@ def open_picture(path: Path) -> Picture:
     """
     from PIL import Image, UnidentifiedImageError
 
-    with open_regular(path) as file, foreign_errors(path, "damaged ({reason}); give a whole picture file"):
+    with (
+        _quiet_pillow(),
+        open_regular(path) as file,
+        foreign_errors(path, "damaged ({reason}); give a whole picture file"),
+    ):
         try:
             image = Image.open(file, formats=FORMATS)
         except UnidentifiedImageError:
@@ -87,6 +92,18 @@ def _unknown(path: Path) -> str:
 
 def _too_large(path: Path) -> str:
     return f"{path} is too large; make it smaller than {MAX_PIXELS / 1e6:.0f} million pixels"
+
+
+@contextlib.contextmanager
+def _quiet_pillow() -> Iterator[None]:
+    """Silences what Pillow logs about a damaged file: without handlers, logging writes errors to stderr."""
+    log = logging.getLogger("PIL")
+    kept = log.level
+    log.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        log.setLevel(kept)
 
 
 @contextlib.contextmanager

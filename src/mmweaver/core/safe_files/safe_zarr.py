@@ -1,6 +1,14 @@
-"""Zarr (v3) groups and arrays on the disk: metadata is checked before zarr takes memory for what it promises."""
+"""Zarr (v3) groups and arrays on the disk: what metadata promises is held against the chunk files before memory is
+taken for it, and a chunk that would grow beyond its array is refused (`bounded_codecs`).
 
+Read are arrays as mmWeaver writes them: numbers or texts, Zstandard or Blosc, CRC-32C, shards. Reference: Zarr v3 core
+specification; decision 173.
+"""
+
+import itertools
 import math
+import os
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +20,37 @@ from mmweaver.core.safe_files.regular_files import MEGABYTE, check_regular, fore
 from mmweaver.core.safe_files.safe_text import read_json
 
 METADATA = "zarr.json"
-CODECS = frozenset({"bytes", "zstd", "gzip", "blosc", "crc32c", "sharding_indexed", "transpose"})
-INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 1000  # zstd makes much less of zeros
 DAMAGED = "damaged ({reason}); make it again"
+# The arrays of a group may grow to this, or to this many times the size of their files, whichever is more.
+INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
+MAX_CHUNKS = 1_000_000
+ABSENT_CHUNKS = 1000  # of nothing but zeros, which Zarr need not write
+BYTES_OF_INDEX = 16  # of each chunk in a shard
+MOST_AXES = 16
+KEYS = {"name": "default", "configuration": {"separator": "/"}}
+TEXT = np.dtype("O")
+_PACKED = [[], ["zstd"], ["blosc"], ["crc32c"], ["zstd", "crc32c"], ["blosc", "crc32c"]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArrayPromise:
+    """What the metadata of an array says: shape, type (`TEXT` for texts), and how many bytes its files hold."""
+
+    shape: tuple[int, ...]
+    dtype: np.dtype
+    held: int
+
+    @property
+    def promised(self) -> int:
+        """Bytes of all its elements in memory."""
+        return math.prod(self.shape) * max(self.dtype.itemsize, 1)
 
 
 class ZarrFolder:
-    """A group: its attributes, its arrays and the groups inside it. Every array is checked as it is read."""
+    """A group: its attributes and arrays, all of which are checked when it is opened and as they are read.
+
+    Raises InputError where it is no group, and where an array is damaged or promises far more than its files hold.
+    """
 
     def __init__(self, path: Path):
         metadata = _metadata(path)
@@ -27,18 +59,27 @@ class ZarrFolder:
         self.path = path
         self.attrs: dict[str, Any] = metadata.get("attributes", {})
         self._checks = ArrayChecks(path)
+        self._opened: dict[str, Any] = {}
+        self._promises = {
+            place.name: _promise(place, inner)
+            for place in sorted(file.parent for file in path.glob(f"*/{METADATA}"))
+            if (inner := _metadata(place)).get("node_type") == "array"
+        }
+        promised = sum(one.promised for one in self._promises.values())
+        held = sum(one.held for one in self._promises.values())
+        if promised > max(INFLATED_BYTES, INFLATED_RATIO * held):
+            raise InputError(f"{path}: its arrays say {promised} bytes, but their files hold {held}; make it again")
 
     def __contains__(self, name: str) -> bool:
-        return (self.path / name / METADATA).is_file()
+        return name in self._promises
+
+    def has_group(self, name: str) -> bool:
+        """Whether there is a group of that name inside."""
+        return name not in self and (self.path / name / METADATA).is_file()
 
     def group(self, name: str) -> "ZarrFolder":
         """A group inside this one."""
         return ZarrFolder(self.path / name)
-
-    def array_names(self) -> list[str]:
-        """The names of the arrays directly inside."""
-        names = sorted(path.parent.name for path in self.path.glob(f"*/{METADATA}"))
-        return [name for name in names if _metadata(self.path / name).get("node_type") == "array"]
 
     def attr(self, name: str, kind: type) -> Any:
         """An attribute of a JSON type. Raises InputError where it is missing or of another type."""
@@ -47,21 +88,67 @@ class ZarrFolder:
             raise InputError(f"{self.path} is damaged: its {name} is {value!r}; make it again")
         return value
 
-    def shape(self, name: str) -> tuple[int, ...]:
-        """The shape of an array, which is not read."""
-        return _checked_shape(self.path / name)[0]
+    def words(self, name: str) -> tuple[str, ...]:
+        """An attribute that is a list of texts. Raises InputError for anything else."""
+        values = self.attr(name, list)
+        if not all(isinstance(value, str) for value in values):
+            raise InputError(f"{self.path} is damaged: its {name} is no list of texts; make it again")
+        return tuple(values)
 
-    def numbers(
-        self, name: str, shape: tuple[int | str, ...] | None = None, *, rows: Any = ..., **limits: Any
-    ) -> np.ndarray:
-        """An array, or `rows` of it, checked by `ArrayChecks.numbers`. Raises InputError where it is damaged."""
-        place = self.path / name
-        _checked_shape(place)
-        import zarr
+    def promise(self, name: str) -> ArrayPromise:
+        """What an array's metadata says; the array is not read. Raises InputError where there is none."""
+        if name not in self._promises:
+            raise InputError(f"{self.path} is damaged: it has no {name}; make it again")
+        return self._promises[name]
 
-        with foreign_errors(place, DAMAGED):
-            values = np.asarray(zarr.open_array(place, mode="r", zarr_format=3)[rows])
-        return self._checks.numbers(name, values, shape, **limits)
+    def check_shape(self, name: str, found: tuple[int, ...], wanted: tuple[int | str, ...]) -> None:
+        """Holds the shape of something that belongs to the arrays against theirs; see `ArrayChecks.shape`."""
+        self._checks.shape(name, found, wanted)
+
+    def rows_a_file(self, name: str) -> int:
+        """How many rows of an array, along its first axis, one chunk file holds."""
+        self.promise(name)
+        array = self._array(name)
+        return int((array.shards or array.chunks)[0])
+
+    def numbers(self, name: str, shape: tuple[int | str, ...], **limits: Any) -> np.ndarray:
+        """An array whose metadata says `shape`, read and then checked by `ArrayChecks.numbers`."""
+        found = self.promise(name)
+        self._checks.shape(name, found.shape, shape)
+        return self._checks.numbers(name, self._read(name, ...), shape, **limits)
+
+    def row(self, name: str, index: int, shape: tuple[int | str, ...], **limits: Any) -> np.ndarray:
+        """One element of an array along its first axis, of `shape`, checked as `numbers` checks."""
+        found = self.promise(name)
+        if not 0 <= index < (found.shape or (0,))[0]:
+            raise InputError(f"{self.path}: {name} has no element {index}; make it again")
+        self._checks.shape(name, found.shape[1:], shape)
+        return self._checks.numbers(name, self._read(name, index), shape, **limits)
+
+    def texts(self, name: str, axis: str) -> np.ndarray:
+        """A list of texts, whose length is that of the other arrays along `axis`."""
+        found = self.promise(name)
+        self._checks.shape(name, found.shape, (axis,))
+        if found.dtype != TEXT:
+            raise InputError(f"{self.path}: {name} holds {found.dtype}; texts are needed")
+        return self._read(name, ...)
+
+    def _read(self, name: str, rows: Any) -> np.ndarray:
+        array = self._array(name)
+        with foreign_errors(self.path / name, DAMAGED):
+            return np.asarray(array[rows])
+
+    def _array(self, name: str) -> Any:
+        """Opened once: what was checked is what is read."""
+        if name not in self._opened:
+            from mmweaver.core.safe_files.bounded_codecs import open_bounded
+
+            with foreign_errors(self.path / name, DAMAGED):
+                array = open_bounded(self.path / name)
+                if array.shape != self.promise(name).shape:
+                    raise ValueError("it was changed while it was read")
+            self._opened[name] = array
+        return self._opened[name]
 
 
 def open_zarr(folder: Path | str) -> ZarrFolder:
@@ -80,31 +167,71 @@ def _metadata(folder: Path) -> dict[str, Any]:
     return content
 
 
-def _checked_shape(place: Path) -> tuple[tuple[int, ...], np.dtype]:
-    """Shape and type of an array, once its chunks are regular files and it does not promise far more than they hold."""
-    metadata = _metadata(place)
+def _promise(place: Path, metadata: dict[str, Any]) -> ArrayPromise:
+    """What an array promises, once its chunks are possible and those that are there are regular files."""
     try:
-        shape = tuple(metadata["shape"])
-        chunk = tuple(metadata["chunk_grid"]["configuration"]["chunk_shape"])
-        dtype = np.dtype(metadata["data_type"])
-        codecs = {codec["name"] for codec in _all_codecs(metadata["codecs"])}
-        is_plain = all(type(length) is int and 0 <= length < 2**48 for length in (*shape, *chunk))
-    except (KeyError, TypeError, ValueError, AttributeError):
-        raise InputError(f"{place} is no array of Zarr, or it is damaged; make it again") from None
-    largest = tuple(max(1, length) for length in shape)
-    if metadata.get("node_type") != "array" or not is_plain or len(chunk) != len(shape) or dtype.kind not in "biufc":
-        raise InputError(f"{place} is no array of numbers of Zarr, or it is damaged; make it again")
-    if any(length > most or length == 0 for length, most in zip(chunk, largest, strict=True)) or codecs - CODECS:
-        raise InputError(f"{place} has impossible chunks or codecs; make it again")
-    held = sum(check_regular(file) for file in place.rglob("*") if not file.is_dir())
-    if math.prod(shape) * dtype.itemsize > max(INFLATED_BYTES, INFLATED_RATIO * held):
-        raise InputError(f"{place} says {shape} {dtype}, but its files hold {held} bytes; make it again")
-    return shape, dtype
+        shape, chunk = _lengths(metadata["shape"]), _lengths(metadata["chunk_grid"]["configuration"]["chunk_shape"])
+        is_text = metadata["data_type"] == "string"
+        dtype = TEXT if is_text else np.dtype(metadata["data_type"])
+        inner = _inner_chunk(metadata["codecs"], chunk, is_text)
+        if dtype.kind not in "biufcO" or (dtype.kind == "O") != is_text or len(shape) > MOST_AXES:
+            raise ValueError("its type or shape")
+        if metadata["chunk_grid"].get("name") != "regular" or metadata.get("chunk_key_encoding", KEYS) != KEYS:
+            raise ValueError("its chunks are laid out in another way")
+        _check_chunks(shape, chunk)
+        _check_chunks(chunk, inner)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(f"{place} is no array that is read here, or it is damaged ({error}); make it again") from None
+    counts = [-(-length // step) for length, step in zip(shape, chunk, strict=True)]
+    held, in_shards = _held(place, counts), math.prod(counts)
+    if inner != chunk:
+        in_shards *= math.prod(-(-length // step) for length, step in zip(chunk, inner, strict=True))
+        if in_shards > ABSENT_CHUNKS + held // BYTES_OF_INDEX:
+            raise InputError(f"{place} says {in_shards} chunks, but its files hold {held} bytes; make it again")
+    return ArrayPromise(shape=shape, dtype=dtype, held=held)
 
 
-def _all_codecs(codecs: list[Any]) -> list[Any]:
-    found = list(codecs)
-    for codec in codecs:
-        inner = codec.get("configuration", {})
-        found += _all_codecs(inner.get("codecs", [])) + _all_codecs(inner.get("index_codecs", []))
-    return found
+def _held(place: Path, counts: list[int]) -> int:
+    """Bytes of the chunk files, which are regular files. Raises InputError where many are missing."""
+    if math.prod(counts) > MAX_CHUNKS:
+        raise InputError(f"{place} says {math.prod(counts)} chunks, more than {MAX_CHUNKS}; make it again")
+    held = absent = 0
+    for key in itertools.product(*map(range, counts)):
+        file = "/".join((str(place), "c", *map(str, key)))
+        if os.path.lexists(file):
+            held += check_regular(file)
+        else:
+            absent += 1
+        if absent > ABSENT_CHUNKS:
+            raise InputError(f"{place} says {math.prod(counts)} chunks, of which few are there; make it again")
+    return held
+
+
+def _lengths(values: Any) -> tuple[int, ...]:
+    if not isinstance(values, list) or not all(type(length) is int and 0 <= length < 2**48 for length in values):
+        raise ValueError("its shape")
+    return tuple(values)
+
+
+def _inner_chunk(codecs: list[dict[str, Any]], chunk: tuple[int, ...], is_text: bool) -> tuple[int, ...]:
+    """The shape of what is packed in one piece. Raises ValueError for codecs that mmWeaver does not write."""
+    first, *packing = (codec["name"] for codec in codecs)
+    if first == "sharding_indexed" and not packing:
+        shards = codecs[0]["configuration"]
+        inner = _lengths(shards["chunk_shape"])
+        if [codec["name"] for codec in shards["index_codecs"]] != ["bytes", "crc32c"]:
+            raise ValueError("the index of its shards")
+        if _inner_chunk(shards["codecs"], inner, is_text) != inner:
+            raise ValueError("shards in shards")
+        return inner
+    if first != ("vlen-utf8" if is_text else "bytes") or packing not in _PACKED:
+        raise ValueError("its codecs")
+    return chunk
+
+
+def _check_chunks(whole: tuple[int, ...], chunk: tuple[int, ...]) -> None:
+    """Raises ValueError where chunks are empty, or larger than what they are parts of."""
+    if len(whole) != len(chunk) or any(
+        not 1 <= step <= max(length, 1) for length, step in zip(whole, chunk, strict=True)
+    ):
+        raise ValueError("its chunks")

@@ -7,6 +7,7 @@ from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files import safe_arrays
+from mmweaver.core.safe_files.array_checks import ArrayChecks, real_numbers
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS
 from mmweaver.motion.mocap.clip import RawMotion
 from mmweaver.motion.mocap.humanml3d import FPS, NUM_FEATURES, joints_from_features
@@ -54,7 +55,7 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
             f" ({', '.join(JOINT_KEYS)}) are among them"
         )
     names = next((tuple(map(str, arrays[name])) for name in NAME_KEYS if name in arrays), None)
-    positions = np.asarray(arrays[key], float)
+    positions = real_numbers(path, key, arrays[key])
     if names is None:
         positions, names = _of_22(positions, path), JOINT_NAMES
     elif positions.ndim != 3 or positions.shape[1:] != (len(names), 3):
@@ -63,7 +64,7 @@ def read_npz(path: Path, clip: str | None = None, body_model: Path | None = None
         )
     ours = key == "joints_m"
     return RawMotion(
-        names=names, positions=positions, kind="joints", fps=rate_of(arrays) or _rate_of_times(arrays),
+        names=names, positions=positions, kind="joints", fps=rate_of(arrays, path) or _rate_of_times(arrays, path),
         unit_m=1.0 if ours else None, up="z" if ours else None,
     )  # fmt: skip
 
@@ -101,8 +102,8 @@ def _of_22(values: Array, path: Path) -> Float[Array, "frame 22 3"]:
 
 
 def _of_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion:
-    names, lengths = [str(name) for name in arrays["names"]], arrays["lengths"].astype(int)
-    positions = arrays["pos"]
+    lengths = ArrayChecks(path).numbers("lengths", arrays["lengths"], ("clip",), kinds="iu", low=0, high=1e9)
+    names, positions = [str(name) for name in np.ravel(arrays["names"])], arrays["pos"]
     if (
         positions.ndim != 3
         or positions.shape[1:] != (38, 3)
@@ -118,7 +119,7 @@ def _of_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion
         few = ", ".join(names[k] for k in hits[:4]) or ", ".join(names[:4])
         raise InputError(f"{path}: {clip!r} names {len(hits)} of its {len(names)} motions; write one out, as {few}")
     start = int(lengths[: hits[0]].sum())
-    chosen = np.asarray(positions[start : start + lengths[hits[0]]], float)
+    chosen = real_numbers(path, "pos", positions[start : start + int(lengths[hits[0]])])
     return RawMotion(
         names=tuple(CMU_NAMES.values()),
         positions=chosen[:, list(CMU_NAMES)],
@@ -129,10 +130,10 @@ def _of_cmu(arrays: dict[str, Array], path: Path, clip: str | None) -> RawMotion
     )
 
 
-def _rate_of_times(arrays: dict[str, Array]) -> float | None:
+def _rate_of_times(arrays: dict[str, Array], path: Path) -> float | None:
     times = arrays.get("frame_time_s", arrays.get("time_s"))
-    if times is None or len(times) < 2:
+    if times is None or times.ndim != 1 or len(times) < 2:
         return None
-    step = np.diff(np.asarray(times, float))
+    step = np.diff(real_numbers(path, "the frames' times", times))
     even = step.min() > 0 and np.ptp(step) < 1e-3 * step.mean()
     return float(1 / step.mean()) if even else None

@@ -12,6 +12,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.array_checks import real_numbers
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.skeleton import JOINT_NAMES, NUM_JOINTS, PARENTS
 from mmweaver.motion.mocap.clip import RawMotion
@@ -40,26 +41,29 @@ def is_smpl(arrays: dict[str, Array]) -> bool:
 def read_smpl(arrays: dict[str, Array], path: Path, body_model: Path | None = None) -> RawMotion:
     """Joints (frame, 22, 3) in metres of an AMASS or SMPL .npz. Raises InputError for shapes that are no such poses."""
     poses = _poses(arrays, path)
-    trans = next(arrays[name] for name in TRANSLATIONS if name in arrays)
+    trans = next(real_numbers(path, name, arrays[name]) for name in TRANSLATIONS if name in arrays)
     if trans.shape != (len(poses), 3):
         raise InputError(f"{path}: the translation has shape {trans.shape}, {(len(poses), 3)} fits the poses")
     betas = arrays.get("betas", arrays.get("shape"))
     if body_model is not None:
-        offsets, note = _own_offsets(body_model, betas), f"bones of the body model {body_model.name}"
+        offsets, note = (
+            _own_offsets(body_model, None if betas is None else real_numbers(path, "betas", betas)),
+            f"bones of the body model {body_model.name}",
+        )
     else:
         offsets, note = MEAN_OFFSET_M, "the mean SMPL skeleton is used for the recorded body (no body model was given)"
-    positions = forward(poses[:, :NUM_JOINTS], np.asarray(trans, float), offsets)
+    positions = forward(poses[:, :NUM_JOINTS], trans, offsets)
     return RawMotion(
-        names=JOINT_NAMES, positions=positions, kind="SMPL", fps=rate_of(arrays), unit_m=1.0, notes=(note,)
+        names=JOINT_NAMES, positions=positions, kind="SMPL", fps=rate_of(arrays, path), unit_m=1.0, notes=(note,)
     )
 
 
-def rate_of(arrays: dict[str, Array]) -> float | None:
+def rate_of(arrays: dict[str, Array], path: Path) -> float | None:
     """The frame rate that an .npz states, if it does."""
-    found = [arrays[name] for name in RATES if name in arrays and np.asarray(arrays[name]).size == 1]
-    if not found or not np.issubdtype(found[0].dtype, np.number):
+    found = [name for name in RATES if name in arrays and arrays[name].size == 1 and arrays[name].dtype.kind in "fiuc"]
+    if not found:
         return None
-    rate = float(np.asarray(found[0]).reshape(()))
+    rate = float(real_numbers(path, found[0], arrays[found[0]]).reshape(()))
     return rate if rate > 0 else None
 
 
@@ -87,19 +91,21 @@ def _poses(arrays: dict[str, Array], path: Path) -> Float[Array, "frame joint 3"
     if any(np.size(arrays[name]) == 0 for name in _POSES if name in arrays):
         raise InputError(f"{path} has no frames: its poses are empty; choose another file")
     if whole:
-        parts = [
-            np.asarray(arrays[name], float).reshape(len(arrays[name]), -1) for name in ("root_orient", "pose_body")
-        ]
+        parts = [_rows(real_numbers(path, name, arrays[name])) for name in ("root_orient", "pose_body")]
         poses = np.concatenate(parts, axis=1) if len(parts[0]) == len(parts[1]) else np.zeros((0, 0))
     else:
-        given = np.asarray(arrays.get("poses", arrays.get("pose")), float)
-        poses = given.reshape(len(given), -1) if given.ndim >= 2 else np.zeros((0, 0))
+        poses = _rows(real_numbers(path, "poses", arrays["poses"] if "poses" in arrays else arrays["pose"]))
     if poses.shape[1] < 3 * NUM_JOINTS or poses.shape[1] % 3:
         raise InputError(
             f"{path} holds no SMPL poses: {poses.shape[1]} numbers a frame, at least 66 (22 axis-angle rotations) are"
             " needed"
         )
     return poses.reshape(len(poses), -1, 3)
+
+
+def _rows(values: Array) -> Array:
+    """Numbers of a frame in one row; no rows for anything else."""
+    return values.reshape(len(values), -1) if values.ndim >= 2 else np.zeros((0, 0))
 
 
 def _own_offsets(body_model: Path, betas: Array | None) -> Float[Array, "22 3"]:
@@ -109,12 +115,19 @@ def _own_offsets(body_model: Path, betas: Array | None) -> Float[Array, "22 3"]:
     model = read_npz(body_model, only=("v_template", "shapedirs", "J_regressor"))
     if set(model) != {"v_template", "shapedirs", "J_regressor"}:
         raise InputError(f"{body_model} is no body model: v_template, shapedirs and J_regressor are needed")
-    template, shapes, regressor = model["v_template"], model["shapedirs"], model["J_regressor"]
-    fits = template.ndim == 2 and shapes.shape[:2] == template.shape and regressor.shape[1:] == (len(template),)
+    template, shapes, regressor = (
+        real_numbers(body_model, name, model[name]) for name in ("v_template", "shapedirs", "J_regressor")
+    )
+    fits = (
+        template.ndim == 2
+        and shapes.ndim == 3
+        and shapes.shape[:2] == template.shape
+        and regressor.shape[1:] == (len(template),)
+    )
     if not fits or len(regressor) < NUM_JOINTS:
         raise InputError(f"{body_model} is no body model: its shapes do not fit each other")
-    count = 0 if betas is None else min(np.asarray(betas).reshape(-1).size, shapes.shape[2])
-    shape = np.zeros(0) if betas is None else np.asarray(betas, float).reshape(-1)[:count]
+    count = 0 if betas is None else min(betas.size, shapes.shape[2])
+    shape = np.zeros(0) if betas is None else betas.reshape(-1)[:count]
     joints = regressor[:NUM_JOINTS] @ (template + shapes[:, :, :count] @ shape)
     parents = np.array([max(parent, 0) for parent in PARENTS])
     offsets = joints - joints[parents]

@@ -36,7 +36,11 @@ def read_camera_file(path: Path) -> dict[str, float]:
 
     Other keys are ignored. Raises InputError where a key is missing or a value is not a plausible number.
     """
-    content: Any = read_json(path)
+    return camera_numbers(read_json(path), path)
+
+
+def camera_numbers(content: Any, path: Path) -> dict[str, float]:
+    """The numbers of a camera's JSON, which `path` holds; see `read_camera_file`."""
     if not isinstance(content, dict):
         raise InputError(f"{path} must be a JSON object with fx, fy, cx, cy")
     if missing := [key for key in ("fx", "fy", "cx", "cy") if key not in content]:
