@@ -11,12 +11,14 @@ from typing import Any
 
 from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.errors import InputError
+from mmweaver.core.repository_files import repository_file
 from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.recognition.activity_classifier import ActivityClassifier, ClassifierSettings
 from mmweaver.recognition.zero_shot import TrainingSet, read_training_set, write_training_set
 
 FOLDER = Path(__file__).parent / "frozen"
 NAMES = ("blind", "development")
+PACKAGED = "development"  # the other is a file of the repository
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,13 +40,22 @@ class Frozen:
         return self.training.train(self.classifier)
 
 
-def load_frozen(name: str) -> Frozen:
-    """Loads one of NAMES. Raises InputError for an unknown name."""
-    settings = FOLDER / f"{name}.json"
-    if not settings.is_file():
+def settings_file(name: str) -> Path:
+    """The .json of one of NAMES, next to its .npz. Raises InputError for an unknown name, or a file that is not here."""
+    if name not in NAMES:
         raise InputError(f"no frozen recogniser is called {name!r}; known: {', '.join(NAMES)}")
+    if name == PACKAGED:
+        return FOLDER / f"{name}.json"
+    return repository_file(
+        f"frozen_activity/{name}.json", f"the frozen recogniser {name!r}", f"take {PACKAGED!r}, or work in a clone"
+    )
+
+
+def load_frozen(name: str) -> Frozen:
+    """Loads one of NAMES. Raises InputError for an unknown name, or where the file is not here."""
+    settings = settings_file(name)
     held = read_json(settings)
-    training = read_training_set(FOLDER / f"{name}.npz")
+    training = read_training_set(settings.with_suffix(".npz"))
     return Frozen(
         training=training,
         classifier=ClassifierSettings(**held["classifier"]),

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("transformers")
 
-from mmweaver.motion.motiongpt.motiongpt import SMALL_FILE, MotionGPT
+from mmweaver.motion.motiongpt.motiongpt import MotionGPT, small_file
 from mmweaver.motion.motiongpt.motiongpt_weights import save_weights
 from mmweaver.motion.motiongpt.tokenizer import TokenizerConfig
 from mmweaver.training.motion_language import LanguageRecipe
@@ -67,7 +67,7 @@ def test_the_root_counts_more():
 def test_the_model_that_comes_along_does_what_it_is_told(activity: str):
     """Walks go somewhere on their feet, waves have a hand up, turns turn."""
     model = MotionGPT.load("small")
-    assert SMALL_FILE.stat().st_size < 15e6
+    assert small_file().stat().st_size < 15e6
     good = 0
     for seed in range(40, 48):
         sentence = motiongpt_scores.sentence_of(activity, seed, held_out=False)

@@ -12,6 +12,7 @@ import torch
 from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.repository_files import repository_file
 from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.safe_arrays import read_npy
 from mmweaver.motion.mocap.clip import MotionClip
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 SMALL_NAME = "small"
-SMALL_FILE = Path(__file__).resolve().parents[4] / "weights" / SMALL  # of a clone; the wheel does not hold it
 ENDINGS = (".safetensors", ".tar", ".ckpt", ".pt", ".pth", ".bin")
 FEWEST_FRAMES, MOST_FRAMES = 40, 196  # what MotionGPT was trained on
 RAW_CONTACT_STD = (0.2, 0.6)  # of HumanML3D's own Std.npy; MotionGPT's differs by a factor of about 25
@@ -170,12 +170,10 @@ def check_std(std: Float[Array, " feature"], place: Path) -> None:
 
 def small_file() -> Path:
     """The small model of a clone of the repository. Raises InputError where mmweaver was installed without one."""
-    if not SMALL_FILE.is_file():
-        raise InputError(
-            f"the small motion model is in the repository, not in the installed package; give the path of {SMALL} from"
-            " the folder weights/ of a clone, or a name on the Hub (owner/name) that holds it"
-        )
-    return SMALL_FILE
+    otherwise = (
+        f"give the path of {SMALL} from the folder weights/ of a clone, or a name on the Hub (owner/name) that holds it"
+    )
+    return repository_file(SMALL, "the small motion model", otherwise)
 
 
 def _place_of(path: str | Path) -> Path:
