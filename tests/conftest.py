@@ -8,7 +8,10 @@ os.environ.update(
     OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", MKL_NUM_THREADS="1", VECLIB_MAXIMUM_THREADS="1"
 )  # fmt: skip
 
+import hashlib
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -17,6 +20,9 @@ from threadpoolctl import threadpool_limits
 
 from tests import shape_checks
 from tests.cpu_summary import CpuSummary
+
+if TYPE_CHECKING:
+    from mmweaver.core.records import RgbdPhoto, Scene
 
 threadpool_limits(1)  # of numpy, which a plugin has imported already
 shape_checks.check_first_calls()
@@ -56,6 +62,31 @@ def blank_training_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
         ("studies.paper.paper_training", "draw_sheet"),
     ):  # fmt: skip
         monkeypatch.setattr(f"{module}.{name}", lambda *_, **__: np.zeros((2, 2, 3), np.uint8))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def rooms_are_reconstructed_once() -> Iterator[None]:
+    """A photo that this process has reconstructed before gives the same scene: 0.4 CPU seconds for each of many tests.
+
+    Tests of the reconstruction itself call `mmweaver.scene.reconstruction.reconstruct`, which stays as it is.
+    """
+    from mmweaver import generate
+    from mmweaver.scene.reconstruction import reconstruct
+
+    scenes: dict[str, Scene] = {}
+
+    def once(photo: "RgbdPhoto", *, assumptions: tuple[str, ...] = ()) -> "Scene":
+        digest = hashlib.sha256(repr((photo.intrinsics, assumptions)).encode())
+        for array in (photo.rgb, photo.depth_m, *(() if photo.classes is None else (photo.classes.index,))):
+            digest.update(repr((array.shape, array.dtype)).encode() + np.ascontiguousarray(array).tobytes())
+        key = digest.hexdigest() + repr(None if photo.classes is None else photo.classes.names)
+        if key not in scenes:
+            scenes[key] = reconstruct(photo, assumptions=assumptions)
+        return scenes[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(generate, "reconstruct", once)
+        yield
 
 
 @pytest.fixture(scope="session")

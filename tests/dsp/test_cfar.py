@@ -45,7 +45,7 @@ def noise_cells() -> np.ndarray:
 def test_windowed_noise_of_twelve_antennas_has_the_requested_false_alarm_rate(
     noise_cells, cfar, rate: float, cells: CfarCells
 ):
-    power = noise_cells.mean(axis=-1)
+    power = noise_cells[: 60 if cfar is ca_cfar else 30].mean(axis=-1)
     found = cfar(power, false_alarm_rate=rate, num_looks=12, cells=cells)
     assert_rate(int(found.is_detected.sum()), power.size, rate, 0.05)
 
@@ -53,7 +53,8 @@ def test_windowed_noise_of_twelve_antennas_has_the_requested_false_alarm_rate(
 @pytest.mark.parametrize("cfar", CFARS)
 @pytest.mark.parametrize("rate", RATES)
 def test_windowed_noise_of_one_antenna_has_the_requested_false_alarm_rate(noise_cells, cfar, rate: float):
-    power = np.moveaxis(noise_cells[..., [0, 5, 11]], -1, 0).reshape(-1, 64, 32)
+    some = noise_cells[: 60 if cfar is ca_cfar else 20]  # ordering takes 15 times as long as averaging
+    power = np.moveaxis(some[..., [0, 5, 11]], -1, 0).reshape(-1, 64, 32)
     found = cfar(power, false_alarm_rate=rate, num_looks=1)
     assert_rate(int(found.is_detected.sum()), power.size, rate, 0.05)
 

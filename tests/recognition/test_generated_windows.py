@@ -1,5 +1,6 @@
 """Windows generated from sentences: reproducible, with the motion of the sentence."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FIRMWARE
 from mmweaver.core.presets import IWR1443_RADHAR
 from mmweaver.recognition.generated_windows import GenerationRecipe, generate_window, generate_windows, read_window
+from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.variation import Variation
 
 QUIET = Variation(turn_deg=0.0, noise_db=(-3.0, 0.0), wall_share=0.0, most_panels=0, skin_exponents=(20.0,))
@@ -18,8 +20,13 @@ RECIPE = GenerationRecipe(
 )  # fmt: skip
 
 
+@functools.cache
+def window_of(label: str) -> PointRecording:
+    return generate_window(RECIPE, label, 0, 3)
+
+
 def test_the_same_seed_gives_the_same_points_and_another_does_not():
-    one, again, other = (generate_window(RECIPE, "walk", index, 3) for index in (0, 0, 1))
+    one, again, other = window_of("walk"), generate_window(RECIPE, "walk", 0, 3), generate_window(RECIPE, "walk", 1, 3)
     assert np.array_equal(one.cloud.x_m, again.cloud.x_m)
     assert np.array_equal(one.cloud.frame, again.cloud.frame)
     assert not np.array_equal(one.cloud.frame, other.cloud.frame)
@@ -27,14 +34,14 @@ def test_the_same_seed_gives_the_same_points_and_another_does_not():
 
 
 def test_walking_towards_the_radar_reduces_range():
-    walking = generate_window(RECIPE, "walk", 0, 3).cloud
+    walking = window_of("walk").cloud
     moving = walking.radial_velocity_mps[np.abs(walking.radial_velocity_mps) > 0.1]
     assert len(moving) > 15
     assert np.mean(moving < 0) > 0.7
 
 
 def test_standing_people_hardly_move():
-    standing, walking = (generate_window(RECIPE, label, 0, 3).cloud for label in ("stand", "walk"))
+    standing, walking = (window_of(label).cloud for label in ("stand", "walk"))
     assert np.mean(np.abs(standing.radial_velocity_mps) > 0.1) < 0.3 * np.mean(
         np.abs(walking.radial_velocity_mps) > 0.1
     )
@@ -53,7 +60,8 @@ def test_a_cache_returns_the_generated_windows(tmp_path):
 
 def test_more_noise_gives_no_more_points_of_a_body():
     loud = replace(RECIPE, variation=replace(QUIET, noise_db=(55.0, 55.5)))
-    moving = [np.abs(generate_window(one, "walk", 0, 3).cloud.radial_velocity_mps) > 0.1 for one in (RECIPE, loud)]
+    noisy = generate_window(loud, "walk", 0, 3)
+    moving = [np.abs(one.cloud.radial_velocity_mps) > 0.1 for one in (window_of("walk"), noisy)]
     assert moving[1].sum() < 0.3 * moving[0].sum()
 
 
@@ -70,7 +78,7 @@ def test_habits_change_one_activity_only():
     still = replace(RECIPE, habits={"walk": {"vigour": (0.9, 0.91)}})
     assert still.variation_of("walk").vigour == (0.9, 0.91)
     assert still.variation_of("stand") == QUIET
-    same, other = (generate_window(one, "stand", 0, 3).cloud for one in (RECIPE, still))
+    same, other = window_of("stand").cloud, generate_window(still, "stand", 0, 3).cloud
     assert np.array_equal(same.x_m, other.x_m)
     with pytest.raises(InputError, match="fit no activity or no span"):
         replace(RECIPE, habits={"walk": {"speed": (0.0, 1.0)}})

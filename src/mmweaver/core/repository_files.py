@@ -10,7 +10,7 @@ WEIGHTS = Path(__file__).resolve().parents[3] / "weights"
 def repository_file(name: str, what: str, otherwise: str) -> Path:
     """Place of a file, such as "motiongpt_small.safetensors", in the folder weights/ of the repository.
 
-    Raises InputError where mmweaver runs without a clone; `what` is the subject of its line, `otherwise` says what to do.
+    Raises InputError where mmweaver runs without a clone: `what` is the subject of its line, `otherwise` what to do.
     """
     path = WEIGHTS / name
     if not path.is_file():

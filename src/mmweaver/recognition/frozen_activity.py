@@ -41,7 +41,7 @@ class Frozen:
 
 
 def settings_file(name: str) -> Path:
-    """The .json of one of NAMES, next to its .npz. Raises InputError for an unknown name, or a file that is not here."""
+    """The .json of one of NAMES, next to its .npz. Raises InputError for an unknown name or a missing file."""
     if name not in NAMES:
         raise InputError(f"no frozen recogniser is called {name!r}; known: {', '.join(NAMES)}")
     if name == PACKAGED:

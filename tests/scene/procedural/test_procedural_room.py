@@ -18,7 +18,7 @@ TOUCH_M = 0.006
 
 @pytest.fixture(scope="module", params=list(KINDS))
 def rooms(request: pytest.FixtureRequest) -> list[ProceduralRoom]:
-    return [make_room(request.param, layout, seed) for seed, layout in ((0, 0), (0, 1), (3, 2), (5, 7))]
+    return [make_room(request.param, layout, seed) for seed, layout in ((0, 1), (5, 7))]
 
 
 def _rows(boxes: Boxes, rows: np.ndarray) -> Boxes:
@@ -75,9 +75,16 @@ def test_there_is_room_to_walk_and_the_window_holds_walls_and_furniture(rooms: l
         assert min(offsets) < 3.4
 
 
-def test_the_photo_agrees_with_the_ground_truth(rooms: list[ProceduralRoom]):
+SLOW_PHOTOS = [kind for kind in KINDS if kind not in ("living_room", "kitchen", "corridor")]
+
+
+# slow: photos of more kinds, by the code that draws the three
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=[pytest.mark.slow] if kind in SLOW_PHOTOS else []) for kind in KINDS]
+)
+def test_the_photo_agrees_with_the_ground_truth(kind: str):
     """Every pixel's point lies on a box or on the shell; floor pixels lie at the floor's height."""
-    room = rooms[0]
+    room = make_room(kind, 0, 0)
     photo = room.photo()
     assert photo.classes is not None
     assert photo.rgb.shape == (480, 640, 3)
@@ -112,8 +119,9 @@ def test_lightings_differ_and_unknown_ones_are_refused():
 def test_equal_seeds_give_equal_bits_and_different_seeds_different_rooms():
     one, again, layout, seed = (make_room("library", *key) for key in ((1, 2), (1, 2), (3, 2), (1, 4)))
     assert np.array_equal(one.vertices_m, again.vertices_m)
-    assert np.array_equal(one.photo("lamps", True).depth_m, again.photo("lamps", True).depth_m, equal_nan=True)
-    assert np.array_equal(one.photo("lamps").rgb, again.photo("lamps").rgb)
+    photos = [room.photo("lamps", True) for room in (one, again)]
+    assert np.array_equal(photos[0].depth_m, photos[1].depth_m, equal_nan=True)
+    assert np.array_equal(photos[0].rgb, photos[1].rgb)
     assert one.shell.size_m == layout.shell.size_m  # rearranged, not rebuilt
     assert not np.array_equal(one.boxes.centre_m, layout.boxes.centre_m)
     assert one.shell.size_m != seed.shell.size_m

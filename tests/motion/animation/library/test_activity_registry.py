@@ -22,7 +22,7 @@ def test_the_table_and_the_library_have_the_same_activities():
 @pytest.mark.parametrize("activity", [*BODY, *HANDS], ids=lambda activity: activity.key)
 def test_every_example_is_acted_out_as_a_body_can(activity):
     seconds = max(1.5 * activity.natural_s, 1.1 * natural_s(parse(activity.example)))
-    made = [act_out(activity.example, duration_s=seconds, seed=seed) for seed in range(3)]
+    made = [act_out(activity.example, duration_s=seconds, seed=seed) for seed in range(2)]
     for motion in made:
         joints = motion.pose.joints_m
         assert np.isfinite(joints).all()
