@@ -142,6 +142,7 @@ def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path)
         assert contents(part) == own
 
 
+@pytest.mark.slow  # one that finds a room written in the meantime: test_a_room_written_in_the_meantime_is_kept
 def test_several_that_start_at_once_make_one_set(folder: Path, tmp_path: Path):
     code = (
         "import sys; from pathlib import Path; from mmweaver.datasets.dataset_plan import DatasetPlan;"

@@ -101,7 +101,6 @@ def test_the_photo_agrees_with_the_ground_truth(kind: str):
 def test_noise_is_that_of_a_stereo_camera():
     room = make_room("living_room", 1, 4)
     true, noisy = room.photo(), room.photo(noise=True)
-    assert np.array_equal(true.rgb, noisy.rgb)
     holes = np.isnan(noisy.depth_m)
     assert 0.005 < holes.mean() < 0.35
     far = (true.depth_m > 2.5) & ~holes

@@ -70,7 +70,7 @@ class ProceduralRoom:
         """
         if lighting not in LIGHTINGS:
             raise InputError(f"unknown lighting {lighting!r}; known: {', '.join(LIGHTINGS)}")
-        view, mesh = self._view, self.mesh
+        view, mesh, colours = self._view, self.mesh, self._colours
         photo_seed = int(stream(self.seed, "procedural", self.kind, self.layout, "photo").integers(2**31))
         depth_m = view.depth_m
         if noise:
@@ -78,8 +78,10 @@ class ProceduralRoom:
             offset = view.points_m - np.array(self.shell.radar_m)
             cos_view = np.abs((offset * view.normals).sum(axis=-1)) / np.linalg.norm(offset, axis=-1)
             depth_m = measured_depth(depth_m, self.intrinsics.fx, is_glass, cos_view, photo_seed)
+        if lighting not in colours:
+            colours[lighting] = render_rgb(mesh, self._caster, view, self.pieces, lighting, photo_seed)
         return RgbdPhoto(
-            rgb=render_rgb(mesh, self._caster, view, self.pieces, lighting, photo_seed),
+            rgb=colours[lighting],
             depth_m=depth_m,
             intrinsics=self.intrinsics,
             classes=render_classes(mesh, view),
@@ -106,6 +108,11 @@ class ProceduralRoom:
     def true_depth_m(self) -> DepthPixels:
         """True depth of every pixel along the optical axis, (480, 640) metres."""
         return self._view.depth_m
+
+    @cached_property
+    def _colours(self) -> dict[str, np.ndarray]:
+        """Pictures (480, 640, 3) by lighting, rendered once: half a second each."""
+        return {}
 
     @cached_property
     def _caster(self) -> RayCaster:
