@@ -33,7 +33,7 @@ FILES = {
     "preview.png": "one page of pictures",
     "preview.gif": "the same over time",
     "analysis.npz": "slow-time Doppler, displacement, micro-Doppler and tracks, in SI units",
-    "slow_time.png": "Doppler over frames, displacement of what moves most, breathing and heart",
+    "slow_time.png": "Doppler over frames, displacement of the strongest moving cells, breathing and heart",
     "micro_doppler.png": "radial velocity over time, by STFT over chirps",
     "people.png": "tracked people",
 }

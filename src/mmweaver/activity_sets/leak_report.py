@@ -2,7 +2,7 @@
 
 One-nearest-neighbour classifiers see one circumstance each (start place, person, duration ...) and are tested on people
 that they have not seen. With matched draws they are at chance. What cannot be equal between activities, such as energy
-or where a walk ends, is reported apart: it is part of what the radar sees.
+or where a walk ends, is reported separately: it is part of what the radar sees.
 """
 
 from dataclasses import dataclass

@@ -16,7 +16,7 @@ from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.planning.floor_map import FloorMap
 
 MOST_ATTEMPTS = 60  # places and headings that are tried for a draw
-MOST_SUBJECTS = 10_000  # people that the motion library tells apart
+MOST_SUBJECTS = 10_000  # people that the motion library has
 
 
 @dataclass(frozen=True, kw_only=True)

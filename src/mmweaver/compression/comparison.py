@@ -1,4 +1,4 @@
-"""`.mmw` beside the codecs of others that are installed, on the user's own cube."""
+"""`.mmw` compared with the codecs of others that are installed, on the user's own cube."""
 
 import time
 from collections.abc import Callable

@@ -74,7 +74,7 @@ class RadarConfig:
             if problem:
                 raise InputError(f"radar {self.name!r} is impossible: {text}")
         if self.is_coded:
-            _ = self.tx_decoder  # raises where transmitters cannot be told apart
+            _ = self.tx_decoder  # raises where transmitters cannot be separated
         if (wrong := impossible_together(self)) is not None:
             raise InputError(f"radar {self.name!r} is impossible: {wrong}")
 
@@ -151,7 +151,7 @@ class RadarConfig:
 
     @property
     def num_virtual_tx(self) -> int:
-        """Transmitters that can be told apart: all, or the beams of a coded radar."""
+        """Transmitters that can be separated: all, or the beams of a coded radar."""
         return len(self.tx_decoder)
 
     @property

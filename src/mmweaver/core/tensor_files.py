@@ -1,6 +1,6 @@
 """Tensors as safetensors files: the same tensors give the same bytes, and damage is noticed.
 
-The header holds the sha256 of the tensors beside whatever the caller puts there.
+The header holds the sha256 of the tensors and whatever the caller adds.
 """
 
 import hashlib

@@ -1,4 +1,4 @@
-"""Simultaneous transmitters: what each chirp of a loop sends, and how the transmitters are told apart again.
+"""Simultaneous transmitters: what each chirp of a loop sends, and how the transmitters are separated again.
 
 A loop has slots, one chirp each; in slot s transmitter m sends with the complex weight W[s, m] (0: off). TDM-MIMO is a
 permutation, BPM-MIMO a Hadamard matrix, a steered beam one row of phases. Where W has as many independent rows as

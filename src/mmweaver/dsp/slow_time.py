@@ -1,6 +1,6 @@
 """Slow time over frames: Doppler, phase and displacement where a frame has too few loops, or where motion is slow.
 
-Each frame gives one complex value a range bin and antenna, its zero-Doppler value. What moves by less than a range bin
+Each frame gives one complex value a range bin and antenna, its zero-Doppler value. A movement by less than a range bin
 turns the phase of its cell by 4 pi / wavelength a metre; displacement is positive = moving away.
 Reference: docs/radar_primer.md, equation 7; Taubin, "Estimation of planar curves...", IEEE PAMI 13, 1991 (circle fit).
 """

@@ -116,7 +116,7 @@ def _people_figure(title: str, people: Sequence[PersonTrack], far_m: float) -> "
 
 
 def _slow_doppler(axes: "Axes", range_m: np.ndarray, power: np.ndarray, velocity_mps: np.ndarray) -> None:
-    """The middle of the velocity axis that holds what moves."""
+    """The middle of the velocity axis that holds the movement."""
     along = power.max(axis=0)
     moving = np.flatnonzero(along >= along.max() * 10 ** (-SPAN_DB / 10))
     reach = max(NARROWEST_MPS, 1.3 * float(np.abs(velocity_mps[moving]).max(initial=0.0)))

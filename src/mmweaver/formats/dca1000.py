@@ -24,7 +24,7 @@ from mmweaver.core.safe_files.safe_arrays import read_words
 IQ_ORDERS = ("iq", "qi")
 INT16_MAX = 32767
 WORDS_PER_SAMPLE = 2
-GROWING = "parts.jsonl"  # beside a file that grows (mmweaver generate --stream): a kill may cut its last frame
+GROWING = "parts.jsonl"  # next to a file that grows (mmweaver generate --stream): a kill may cut its last frame
 LANES = 4  # of the devices with more than two
 HEADROOM = 0.5  # share of full scale of the largest word where `write_bin` chooses the scale
 

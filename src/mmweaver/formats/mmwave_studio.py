@@ -26,7 +26,7 @@ def read_mmwave_studio(
 
     `sub_frame`, `antennas` and `lanes` as in `formats.ti_cfg.read_ti_cfg`; lanes are otherwise those that the file
     enables. Raises InputError where the file cannot be read, a key is missing or of the wrong type, chirps differ or
-    cannot be told apart, or the radar could not exist.
+    cannot be separated, or the radar could not exist.
     """
     path = Path(path)
 

@@ -40,7 +40,7 @@ def read_ti_cfg(
 
     `sub_frame` chooses one of an advanced frame; `antennas` and `lanes` replace the board's table and the lanes of its
     recordings. Raises InputError where the file cannot be read, lines are missing or have too few numbers, chirps
-    differ or cannot be told apart, or the radar could not exist.
+    differ or cannot be separated, or the radar could not exist.
     """
     path = Path(path)
     lines = ti_cfg_lines(path)

@@ -54,7 +54,7 @@ def radar_from_ti(chirps: TiChirps) -> RadarConfig:
     """The radar with the board's array, restricted to the transmitters that fire.
 
     Transmitters are renumbered in the board's order. All range bins are kept, up to a cube of 4 MiB a frame. Raises
-    InputError where the chirps cannot be told apart, or where the radar could not exist.
+    InputError where the chirps cannot be separated, or where the radar could not exist.
     """
     board = _board(chirps)
     sequence, repeats = _repeated_sequence(_weights(chirps, board))

@@ -14,7 +14,7 @@ from mmweaver.core.virtual_array import azimuth_row
 from mmweaver.dsp.windows import noise_share
 
 NUM_AZIMUTHS, WIDEST_DEG = 32, 60.0
-NUM_ANGLE_MAPS = 2  # all that is there, and what moves
+NUM_ANGLE_MAPS = 2  # all echoes, and the moving ones
 MIDDLE_DB, SPREAD_DB = 20.0, 15.0  # above the noise; these two turn decibels to numbers around 0
 STATIC_BINS = 1  # to either side of zero Doppler a Hann window spreads static clutter
 

@@ -155,7 +155,7 @@ class CubeRenderer:
 def _static_mixing(config: RadarConfig) -> Tensor:
     """What a static signal of each (virtual) transmitter leaves in each static Doppler bin, (bin, tx, tx).
 
-    The slots' compensation is made for a bin's velocity, so beside zero Doppler it mixes the transmitters slightly.
+    The slots' compensation is made for a bin's velocity, so away from zero Doppler it mixes the transmitters slightly.
     """
     encoder = np.linalg.pinv(config.tx_decoder)  # (slot, tx)
     each = np.einsum("vs,ds,sw->dvw", config.tx_decoder, slot_compensation(config)[:, :: config.num_rx], encoder)

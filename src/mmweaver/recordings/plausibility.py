@@ -37,7 +37,7 @@ def implausible(adc: AdcCube, cube: RadarCube, path: Path | None = None) -> list
     few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
     found = [*_number_type(path), *_values(adc)]
     if any("constant" in text or "numbers of" in text for text in found):
-        return found  # nothing else can be told
+        return found  # too little to check more
     found += [*_beat_sign(few), *_layout(few)]
     if not found:
         found += [*_transmitters(cube), *_velocity_sign(cube)]
@@ -186,6 +186,6 @@ def _velocity_sign(cube: RadarCube) -> Iterator[str]:
     agreement = float((travelled[sure] * expected[sure]).sum() / (expected[sure] ** 2).sum())
     if agreement < -0.5:
         yield (
-            "what moves nearer in range has positive radial velocities: the loops of a frame are probably in reverse"
+            "echoes that come nearer have positive radial velocities: the loops of a frame are probably in reverse"
             " order, or I and Q the other way round"
         )

@@ -182,8 +182,8 @@ def estimate_gain(network: WeaverNetwork, rooms: Sequence[RecordedRoom]) -> floa
         one = RoomExamples(room, SPLIT)
         with torch.inference_mode():
             scene = one.scene[None]
-            resting = learner.network.encode_room(scene).static
-            expected = learner.radar.maps(points_of(resting, learner.radar.response)).range_azimuth[0]
+            static = learner.network.encode_room(scene).static
+            expected = learner.radar.maps(points_of(static, learner.radar.response)).range_azimuth[0]
         maps.append((expected, one.static.range_azimuth))
     return agreeing_gain(maps)
 

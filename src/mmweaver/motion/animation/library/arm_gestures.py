@@ -124,7 +124,7 @@ def yawning(context: StepContext, controls: Controls) -> Controls:
 
 
 def knocking_from_elbow(context: StepContext, controls: Controls) -> Controls:
-    """The hand beside the body is raised from the elbow and lowered, without a pause between."""
+    """The hand at the side is raised from the elbow and lowered, without a pause between."""
     count = context.step.count or max(1, round(context.duration_s / 1.2))
     up = np.zeros_like(context.time_s)
     for begin, lasts in repeats(context, min(1.0, 0.95 * context.duration_s / count), 0.45, 1.6)[:count]:

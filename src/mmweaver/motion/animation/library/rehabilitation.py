@@ -99,7 +99,7 @@ def _arm_aside(context: StepContext, controls: Controls, side: int, up: PerTime,
 
 
 def hands_up(context: StepContext, controls: Controls) -> Controls:
-    """Both hands beside or before the face, elbows bent and out, as many hold them in squats and lunges."""
+    """Both hands next to or in front of the face, elbows bent and out, as many hold them in squats and lunges."""
     flexion, abduction = float(context.rng.uniform(0.3, 0.9)), float(context.rng.uniform(0.5, 1.0))
     bend = float(context.rng.uniform(1.9, 2.4))
     for arm in (LEFT, RIGHT):
