@@ -21,11 +21,11 @@ from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
     Sitting,
     any_variation,
+    are_reachable,
     fitting,
     long_enough_to_lie_on,
     preferred,
     random_subset,
-    reachable,
     stool_at,
     stool_fits,
     stool_note,
@@ -48,6 +48,11 @@ Array = np.ndarray
 FAVOURITE_COST_PER_M = 0.7
 CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who gets up
 _SAME_PLACE_M = 0.1
+_STRAIGHT = ("left", "right", "towards", "away", "")
+_USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35}
+_OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
+_LONGEST_SHARE = 0.2  # of the starts, those with most room, where none has enough
+_SEAT_STARTS = 6  # starts of a walk to a seat that are tried
 _FALLS_OFF_STOOL = (
     0.5  # share of the falls tried from a stool: before a seat of the room there may be no floor for them
 )
@@ -102,7 +107,7 @@ class CandidateSampler:
             check_floor_space(trajectory, step, self.body)
             trajectory.from_seat = trajectory.from_seat or step.lower == "stand_up"
             if step.lower == "sit_down" and k:
-                sitting = sitting or self._seat_behind(trajectory)
+                sitting = sitting or self._seat_behind(trajectory, seats)
                 sitting = sitting or _stool_at_end(
                     trajectory, self.body, previous=self.plan.steps[k - 1], is_bed=lies_on_seat(self.plan)
                 )
@@ -158,6 +163,12 @@ class CandidateSampler:
                 # Getting up needs room in front of the seat, where a table may stand.
                 usable = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
             return self._start_seated(usable)
+        before_seat = self._seat_to_start_at(seats)
+        if before_seat is not None:
+            feet_m, facing = before_seat.feet_m, before_seat.facing_rad
+            return Trajectory(
+                floor=self.floor, rng=self.rng, position_m=feet_m, heading_rad=facing, from_seat=True
+            ), None
         spot = np.array(self.start_m, dtype=float) if self.start_m is not None else self._random_start(seats)
         facing = float(np.arctan2(-spot[1], -spot[0]) + np.clip(self.rng.normal(0, 0.2), -0.4, 0.4))
         if self.off_radar_rad is not None and not first.moves:
@@ -170,12 +181,21 @@ class CandidateSampler:
             facing = self.heading_rad
         return Trajectory(floor=self.floor, rng=self.rng, position_m=spot, heading_rad=facing), None
 
-    def _seat_behind(self, trajectory: Trajectory) -> Sitting | None:
-        """The seat of the motion before, where the body still stands in front of it."""
-        sitting = None if self.after is None else self.after.sitting
-        if sitting is None or np.hypot(*(sitting.feet_m - trajectory.position_m)) > _SAME_PLACE_M:
+    def _seat_behind(self, trajectory: Trajectory, seats: list[Sitting]) -> Sitting | None:
+        """The seat in front of which the body stands: of the motion before, or of the room."""
+        before = [] if self.after is None or self.after.sitting is None else [self.after.sitting]
+        near = (seat for seat in before + seats if np.hypot(*(seat.feet_m - trajectory.position_m)) < _SAME_PLACE_M)
+        return next(near, None)
+
+    def _seat_to_start_at(self, seats: list[Sitting]) -> Sitting | None:
+        """For somebody who sits down without having walked: a seat to stand in front of from the start."""
+        steps = self.plan.steps
+        down = next((k for k, step in enumerate(steps) if step.lower == "sit_down"), 0)
+        if not down or self.start_m is not None or any(_changes_place(step) for step in steps[:down]):
             return None
-        return sitting
+        free = [seat for seat in seats if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+        free = preferred(free, steps[down].seat, self.floor.scene)
+        return free[int(self.rng.integers(len(free)))] if free else None
 
     def _random_start(self, seats: list[Sitting]) -> Float[Array, "2"]:
         """A random position (x, y) in metres; for a walk to a seat often one from which it ends there."""
@@ -192,13 +212,29 @@ class CandidateSampler:
                 return spot
         to_seat = first.direction == "seat" or (len(self.plan.steps) > 1 and self.plan.steps[1].lower == "sit_down")
         if first.moves and seats and to_seat and self.rng.random() < 0.7:
-            sitting = seats[int(self.rng.integers(len(seats)))]
-            length = (first.end_s - first.start_s) * self.rng.uniform(0.6, 1.3)
-            angle = self.rng.uniform(0, 2 * np.pi)
-            return sitting.feet_m - length * np.array([np.cos(angle), np.sin(angle)])
-        cells = self.floor.walkable_m
+            return self._start_of_walk_to(seats[int(self.rng.integers(len(seats)))], first)
+        cells = self._open_starts(first)
         spot = cells[int(self.rng.integers(len(cells)))]
         return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
+
+    def _open_starts(self, step: Step) -> Float[Array, "cell 2"]:
+        """Places to start at: for a straight walk those from which it has room, else those with most of it."""
+        if not step.moves or step.lower not in _USUAL_MPS or step.arc_deg or step.direction not in _STRAIGHT:
+            return self.floor.walkable_m
+        cells, free_m = self.floor.straight_starts(step.direction)
+        enough_m = _OF_USUAL * _USUAL_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
+        return cells[free_m >= min(enough_m, np.quantile(free_m, 1 - _LONGEST_SHARE))]
+
+    def _start_of_walk_to(self, sitting: Sitting, step: Step) -> Float[Array, "2"]:
+        """A position (x, y) from which a walk in the step's time ends at a seat; some position where there is none."""
+        cells = self.floor.walkable_m
+        apart_m = np.hypot(*(cells - sitting.feet_m).T)
+        lasts = step.end_s - step.start_s
+        cells = cells[(apart_m > 0.55 * lasts) & (apart_m < 1.35 * lasts)]
+        if not len(cells):
+            cells = self.floor.walkable_m
+        some = cells[self.rng.integers(len(cells), size=_SEAT_STARTS)]
+        return some[int(np.argmax(are_reachable(self.floor, some, sitting)))]
 
     def _start_seated(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting]:
         """Starts on a seat of the scene, near the requested start; else on a stool, roughly facing the radar."""
@@ -229,6 +265,11 @@ class CandidateSampler:
         return trajectory, sitting
 
 
+def _changes_place(step: Step) -> bool:
+    """Whether a step leads away from a place, or turns the body there, or needs the floor or a posture of its own."""
+    return step.moves or step.posture != "feet" or step.lower == "turn" or bool(step.facing) or step.place is not None
+
+
 def _seat_ahead(trajectory: Trajectory, step: Step, following: Step | None, seats: list[Sitting]) -> Sitting | None:
     """The seat that a walk ends at: reachable, in the given direction, at a natural speed."""
     if not (following is not None and following.lower == "sit_down") and step.direction != "seat":
@@ -244,7 +285,7 @@ def _seat_ahead(trajectory: Trajectory, step: Step, following: Step | None, seat
         if (
             fits
             and (given_rad is None or abs(signed_angle_rad(given_rad, towards)) < _SEAT_DIRECTION_RAD)
-            and reachable(trajectory.floor, trajectory.position_m, sitting)
+            and bool(are_reachable(trajectory.floor, trajectory.position_m[None], sitting)[0])
         ):
             return sitting
     return None

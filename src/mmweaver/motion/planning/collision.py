@@ -23,6 +23,7 @@ Array = np.ndarray
 Place = tuple[float, float]
 _ALLOWED_M, _ON_SEAT_M = 0.01, 0.16  # tolerated penetration, and that of trunk and thighs into the seat they sit on
 _SEAT_REACH_M = 0.65  # horizontal distance from a seat's centre within which a limb belongs to the sitter
+_SEAT_SQUARE_M = 0.4  # seats in one square share the points around them
 _SEAT_AHEAD_M, _SEAT_BELOW_M = 0.12, 0.05  # points farther ahead of the pelvis and no lower are not the seat itself
 _TABLE_BEHIND_M = 0.03  # extra distance to a table behind a sitter, whose edge may have been taken for a backrest
 _ABOVE_ARMRESTS_M = 0.2  # above the pelvis: points next to the trunk are not the seat's there
@@ -75,6 +76,20 @@ class CollisionMap:
     def _hard_m(self) -> tuple[Float[Array, "solid 3"], Float[Array, "top 3"], Float[Array, "leg 3"]]:
         """Everything solid, table tops and upright structures, one point in each cell."""
         return self._solid.points_m, thinned(self._tops_m), thinned(self._legs_m)
+
+    def _hard_near(self, seat: Place) -> tuple[Float[Array, "solid 3"], Float[Array, "top 3"], Float[Array, "leg 3"]]:
+        """`_hard_m` in a square around a seat; kept, as many ways to sit on the same seat are compared."""
+        square = (round(seat[0] / _SEAT_SQUARE_M), round(seat[1] / _SEAT_SQUARE_M))
+        if square not in self._near_seats:
+            middle = (square[0] * _SEAT_SQUARE_M, square[1] * _SEAT_SQUARE_M)
+            reach_m = _SEAT_REACH_M + FARTHEST_M + _SEAT_SQUARE_M
+            solid, tops, legs = (_about(points, middle, reach_m) for points in self._hard_m)
+            self._near_seats[square] = (solid, tops, legs)
+        return self._near_seats[square]
+
+    @cached_property
+    def _near_seats(self) -> dict[tuple[int, int], tuple[Array, Array, Array]]:
+        return {}
 
     @cached_property
     def _solid(self) -> DistanceField:
@@ -144,7 +159,7 @@ class CollisionMap:
 
         That is what lies ahead of the seat and above its surface, and tables behind it.
         """
-        solid, tops, legs = (_about(points, seat) for points in self._hard_m)
+        solid, tops, legs = (_about(points, seat, _SEAT_REACH_M + FARTHEST_M) for points in self._hard_near(seat))
         along, height = (solid[:, :2] - np.array(seat)) @ body.ahead, solid[:, 2] - body.pelvis_m[2]
         ahead_of = (along > _SEAT_AHEAD_M) & (height > -_SEAT_BELOW_M)
         next_to = (along > 0.0) & (height > _ABOVE_ARMRESTS_M)
@@ -186,7 +201,7 @@ def _into_wall_m(
     return np.where(into < _WALL_DEPTH_M, into, 0.0)
 
 
-def _about(points: Float[Array, "point 3"], seat: Place) -> Float[Array, "near 3"]:
-    """Points near enough to a seat to matter to a person sitting there."""
-    points = points[np.abs(points[:, 0] - seat[0]) < _SEAT_REACH_M + FARTHEST_M]
-    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < _SEAT_REACH_M + FARTHEST_M]
+def _about(points: Float[Array, "point 3"], seat: Place, reach_m: float) -> Float[Array, "near 3"]:
+    """Points within a horizontal distance of a seat."""
+    points = points[np.abs(points[:, 0] - seat[0]) < reach_m]
+    return points[np.hypot(*(points[:, :2] - np.array(seat)).T) < reach_m]

@@ -19,7 +19,7 @@ from mmweaver.motion.planning.placement import Placement
 
 REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
 MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
-MOST_TESTED, MOST_ANIMATED = 12, 3  # of an attempt's placements: compared closely, and of those that move animated
+MOST_TESTED, MOST_ANIMATED = 9, 3  # of an attempt's placements: compared closely, and of those that move animated
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements

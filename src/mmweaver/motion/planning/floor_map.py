@@ -21,6 +21,7 @@ TORSO_HEIGHT = 0.68  # of the body's height
 TORSO_HALF_DEPTH_M = 0.2
 _UNSEEN_COST = 1.5  # of a position whose floor is assumed, not seen
 _OFF_GRID_COST = 3.0
+_MOST_STARTS, _FARTHEST_M = 300, 4.0  # places whose straight ways are tabulated, and how long those are at most
 _STEP_M = 0.04  # between the positions at which a path is tested
 _SEAT_EDGE_M = 0.05  # clearance next to the seat just left
 _AHEAD_DEG = 12.0  # azimuths up to this cost nothing: the antennas' beam is strongest straight ahead
@@ -203,6 +204,35 @@ class FloorMap:
         first = np.argmin(is_free, axis=1)  # the first that is not, 0 where all are
         reached = steps[np.maximum(first - 1, 0)]
         return np.where(is_free.all(axis=1), wanted_m, reached)
+
+    @cached_property
+    def _starts(self) -> dict[str, tuple[Float[Array, "start 2"], Float[Array, " start"]]]:
+        return {}
+
+    def straight_starts(self, direction: str) -> tuple[Float[Array, "start 2"], Float[Array, " start"]]:
+        """Walkable places (x, y), and how far in metres one can go straight from each; at most `_FARTHEST_M`.
+
+        `direction` is left, right, towards or away (from the radar), or "" for the best of several. Kept, as most walks
+        of a room need the same few.
+        """
+        if direction not in self._starts:
+            cells = self.walkable_m
+            cells = cells[:: max(1, len(cells) // _MOST_STARTS)]
+            radial = np.arctan2(cells[:, 1], cells[:, 0])
+            ways = {"left": [np.pi + 0 * radial], "right": [0 * radial], "towards": [radial + np.pi], "away": [radial]}
+            tried = ways.get(direction, [turn + 0 * radial for turn in np.arange(8) * np.pi / 4])
+            free_m = [self._straight_m(cells, way) for way in tried]
+            self._starts[direction] = (cells, np.max(free_m, axis=0) if len(cells) else np.zeros(0))
+        return self._starts[direction]
+
+    def _straight_m(
+        self, places_m: Float[Array, "start 2"], directions_rad: Float[Array, " start"]
+    ) -> Float[Array, " start"]:
+        """How far in metres one can go straight from each place in its direction."""
+        steps = np.arange(0.0, _FARTHEST_M, 2 * _STEP_M)
+        ways = np.stack([np.cos(directions_rad), np.sin(directions_rad)], axis=-1)
+        is_free = self.can_stand(places_m[:, None] + steps[:, None] * ways[:, None])
+        return np.where(is_free.all(axis=1), _FARTHEST_M, steps[np.maximum(np.argmin(is_free, axis=1) - 1, 0)])
 
     def longest_free_m(self, wanted_m: float) -> float:
         """The longest straight path in metres, at most `wanted_m`, from some places in eight directions."""

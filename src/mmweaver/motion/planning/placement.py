@@ -25,7 +25,7 @@ from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 
 Array = np.ndarray
-MOST_TRIES, TRIES, ENOUGH = 500, 160, 32  # candidates tried for the first, for all, and found, at most
+MOST_TRIES, TRIES, ENOUGH = 140, 64, 24  # candidates tried for the first, for all, and found, at most
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
 _SEAT_RADIUS_M = 0.65  # within it a position counts as sitting

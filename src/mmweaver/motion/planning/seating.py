@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from mmweaver.core.records import Scene, Seat
 from mmweaver.motion.animation.library.sitting import pelvis_behind_feet_m
@@ -152,8 +152,8 @@ def stool_note(stool: Sitting, *, none_at_all: bool, is_bed: bool = False) -> st
     return f"{why}, a {what} {stool.height_m:.2f} m high is assumed at x {x:.2f} m, y {y:.2f} m"
 
 
-def reachable(floor: FloorMap, place: Float[Array, "2"], sitting: Sitting) -> bool:
-    """Whether the straight path to a seat is free; near the seat, where its own edge is, with less clearance."""
-    line_m = place + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - place)
-    near = np.hypot(*(line_m - sitting.feet_m).T) < _STRAIGHT_TO_SEAT_M
-    return bool((floor.can_stand(line_m) | (near & (floor.clearance_at(line_m) > 0.0))).all())
+def are_reachable(floor: FloorMap, places_m: Float[Array, "place 2"], sitting: Sitting) -> Bool[Array, " place"]:
+    """Whether the straight paths to a seat are free; near the seat, where its own edge is, with less clearance."""
+    lines_m = places_m[:, None] + np.linspace(0, 1, 60)[:, None] * (sitting.feet_m - places_m)[:, None]
+    near = np.hypot(*np.moveaxis(lines_m - sitting.feet_m, -1, 0)) < _STRAIGHT_TO_SEAT_M
+    return (floor.can_stand(lines_m) | (near & (floor.clearance_at(lines_m) > 0.0))).all(axis=1)
