@@ -48,11 +48,13 @@ def to_dataset(
         "joint": list(JOINT_NAMES),
     }  # fmt: skip
     attributes = {
-        "text": json.dumps(meta["text"], ensure_ascii=False), "seed": meta["seed"], "method": meta["method"],
-        "wavelength_m": grid.wavelength_m, "mmweaver_version": meta["version"],
-        "radar": json.dumps(plain(meta["radar"])),
+        "text": json.dumps(meta.get("text"), ensure_ascii=False), "seed": meta.get("seed"),
+        "method": meta.get("method"), "wavelength_m": grid.wavelength_m, "mmweaver_version": meta.get("version"),
+        "radar": json.dumps(plain(meta.get("radar"))),
     }  # fmt: skip
-    return xarray.Dataset(variables, coordinates, attributes)
+    return xarray.Dataset(
+        variables, coordinates, {key: value for key, value in attributes.items() if value is not None}
+    )
 
 
 def to_tensors(

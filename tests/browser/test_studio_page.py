@@ -110,6 +110,28 @@ def test_a_click_where_nobody_can_stand_takes_the_nearest_place(page: Any):
     page.wait_for_selector(IDLE, timeout=60_000)
 
 
+def test_a_path_is_drawn_on_the_floor(page: Any):
+    ask(page, "a person walks to the left")
+    page.get_by_role("button", name="Draw path").click()
+    corners = [[0.3, 2.3], [0.3, 1.5], [0.7, 1.4]]
+    places = [page.evaluate(f"studio.player.scene.toPage({x}, {y})") for x, y in corners]
+    page.mouse.move(*places[0])
+    page.mouse.down()
+    for place in places[1:]:
+        page.mouse.move(*place, steps=12)
+    page.mouse.up()
+    page.wait_for_selector(IDLE, timeout=60_000)
+    assert "s of radar in" in page.inner_text(".status")
+    asked = page.evaluate("studio.asked().path")
+    assert 2 <= len(asked) <= 5  # corners, not every place of the pointer
+    assert math.dist(asked[0], corners[0]) < 0.1
+    assert math.dist(page.evaluate("studio.result.header.meta.person.ends_at_m"), asked[-1]) < 0.1
+    page.evaluate("studio.startAt([0.3, 2.0])")
+    page.wait_for_selector(IDLE, timeout=60_000)
+    page.evaluate("studio.follow({at: null})")
+    page.wait_for_selector(IDLE, timeout=60_000)
+
+
 def test_scrubbing_moves_all_panels(page: Any):
     box = page.locator(".strip canvas").bounding_box()
     page.mouse.click(box["x"] + 46 + 0.5 * (box["width"] - 56), box["y"] + box["height"] / 2)

@@ -49,6 +49,19 @@ def test_netcdf(result: StoredResult, result_folder: Path, tmp_path: Path):
         np.testing.assert_allclose(read.joints.values[0], result.poses[0].joints_m, atol=1e-6)
 
 
+@pytest.mark.filterwarnings("error")
+def test_zarr(result: StoredResult, result_folder: Path, tmp_path: Path):
+    has("xarray")
+    has("zarr")
+    import xarray
+
+    export_result(result_folder, "zarr", tmp_path / "out")
+    with xarray.open_zarr(tmp_path / "out" / "result.zarr", consolidated=False, decode_times=False) as read:
+        np.testing.assert_array_equal(read.cube.values, result.cube.values)
+        assert abs(float(read.sel(range=2.0, method="nearest").range) - 2.0) < 0.05
+        assert read.attrs["joint_names"][0] == "pelvis"
+
+
 def test_ros2(result: StoredResult, result_folder: Path, tmp_path: Path):
     has("rosbags")
     from rosbags.highlevel import AnyReader

@@ -3,6 +3,7 @@
 import io
 import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +17,11 @@ from starlette.testclient import TestClient
 
 from mmweaver import Weaver
 from mmweaver.cli.main import main
+from mmweaver.core.errors import NoRoomError
+from mmweaver.core.presets import PRESETS
 from mmweaver.formats.npz_files import read_npz
 from mmweaver.playback.wire import unpack
+from mmweaver.studio.exports import EXPORTS
 from mmweaver.studio.server import StudioServer
 from mmweaver.studio.uploads import safe_name
 from mmweaver.studio.workshop import Workshop
@@ -129,6 +133,28 @@ def test_exports_equal_the_command_line(page: TestClient, tmp_path: Path):
     assert page.get(f"/api/export/{name}/exe", headers=own).status_code == 422
 
 
+def test_samples_are_those_of_the_command_line(page: TestClient, tmp_path: Path):
+    own = session(page)
+    name = generated(page, own)[0]["result"]
+    answer = page.get(f"/api/export/{name}/bin", headers=own)
+    out = tmp_path / "cli"
+    assert main(["generate", "--demo", "--text", WALK["text"][0], "--seed", "1", "--bin", "--no-pictures",
+                 "--out", str(out)]) == 0  # fmt: skip
+    archive = zipfile.ZipFile(io.BytesIO(answer.content))
+    for file in ("adc_data.bin", "radar.npz"):
+        assert archive.read(f"result/{file}") == (out / file).read_bytes(), file
+
+
+@pytest.mark.parametrize("kind", ["mat", "zarr", "mcap"])
+def test_other_formats_are_files(page: TestClient, kind: str):
+    if kind not in EXPORTS:
+        pytest.skip(f"the package for {kind} is not installed")
+    own = session(page)
+    answer = page.get(f"/api/export/{generated(page, own)[0]['result']}/{kind}", headers=own)
+    assert answer.headers["content-disposition"] == f'attachment; filename="{kind}.zip"'
+    assert len(answer.content) > 10_000
+
+
 # what is brought ----------------------------------------------------------------------------------------------------
 def upload(page: TestClient, own: dict[str, str], files: dict[str, bytes]) -> Any:
     sent = [("files", (name, content, "application/octet-stream")) for name, content in files.items()]
@@ -153,6 +179,47 @@ def test_a_result_folder_is_played_again(page: TestClient):
     found = upload(page, other := session(page), files).json()
     _, again = unpack(page.get(f"/api/result/{found['id']}", headers=other).content)
     np.testing.assert_array_equal(again["range_doppler"], arrays["range_doppler"])
+
+
+def test_a_radar_and_a_motion_are_the_sessions_own(page: TestClient, tmp_path: Path):
+    mine, yours = session(page), session(page)
+    radar = upload(page, mine, {"mine.json": replace(PRESETS["awr1843"], num_loops=16).to_json().encode()}).json()
+    assert (radar["kind"], radar["label"]) == ("radar", "mine.json")
+    clip = Weaver().generate(Weaver().sample_room(), "a person waves", frames=12).pose
+    np.savez(tmp_path / "clip.npz", joints_m=clip.joints_m, fps=10.0)
+    motion = upload(page, mine, {"clip.npz": (tmp_path / "clip.npz").read_bytes()}).json()
+    assert motion["kind"] == "motion", motion
+    header, _ = generated(page, mine, radar=radar["id"], motion=motion["id"])
+    assert header["meta"]["radar"]["num_loops"] == 16
+    assert "--radar mine.json" in header["command"]
+    assert "--motion clip.npz" in header["command"]
+    for change in ({"radar": radar["id"]}, {"motion": motion["id"]}):
+        answer = page.post("/api/generate", json={**WALK, **change}, headers=yours)
+        assert answer.status_code == 422
+
+
+def test_a_drawn_path_is_walked(page: TestClient):
+    own = session(page)
+    path = [[0.3, 2.3], [0.3, 1.5], [0.7, 1.4]]
+    header, arrays = generated(page, own, path=path)
+    way = arrays["joints"][0][:, 0, :2]
+    for corner in path:
+        assert np.linalg.norm(way - corner, axis=1).min() < 0.2
+    assert "'--path=0.3,2.3 0.3,1.5 0.7,1.4'" in header["command"]
+
+
+def test_a_room_without_a_place_offers_ways_on(page: TestClient, monkeypatch: pytest.MonkeyPatch):
+    ways = {"nearest_place_m": [0.0, 5.0], "range_m": [4.0, 6.0], "radars": ["awr1843", "hupr"]}
+
+    def none(*_: Any, **__: Any) -> None:
+        raise NoRoomError("no room", ways_on=ways)
+
+    monkeypatch.setattr(Weaver, "generate", none)
+    answer = page.post("/api/generate", json=WALK, headers=session(page))
+    assert answer.status_code == 422
+    assert answer.json()["ways_on"] == [
+        {"label": f"with {name}", "change": {"radar": name}} for name in ("awr1843", "hupr")
+    ]
 
 
 @pytest.mark.parametrize(

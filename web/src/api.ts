@@ -16,7 +16,11 @@ export class Api {
   }
   async json(path: string, options: RequestInit = {}): Promise<any> { return (await this.fetch(path, options)).json(); }
   async packed(path: string, options: RequestInit = {}): Promise<Packed> { return unpack(await (await this.fetch(path, options)).arrayBuffer()); }
-  async blob(path: string, options: RequestInit = {}): Promise<Blob> { return (await this.fetch(path, options)).blob(); }
+  /** A file and the name that the server gives it. */
+  async file(path: string): Promise<{ name: string; content: Blob }> {
+    const answer = await this.fetch(path, {});
+    return { name: /filename="([^"]+)"/.exec(answer.headers.get("content-disposition") ?? "")?.[1] ?? "mmweaver", content: await answer.blob() };
+  }
   post(body: unknown, signal?: AbortSignal): RequestInit { return { method: "POST", body: JSON.stringify(body), headers: { "content-type": "application/json" }, signal }; }
 
   socket(path: string): WebSocket {

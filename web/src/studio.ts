@@ -7,7 +7,7 @@ import { unpack } from "./wire";
 
 const LIVE_CHUNKS = 12; // of the rolling picture
 const HISTORY = "mmweaver.sentences", MAX_HISTORY = 30;
-interface Asked { room: string; text: string[]; radar: string; board?: string; method: string; seed: number; at: [number, number] | null; path: [number, number][] | null }
+interface Asked { room: string; text: string[]; radar: string; board?: string; method: string; seed: number; at: [number, number] | null; path: [number, number][] | null; motion: string }
 
 export class Studio {
   readonly root = element("main", { class: "mmweaver studio" });
@@ -23,6 +23,7 @@ export class Studio {
   private roomChoice = element("select", { "aria-label": "Room" });
   private radarChoice = element("select", { "aria-label": "Radar" });
   private boardChoice = element("select", { "aria-label": "Board" });
+  private motionChoice = element("select", { "aria-label": "Motion" });
   private methodChoice = element("select", { "aria-label": "Method" });
   private seed = element("input", { class: "seed", type: "number", min: 0, value: 0, "aria-label": "Seed" });
   private generateButton = element("button", { class: "main" }, "Generate");
@@ -46,20 +47,20 @@ export class Studio {
     this.root.append(
       element("div", { class: "top" },
         element("div", { class: "line" }, element("h1", { class: "brand" }, "mmWeaver"), this.text, this.generateButton, this.liveButton, this.compareButton),
-        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("method", this.methodChoice), named("seed", this.seed),
+        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("motion", this.motionChoice), named("method", this.methodChoice), named("seed", this.seed),
           this.pathButton, element("button", { click: () => this.openDrawer() }, "Details"), this.exportChoice, this.fileButton(), this.themeButton())),
       this.status, element("div", { class: "body" }, this.player.root), this.known, this.drawer);
     this.generateButton.addEventListener("click", () => this.generate());
     for (const box of [this.text, this.second]) box.addEventListener("keydown", (event) => { if (event.key === "Enter") { if (this.socket) this.say(); else this.generate(); } });
     this.radarChoice.addEventListener("change", () => this.changeRadar());
-    for (const control of [this.boardChoice, this.methodChoice, this.seed]) control.addEventListener("change", () => this.generate());
+    for (const control of [this.boardChoice, this.motionChoice, this.methodChoice, this.seed]) control.addEventListener("change", () => this.generate());
     this.roomChoice.addEventListener("change", () => this.changeRoom());
     this.liveButton.addEventListener("click", () => (this.socket ? this.stopLive() : this.startLive()));
     this.compareButton.addEventListener("click", () => this.toggleCompare());
     this.pathButton.addEventListener("click", () => this.setDrawing(!this.player.scene.drawing));
     this.exportChoice.addEventListener("change", () => this.exportAs());
     this.player.scene.onFloor = (place) => this.startAt(place);
-    this.player.scene.onPath = (path) => { this.path = path.map(([x, y]) => [round(x), round(y)]); this.at = null; this.player.scene.showStart(null); this.setDrawing(false); this.generate(); };
+    this.player.scene.onPath = (path) => { this.path = corners(path).map(([x, y]) => [round(x), round(y)]); this.at = null; this.player.scene.showStart(null); this.setDrawing(false); this.generate(); };
     this.takeDrops();
     addEventListener("hashchange", () => { if (this.ready && location.hash.slice(1) !== this.state()) this.restore().then(() => this.generate()); });
   }
@@ -69,6 +70,7 @@ export class Studio {
       const offered = await this.api.open();
       fill(this.radarChoice, offered.radars); fill(this.methodChoice, offered.methods); fill(this.boardChoice, offered.boards);
       (this.boardChoice.parentElement as HTMLElement).hidden = offered.boards.length < 2;
+      fill(this.motionChoice, [["", "of the sentence"]]); (this.motionChoice.parentElement as HTMLElement).hidden = true; // until one is brought
       this.pathButton.hidden = !offered.paths; this.liveButton.hidden = !offered.live;
       fill(this.roomChoice, offered.rooms);
       this.exportChoice.append(element("option", { value: "" }, "Export…"), ...offered.exports.map(([value, label]: [string, string]) => element("option", { value }, label)));
@@ -111,7 +113,7 @@ export class Studio {
 
   private asked(): Asked {
     const text = [this.text.value, this.second.value].map((one) => one.trim()).filter((one, i) => i === 0 || one);
-    return { room: this.roomChoice.value, text, radar: this.radarChoice.value, board: this.boardChoice.value, method: this.methodChoice.value, seed: Number(this.seed.value), at: this.at, path: this.path };
+    return { room: this.roomChoice.value, text, radar: this.radarChoice.value, board: this.boardChoice.value, method: this.methodChoice.value, seed: Number(this.seed.value), at: this.at, path: this.path, motion: this.motionChoice.value };
   }
   private state(): string {
     const { room, text, radar, method, seed, at, board, path } = this.asked(), pairs = new URLSearchParams({ room, radar, method, seed: String(seed) });
@@ -219,12 +221,11 @@ export class Studio {
     if (!kind || !result) return;
     try {
       this.tell("exporting…");
-      const answer = await this.api.blob(`api/export/${encodeURIComponent(result)}/${encodeURIComponent(kind)}`);
-      download(this.exportName(kind), answer);
+      const { name, content } = await this.api.file(`api/export/${encodeURIComponent(result)}/${encodeURIComponent(kind)}`);
+      download(name, content);
       this.tell("exported");
     } catch (error) { this.fail(error); }
   }
-  private exportName(kind: string): string { return { npz: "radar.npz", bin: "adc_data.bin", html: "mmweaver.html" }[kind] ?? `mmweaver-${kind}.zip`; }
 
   private async openDrawer(): Promise<void> {
     const header = this.result?.header;
@@ -278,6 +279,14 @@ export class Studio {
       if (found.kind === "room") {
         this.roomChoice.append(element("option", { value: found.id }, found.label)); this.roomChoice.value = found.id;
         await this.changeRoom();
+      } else if (found.kind === "radar") {
+        this.radarChoice.append(element("option", { value: found.id }, found.label)); this.radarChoice.value = found.id;
+        await this.changeRadar();
+      } else if (found.kind === "motion") {
+        this.motionChoice.append(element("option", { value: found.id }, found.label)); this.motionChoice.value = found.id;
+        (this.motionChoice.parentElement as HTMLElement).hidden = false;
+        this.path = null; this.player.scene.clearPath();
+        await this.generate();
       } else {
         const sequence = new Sequence(await this.api.packed(`api/result/${found.id}`));
         if (!sequence.people && !found.has_room) this.player.setRoom(null);
@@ -299,7 +308,7 @@ export class Studio {
   private follow(change: Record<string, unknown>): void {
     if (Array.isArray(change.at)) { this.at = change.at as [number, number]; this.player.scene.showStart(this.at); }
     if (change.at === null) { this.at = null; this.player.scene.showStart(null); }
-    if (typeof change.radar === "string") this.radarChoice.value = change.radar;
+    if (typeof change.radar === "string") { this.radarChoice.value = change.radar; this.changeRadar(); return; }
     if (typeof change.room === "string") { this.roomChoice.value = change.room; this.changeRoom(); return; }
     if (typeof change.text === "string") this.text.value = change.text;
     this.generate();
@@ -314,6 +323,16 @@ export class Studio {
   }
 }
 
+/** The corners of a drawn line: places nearer than 12 cm to the line through the others are left out. */
+function corners(line: [number, number][]): [number, number][] {
+  if (line.length < 3) return line;
+  const [[ax, ay], [bx, by]] = [line[0], line.at(-1)!], length = Math.hypot(bx - ax, by - ay);
+  const away = ([x, y]: [number, number]) => (length < 1e-9 ? Math.hypot(x - ax, y - ay) : Math.abs((bx - ax) * (ay - y) - (ax - x) * (by - ay)) / length);
+  let far = 1;
+  line.forEach((place, k) => { if (k && k < line.length - 1 && away(place) > away(line[far])) far = k; });
+  if (away(line[far]) < 0.12) return [line[0], line.at(-1)!];
+  return [...corners(line.slice(0, far + 1)).slice(0, -1), ...corners(line.slice(far))];
+}
 const round = (value: number) => Math.round(value * 100) / 100;
 const read = (key: string): string[] => { try { return JSON.parse(localStorage.getItem(key) ?? "[]"); } catch { return []; } };
 function fill(control: HTMLSelectElement, options: [string, string][]): void { control.replaceChildren(...options.map(([value, label]) => element("option", { value }, label))); }

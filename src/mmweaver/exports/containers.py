@@ -1,10 +1,11 @@
-"""Results as MATLAB and netCDF files."""
+"""Results as MATLAB and netCDF files, and as Zarr stores."""
 
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mmweaver.conversions import to_dataset
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.formats.npz_files import POINT_COLUMNS
@@ -67,3 +68,20 @@ def write_netcdf(result: StoredResult, out: Path) -> str:
     dataset = xarray.Dataset(variables, coordinates, {"text": result.text, "wavelength_m": grid.wavelength_m})
     dataset.to_netcdf(out / "result.nc", engine="scipy", format="NETCDF3_64BIT")
     return "a netCDF file"
+
+
+def write_zarr(result: StoredResult, out: Path) -> str:
+    """`result.zarr` (Zarr 3): the dataset of `Generation.to_xarray`, complex cube included, for `xarray.open_zarr`.
+
+    The names of joints and axes are attributes, since Zarr 3 has no settled type for texts of fixed length.
+    Raises InputError where xarray or zarr is not installed.
+    """
+    try:
+        import zarr  # noqa: F401
+    except ImportError:
+        raise InputError("a Zarr store needs the package zarr: pip install 'mmweaver[dataset]'") from None
+    dataset = to_dataset(result.cube, result.points, result.poses, None, result.meta)
+    names = {f"{name}_names": [str(one) for one in dataset[name].values] for name in ("joint", "axis")}
+    dataset = dataset.drop_vars(["joint", "axis"]).assign_attrs(names)
+    dataset.to_zarr(out / "result.zarr", mode="w-", zarr_format=3, consolidated=False)
+    return "a Zarr store"

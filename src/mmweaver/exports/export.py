@@ -37,6 +37,7 @@ FORMATS = {
     "mars": Format(what="MARS's tables of points and joints", module="cloud_layouts", function="write_mars"),
     "mat": Format(what="MATLAB", module="containers", function="write_mat"),
     "netcdf": Format(what="netCDF 3, for xarray", module="containers", function="write_netcdf"),
+    "zarr": Format(what="Zarr 3, for xarray", module="containers", function="write_zarr"),
     "ros2": Format(what="ROS 2 bag", module="robotics", function="write_ros2"),
     "mcap": Format(what="MCAP, for Foxglove", module="robotics", function="write_mcap"),
     "rerun": Format(what="Rerun recording (.rrd)", module="rerun_file", function="write_rerun"),

@@ -21,6 +21,8 @@ class Asked:
     method: str = "auto"
     seed: int = 0
     at: tuple[float, float] | None = None
+    path: tuple[tuple[float, float], ...] | None = None  # corners of the walk on the floor
+    motion: str | None = None  # id of a motion that the session brought
 
     @classmethod
     def of(cls, body: Any) -> "Asked":
@@ -36,36 +38,44 @@ class Asked:
         seed = body.get("seed", 0)
         if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**31:
             raise InputError("the seed must be a whole number from 0 to 2147483647")
-        at = body.get("at")
+        at, path = body.get("at"), body.get("path")
         return cls(
             room=_word(body, "room", ""), text=tuple(texts), radar=_word(body, "radar", "awr1843"),
             method=_word(body, "method", "auto"), seed=seed, at=None if at is None else _place(at),
+            path=None if path is None else _path(path), motion=_word(body, "motion", "") or None,
         )  # fmt: skip
 
     @property
     def request(self) -> dict[str, Any]:
-        """The arguments of `Weaver.generate` besides the room."""
+        """The arguments of `Weaver.generate` besides room and motion."""
         at = self.at if self.at is None or len(self.text) == 1 else [self.at] + [None] * (len(self.text) - 1)
-        return {"text": self.text[0] if len(self.text) == 1 else list(self.text), "seed": self.seed, "at": at}
+        text = self.text[0] if len(self.text) == 1 else list(self.text)
+        return {"text": text, "seed": self.seed, "at": at} | ({"path_m": self.path} if self.path else {})
 
-    def command(self, room_options: list[str]) -> str:
-        """The same as a command line."""
+    def command(self, room_options: list[str], *, radar: str | None = None, motion: str | None = None) -> str:
+        """The same as a command line; `radar` and `motion` name the files that the session brought."""
         words = ["mmweaver", "generate", *room_options]
         for text in self.text:
             words += ["--text", text]
         if self.at is not None:
             words.append(f"--at={self.at[0]:g},{self.at[1]:g}")
-        words += ["--radar", self.radar, "--method", self.method, "--seed", str(self.seed), "--out", "result"]
+        if self.path is not None:
+            words.append("--path=" + " ".join(f"{x:g},{y:g}" for x, y in self.path))
+        if motion is not None:
+            words += ["--motion", motion]
+        words += ["--radar", radar or self.radar, "--method", self.method, "--seed", str(self.seed), "--out", "result"]
         return shlex.join(words)
 
-    def python(self, room_call: str) -> str:
-        """The same as Python."""
+    def python(self, room_call: str, *, radar: str | None = None, motion: str | None = None) -> str:
+        """The same as Python; `radar` and `motion` name the files that the session brought."""
         arguments = "".join(
             f", {name}={value!r}" for name, value in self.request.items() if name != "text" and value is not None
         )
+        if motion is not None:
+            arguments += f", motion=weaver.read_motion({motion!r})"
         return (
             "from mmweaver import Weaver\n\n"
-            f"weaver = Weaver(method={self.method!r}, radar={self.radar!r})\n"
+            f"weaver = Weaver(method={self.method!r}, radar={(radar or self.radar)!r})\n"
             f"room = weaver.{room_call}\n"
             f"result = weaver.generate(room, {self.request['text']!r}{arguments})\n"
             'result.save("result")\n'
@@ -86,3 +96,9 @@ def _place(value: Any) -> tuple[float, float]:
     if not is_number or len(value) != 2:
         raise InputError("a place is two numbers: metres right of and ahead of the radar")
     return float(value[0]), float(value[1])
+
+
+def _path(value: Any) -> tuple[tuple[float, float], ...]:
+    if not isinstance(value, list) or not 2 <= len(value) <= MAX_PATH:
+        raise InputError(f"a path is a list of 2 to {MAX_PATH} places")
+    return tuple(_place(one) for one in value)

@@ -3,11 +3,14 @@
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.regular_files import read_bytes
+from mmweaver.exports.export import FORMATS, export_result
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.formats.npz_files import write_radar_npz
 from mmweaver.geometry.aligned_photo import AlignedPhoto
@@ -17,6 +20,16 @@ from mmweaver.studio.sessions import Result
 
 MAX_EXPORT_BYTES = 4_000_000_000
 Export = Callable[[Result, Path], Path]  # writes into a folder and returns the file
+# formats of `mmweaver export` that need no samples, and the package that each needs
+_OTHERS = {
+    "zarr": "zarr",
+    "mat": "scipy",
+    "mcap": "foxglove",
+    "ros2": "rosbags",
+    "rerun": "rerun",
+    "mp4": "av",
+    "webm": "av",
+}
 
 
 def _radar_npz(result: Result, folder: Path) -> Path:
@@ -25,12 +38,16 @@ def _radar_npz(result: Result, folder: Path) -> Path:
 
 
 def _folder(result: Result, folder: Path) -> Path:
-    aligned = None if result.scene is None else AlignedPhoto.of(result.scene)
-    view = FigureData(title=_title(result), cube=result.cube, points=result.points, aligned=aligned, poses=result.poses)
-    if result.generation is not None:
-        view = replace(view, motions=result.generation.motions)
-    save_results(folder / "result", view, result.meta)
-    return Path(shutil.make_archive(str(folder / "result"), "zip", folder, "result"))
+    _save(result, folder / "result")
+    return _zipped(folder / "result")
+
+
+def _samples(result: Result, folder: Path) -> Path:
+    """The result folder with its samples, for which the same request is generated again: a cube is kept without."""
+    if result.with_samples is None:
+        raise InputError("only what the studio generated has samples; generate a sequence first")
+    result.with_samples().save(folder / "result", adc_data_bin=True, pictures=False)
+    return _zipped(folder / "result")
 
 
 def _html(result: Result, folder: Path) -> Path:
@@ -42,10 +59,19 @@ def _html(result: Result, folder: Path) -> Path:
     return page
 
 
+def _other(kind: str, result: Result, folder: Path) -> Path:
+    _save(result, folder / "result", pictures=kind in ("mp4", "webm"))
+    export_result(folder / "result", kind, folder / kind)
+    files = list((folder / kind).iterdir())
+    return files[0] if len(files) == 1 and files[0].is_file() else _zipped(folder / kind)
+
+
 EXPORTS: dict[str, tuple[str, Export]] = {
     "npz": ("radar.npz", _radar_npz),
     "folder": ("result folder (zip)", _folder),
+    "bin": ("with adc_data.bin (zip)", _samples),
     "html": ("page that plays offline (html)", _html),
+    **{kind: (FORMATS[kind].what, partial(_other, kind)) for kind, package in _OTHERS.items() if find_spec(package)},
 }
 
 
@@ -56,6 +82,18 @@ def export(result: Result, kind: str) -> tuple[str, bytes]:
     with TemporaryDirectory(prefix="mmweaver-export-") as folder:
         file = EXPORTS[kind][1](result, Path(folder))
         return file.name, read_bytes(file, max_bytes=MAX_EXPORT_BYTES)
+
+
+def _save(result: Result, folder: Path, *, pictures: bool = True) -> None:
+    aligned = None if result.scene is None else AlignedPhoto.of(result.scene)
+    view = FigureData(title=_title(result), cube=result.cube, points=result.points, aligned=aligned, poses=result.poses)
+    if result.generation is not None:
+        view = replace(view, motions=result.generation.motions)
+    save_results(folder, view, result.meta, pictures=pictures)
+
+
+def _zipped(folder: Path) -> Path:
+    return Path(shutil.make_archive(str(folder), "zip", folder.parent, folder.name))
 
 
 def _title(result: Result) -> str:

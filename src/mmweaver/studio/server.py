@@ -124,7 +124,7 @@ class StudioServer:
         session = self.workshop.sessions.open()
         offered = self.workshop.offer()
         kinds = [(kind, label) for kind, (label, _) in exports.EXPORTS.items()]
-        return JSONResponse({"session": session.id, "exports": kinds, "live": True, "paths": False, **offered})
+        return JSONResponse({"session": session.id, "exports": kinds, "live": True, "paths": True, **offered})
 
     async def _room(self, request: Request) -> Response:
         session = self._session(request)
@@ -162,7 +162,7 @@ class StudioServer:
                     with (folder / uploads.safe_name(sent.filename or "file", taken)).open("wb") as file:
                         while part := await sent.read(1 << 20):
                             file.write(part)
-        chosen = radar if isinstance(radar, str) and radar in dict(self.workshop.offer()["radars"]) else "awr1843"
+        chosen = self.workshop.radar_of(session, radar if isinstance(radar, str) else "awr1843")
         return JSONResponse(await self._do(request, lambda: uploads.take(session, folder, chosen)))
 
     async def _presence(self, socket: WebSocket) -> None:

@@ -4,14 +4,17 @@ import secrets
 import shutil
 import tempfile
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Lock
 from time import monotonic
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, Scene
 from mmweaver.generation import Generation, Room
+from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.playback.sequence import Playback, make_playback
 
 MAX_SESSIONS = 100
@@ -30,6 +33,7 @@ class Result:
     meta: dict
     scene: Scene | None = None
     generation: Generation | None = None
+    with_samples: Callable[[], Generation] | None = None  # generates the same again, keeping its ADC samples
     asked: dict = field(default_factory=dict)  # the request, with `command` and `python`
 
     @property
@@ -49,6 +53,8 @@ class Session:
         self.id = secrets.token_urlsafe(16)
         self.folder = Path(tempfile.mkdtemp(prefix="mmweaver-studio-"))  # readable by this user alone
         self.rooms: dict[str, tuple[str, Room]] = {}  # by id: label and room
+        self.radars: dict[str, tuple[str, RadarConfig]] = {}  # by id: file name and radar
+        self.motions: dict[str, tuple[str, MotionClip]] = {}  # by id: file name and motion
         self.results: OrderedDict[str, Result] = OrderedDict()
         self.used_s = monotonic()
         self.is_open = True
@@ -70,7 +76,8 @@ class Session:
     def end(self) -> None:
         """Removes the session's folder; its rooms and results go with it."""
         self.is_open = False
-        self.rooms.clear()
+        for brought in (self.rooms, self.radars, self.motions):
+            brought.clear()
         self.results.clear()
         shutil.rmtree(self.folder, ignore_errors=True)
 

@@ -1,10 +1,13 @@
-"""Files that a visitor brings: a photo with depth, a recording, a motion or a result folder."""
+"""Files that a visitor brings: a photo with depth, a recording, a radar, a motion or a result folder."""
 
 import secrets
 from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.formats.radar_file import load_radar
+from mmweaver.motion.mocap.read_motion import read_motion
 from mmweaver.recordings.processing import process_recording
 from mmweaver.scene.photo_files import COLOUR, DEPTH, RoomFiles
 from mmweaver.stored_result import read_result
@@ -14,10 +17,9 @@ from mmweaver.studio.sessions import Result, Session
 MAX_BYTES = 300_000_000  # of one upload
 MAX_FILES = 40
 PICTURES = (".png", ".jpg", ".jpeg", ".webp")
-RECORDINGS = (".bin", ".npz")
 
 
-def take(session: Session, folder: Path, radar: str) -> dict[str, Any]:
+def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     """Reads the files of `folder` as what they are together; says what was found. Raises InputError.
 
     Names were chosen by the server (`safe_name`), so nothing outside the folder is ever opened.
@@ -29,11 +31,17 @@ def take(session: Session, folder: Path, radar: str) -> dict[str, Any]:
     if recording is not None:
         settings = next((file for name, file in files.items() if name.endswith((".cfg", ".json"))), None)
         return _recording(session, recording, radar if settings is None else str(settings))
+    motion = next((file for name, file in files.items() if name.endswith(".bvh")), None)
+    if motion is not None or (len(files) == 1 and next(iter(files)).endswith((".npz", ".npy"))):
+        return _motion(session, motion or next(iter(files.values())))
     if any(name.endswith((*PICTURES, ".npy", ".tif", ".tiff")) for name in files):
         return _room(session, _named_as_room(files, folder))
+    settings = next((file for name, file in files.items() if name.endswith((".cfg", ".json"))), None)
+    if settings is not None:
+        return _radar(session, settings)
     raise InputError(
         f"nothing here is known: {', '.join(sorted(files)[:5])}; bring rgb.png with depth.png (and camera.json), a .bin"
-        " with its .cfg, or the files of a result folder"
+        " with its .cfg, a .cfg or radar.json alone, a motion (.bvh, .npz, .npy), or the files of a result folder"
     )
 
 
@@ -73,7 +81,19 @@ def _room(session: Session, files: RoomFiles) -> dict[str, Any]:
     return {"kind": "room", "id": name, "label": label}
 
 
-def _recording(session: Session, file: Path, radar: str) -> dict[str, Any]:
+def _radar(session: Session, file: Path) -> dict[str, Any]:
+    config, name = load_radar(str(file)), secrets.token_urlsafe(6)
+    session.radars[name] = (file.name, config)
+    return {"kind": "radar", "id": name, "label": file.name}
+
+
+def _motion(session: Session, file: Path) -> dict[str, Any]:
+    clip, name = read_motion(file), secrets.token_urlsafe(6)
+    session.motions[name] = (file.name, clip)
+    return {"kind": "motion", "id": name, "label": file.name}
+
+
+def _recording(session: Session, file: Path, radar: RadarConfig | str) -> dict[str, Any]:
     done = process_recording(file, radar)
     result = Result(cube=done.cube, points=done.points, poses=(), meta={**done.meta, "text": file.name})
     return {"kind": "result", "id": session.add(result), "label": file.name, "has_room": False}

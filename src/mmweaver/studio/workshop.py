@@ -1,16 +1,20 @@
 """What the studio does for a session: rooms, sequences, comparisons and exports. Blocking; the server queues it."""
 
 from collections import OrderedDict
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from mmweaver.core.errors import InputError
+from mmweaver.core.errors import InputError, NoRoomError
 from mmweaver.core.presets import PRESETS
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.generate import Weaver
 from mmweaver.generation import Room
 from mmweaver.methods import METHODS
 from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.mocap.clip import MotionClip
 from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.playback.room import room_playback
 from mmweaver.playback.wire import pack
@@ -35,7 +39,8 @@ class Workshop:
     def warm_up(self) -> None:
         """Reads the first room and makes one sequence in it, so that the first visitor does not wait."""
         name = self.rooms.names[0]
-        self._weaver(Asked(room=name, text=(FIRST_TEXT,))).generate(self.rooms.get(name), FIRST_TEXT)
+        asked = Asked(room=name, text=(FIRST_TEXT,))
+        self._weaver(asked, PRESETS[asked.radar]).generate(self.rooms.get(name), FIRST_TEXT)
 
     def offer(self) -> dict[str, Any]:
         """What the page's controls hold."""
@@ -54,10 +59,26 @@ class Workshop:
         """A room by its id: the session's own or an offered one. Raises InputError."""
         return session.rooms[name][1] if name in session.rooms else self.rooms.get(name)
 
+    @staticmethod
+    def radar_of(session: Session, name: str) -> RadarConfig:
+        """A radar by its id: the session's own or a preset. Raises InputError."""
+        if name in session.radars:
+            return session.radars[name][1]
+        if name not in PRESETS:
+            raise InputError(f"unknown radar {name!r}; choose one of the list")
+        return PRESETS[name]
+
+    @staticmethod
+    def motion_of(session: Session, name: str | None) -> MotionClip | None:
+        """A motion that the session brought; None for None. Raises InputError."""
+        if name is not None and name not in session.motions:
+            raise InputError("this motion is no longer kept; open its file again")
+        return None if name is None else session.motions[name][1]
+
     def room_bytes(self, session: Session, name: str, radar: str) -> bytes:
         """A room, packed for the page, with the places where this radar sees a person."""
         label = session.rooms[name][0] if name in session.rooms else name
-        range_m = PRESETS[radar].range_m
+        range_m = self.radar_of(session, radar).range_m
         shown = room_playback(self.room_of(session, name).scene, label, (float(range_m[0]), float(range_m[-1])))
         return pack(shown.header, shown.arrays)
 
@@ -65,15 +86,22 @@ class Workshop:
         """A sequence, kept in the session and packed for the page. Raises InputError."""
         asked = Asked.of(body)
         room = self.room_of(session, asked.room)
-        generation = self._weaver(asked).generate(room, **asked.request)
+        weaver, motion = self._weaver(asked, self.radar_of(session, asked.radar)), self.motion_of(session, asked.motion)
+        with ways_on_for_the_page(asked.room):
+            generation = weaver.generate(room, motion=motion, **asked.request)
         if asked.room in session.rooms:
             options, call = ["--rgb", "rgb.png", "--depth", "depth.png"], 'read_room("rgb.png", "depth.png")'
         else:
             options, call = self.rooms.options(asked.room), self.rooms.call(asked.room)
-        repeated = {"command": asked.command(options), "python": asked.python(call)}
+        names = {
+            "radar": session.radars[asked.radar][0] if asked.radar in session.radars else asked.radar,
+            "motion": None if asked.motion is None else session.motions[asked.motion][0],
+        }
+        repeated = {"command": asked.command(options, **names), "python": asked.python(call, **names)}
         result = Result(
             cube=generation.cube, points=generation.points, poses=generation.poses, meta=generation.meta,
             scene=generation.scene, generation=generation, asked=repeated,
+            with_samples=lambda: weaver.generate(room, motion=motion, keep_adc=True, **asked.request),
         )  # fmt: skip
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
@@ -84,7 +112,7 @@ class Workshop:
     def live(self, session: Session, body: Any) -> Live:
         """A stream in one of the session's rooms. Raises InputError."""
         asked = Asked.of(body)
-        return Live(self._weaver(asked), self.room_of(session, asked.room), asked)
+        return Live(self._weaver(asked, self.radar_of(session, asked.radar)), self.room_of(session, asked.room), asked)
 
     def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
         name = session.add(result)
@@ -96,17 +124,35 @@ class Workshop:
         shown = result.playback()
         return pack({**shown.header, **more, "result": name}, shown.arrays)
 
-    def _weaver(self, asked: Asked) -> Weaver:
+    def _weaver(self, asked: Asked, radar: RadarConfig) -> Weaver:
         """A generator for this room, radar and method; kept, because it holds what it prepared for the room."""
-        if asked.radar not in PRESETS:
-            raise InputError(f"unknown radar {asked.radar!r}; choose one of the list")
         if asked.method not in METHODS:
             raise InputError(f"unknown method {asked.method!r}; choose one of the list")
         key = (asked.room, asked.radar, asked.method)
         with self._lock:
             if key not in self._weavers:
-                self._weavers[key] = Weaver(method=asked.method, radar=asked.radar)
+                self._weavers[key] = Weaver(method=asked.method, radar=radar)
                 while len(self._weavers) > _MOST_WEAVERS:
                     self._weavers.popitem(last=False)
             self._weavers.move_to_end(key)
             return self._weavers[key]
+
+
+class NoWayError(InputError):
+    """A request that this room does not allow; `ways_on` are buttons of the page: a label, and what they change."""
+
+    def __init__(self, message: str, ways_on: list[dict[str, Any]]):
+        super().__init__(message)
+        self.ways_on = ways_on
+
+
+@contextmanager
+def ways_on_for_the_page(room: str) -> Iterator[None]:
+    """Turns what would help a motion that finds no room into what the page can change."""
+    try:
+        yield
+    except NoRoomError as error:
+        ways = [{"label": f"with {radar}", "change": {"radar": radar}} for radar in error.ways_on.get("radars", ())]
+        if room != DEMO:
+            ways.append({"label": "in the bundled room", "change": {"room": DEMO}})
+        raise NoWayError(str(error), ways) from None
