@@ -36,7 +36,7 @@ def is_stream(folder: Path) -> bool:
 
 def parts_of(folder: Path) -> list[Path]:
     """The whole parts of a recording in their order. Raises InputError where there is none, or one is missing."""
-    found = sorted(part for part in (folder / PARTS).iterdir() if part.is_dir() and part.name.isdigit())
+    found = sorted(part for part in (folder / PARTS).iterdir() if part.is_dir() and part.name.isdecimal())
     if not found:
         raise InputError(f"{folder} holds no whole part yet; let the stream run longer")
     return found

@@ -23,7 +23,7 @@ CUT_HEADER = m.lying_npy("{'descr': '<f8', 'fortran_order': False, 'shape': (48,
 
 def corpus() -> list[tuple[str, str, bytes]]:
     """All of them."""
-    return [*_radars(), *_arrays(), *_motions(), *_pictures(), *_containers(), *_sets()]
+    return [*_radars(), *_arrays(), *_motions(), *_logs(), *_pictures(), *_containers(), *_sets()]
 
 
 def _radars() -> list[tuple[str, str, bytes]]:
@@ -87,6 +87,23 @@ def _motions() -> list[tuple[str, str, bytes]]:
     return [
         ("motion npz", what, m.npz_bytes({name: m.npy_bytes(values) for name, values in arrays.items()}))
         for what, arrays in archives.items()
+    ]
+
+
+def _logs() -> list[tuple[str, str, bytes]]:
+    """Of the first run over logs and texts."""
+    csv = "Frame,X,Y,Z,Doppler\n"
+    text = "point_id: 0\nx: 1\ny: 0\nz: 0\nvelocity: {}\n"
+    columns = {"frame": m.npy_bytes(np.array([1e300])), "pts": m.npy_bytes(np.zeros((1, 5)))}
+    digits = "9" * 400
+    return [
+        ("points csv", "a field of 200,000 characters", (csv + "1,0,1,0," + "7" * 200_000).encode()),
+        ("points csv", "frame 1e300", (csv + "1e300,0,1,0,0\n").encode()),
+        ("points RadHAR", "infinite velocity", text.format("inf").encode()),
+        ("points mHomeGes", "frame 1e300", m.npz_bytes(columns)),
+        ("sentence", "400 digits", f"a person waves {digits} times".encode()),
+        ("sentence", "400 digits of metres", f"a person stands {digits} metres away and waves".encode()),
+        ("activities.toml", "400 digits", f'[activities]\na = "a person waves {digits} times"\nb = "waves"'.encode()),
     ]
 
 

@@ -41,6 +41,7 @@ from tests import captures
 from tests.formats.test_mmwave_studio import SETUP
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader
+from tests.fuzz.log_readers import log_readers
 from tests.fuzz.set_readers import set_readers
 
 WIDTH, HEIGHT = 64, 48
@@ -63,6 +64,7 @@ def make_readers(folder: Path) -> list[Reader]:
         *_results(folder, config, adc),
         *_others(folder),
         *set_readers(folder),
+        *log_readers(folder, config),
     ]
 
 

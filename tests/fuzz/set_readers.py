@@ -66,10 +66,10 @@ def set_readers(folder: Path) -> list[Reader]:
         return [found.node_joints_m, found.room.paths.length_m.numpy(), person.visibility.skin]
 
     return [
-        _members("zarr set", rooms, _whole, _wrong),
-        _members("zarr geometry", geometry, stored_geometry, _wrong),
-        _members("zarr labelled set", labelled, labelled_set, _wrong),
-        _members(SUMS, folder / "summed", _verified, lambda _: None),
+        members_reader("zarr set", rooms, _whole, _wrong),
+        members_reader("zarr geometry", geometry, stored_geometry, _wrong),
+        members_reader("zarr labelled set", labelled, labelled_set, _wrong),
+        members_reader(SUMS, folder / "summed", _verified, lambda _: None),
     ]
 
 
@@ -148,7 +148,7 @@ def _write_labelled(folder: Path, config: RadarConfig) -> None:
 
 
 # damage -------------------------------------------------------------------------------------------------------------
-def _members(name: str, data: Path, read: Callable[[Path], Any], wrong: Callable[[Any], str | None]) -> Reader:
+def members_reader(name: str, data: Path, read: Callable[[Path], Any], wrong: Callable[[Any], str | None]) -> Reader:
     """A reader of a folder; a case is an archive of the files that differ, empty ones are deleted."""
     sound = {file.relative_to(data).as_posix(): file.read_bytes() for file in sorted(data.rglob("*")) if file.is_file()}
 

@@ -40,6 +40,7 @@ FORGET = 8  # groups over which sizes are averaged
 SUDDEN = 4  # a size that falls by this factor is believed at once
 LARGEST = 2**15
 MOST_SAMPLES = 2**27
+SMALL_SAMPLES, MOST_SAMPLES_A_BYTE = 2**23, 10_000  # what a block may unpack to, whatever it says
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +76,8 @@ def decode_block(data: bytes, expected: BlockShape) -> Samples:
     shape = BlockShape(loops=loops, antennas=antennas, samples=samples, parts=parts)
     if shape != expected or shape.size > MOST_SAMPLES:
         raise ValueError("a block of another shape")
+    if shape.size > max(SMALL_SAMPLES, MOST_SAMPLES_A_BYTE * len(data)):
+        raise ValueError("more samples than its bytes can hold")
     if sets not in (1, antennas):
         raise ValueError("impossible weights")
     count = sets * parts * (len(INPUTS) * parts + parts - 1)

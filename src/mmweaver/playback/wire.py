@@ -46,6 +46,6 @@ def unpack(data: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
             name: np.frombuffer(data, f"<{kind}", int(np.prod(shape)), 4 + length + offset).reshape(shape)
             for name, (kind, shape, offset) in header.pop("arrays").items()
         }
-    except (struct.error, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (struct.error, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise InputError(f"these bytes hold no sequence for the page: {error}") from None
     return header, arrays

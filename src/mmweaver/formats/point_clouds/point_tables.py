@@ -12,12 +12,13 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
+from mmweaver.core.safe_files.regular_files import MEGABYTE, foreign_errors, read_bytes
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud
 
 MAX_BYTES = 500 * MEGABYTE
+LARGEST_FRAME = 2**31
 MMFI_COLUMNS = 5  # x, y, z, Doppler, intensity
 # columns of a CSV, in letters and digits alone: name here
 COLUMNS = {
@@ -30,7 +31,9 @@ NUMBERED = re.compile(r"(\d+)")
 
 def read_csv_points(path: Path) -> LoggedCloud:
     """A CSV with a header that names frame, x, y, z and Doppler (m, m/s), as MARS and mRI have. Raises InputError."""
-    rows = list(csv.reader(StringIO(read_text(path, max_bytes=MAX_BYTES))))
+    text = read_text(path, max_bytes=MAX_BYTES)
+    with foreign_errors(path, "no CSV ({reason}); export it again"):
+        rows = list(csv.reader(StringIO(text)))
     names = [COLUMNS.get(re.sub(r"[^a-z0-9]", "", name.lower())) for name in rows[0]] if rows else []
     at = {name: index for index, name in enumerate(names) if name is not None}
     if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
@@ -91,8 +94,9 @@ def read_point_npz(path: Path) -> LoggedCloud:
     held = read_npz(path)
     if not {"frame", "pts"} <= set(held):
         raise InputError(f"{path} holds {', '.join(held)}; known are archives with frame and pts, and points.npz")
-    frame, points = np.asarray(held["frame"]), np.asarray(held["pts"], float)
-    if points.ndim != 2 or len(frame) != len(points) or points.shape[1] not in (5, 8):
+    frame = held.numbers("frame", ("point",))
+    points = held.numbers("pts", ("point", "column"), nan=True).astype(float)
+    if points.shape[1] not in (5, 8):
         raise InputError(f"{path}: pts is {points.shape}; 5 columns (mHomeGes) or 8 (RadHAR) are known")
     frame = _renumbered(path, frame)
     if points.shape[1] == 5:
@@ -104,7 +108,8 @@ def read_point_npz(path: Path) -> LoggedCloud:
 def _renumbered(path: Path, frame: np.ndarray) -> np.ndarray:
     """Frames counted from 0, gaps kept. Raises InputError where they are no rising whole numbers."""
     frame = np.asarray(frame, float)
-    if len(frame) and (not np.isfinite(frame).all() or (frame % 1).any() or (np.diff(frame) < 0).any()):
+    is_whole = bool((np.abs(frame) < LARGEST_FRAME).all()) and not (frame % 1).any()
+    if not is_whole or (np.diff(frame) < 0).any():
         raise InputError(f"{path} has frame numbers that are not whole or not in order; leave it out")
     return (frame - frame[0]).astype(int) if len(frame) else frame.astype(int)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.array_checks import ArrayChecks
 from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.formats.npz_files import POINT_COLUMNS, read_points_npz
 from mmweaver.formats.point_clouds.point_log import LoggedCloud, logged_cloud
@@ -23,6 +24,7 @@ KINDS = {
     "npz": "archive with frame and pts (mHomeGes, RadHAR)",
 }
 PROBE_BYTES = 1 << 16
+FARTHEST_M = 1e5  # of a point; what is beyond is damage
 
 
 def read_points(path: str | Path, kind: str | None = None) -> LoggedCloud:
@@ -42,9 +44,11 @@ def read_points(path: str | Path, kind: str | None = None) -> LoggedCloud:
         "npz": read_point_npz,
     }  # fmt: skip
     cloud = read_ti_uart(path).points if kind == "ti_uart" else readers[kind](path)
-    places = np.stack([cloud.x_m, cloud.y_m, cloud.z_m])
-    if not np.isfinite(places).all():
-        raise InputError(f"{path} holds places that are not finite; leave it out")
+    checks = ArrayChecks(path)
+    for name in ("x_m", "y_m", "z_m"):
+        checks.numbers(name, getattr(cloud, name), ("point",), low=-FARTHEST_M, high=FARTHEST_M)
+    for name in ("radial_velocity_mps", "snr_db", "intensity"):
+        checks.numbers(name, getattr(cloud, name), ("point",), nan=True)
     return cloud
 
 

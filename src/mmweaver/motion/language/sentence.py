@@ -1,5 +1,6 @@
 """From a sentence to a MotionPlan: every clause becomes a step or an overlay, or an error names the clause."""
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 
@@ -20,6 +21,7 @@ from mmweaver.motion.language.words import Word, words_of
 
 LONGEST_TEXT = 1000
 MOST_STEPS = 24
+_LONG_NUMBER = re.compile(r"\d{10}")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
@@ -37,6 +39,8 @@ def parse(text: str) -> MotionPlan:
     given_text = text
     if not text.strip():
         raise InputError(f"the text is empty; say what the person does, for example {EXAMPLE!r}")
+    if _LONG_NUMBER.search(text):
+        raise InputError("a number in the sentence has more than 9 digits; say a smaller one")
     if len(text) > LONGEST_TEXT:
         raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
     try:
