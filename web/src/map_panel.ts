@@ -14,7 +14,7 @@ export interface Mark { x?: [number, number]; y?: [number, number]; colour?: str
 
 function ticks(from: number, to: number, about: number): number[] {
   const raw = Math.abs(to - from) / about, power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw)!;
+  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= 0.8 * raw)!;
   const out: number[] = [];
   for (let v = Math.ceil(Math.min(from, to) / step) * step; v <= Math.max(from, to) + 1e-9; v += step) out.push(Math.abs(v) < 1e-12 ? 0 : v);
   return out;
@@ -105,7 +105,7 @@ export class MapPanel {
     g.imageSmoothingEnabled = false;
     g.drawImage(this.raster, box.left, box.top, box.width, box.height);
     g.font = '600 12px system-ui, "DejaVu Sans", sans-serif'; g.fillStyle = ink;
-    g.fillText(this.title, box.left, 15);
+    g.fillText(fitted(g, this.title, width - 12 - Math.min(box.left, 14)), Math.min(box.left, 14), 15);
     g.font = '11px system-ui, "DejaVu Sans", sans-serif'; g.fillStyle = faint; g.strokeStyle = faint;
     const px = (x: number) => box.left + ((x - this.x.from) / (this.x.to - this.x.from)) * box.width;
     const py = (y: number) => box.top + (1 - (y - this.y.from) / (this.y.to - this.y.from)) * box.height;
@@ -133,5 +133,12 @@ export class MapPanel {
   }
 }
 
+/** The text, cut with an ellipsis where it is wider than so many pixels. */
+function fitted(g: CanvasRenderingContext2D, text: string, width: number): string {
+  if (g.measureText(text).width <= width) return text;
+  let end = text.length;
+  while (end > 1 && g.measureText(`${text.slice(0, end)}…`).width > width) end--;
+  return `${text.slice(0, end)}…`;
+}
 const unitOf = (label: string) => label.match(/\(([^,)]+)/)?.[1] ?? "";
 const tidy = (value: number) => String(Math.round(value * 1000) / 1000);

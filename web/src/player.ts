@@ -9,7 +9,7 @@ const DEGREES = 180 / Math.PI;
 const MAPS = [
   { name: "range_doppler", title: "Range-Doppler", kind: "doppler" },
   { name: "range_azimuth", title: "Range-azimuth, all", kind: "azimuth" },
-  { name: "range_azimuth_moving", title: "Range-azimuth, clutter removed", kind: "azimuth" },
+  { name: "range_azimuth_moving", title: "Range-azimuth, moving", kind: "azimuth" },
 ] as const;
 
 export class Player {
@@ -56,6 +56,7 @@ export class Player {
     this.strip.append(this.time.root);
     this.time.canvas.setAttribute("role", "slider");
     new ResizeObserver(() => this.draw()).observe(this.root);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
     const tick = (now: number) => {
       if (this.playing && this.sequence) {
         this.share += ((now - this.last) / 1000 / this.sequence.periodS) * this.speed;
@@ -135,15 +136,15 @@ export class Player {
         const s = which === "b" ? this.other! : a;
         const y = which === "b" ? { ...range, from: s.header.range_m[0], to: s.header.range_m[1] } : range;
         const suffix = this.other ? { a: " (A)", b: " (B)", difference: ", B less A, ±20 dB" }[which] : "";
-        const panel = new MapPanel(title + suffix, columns[kind], y);
+        const panel = new MapPanel(which === "difference" ? "B less A, ±20 dB" : title + suffix, columns[kind], y);
         panel.canvas.setAttribute("aria-label", `${title}${suffix}: ${y.label} against ${columns[kind].label}`);
         panel.onHover = (pointer) => this.hover(pointer, kind);
         row.append(panel.root); this.panels.push({ map: name, panel, which });
       }
       this.side.append(row);
     }
-    this.doppler = this.timePanel("Micro-Doppler, clutter removed", { label: "radial velocity (m/s)", from: a.header.velocity_mps[0], to: a.header.velocity_mps[1] });
-    this.side.append(element("div", { class: "row" }, this.doppler.root));
+    this.doppler = this.timePanel("Micro-Doppler, moving", { label: "radial velocity (m/s)", from: a.header.velocity_mps[0], to: a.header.velocity_mps[1] });
+    this.side.append(element("div", { class: "row wide" }, this.doppler.root));
     for (const panel of [this.doppler, this.time]) panel.x = { label: "time (s)", from: 0, to: a.frames * a.periodS };
     this.time.y = range;
   }

@@ -131,7 +131,7 @@ export class SceneView {
     this.floorZ = room.header.floor_z_m;
     const mm = room.arrays.room_points.data, place = new Float32Array(mm.length), colour = new Float32Array(mm.length), rgb = room.arrays.room_colours.data;
     for (let i = 0; i < mm.length; i++) { place[i] = mm[i] / 1000; colour[i] = (rgb[i] / 255) ** 2.2; }
-    this.put("room", cloud(place, colour, 0.028));
+    this.put("room", cloud(place, colour, 0.042));
     const cells = room.arrays.free_floor.data, floor = new Float32Array((cells.length / 2) * 3);
     for (let i = 0; i < cells.length / 2; i++) floor.set([cells[2 * i], cells[2 * i + 1], this.floorZ + 0.01], 3 * i);
     const free = cloud(floor, null, 0.03); (free.material as THREE.PointsMaterial).color.set("#2fbf7b"); (free.material as THREE.PointsMaterial).transparent = true; (free.material as THREE.PointsMaterial).opacity = 0.35;

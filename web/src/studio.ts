@@ -308,6 +308,7 @@ export class Studio {
   private follow(change: Record<string, unknown>): void {
     if (Array.isArray(change.at)) { this.at = change.at as [number, number]; this.player.scene.showStart(this.at); }
     if (change.at === null) { this.at = null; this.player.scene.showStart(null); }
+    if (change.path === null) { this.path = null; this.player.scene.clearPath(); }
     if (typeof change.radar === "string") { this.radarChoice.value = change.radar; this.changeRadar(); return; }
     if (typeof change.room === "string") { this.roomChoice.value = change.room; this.changeRoom(); return; }
     if (typeof change.text === "string") this.text.value = change.text;

@@ -87,7 +87,7 @@ class Workshop:
         asked = Asked.of(body)
         room = self.room_of(session, asked.room)
         weaver, motion = self._weaver(asked, self.radar_of(session, asked.radar)), self.motion_of(session, asked.motion)
-        with ways_on_for_the_page(asked.room):
+        with ways_on_for_the_page(asked):
             generation = weaver.generate(room, motion=motion, **asked.request)
         if asked.room in session.rooms:
             options, call = ["--rgb", "rgb.png", "--depth", "depth.png"], 'read_room("rgb.png", "depth.png")'
@@ -147,12 +147,16 @@ class NoWayError(InputError):
 
 
 @contextmanager
-def ways_on_for_the_page(room: str) -> Iterator[None]:
-    """Turns what would help a motion that finds no room into what the page can change."""
+def ways_on_for_the_page(asked: Asked) -> Iterator[None]:
+    """Turns what would help a motion that finds no room, or does not fit its path, into what the page can change."""
     try:
         yield
     except NoRoomError as error:
         ways = [{"label": f"with {radar}", "change": {"radar": radar}} for radar in error.ways_on.get("radars", ())]
-        if room != DEMO:
+        if asked.room != DEMO:
             ways.append({"label": "in the bundled room", "change": {"room": DEMO}})
         raise NoWayError(str(error), ways) from None
+    except InputError as error:
+        if asked.path is None:
+            raise
+        raise NoWayError(str(error), [{"label": "without the path", "change": {"path": None}}]) from None
