@@ -27,7 +27,7 @@ from tests.browser.chromium import FLAGS, needs_browser, running_studio  # noqa:
 IMAGES = ROOT / "docs" / "images"
 READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"
 FRAME_RATE_HZ, VIDEO_S = 10, 30
-SIZE = {"width": 1280, "height": 800}
+SIZE: Any = {"width": 1280, "height": 800}
 
 
 def main() -> None:
