@@ -12,12 +12,14 @@ import torch
 from torch import Tensor
 
 from mmweaver.compression.cell_choice import active_cells
+from mmweaver.compression.cell_sample import CellSample, Estimate
 from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.chunk_transform import ChunkTransform, TransformChoice
 from mmweaver.compression.entropy import BitStream, Decoder, Encoder
 from mmweaver.compression.exact_chunk import pack_exact, unpack_exact
 from mmweaver.compression.level_coder import LevelCoder
 from mmweaver.compression.low_rank import RankFactors
+from mmweaver.compression.noise_layer import NoiseLayer, to_noise, without_signal
 from mmweaver.compression.point_coder import PointCoder, PointSteps, dequantize, nearness, quantize
 from mmweaver.compression.residual_stream import PRICE, QuantizedCells, code_cells, quantized
 from mmweaver.compression.transforms import beams_of
@@ -29,17 +31,16 @@ from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers, no_points, rendered, static_cells, strongest
 from mmweaver.fields.scatterers.refinement import Damping, refined
 
-# frames, hop, peak, step, centroids of 1 and of more, noise, log2 of the coarse step, rank, flags
+# frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS, rank, flags
 PREFIX = struct.Struct("<HHffBBBBBB")
-HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT = 1, 2, 4, 8, 16, 32
+HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE = 1, 2, 4, 8, 16, 32, 64
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
 SAME_COUNT = 0.15  # relative difference in count within which refined scatterers are reused
 GAIN_STEPS = 64.0
 LEAST_GAIN = 0.03  # antenna gains that differ less from 1 are dropped
-MOST_COARSE = 5
-SAMPLED_CELLS = 4096  # of an estimate
+COARSE_STEPS = (1, 2, 4, 8, 16, 32, 3)  # in fine steps, as the prefix numbers them
 # hostile headers: a chunk of several frames, and one frame, have at most so many complex numbers
 MOST_VALUES, MOST_CELLS = 2**21, 2**26
 
@@ -51,10 +52,12 @@ class ChunkMode:
     transform: TransformChoice = field(default_factory=TransformChoice)
     with_points: bool = False
     with_rank: bool = False
+    noise_step: float = 0.0  # of the noise layer, where there is one
 
     def name(self) -> str:
         """For people."""
         parts = ["scatterers"] * self.with_points + ["low rank"] * self.with_rank
+        parts += ["noise"] * bool(self.noise_step)
         return " + ".join([*parts, self.transform.name()])
 
 
@@ -67,11 +70,12 @@ class CodedChunk:
     all_error: float
     step: float
     mode: ChunkMode
+    sample: CellSample
 
     def cost(self, coarser: int) -> float:
         """Lagrangian cost in the units of the error: cells without signal count less."""
-        weighted = self.active_error + (self.all_error - self.active_error) / coarser**2
-        return weighted + PRICE * self.step**2 * 8 * len(self.data)
+        own = Estimate(num_bytes=len(self.data), active_error=self.active_error, all_error=self.all_error)
+        return own.cost(self.step, coarser)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,6 +92,7 @@ class DecodedChunk:
     noise_power: float
     num_residual_values: int = 0  # non-zero residual values
     rank: int = 0
+    has_noise: bool = False
     exact: CubeValues | None = None
     transform: TransformChoice | None = None
 
@@ -96,6 +101,7 @@ class DecodedChunk:
         if self.exact is not None:
             return "exact"
         parts = ["scatterers"] * (self.layers is not None) + ["low rank"] * bool(self.rank)
+        parts += ["noise"] * self.has_noise
         parts += [self.transform.name()] if self.transform else []
         return " + ".join(parts) or "nothing"
 
@@ -113,6 +119,26 @@ class DecodedChunk:
         return finite(self.frames.cube_values(working * np.float32(self.peak)))
 
 
+@dataclass(frozen=True, kw_only=True)
+class ChunkDraft:
+    """A chunk whose cells are still to be coded. `front`: bytes before the stream, but for prefix and transform."""
+
+    step: float
+    stream: Encoder
+    flags: int
+    front: bytes
+    near: np.ndarray
+    rank: int
+    transform: ChunkTransform
+    coefficients: np.ndarray
+    is_active: np.ndarray
+
+    def sample(self) -> CellSample:
+        """Some cells, for estimates."""
+        before = PREFIX.size + len(self.front) + len(self.transform.packed) + len(self.stream.to_bytes())
+        return CellSample.of(self.coefficients, self.is_active, before)
+
+
 @dataclass(kw_only=True)
 class ChunkEncoder:
     """Encodes frames at any step. `target`: working frames (frame, range, doppler, antenna) over `peak`.
@@ -127,8 +153,10 @@ class ChunkEncoder:
     active_power: float | None = None  # above it a cell is active; None = 12 dB above the median
     layers: Layers | None = None
     _coefficients: dict[TransformChoice, tuple[ChunkTransform, np.ndarray]] = field(default_factory=dict)
-    _samples: dict[TransformChoice, tuple[ChunkTransform, np.ndarray, np.ndarray]] = field(default_factory=dict)
+    _samples: dict[TransformChoice, CellSample] = field(default_factory=dict)
     _refined_points: tuple[int, Points] | None = None
+    _noise: tuple[ChunkMode, NoiseLayer] | None = None
+    _noise_sample: CellSample | None = None
 
     def __post_init__(self) -> None:
         self.beams = beams_of(self.frames.config)
@@ -140,36 +168,53 @@ class ChunkEncoder:
             layers = replace(layers, calibration=torch.ones_like(layers.calibration))
         self.layers = replace(layers, calibration=_quantize_gains(layers.calibration))
 
-    def encode(self, step: float, mode: ChunkMode, coarser: int) -> CodedChunk:
-        """The chunk with an error of about step / sqrt(12) in each coded cell, relative to the peak."""
+    def encode(self, step: float, mode: ChunkMode, coarser: int, price: float = PRICE) -> CodedChunk:
+        """The chunk with an error of about step / sqrt(12) in each coded cell, relative to the peak.
+
+        `price`: see `quantized`.
+        """
+        draft = self.draft(step, mode, coarser)
+        sample = draft.sample()
+        step, stream, flags, front = draft.step, draft.stream, draft.flags, draft.front
+        cells = quantized(draft.coefficients, step, coarser, draft.is_active, price)
+        lost = draft.coefficients
+        if cells.classes.any():
+            flags += HAS_CELLS
+            front += draft.transform.packed
+            code_cells(stream, cells.levels, cells.classes, draft.near, draft.transform.correlated, coarser)
+            lost = lost - cells.values(step, coarser)
+        lost = np.sum(np.square(np.abs(lost)), axis=0)
+        prefix = PREFIX.pack(
+            self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
+            COARSE_STEPS.index(coarser or 1), draft.rank, flags,
+        )  # fmt: skip
+        return CodedChunk(
+            data=prefix + front + stream.to_bytes(), active_error=float(lost[draft.is_active].sum()),
+            all_error=float(lost.sum()), step=step, mode=mode, sample=sample,
+        )  # fmt: skip
+
+    def draft(self, step: float, mode: ChunkMode, coarser: int) -> "ChunkDraft":
+        """The chunk with its layers coded, and its cells not."""
         step = float(np.float32(step))
         stream, flags, front = Encoder(), 0, b""
         target, near = self.target, np.zeros(self.target.shape[:3], np.int64)
         if mode.with_points and self.layers is not None:
             target, near, flags, front = self._points(stream, step)
-        noise = self.noise_power * (1 - 1 / coarser**2)
-        factors = RankFactors.of(target, step, noise) if mode.with_rank else None
+        noise_power = self.noise_power * (1 - 1 / (coarser or 4) ** 2)
+        factors = RankFactors.of(target, step, noise_power) if mode.with_rank else None
         if factors is not None:
             flags += HAS_RANK
             factors.code(stream)
             target = (target - factors.values(step, target.shape)).astype(target.dtype)
+        if mode.noise_step:
+            noise = self._noise_layer(mode, target)
+            flags += HAS_NOISE
+            front += noise.packed
+            target = target - noise.values
         transform, coefficients = self._transformed(mode.transform, target, is_plain=target is self.target)
-        mask = transform.spread_over_time(self.is_active)
-        cells = quantized(coefficients, step, coarser, mask)
-        if cells.classes.any():
-            flags += HAS_CELLS
-            front += transform.packed
-            code_cells(stream, cells.levels, cells.classes, near, transform, coarser)
-        lost = coefficients - cells.values(step, coarser) if cells.classes.any() else coefficients
-        lost = np.sum(np.square(np.abs(lost)), axis=0)
-        rank = 0 if factors is None else factors.rank
-        prefix = PREFIX.pack(
-            self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
-            coarser.bit_length() - 1, rank, flags,
-        )  # fmt: skip
-        return CodedChunk(
-            data=prefix + front + stream.to_bytes(), active_error=float(lost[mask].sum()), all_error=float(lost.sum()),
-            step=step, mode=mode,
+        return ChunkDraft(
+            step=step, stream=stream, flags=flags, front=front, near=near, rank=0 if factors is None else factors.rank,
+            transform=transform, coefficients=coefficients, is_active=transform.spread_over_time(self.is_active),
         )  # fmt: skip
 
     def exact(self, values: CubeValues) -> bytes:
@@ -179,33 +224,27 @@ class ChunkEncoder:
         )
         return front + pack_exact(values)
 
-    def estimated_cost(self, step: float, choice: TransformChoice, coarser: int) -> float:
-        """Approximate `cost` of a transform without scatterers, from a sample of its cells and without coding."""
-        transform, coefficients, active = self._sample(choice)
-        cells = quantized(coefficients, step, coarser, active)
-        share = self.is_active.size / active.size
-        bits = share * cells.estimated_bits + 8 * len(transform.packed)
-        return (PRICE * bits + share * cells.weighted_error) * step**2
-
-    def even_estimate(self, step: float, choice: TransformChoice) -> tuple[float, float]:
-        """Approximate bytes and error (as `CodedChunk.all_error`) where all cells have the same step."""
-        transform, coefficients, active = self._sample(choice)
-        cells = quantized(coefficients, step, 1, active)
-        share = self.is_active.size / active.size
-        return share * cells.estimated_bits / 8 + len(transform.packed), share * cells.weighted_error * step**2
-
-    def _sample(self, choice: TransformChoice) -> tuple[ChunkTransform, np.ndarray, np.ndarray]:
-        """The transform, some of its coefficients (beam, cell, 1, 1), and which of them are active (cell, 1, 1)."""
+    def sample(self, choice: TransformChoice) -> CellSample:
+        """Some coefficients of a transform of the frames themselves, for estimates."""
         if choice not in self._samples:
             transform, coefficients = self._transformed(choice, self.target, is_plain=True)
-            active = transform.spread_over_time(self.is_active).reshape(-1)
-            # a stride without common factors with the axes
-            stride = max(1, active.size // SAMPLED_CELLS)
-            chosen = np.arange(0, active.size, stride) + np.arange(-(-active.size // stride)) % stride
-            chosen = chosen[chosen < active.size]
-            flat = coefficients.reshape(len(coefficients), -1)[:, chosen]
-            self._samples[choice] = transform, flat[:, :, None, None], active[chosen][:, None, None]
+            mask = transform.spread_over_time(self.is_active)
+            self._samples[choice] = CellSample.of(coefficients, mask, PREFIX.size + len(transform.packed))
         return self._samples[choice]
+
+    def noise_sample(self) -> CellSample:
+        """Some coefficients of the noise layer, for estimates."""
+        if self._noise_sample is None:
+            coefficients = to_noise(without_signal(self.target, self.is_active), self.beams)
+            self._noise_sample = CellSample.of(coefficients, np.ones(coefficients.shape[1:], bool))
+        return self._noise_sample
+
+    def _noise_layer(self, mode: ChunkMode, target: np.ndarray) -> NoiseLayer:
+        """The noise after the layers of a mode; coded once, for layers change little with the step."""
+        if self._noise is None or self._noise[0] != mode:
+            quiet = without_signal(target, self.is_active)
+            self._noise = mode, NoiseLayer.of(quiet, mode.noise_step, self.beams)
+        return self._noise[1]
 
     def _transformed(self, choice, target, *, is_plain: bool) -> tuple[ChunkTransform, np.ndarray]:
         if is_plain and choice in self._coefficients:
@@ -284,9 +323,9 @@ def frames_of_chunk(data: bytes) -> int:
 
 def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChunk:
     num_frames, hop, peak, step, one, more, noise, coarse, rank, flags = PREFIX.unpack_from(data)
-    if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak) and coarse <= MOST_COARSE):
+    if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak) and coarse < len(COARSE_STEPS)):
         raise ValueError("impossible prefix")
-    if flags >= 2 * IS_EXACT or bool(flags & HAS_RANK) != bool(rank):
+    if flags >= 2 * HAS_NOISE or bool(flags & HAS_RANK) != bool(rank):
         raise ValueError("impossible flags")
     cells = config.num_range_bins * config.num_loops * config.num_antennas
     if (num_frames > 1 and num_frames * cells > MOST_VALUES) or cells > MOST_CELLS:
@@ -302,6 +341,10 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
     if flags & HAS_GAINS:
         gains = _unpack_gains(data[at : at + 2 * config.num_antennas])
         at += 2 * config.num_antennas
+    noise: NoiseLayer | None = None
+    if flags & HAS_NOISE:
+        noise = NoiseLayer.unpack(data[at:], shape, beams)
+        at += len(noise.packed)
     if flags & HAS_CELLS:
         transform = ChunkTransform.unpack(data[at:], beams, shape[2])
         at += len(transform.packed)
@@ -314,19 +357,21 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         factors = RankFactors.empty(rank, shape)
         factors.code(stream)
         residual = factors.values(step, shape).astype(np.complex64)
+    if noise is not None and with_residual:
+        residual = noise.values if residual is None else residual + noise.values
     num_values = 0
     if transform is not None and with_residual:
         classes = np.zeros(shape[:3], np.int64)
         levels = np.zeros((2, shape[3], *shape[:3]), np.int64)
-        code_cells(stream, levels, classes, near, transform, 1 << coarse)
+        code_cells(stream, levels, classes, near, transform.correlated, COARSE_STEPS[coarse])
         num_values = int(np.count_nonzero(levels))
         cells = QuantizedCells(levels=levels, classes=classes, centroids=(one, more))
-        rest = transform.inverse(cells.values(step, 1 << coarse).astype(np.complex64))
+        rest = transform.inverse(cells.values(step, COARSE_STEPS[coarse]).astype(np.complex64))
         residual = rest if residual is None else residual + rest
     return DecodedChunk(
         frames=frames, layers=layers, residual=None if residual is None else finite(residual), peak=peak,
-        noise_power=noise_power,
-        num_residual_values=num_values, rank=rank, transform=None if transform is None else transform.choice,
+        noise_power=noise_power, num_residual_values=num_values, rank=rank, has_noise=noise is not None,
+        transform=None if transform is None else transform.choice,
     )  # fmt: skip
 
 

@@ -9,30 +9,17 @@ from typing import Any
 import numpy as np
 
 from mmweaver.compression.cell_choice import active_cells, active_power
-from mmweaver.compression.chunk import ChunkMode, CodedChunk, DecodedChunk, decode_chunk
+from mmweaver.compression.chunk import DecodedChunk, decode_chunk
 from mmweaver.compression.mmw_container import LISTED, MAX_RATIO, MmwFile, MmwHeader, header_for, pack_mmw
 from mmweaver.compression.old_chunk import decode_old_chunk
-from mmweaver.compression.segment import (
-    CLOSE_ENOUGH,
-    COARSER,
-    COARSEST_STEP,
-    FINEST_STEP,
-    TRIALS,
-    USUAL_QUALITY_STEP,
-    Progress,
-    Scale,
-    SegmentEncoder,
-    first_step,
-    next_step,
-)
+from mmweaver.compression.rate_search import Progress, error_db, within_bytes, within_error
+from mmweaver.compression.segment import COARSER, Scale, SegmentEncoder
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CubeGrid, RadarCube
 from mmweaver.core.shapes import CubeValues
 
 LEAST_BYTES = 256
-CLOSE_ENOUGH_DB = 0.1
-EXACT_SHARE = 0.7  # a file without loss is tried where the bytes allowed are at least this share of the cube's
 
 
 @single_precision()
@@ -73,9 +60,11 @@ def encoded_chunks(
     segment: SegmentEncoder, *, num_bytes: int | None, quality_db: float | None, progress: Progress = lambda _: None
 ) -> list[bytes]:
     """The chunks of a stretch of frames, of `num_bytes` together, or to a quality in active cells."""
+    if not segment.parts:
+        segment.plan_for(num_bytes)
     if num_bytes is not None:
-        return _within_bytes(segment, num_bytes, progress)
-    return _within_error(segment, float(quality_db or 0), progress)
+        return within_bytes(segment, num_bytes, progress)
+    return within_error(segment, float(quality_db or 0), progress)
 
 
 def check_request(num_bytes: int | None, quality_db: float | None) -> None:
@@ -216,91 +205,3 @@ def check_writable(cube: RadarCube) -> None:
 def _packed(header: MmwHeader, segment: SegmentEncoder, chunks: list[bytes]) -> bytes:
     time_s = segment.cube.grid.frame_time_s
     return pack_mmw(header, chunks, [time_s[part.start : part.stop] for part in segment.parts])
-
-
-def _within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) -> list[bytes]:
-    """The finest step whose file fits. Cells without signal err more only while that costs little over all cells."""
-    if num_bytes >= EXACT_SHARE * segment.cube.values.nbytes or not np.any(segment.cube.values):
-        exact = segment.exact()
-        if sum(map(len, exact)) <= num_bytes:
-            return exact
-    guess = math.log(first_step(num_bytes / len(segment.cube.values)))
-    while True:
-        coded, guess = _finest(segment, num_bytes, guess, progress)
-        if segment.coarser == 1 or segment.errs_evenly(coded, num_bytes):
-            return [chunk.data for chunk in coded]
-        segment.coarser //= 2
-
-
-def _finest(
-    segment: SegmentEncoder, num_bytes: int, guess: float, progress: Progress
-) -> tuple[list[CodedChunk], float]:
-    """The chunks with the finest step that fit, and its logarithm.
-
-    The size is roughly a power of the step, so interpolate and narrow down.
-    """
-    best: tuple[int, list[CodedChunk], float] | None = None
-    low, high = math.log(FINEST_STEP), math.log(COARSEST_STEP)
-    seen: list[tuple[float, float]] = []
-    modes: list[ChunkMode] = []
-    for trial in range(TRIALS):
-        coded = segment.encode(math.exp(guess))
-        progress(f"trial {trial + 1}")
-        size = sum(len(chunk.data) for chunk in coded)
-        if modes != (modes := [chunk.mode for chunk in coded]):  # sizes of other modes say nothing about these
-            low, high, seen = math.log(FINEST_STEP), math.log(COARSEST_STEP), []
-        seen.append((guess, math.log(size / num_bytes)))
-        if size <= num_bytes:
-            best, high = (size, coded, guess) if best is None or size > best[0] else best, guess
-            if size >= CLOSE_ENOUGH * num_bytes:
-                break
-        else:
-            low = guess
-        if high - low < 1e-4:
-            break
-        guess = next_step(seen, low, high)
-    if best is None:
-        coded = segment.encode(COARSEST_STEP)
-        best = sum(len(chunk.data) for chunk in coded), coded, high
-    if best[0] > num_bytes:
-        more = best[0] - num_bytes
-        raise InputError(f"the bytes are too few for this recording; give at least {more} more")
-    return best[1], best[2]
-
-
-def _within_error(segment: SegmentEncoder, quality_db: float, progress: Progress) -> list[bytes]:
-    """The coarsest step whose error-to-signal ratio in active cells is at most -quality_db."""
-    cube = segment.cube
-    if not np.any(cube.values):
-        return segment.exact()
-    is_active = active_cells(cube.values)
-    low, high = math.log(FINEST_STEP), math.log(COARSEST_STEP)
-    best: list[bytes] | None = None
-    seen: list[tuple[float, float]] = []
-    guess = math.log(USUAL_QUALITY_STEP)
-    for trial in range(TRIALS):
-        coded = segment.encode(math.exp(guess))
-        progress(f"trial {trial + 1}")
-        found_db = error_db(cube.values, _values_of(coded, cube), is_active)
-        # treated like the size: too good is too large
-        seen.append((guess, -(found_db + quality_db) / 10))
-        if found_db <= -quality_db:
-            best, low = [chunk.data for chunk in coded], guess
-            if found_db >= -quality_db - CLOSE_ENOUGH_DB:
-                break
-        else:
-            high = guess
-        guess = next_step(seen, low, high)
-    if best is None:
-        raise InputError(f"a quality of {quality_db:g} dB cannot be reached; ask for less")
-    return best
-
-
-def _values_of(coded: list[CodedChunk], cube: RadarCube) -> CubeValues:
-    return np.concatenate([decode_chunk(chunk.data, cube.config).cube_values() for chunk in coded])
-
-
-def error_db(truth: CubeValues, ours: CubeValues, is_active: np.ndarray) -> float:
-    """Error-to-signal ratio in dB in some cells (frame, range, doppler)."""
-    error = np.sum(np.abs(truth - ours)[is_active] ** 2)
-    return float(10 * np.log10(max(error, 1e-300) / max(np.sum(np.abs(truth)[is_active] ** 2), 1e-300)))

@@ -1,6 +1,6 @@
 """Rate-distortion choice of a chunk's mode: transforms, scatterers, low rank (encoder side)."""
 
-import math
+from dataclasses import replace
 
 import numpy as np
 import torch
@@ -13,81 +13,66 @@ from mmweaver.fields.scatterers.layers import Layers
 BYTES_A_POINT = 6.0  # few, well-fitted scatterers are worth more than many: the residual is coded separately
 POINTS_A_FRAME = 50
 FIT_STAGES, LAST_STEPS, LEAST_GAIN = 20, 6, 12.0
-MOVING_SHARE = 0.2  # scatterers are fitted where moving cells have at least this share of the coded energy
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
-NUM_TRIED = 1  # transforms that are coded; the others are judged by an estimate
-SAME_MODE = 1.5  # difference of log(step) within which a mode is kept
-MOST_DECISIONS = 2  # a size that jumps with every change of the mode cannot be met
 
 FREE_MODES = ("transforms", "scatterers", "low rank")
 
 
 class ModeChooser:
-    """Encodes a chunk in the mode that costs least near the step; modes are tried anew where the step is far off.
+    """Decides on the mode of a chunk that costs least near a step, by estimates, and encodes in it.
 
     `without`: names of FREE_MODES that are left out, for ablations.
     """
 
     def __init__(self, encoder: ChunkEncoder, *, without: tuple[str, ...] = ()):
         self.encoder, self.without = encoder, without
-        self._chosen: tuple[float, int, ChunkMode] | None = None
-        self._plain: TransformChoice | None = None
-        self._decisions = 0
+        self.plain = ChunkMode(transform=choices_of(encoder.target.shape)[0])
+        self.mode: ChunkMode | None = None
 
-    def encode(self, step: float, coarser: int) -> CodedChunk:
-        """The chunk at a step."""
-        if self._chosen is not None:
-            at, before, mode = self._chosen
-            is_near = before == coarser and abs(math.log(step / at)) < SAME_MODE
-            if is_near or self._decisions >= MOST_DECISIONS:
-                return self.encoder.encode(step, mode, coarser)
-        best = min(self._tried(step, coarser), key=lambda coded: coded.cost(coarser))
-        self._chosen = step, coarser, best.mode
-        self._decisions += 1
-        return best
+    def encode(self, step: float, coarser: int, noise_step: float = 0.0) -> CodedChunk:
+        """The chunk at a step, in the mode decided on; with a noise layer where it has a step."""
+        if self.mode is None:
+            self.decide(step, coarser)
+        assert self.mode is not None
+        return self.encoder.encode(step, replace(self.mode, noise_step=noise_step), coarser)
 
-    def even_estimate(self, step: float) -> tuple[float, float]:
-        """`ChunkEncoder.even_estimate` of the transform chosen."""
-        choice = self._plain if self._plain is not None else choices_of(self.encoder.target.shape)[0]
-        return self.encoder.even_estimate(step, choice)
-
-    def _tried(self, step: float, coarser: int) -> list[CodedChunk]:
-        encoder = self.encoder
-        if not np.any(encoder.target):
-            return [encoder.encode(step, ChunkMode(), coarser)]
-        choices = choices_of(encoder.target.shape)
-        if "transforms" in self.without:
+    def decide_transform(self, step: float, coarser: int) -> None:
+        """Decides on the transform of `plain`, the best mode without any layer."""
+        choices = choices_of(self.encoder.target.shape)
+        if "transforms" in self.without or not np.any(self.encoder.target):
             choices = choices[:1]
-        choices.sort(key=lambda choice: encoder.estimated_cost(step, choice, coarser))
-        tried = [encoder.encode(step, ChunkMode(transform=choice), coarser) for choice in choices[:NUM_TRIED]]
-        best = self._plain = min(tried, key=lambda coded: coded.cost(coarser)).mode.transform
+        best = min(choices, key=lambda choice: self.encoder.sample(choice).at(step, coarser).cost(step, coarser))
+        self.plain = ChunkMode(transform=best)
+
+    def decide(self, step: float, coarser: int) -> None:
+        """Decides on the mode."""
+        self.decide_transform(step, coarser)
+        modes = [self.plain]
+        if np.any(self.encoder.target):
+            modes += self._layered(step, coarser)
+        self.mode = modes[0] if len(modes) == 1 else min(modes, key=lambda mode: self._cost(mode, step, coarser))
+
+    def _cost(self, mode: ChunkMode, step: float, coarser: int) -> float:
+        return self.encoder.draft(step, mode, coarser).sample().at(step, coarser).cost(step, coarser)
+
+    def _layered(self, step: float, coarser: int) -> list[ChunkMode]:
+        encoder, modes = self.encoder, []
         frames, num_range, doppler, antennas = encoder.target.shape
         sides = sorted((frames * num_range, doppler * antennas))
         if "low rank" not in self.without and sides[0] > 1 and sides[0] ** 2 * sides[1] <= MOST_MATRIX:
-            tried.append(encoder.encode(step, ChunkMode(transform=best, with_rank=True), coarser))
-        if "scatterers" not in self.without and self._has_scatterers(step, len(tried[0].data)):
-            mode = ChunkMode(transform=TransformChoice(time=choices_of(encoder.target.shape)[0].time), with_points=True)
-            tried.append(encoder.encode(step, mode, coarser))
-        return tried
-
-    def _has_scatterers(self, step: float, num_bytes: int) -> bool:
-        """Fits scatterers where motion takes a good part of the bits; whether there are any."""
-        encoder = self.encoder
-        if encoder.layers is not None:
-            return True
-        if not encoder.frames.can_have_points:
-            return False
-        size = np.abs(encoder.target)
-        octaves = np.log2(1 + np.maximum(size / step - 1, 0)).sum(axis=(0, 1, 3))
-        middle = len(octaves) // 2
-        still = octaves[max(0, middle - 1) : middle + 2].sum()
-        if octaves.sum() - still < MOVING_SHARE * octaves.sum():
-            return False
-        encoder.with_layers(_fit(encoder, num_bytes))
-        return True
+            modes.append(ChunkMode(transform=self.plain.transform, with_rank=True))
+        if "scatterers" not in self.without and encoder.frames.can_have_points:
+            if encoder.layers is None:
+                layers = _fit(encoder, encoder.sample(self.plain.transform).at(step, coarser).num_bytes)
+                if not bool(layers.static.isfinite().all() & layers.points.amplitude.isfinite().all()):
+                    return modes  # nearly empty cubes have no noise to compare scatterers with
+                encoder.with_layers(layers)
+            time = choices_of(encoder.target.shape)[0].time
+            modes.append(ChunkMode(transform=TransformChoice(time=time), with_points=True))
+        return modes
 
 
-def _fit(encoder: ChunkEncoder, num_bytes: int) -> Layers:
+def _fit(encoder: ChunkEncoder, num_bytes: float) -> Layers:
     window = encoder.frames.fit_window()
     frames = encoder.frames.num_frames
     # a single frame cannot separate static clutter from slow motion

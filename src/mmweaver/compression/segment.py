@@ -1,32 +1,27 @@
 """Encodes some frames of a recording as chunks at one step: to a size, or to a quality (encoder side)."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from mmweaver.compression.cell_sample import CellSample
 from mmweaver.compression.chunk import ChunkEncoder, CodedChunk
 from mmweaver.compression.chunk_frames import ChunkFrames
+from mmweaver.compression.chunk_transform import MOST_DOPPLER
 from mmweaver.compression.mode_choice import ModeChooser
 from mmweaver.core.records import RadarCube
 
 SHORT_CHUNK = 20  # frames
 MOST_VALUES, MOST_FRAMES = 2**20, 2048  # of a chunk: complex numbers, frames
 COARSER = 4  # step of cells without signal in steps of those with signal
-FINEST_STEP, COARSEST_STEP = 1e-7, 0.5
-TRIALS = 9
+LARGEST_LEVEL = 2.0**27
 USUAL_QUALITY_STEP = 0.02
-BENT = 0.1  # trials whose log sizes differ by less are interpolated linearly
-CLOSE_ENOUGH = 0.985  # of the bytes allowed
-# first guess: the step that suits 500 bytes per frame, and its slope over the logarithm of the size
+# the step that suits 500 bytes per frame, and its slope over the logarithm of the size
 FIRST_STEP, FIRST_SLOPE, USUAL_BYTES = 3e-3, 1.2, 500
-EVEN_TRIALS, EVEN_DB = 14, 0.25  # dB that the error over all cells may exceed that of an even coder
-SHORTER = 0.8  # bytes of a chunk in estimated ones
 LN2 = 0.6931  # median of a chi-squared with two degrees of freedom over its mean
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +37,7 @@ class SegmentEncoder:
 
     def __init__(self, cube: RadarCube, scale: Scale, *, coarser: int = COARSER, without: tuple[str, ...] = ()):
         self.cube, self.scale, self.coarser, self.without = cube, scale, coarser, without
+        self.parts: list[range] = []
         self._choosers: list[ModeChooser] = []
 
     def plan(self, step: float) -> list[range]:
@@ -65,34 +61,42 @@ class SegmentEncoder:
         """The plan for a size, or for the usual quality."""
         return self.plan(USUAL_QUALITY_STEP if num_bytes is None else first_step(num_bytes / len(self.cube.values)))
 
-    def encode(self, step: float) -> list[CodedChunk]:
-        """All chunks at a step."""
-        if not self._choosers:
-            self.plan(step)
-        return [chooser.encode(step, self.coarser) for chooser in self._choosers]
+    @property
+    def coarsest_step(self) -> float:
+        """Steps above it leave nothing: the largest coefficient of any transform, relative to the peak."""
+        frames, _, doppler, antennas = self.cube.values.shape
+        return 2 * math.sqrt(min(frames, MOST_FRAMES) * antennas * min(doppler, MOST_DOPPLER))
 
-    def errs_evenly(self, coded: list[CodedChunk], num_bytes: int) -> bool:
-        """Whether the error over all cells is that of a coder of as many bytes that treats all cells alike.
+    @property
+    def finest_step(self) -> float:
+        """Steps below it have levels that cannot be coded."""
+        return self.coarsest_step / LARGEST_LEVEL
 
-        That coder's error is estimated, with its best transform and without scatterers.
-        """
-        error = sum(chunk.all_error for chunk in coded)
-        low, high = math.log(FINEST_STEP), math.log(COARSEST_STEP)
-        even = error
-        for _ in range(EVEN_TRIALS):
-            middle = (low + high) / 2
-            pairs = [chooser.even_estimate(math.exp(middle)) for chooser in self._choosers]
-            size = SHORTER * sum(pair[0] for pair in pairs)
-            if size > num_bytes:
-                low = middle
-            else:
-                high, even = middle, sum(pair[1] for pair in pairs)
-        return error <= even * 10 ** (EVEN_DB / 10)
+    def decide(self, step: float) -> bool:
+        """Decides on the mode of each chunk near a step; whether any is another one than before."""
+        before = [chooser.mode for chooser in self._choosers]
+        for chooser in self._choosers:
+            chooser.decide(step, self.coarser)
+        return before != [chooser.mode for chooser in self._choosers]
+
+    def encode(self, step: float, coarser: int, noise_step: float = 0.0) -> list[CodedChunk]:
+        """All chunks at a step, in the modes decided on; with a noise layer where it has a step."""
+        return [chooser.encode(step, coarser, noise_step) for chooser in self._choosers]
+
+    def noise_samples(self) -> list[CellSample]:
+        """Samples of the noise layers."""
+        return [chooser.encoder.noise_sample() for chooser in self._choosers]
+
+    def encode_plain(self, step: float) -> list[CodedChunk]:
+        """All chunks without layers, all cells alike."""
+        return [chooser.encoder.encode(step, chooser.plain, 1) for chooser in self._choosers]
+
+    def samples(self) -> list[CellSample]:
+        """Samples of the chunks without layers."""
+        return [chooser.encoder.sample(chooser.plain.transform) for chooser in self._choosers]
 
     def exact(self) -> list[bytes]:
         """All chunks without loss."""
-        if not self._choosers:
-            self.plan(COARSEST_STEP)
         return [
             chooser.encoder.exact(self.cube.values[part.start : part.stop])
             for chooser, part in zip(self._choosers, self.parts, strict=True)
@@ -136,29 +140,6 @@ def some_frames(cube: RadarCube, part: Sequence[int]) -> RadarCube:
 
 
 def first_step(bytes_a_frame: float) -> float:
-    """A step to begin with."""
+    """A step to plan with."""
     log_step = math.log(FIRST_STEP) - FIRST_SLOPE * math.log(bytes_a_frame / USUAL_BYTES)
-    return math.exp(min(max(log_step, math.log(FINEST_STEP)), math.log(COARSEST_STEP)))
-
-
-def next_step(seen: list[tuple[float, float]], low: float, high: float) -> float:
-    """Next log(step) to try so that the second value of `seen` becomes zero, or slightly less.
-
-    Regula falsi between the trials on either side of zero, or bisection where it is slow. With trials on one side
-    only: the line through the last two, or one of the usual slope.
-    """
-    above = [trial for trial in seen if trial[1] > 0]
-    below = [trial for trial in seen if trial[1] <= 0]
-    if above and below:
-        first, second = max(above), min(below)
-        if min(first[1], -second[1]) > BENT and (seen[-1][1] > 0) == (seen[-2][1] > 0):
-            return (first[0] + second[0]) / 2  # only one side moves: the curve is bent
-    elif len(seen) > 1:
-        first, second = seen[-2:]
-    else:
-        first, second = seen[0], (seen[0][0] + 1.0, seen[0][1] - 0.8)
-    run = second[0] - first[0]
-    slope = min((second[1] - first[1]) / run, -0.2) if run else -0.8
-    guess = first[0] + (-0.008 - first[1]) / slope
-    edge = 0.03 * (high - low)
-    return min(max(guess, low + edge), high - edge)
+    return math.exp(min(max(log_step, math.log(1e-7)), math.log(0.5)))

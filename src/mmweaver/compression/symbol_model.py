@@ -29,6 +29,9 @@ class MixedModel:
         self.size = priors[0].shape[1]
         self.tables = [PRIOR * prior / prior.sum(axis=1, keepdims=True) for prior in priors]
         self.totals = [np.full(len(prior), PRIOR) for prior in priors]
+        self._weighted = [np.empty_like(table) for table in self.tables]
+        for index, table in enumerate(self.tables):
+            self._weigh(index, np.arange(len(table)))
 
     def code(self, stream: BitStream, contexts: list[Integers], values: Integers, mirrored: np.ndarray | None = None):
         """Codes symbols (n,) with one context (n,) per table, then learns them.
@@ -36,10 +39,8 @@ class MixedModel:
         Where `mirrored` (n,) is set, a number and its negative are learned alike.
         """
         rows = np.zeros((len(values), self.size))
-        for table, total, context in zip(self.tables, self.totals, contexts, strict=True):
-            share = table / total[:, None]
-            confidence = np.minimum(total, CONFIDENT) / (1.005 - np.einsum("cs,cs->c", share, share))
-            rows += (share * confidence[:, None])[context]
+        for weighted, context in zip(self._weighted, contexts, strict=True):
+            rows += weighted[context]
         rows /= rows.sum(axis=1, keepdims=True)
         found = stream.rows(rows, values)
         for index, context in enumerate(contexts):
@@ -48,18 +49,32 @@ class MixedModel:
 
     def _learn(self, index: int, context: Integers, symbols: Integers, mirrored: np.ndarray | None) -> None:
         table, total = self.tables[index], self.totals[index]
-        place = context * self.size + symbols
+        counts = np.bincount(context, minlength=len(total))
+        seen = np.flatnonzero(counts)
+        # tables are large, and few of their contexts occur at once
+        place = np.zeros(len(total), np.int64)
+        place[seen] = np.arange(len(seen))
+        first = place[context] * self.size
+        size = len(seen) * self.size
         if mirrored is None:
-            table += np.bincount(place, minlength=table.size).reshape(table.shape)
+            table[seen] += np.bincount(first + symbols, minlength=size).reshape(-1, self.size)
         else:
-            other = context * self.size + np.where(symbols < ESCAPE, 2 * HALF - symbols, symbols)
+            other = np.where(symbols < ESCAPE, 2 * HALF - symbols, symbols)
             weights = np.where(mirrored, 0.5, 1.0)
-            table += np.bincount(place, weights, table.size).reshape(table.shape)
-            table += np.bincount(other, 1.0 - weights, table.size).reshape(table.shape)
-        total += np.bincount(context, minlength=len(total))
+            table[seen] += np.bincount(first + symbols, weights, size).reshape(-1, self.size)
+            table[seen] += np.bincount(first + other, 1.0 - weights, size).reshape(-1, self.size)
+        total += counts
         old = total > MEMORY
         table[old] *= 0.5
         total[old] *= 0.5
+        self._weigh(index, seen)
+
+    def _weigh(self, index: int, rows: Integers) -> None:
+        """Distributions of some contexts times their weight in the average."""
+        total = self.totals[index][rows]
+        share = self.tables[index][rows] / total[:, None]
+        confidence = np.minimum(total, CONFIDENT) / (1.005 - (share * share).sum(axis=1))
+        self._weighted[index][rows] = share * confidence[:, None]
 
 
 class SignedModel:

@@ -1,0 +1,72 @@
+"""What cells would cost at any step, estimated from some of them and without coding (encoder side)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.compression.residual_stream import OPEN_BITS, PRICE, ROUNDING, approximate_bits
+
+Array = np.ndarray
+NUM_STRONG, NUM_WEAK = 1536, 2560  # sampled cells: the strongest, and some of the others
+SHORTER = 0.8  # coded bits in estimated ones
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """Bytes, and energies of the error in active cells and in all, in the units of the coefficients."""
+
+    num_bytes: float
+    active_error: float
+    all_error: float
+
+    def cost(self, step: float, coarser: int) -> float:
+        """As `CodedChunk.cost`."""
+        weighted = self.active_error + (self.all_error - self.active_error) / max(coarser, 1) ** 2
+        return weighted + PRICE * step**2 * 8 * self.num_bytes
+
+
+@dataclass(frozen=True, kw_only=True)
+class CellSample:
+    """Coefficients of some cells. `front_bytes`: what is coded besides cells."""
+
+    magnitude: Array  # (part, beam, cell) float32
+    is_active: Array  # (cell,)
+    weight: Array  # (cell,): how many cells each stands for
+    front_bytes: int = 0
+
+    @classmethod
+    def of(cls, coefficients: Array, is_active: Array, front_bytes: int = 0) -> "CellSample":
+        """A sample of coefficients (beam, time, range, index); all of the strongest cells are in it."""
+        flat, active = coefficients.reshape(len(coefficients), -1), is_active.reshape(-1)
+        chosen, weight = np.arange(flat.shape[1]), np.ones(flat.shape[1])
+        if len(chosen) > NUM_STRONG + NUM_WEAK:
+            power = np.square(flat.real).sum(axis=0) + np.square(flat.imag).sum(axis=0)
+            order = np.argpartition(-power, NUM_STRONG)
+            strong, rest = order[:NUM_STRONG], np.sort(order[NUM_STRONG:])
+            # a stride without common factors with the axes
+            stride = max(1, len(rest) // NUM_WEAK)
+            places = np.arange(0, len(rest), stride) + np.arange(-(-len(rest) // stride)) % stride
+            weak = rest[places[places < len(rest)]]
+            chosen = np.concatenate([strong, weak])
+            weight = np.concatenate([np.ones(len(strong)), np.full(len(weak), len(rest) / len(weak))])
+        some = flat[:, chosen]
+        return cls(
+            magnitude=np.abs(np.stack([some.real, some.imag])), is_active=active[chosen], weight=weight,
+            front_bytes=front_bytes,
+        )  # fmt: skip
+
+    def at(self, step: float, coarser: int, price: float = PRICE) -> Estimate:
+        """The estimate for a step; cells that are not active have `coarser` times that. `price`: see `quantized`."""
+        own_step = np.where(self.is_active, step, step * (coarser or 1)).astype(self.magnitude.dtype)
+        magnitude = self.magnitude / own_step
+        levels = np.floor(magnitude + np.float32(ROUNDING))
+        bits = approximate_bits(levels).sum(axis=(0, 1)) + OPEN_BITS
+        gain = np.sum(levels * (2 * magnitude - levels), axis=(0, 1))
+        is_open = (gain > price * bits) & levels.any(axis=(0, 1)) & (self.is_active | (coarser > 0))
+        error = np.square(magnitude).sum(axis=(0, 1)) - np.where(is_open, gain, 0)
+        error = error * own_step.astype(np.float64) ** 2 * self.weight
+        num_bits = SHORTER * float(np.sum(bits * is_open * self.weight))
+        return Estimate(
+            num_bytes=self.front_bytes + num_bits / 8, active_error=float(error[self.is_active].sum()),
+            all_error=float(error.sum()),
+        )  # fmt: skip

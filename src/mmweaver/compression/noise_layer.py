@@ -1,0 +1,101 @@
+"""Cells without signal after a DCT along range and Doppler, where few coefficients hold most of their noise.
+
+An FFT window correlates the noise of neighbouring cells: its spectrum along them is the squared window. Signals would
+be spread by a DCT, so that cells with signal are filled with what continues their neighbourhood.
+"""
+
+import struct
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Complex
+from scipy import fft
+
+from mmweaver.compression.entropy import Decoder, Encoder
+from mmweaver.compression.residual_stream import QuantizedCells, code_cells, quantized
+
+Array = np.ndarray
+MOST_HOLES = 0.25  # share of active cells up to which they are filled
+FLOORS = (0.3, 0.06, 0.015, 0.004)  # of the smoothing, relative to the largest power
+HEADER = struct.Struct("<IfBB")  # bytes of the stream, step, centroids
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoiseLayer:
+    """`packed`, and the `values` (frame, range, doppler, antenna) that a decoder has."""
+
+    packed: bytes
+    values: Complex[Array, "frame range doppler antenna"]
+
+    @classmethod
+    def of(
+        cls, quiet: Complex[Array, "frame range doppler antenna"], step: float, beams: Complex[Array, "beam antenna"]
+    ) -> "NoiseLayer":
+        """The layer of values without signal, see `without_signal`."""
+        step = float(np.float32(step))
+        coefficients = to_noise(quiet, beams)
+        cells = quantized(coefficients, step, 1, np.ones(coefficients.shape[1:], bool))
+        stream = Encoder()
+        _code(stream, cells)
+        data = stream.to_bytes()
+        return cls(
+            packed=HEADER.pack(len(data), step, *cells.centroids) + data,
+            values=from_noise(cells.values(step, 1).astype(np.complex64), beams),
+        )
+
+    @classmethod
+    def unpack(
+        cls, data: bytes, shape: tuple[int, int, int, int], beams: Complex[Array, "beam antenna"]
+    ) -> "NoiseLayer":
+        """The layer of bytes that begin with `packed`. Raises ValueError for what no encoder writes."""
+        size, step, one, more = HEADER.unpack_from(data)
+        last = HEADER.size + size
+        if last > len(data) or not 0 < step < np.inf:
+            raise ValueError("impossible noise")
+        classes = np.zeros(shape[:3], np.int64)
+        cells = QuantizedCells(
+            levels=np.zeros((2, shape[3], *shape[:3]), np.int64), classes=classes, centroids=(one, more)
+        )
+        _code(Decoder(data[HEADER.size : last]), cells)
+        return cls(packed=data[:last], values=from_noise(cells.values(step, 1).astype(np.complex64), beams))
+
+
+def without_signal(
+    values: Complex[Array, "frame range doppler antenna"], is_active: Bool[Array, "frame range doppler"]
+) -> Complex[Array, "frame range doppler antenna"]:
+    """Values whose active cells continue the noise around them: alternately smoothed, and the other cells put back."""
+    holes = is_active[..., None]
+    quiet = np.where(holes, 0, values).astype(np.complex64)
+    if is_active.mean() > MOST_HOLES:
+        return quiet
+    profiles = [np.cos(np.pi * np.arange(num) / (2 * num)) ** 4 for num in values.shape[1:3]]
+    power = (profiles[0][:, None, None] * profiles[1][:, None]).astype(np.float32)
+    for floor in FLOORS:
+        smooth = _along(_along(quiet, fft.dctn, (1, 2)) * (power / (power + np.float32(floor))), fft.idctn, (1, 2))
+        quiet = np.where(holes, smooth, quiet)
+    return quiet
+
+
+def to_noise(
+    values: Complex[Array, "frame range doppler antenna"], beams: Complex[Array, "beam antenna"]
+) -> Complex[Array, "beam frame range doppler"]:
+    """Coefficients of a DCT along frames, range and Doppler of each beam."""
+    return _along(np.tensordot(beams.astype(values.dtype), values, axes=(1, 3)), fft.dctn, (1, 2, 3))
+
+
+def from_noise(
+    coefficients: Complex[Array, "beam frame range doppler"], beams: Complex[Array, "beam antenna"]
+) -> Complex[Array, "frame range doppler antenna"]:
+    """The inverse of `to_noise`."""
+    values = _along(coefficients, fft.idctn, (1, 2, 3))
+    return np.moveaxis(np.tensordot(beams.conj().astype(coefficients.dtype), values, axes=(0, 0)), 0, 3)
+
+
+def _along(values: Array, transform, axes: tuple[int, ...]) -> Array:
+    """A real transform of a complex array; complex64 stays complex64."""
+    real, imaginary = (transform(part, axes=axes, norm="ortho") for part in (np.real(values), np.imag(values)))
+    return real + values.dtype.type(1j) * imaginary
+
+
+def _code(stream: Encoder | Decoder, cells: QuantizedCells) -> None:
+    code_cells(stream, cells.levels, cells.classes, np.zeros(cells.classes.shape, np.int64), (False, False), 1)

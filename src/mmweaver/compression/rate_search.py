@@ -1,0 +1,312 @@
+"""Searches the step of a file of so many bytes, or of a quality (encoder side).
+
+A coded file calibrates an estimate of sizes at other steps, so that two or three files are coded as a rule.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.compression.cell_choice import active_cells
+from mmweaver.compression.cell_sample import CellSample
+from mmweaver.compression.chunk import CodedChunk, decode_chunk
+from mmweaver.compression.segment import SegmentEncoder
+from mmweaver.core.errors import InputError
+from mmweaver.core.shapes import CubeValues
+
+EXACT_SHARE = 0.7  # a file without loss is tried where the bytes allowed are at least this share of the cube's
+TRIALS, BISECTIONS = 9, 12
+CLOSE_ENOUGH, AIM = 0.988, 0.994  # of the bytes allowed
+SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
+EVEN_DB = 0.15  # dB that the error over all cells may exceed that of an even coder
+SPARE = 1.25  # times the bytes: an even coder by the estimate has no less error than a real one of fewer bytes
+SCANNED = np.linspace(-0.35, 0.35, 15)  # differences of log(step) where a quality jumps
+WITHIN_DB, AIM_DB = 0.2, 0.08  # better than the quality asked for
+
+LEAST_ERROR = 1e-30  # relative to the squared peak
+SAME_ERROR = 0.1  # difference of log(error) within which an estimate is trusted
+CLOSE_ERROR = 1.01  # times the error allowed that is as good
+NOISE_SHARE = 0.97  # of the error allowed that a noise layer may leave
+MOST_SHARE = 0.9  # of the bytes that the noise may have
+NOISE_STEPS, NOISE_TRIALS = 8, 5
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Found:
+    """Chunks of a step that fit."""
+
+    coded: list[CodedChunk]
+    step: float
+    coarser: int
+    noise_step: float = 0.0
+
+    @property
+    def num_bytes(self) -> int:
+        """Of all chunks."""
+        return sum(len(chunk.data) for chunk in self.coded)
+
+    @property
+    def all_error(self) -> float:
+        """Energy of the error in all cells."""
+        return sum(chunk.all_error for chunk in self.coded)
+
+
+def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) -> list[bytes]:
+    """The finest step whose file fits. Cells without signal err more only while that costs little over all cells."""
+    if num_bytes >= EXACT_SHARE * segment.cube.values.nbytes or not np.any(segment.cube.values):
+        exact = segment.exact()
+        if sum(map(len, exact)) <= num_bytes:
+            return exact
+    step = likely_step(segment, num_bytes)
+    segment.decide(step)
+    found = _finest(segment, num_bytes, step, segment.coarser, progress)
+    if abs(math.log(found.step / step)) > SAME_MODE and segment.decide(found.step):
+        found = _finest(segment, num_bytes, found.step, segment.coarser, progress)
+    if segment.coarser > 1:
+        found = _evened(segment, num_bytes, found, progress)
+    if found.num_bytes > num_bytes:
+        more = found.num_bytes - num_bytes
+        raise InputError(f"the bytes are too few for this recording; give at least {more} more")
+    return [chunk.data for chunk in found.coded]
+
+
+def likely_step(segment: SegmentEncoder, num_bytes: int) -> float:
+    """The step at which the estimated size is that allowed, without any layer."""
+    return _step_of_size(segment.samples(), num_bytes, segment.coarser, segment.finest_step, segment.coarsest_step)
+
+
+def _step_of_size(
+    samples: list[CellSample], num_bytes: int | float, coarser: int, finest: float, coarsest: float
+) -> float:
+    low, high = math.log(finest), math.log(coarsest)
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        if sum(sample.at(math.exp(middle), coarser).num_bytes for sample in samples) > num_bytes:
+            low = middle
+        else:
+            high = middle
+    return math.exp((low + high) / 2)
+
+
+def _step_of(segment: SegmentEncoder, is_fine: Callable[[float], bool]) -> float:
+    """The coarsest step that is fine enough."""
+    low, high = math.log(segment.finest_step), math.log(segment.coarsest_step)
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        low, high = (middle, high) if is_fine(math.exp(middle)) else (low, middle)
+    return math.exp(low)
+
+
+def _finest(
+    segment: SegmentEncoder, num_bytes: int, step: float, coarser: int, progress: Progress, noise_step: float = 0.0
+) -> Found:
+    """The chunks with the finest step that fit; larger ones where none does."""
+    fits: Found | None = None
+    larger: Found | None = None
+    low, high = segment.finest_step, segment.coarsest_step
+    for trial in range(TRIALS):
+        one = _coded(segment, step, coarser, noise_step)
+        progress(f"trial {trial + 1}")
+        if one.num_bytes <= num_bytes:
+            fits, high = one if fits is None or one.num_bytes > fits.num_bytes else fits, step
+            if one.num_bytes >= CLOSE_ENOUGH * num_bytes or step <= segment.finest_step:
+                break
+        else:
+            larger, low = one, step
+        if high < low * 1.0001:
+            break
+        if fits is None or larger is None:
+            step = _estimated_step(one, num_bytes, low, high)
+        else:
+            step = _between(larger, fits, num_bytes, is_even=bool(trial % 3 == 2))
+    if fits is None:
+        fits = _coded(segment, segment.coarsest_step, coarser, noise_step)
+    return fits
+
+
+def _coded(segment: SegmentEncoder, step: float, coarser: int, noise_step: float) -> Found:
+    coded = segment.encode(step, coarser, noise_step)
+    return Found(coded=coded, step=step, coarser=coarser, noise_step=noise_step)
+
+
+def _estimated_step(one: Found, num_bytes: int, low: float, high: float) -> float:
+    """Where the estimate, calibrated by a trial, has the size; a little beyond, so that the next one may bracket it."""
+    samples = [chunk.sample for chunk in one.coded]
+    estimated = sum(sample.at(one.step, one.coarser).num_bytes for sample in samples)
+    wanted = AIM * num_bytes * estimated / one.num_bytes
+    step = _step_of_size(samples, wanted, one.coarser, max(low, one.step / 8), min(high, one.step * 8))
+    return min(step, high / 1.02) if one.num_bytes <= num_bytes else max(step, low * 1.02)
+
+
+def _between(larger: Found, fits: Found, num_bytes: int, *, is_even: bool) -> float:
+    """Interpolates the logarithms of sizes and steps, or halves."""
+    low, high = math.log(larger.step), math.log(fits.step)
+    above = math.log(larger.num_bytes / num_bytes / AIM)
+    below = math.log(fits.num_bytes / num_bytes / AIM)
+    share = 0.5 if is_even else min(max(above / (above - below), 0.05), 0.95)
+    return math.exp(low + share * (high - low))
+
+
+def _evened(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Progress) -> Found:
+    """The chunks whose error over all cells is about that of an even coder, with the finest step.
+
+    Either cells without signal have less coarse steps, or a noise layer holds them.
+    """
+    bounds, plain = (segment.finest_step, segment.coarsest_step), segment.samples()
+    samples = [chunk.sample for chunk in found.coded]
+    here = [sample.at(found.step, found.coarser) for sample in samples]
+    factor = found.num_bytes / sum(one.num_bytes for one in here)
+    step = _step_of_size(plain, SPARE * num_bytes / factor, 1, *bounds)
+    if found.all_error <= sum(sample.at(step, 1).all_error for sample in plain):
+        return found
+    even, even_factor = _even_error(segment, num_bytes, plain)
+    allowed = even * 10 ** (EVEN_DB / 10)
+    if found.all_error <= allowed:
+        return found
+    error_factor = found.all_error / max(sum(one.all_error for one in here), LEAST_ERROR)
+    for coarser in (3, 2, 1):
+        share = math.log(coarser) / math.log(segment.coarser)
+        step = _step_of_size(samples, num_bytes / (factor**share * even_factor ** (1 - share)), coarser, *bounds)
+        if coarser == 1 or error_factor * sum(sample.at(step, coarser).all_error for sample in samples) <= allowed:
+            break
+    noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
+    if noise_step and with_noise < step:
+        one = _finest(segment, num_bytes, with_noise, 0, progress, noise_step)
+        if one.num_bytes <= num_bytes and one.all_error <= allowed * CLOSE_ERROR:
+            return one
+    while True:
+        one = _finest(segment, num_bytes, step, coarser, progress)
+        if coarser == 1 or one.all_error <= allowed * CLOSE_ERROR:
+            return one
+        coarser -= 1
+
+
+def _noise_steps(
+    segment: SegmentEncoder, num_bytes: int, allowed: float, samples: list[CellSample], factor: float
+) -> tuple[float, float]:
+    """Steps of a noise layer that leaves the error allowed, and of the signal; 0 where there is no room for one.
+
+    The noise has more bytes where the signal's step would be finer than 1 / NOISE_STEPS of its own.
+    """
+    noise = segment.noise_samples()
+
+    def signal_step(noise_step: float) -> float:
+        left = num_bytes - sum(one.at(noise_step, 1).num_bytes for one in noise)
+        return _step_of_size(samples, max(left, 1) / factor, 0, segment.finest_step, segment.coarsest_step)
+
+    limit = NOISE_SHARE * allowed
+    enough = _step_of(segment, lambda step: sum(one.at(step, 1).all_error for one in noise) <= limit)
+    if sum(one.at(enough, 1).num_bytes for one in noise) > MOST_SHARE * num_bytes:
+        return 0.0, 0.0
+    noise_step, step = enough, signal_step(enough)
+    low = math.log(_step_of_size(noise, MOST_SHARE * num_bytes, 1, segment.finest_step, segment.coarsest_step))
+    high = math.log(enough)
+    for _ in range(NOISE_TRIALS):
+        middle = math.exp((low + high) / 2)
+        one = signal_step(middle)
+        if middle > NOISE_STEPS * one:
+            noise_step, step, high = middle, one, math.log(middle)
+        else:
+            low = math.log(middle)
+    return noise_step, step
+
+
+def _even_error(segment: SegmentEncoder, num_bytes: int, plain: list[CellSample]) -> tuple[float, float]:
+    """Error of a coder of so many bytes that treats all cells alike and has no layers; bytes in estimated ones."""
+    step = _step_of_size(plain, num_bytes, 1, segment.finest_step, segment.coarsest_step)
+    seen: list[tuple[float, float]] = []  # logarithms of size and error
+    while True:
+        coded = segment.encode_plain(step)
+        size = sum(len(chunk.data) for chunk in coded)
+        seen.append((math.log(size / num_bytes), math.log(sum(chunk.all_error for chunk in coded) + LEAST_ERROR)))
+        here = [sample.at(step, 1) for sample in plain]
+        factor = size / sum(one.num_bytes for one in here)
+        if len(seen) == 2 and abs(seen[1][0] - seen[0][0]) > 0.01:
+            slope = (seen[1][1] - seen[0][1]) / (seen[1][0] - seen[0][0])
+            return math.exp(seen[1][1] - slope * seen[1][0]), factor
+        step = _step_of_size(plain, num_bytes / factor, 1, segment.finest_step, segment.coarsest_step)
+        after = sum(sample.at(step, 1).all_error for sample in plain)
+        change = math.log(max(after, LEAST_ERROR) / max(sum(one.all_error for one in here), LEAST_ERROR))
+        if abs(change) < SAME_ERROR or len(seen) == 2:
+            return math.exp(seen[-1][1] + change), factor
+
+
+def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress) -> list[bytes]:
+    """The coarsest step found whose error-to-signal ratio in active cells is at most -quality_db."""
+    cube = segment.cube
+    if not np.any(cube.values):
+        return segment.exact()
+    is_active = active_cells(cube.values)
+    best: tuple[float, list[bytes]] | None = None
+    low, high = math.log(segment.finest_step), math.log(segment.coarsest_step)
+
+    def is_enough(log_step: float) -> tuple[list[CodedChunk], float]:
+        """Encodes; keeps the worst that is good enough."""
+        nonlocal best
+        coded = segment.encode(math.exp(log_step), segment.coarser)
+        found_db = -error_db(cube.values, _values_of(coded, cube), is_active)
+        if found_db >= quality_db and (best is None or found_db < best[0]):
+            best = found_db, [chunk.data for chunk in coded]
+        return coded, found_db
+
+    guess = math.log(_step_of_quality(segment, quality_db, is_active))
+    segment.decide(math.exp(guess))
+    for trial in range(TRIALS):
+        coded, found_db = is_enough(guess)
+        progress(f"trial {trial + 1}")
+        if quality_db <= found_db <= quality_db + WITHIN_DB:
+            break
+        low, high = (guess, high) if found_db >= quality_db else (low, guess)
+        guess = _next_quality(coded, guess, found_db - quality_db - AIM_DB, low, high, is_late=trial > TRIALS // 2)
+    if best is not None and best[0] > quality_db + WITHIN_DB:  # the quality jumps here: look around
+        for difference in SCANNED:
+            is_enough(guess + difference)
+            if best[0] <= quality_db + WITHIN_DB:
+                break
+    if best is None:
+        raise InputError(f"a quality of {quality_db:g} dB cannot be reached; ask for less")
+    return best[1]
+
+
+def _step_of_quality(segment: SegmentEncoder, quality_db: float, is_active: np.ndarray) -> float:
+    signal = float(np.sum(np.abs(segment.cube.values[is_active]) ** 2)) / segment.scale.peak**2
+    bounds = segment.finest_step, segment.coarsest_step
+    return _step_of_error(segment.samples(), signal * 10 ** (-quality_db / 10), segment.coarser, bounds)
+
+
+def _step_of_error(samples: list[CellSample], error: float, coarser: int, bounds: tuple[float, float]) -> float:
+    low, high = math.log(bounds[0]), math.log(bounds[1])
+    for _ in range(BISECTIONS):
+        middle = (low + high) / 2
+        if sum(sample.at(math.exp(middle), coarser).active_error for sample in samples) > error:
+            high = middle
+        else:
+            low = middle
+    return math.exp((low + high) / 2)
+
+
+def _next_quality(
+    coded: list[CodedChunk], guess: float, too_good_db: float, low: float, high: float, *, is_late: bool
+) -> float:
+    samples, step = [chunk.sample for chunk in coded], math.exp(guess)
+    coarser = 1  # coarse cells have no part in the error of active ones
+    here = sum(sample.at(step, coarser).active_error for sample in samples)
+    bounds = math.exp(max(low, guess - 2)), math.exp(min(high, guess + 2))
+    found = math.log(_step_of_error(samples, here * 10 ** (too_good_db / 10), coarser, bounds))
+    edge = 0.02 * (high - low)
+    inside = low + edge < found < high - edge
+    return found if inside and not is_late else (max(low, guess - 4) + min(high, guess + 4)) / 2
+
+
+def _values_of(coded: list[CodedChunk], cube) -> CubeValues:
+    return np.concatenate([decode_chunk(chunk.data, cube.config).cube_values() for chunk in coded])
+
+
+def error_db(truth: CubeValues, ours: CubeValues, is_active: np.ndarray) -> float:
+    """Error-to-signal ratio in dB in some cells (frame, range, doppler)."""
+    error = np.sum(np.abs(truth - ours)[is_active] ** 2)
+    return float(10 * np.log10(max(error, 1e-300) / max(np.sum(np.abs(truth)[is_active] ** 2), 1e-300)))
