@@ -83,7 +83,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\bplay(?:s|ing)? (?:the |a )?(?:cello|harp|banjo|lute)\b", "plays the guitar", f"{_AS} playing the guitar"),
         (r"\b(?:tak(?:es|ing)) (?:an? |some |the )?(?:photos?|pictures?|selfies?)(?: of [a-z ]+)?(?: with (?:a|his|her|the) (?:phone|camera))?\b",
          "looks at the phone", f"{_AS} using a phone"),
-        (r"\b(?:check|look)(?:s|ing)? (?:at )?(?:the time(?: on)?|his watch|her watch|(?:a|the|his|her) (?:watch|wrist))(?: (?:a|the|his|her) watch)?\b",
+        (r"\b(?:check|look)(?:s|ing)? (?:at |on )?(?:the time(?: on)?|his watch|her watch|(?:a|the|his|her) (?:watch|wrist))(?: (?:a|the|his|her) watch)?\b",
          "looks at the phone", "a look at the wrist is shown as one at a phone"),
         # gestures
         (r"\b(?:shak(?:es?|ing)) hands?\b(?: with [a-z ]+)?|\bhandshake\b", "reaches for something", f"{_AS} reaching out with a hand"),
@@ -115,6 +115,73 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (rf"\blean(?:s|ing)? back(?:wards?)?(?: in {_OWN}chair)?\b", "stretches", "leaning back is shown as stretching"),
         (r"\byawn(?:s|ing)?\b", "stretches", f"{_AS} stretching"),
         # stairs and poses
+        (r"\b(?:up|down|on|along) (?:an? |the )?(?:[a-z]+ )?(?:ramp|slope|hill|incline|hillside|mountain)s?\b(?: in the forward direction)?|\b(?<=forwards and )upwards\b|\b(?:uphill|downhill)\b",
+         "", "the slope is not shown"),
+        # what is held, worn, not done or only slight
+        (r",?(?: but| and)? (?:without|no|not) (?:any |really )?(?:bending|closing|running|haste|moving|stopping|stepping|lifting|using|touching)\b[a-z ]*?(?=$|[,.]| and\b| then\b)",
+         "", "what is not done is left out"),
+        (r",? ?(?:and |while |with )?(?:slightly |a (?:little )?bit )?(?:drift(?:ing|s)?|moving slightly|deviat(?:es|ing)|tilted) (?:a bit )?(?:first )?(?:to|towards) (?:the |his |her |its )?(?:left|right)(?: side| hand side)?(?: then to the (?:left|right))?",
+         "", "a slight drift to one side is not shown"),
+        (r",? ?(?:and |while |with )?(?:his |her |its |the |pretty |very |slightly |a little bit of )*(?:(?:arms? (?:bent|dangling|hanging|relaxed)(?: casually)?(?: alongside| down)?)|(?:dangling|bent|stiff|relaxed) (?:arms?|legs?|upper body)"
+         r"|hands? (?:at|on) (?:chest|hip|head) (?:level|height)|(?:hips? (?:swaying|swinging)|(?:swaying|shaking|swinging) hips?))\b(?: and (?:a )?(?:little bit of )?(?:stiff upper body|shaking hips))?",
+         "", "how arms, hips or legs are held is not shown"),
+        (r",? (?:with )?(?:a )?radius (?:of )?(?:approximat\w*|about|around|circa|ca\.?)? ?\d+(?:[.,]\d+)? ?(?:m|cm|meters?|metres?|centimeters?)\b"
+         r"|\bwith (?:a )?(?:radius of )?(?:approximat\w*|about)? ?\d+(?:[.,]\d+)? ?(?:m|cm|meters?|metres?) radius\b", "", "the radius is not kept"),
+        (r"\b(?:while |and )?(?:is )?hold(?:s|ing) (?:an? |the |his |her |some )?(?:heavy |small |big |imaginary )?(?:objects?|something|items?|bars?|boxe?s?|stick|bottle|balls?)\b(?= (?:with|in|and|while)|[,.]|$)",
+         "", "what is held is not shown"),
+        (r"\b(?:while |and )?hold(?:s|ing) (?:his|her|its|their) (?:injured|hurt|broken|hurting|aching) (?:left |right )?(?:upper )?(?:leg|knee|foot)(?: with [a-z ]*hands?)?", "limping", f"{_AS} a limp"),
+        (r"\b(?:while |and )?hold(?:s|ing) (?:his|her|its|their) (?:left |right )?(?:upper )?(?:legs?|knees?|back|hip|arm|elbow)\b(?: with (?:both |his |her |the )*hands?)?(?=$|[,.]| and)", "", "a hand on the body is not shown"),
+        (r"\b(?:while |by )?using (?:his |her |its |their |both |the )?(?:both )?(?:left |right )?(?:hands?|legs?)(?: and knees)? (?:as|for) (?:an? )?(?:support|help|counterbalance|balance)\b"
+         r"|\b(?:while )?support(?:ed|ing (?:himself|herself|itself|themselves)) (?:on|by|with) (?:his|her|its|the|their|both) hands?\b|(?<=up) using (?:his|her|its|their) hands(?=$|[.,])",
+         "", "the support of the hands is not shown"),
+        (r"\b(?:while |and )?look(?:s|ing) (?:forwards?|ahead|back|behind|straight ahead)(?: (?:at|to|over) [a-z ]+?)?(?=$|[,.]| and\b)", "", "a look is not shown"),
+        (r"\blike (?:he|she|it) (?:is|was|were) (?:[a-z]+ing)(?: [a-z]+ (?:a|the) [a-z]+)?\b", "", "what it looks like is not shown"),
+        (r"\bshuffle (?=steps?\b)", "", "that the feet shuffle is not shown"),
+        # down
+        (r"\b(?:lift|heav)(?:s|es|ing)? (?:up )?(?:something|an object|a (?:heavy )?(?:box|object|thing|weight|stone))(?: heavy)?(?: up)? (?:over|above) (?:his|her|its|the|their) head\b",
+         "picks something up, then raises both hands", "is shown as picking up, then raised hands"),
+        (r"\b(?:is |gets? |getting |goes |going |go )(?:down )?(?:to the (?:floor|ground) )?(?:on the (?:floor|ground) )?(?:on|onto|to) all[- ]fours?\b",
+         "kneels down", "all fours are shown as kneeling"),
+        (r"(?<=crawling)(?: [a-z]+)? on all[- ]fours?\b|(?<=crawls)(?: [a-z]+)? on all[- ]fours?\b", "", "is shown as crawling"),
+        (r"\b(?:goes|gets|getting|going|go|get) down to the (?:floor|ground)(?: having (?:his|her|its) knees and (?:his |her |its )?hands (?:at|on) the (?:ground|floor))?\b", "kneels down", "is shown as kneeling down"),
+        (r"\b(?:lift|heav)(?:s|es|ing)? (?:up )?(?:something|an object|a (?:heavy )?(?:box|object|thing|weight|stone))\b(?: up)?", "picks something up", f"{_AS} picking something up"),
+        # hands
+        (r"\b(?:draw|mak|do|perform|describ)(?:s|es|ing|e)? (?:an? |some |two |several )?(?:big |small |large )?(?:circles?|circular (?:motions?|movements?)|circling (?:motions?|movements?)|cirles?)"
+         rf"(?: in the air)?(?: in front of (?:them|him|her|it|his body))? (?:with|using) {_OWN}((?:left|right) )?(?:hands?|arms?)\b(?:,? (?:parallel to the (?:ground|floor)|in front of [a-z ]+?|at hips? high(?:t)?))*(?=$|[,.]| and| while)",
+         r"stirs the soup with the \1 hands", "circling hands are shown as stirring"),
+        (rf"\bmov(?:es|ing) (?:his or her |{_OWN})((?:left|right) )?(?:hands?|arms?) (?:(?:counter[- ]?)?clockwise )?in (?:an? |the form of an? )?(?:half )?circles?\b[a-z ,]*", r"stirs the soup with the \1 hand", "a circling hand is shown as stirring"),
+        (r"\bmov(?:es|ing) (?:his|her|the|its|both) hands together(?: in front of (?:the|his|her) (?:chest|body))?\b", "claps once", "hands put together are shown as a clap"),
+        (r"\b(?:rais(?:es|ing)|lift(?:s|ing)|hold(?:s|ing)|keep(?:s|ing)|has) (?:up )?(?:his|her|their|its|both|the) (?:fists?|hands|arms) (?:up )?(?:in front of (?:his|her|its) (?:upper body|body|face|head|chest)|for defen[sc]e|in (?:a )?defen[sc]e position|like a boxer)",
+         "hands_up", "the guard is shown as hands held up"),
+        (r"\b(?:is )?in (?:an? )?(?:fighting|boxing|defen[sc]e|defensive|combat) (?:position|stance|pose|posture)\b", "hands_up", "the guard is shown as hands held up"),
+        (r"\bhold(?:s|ing)? (?:his|her|their|its|both) (?:hands?|arms?) (?:in front of|before) (?:them|him|her|it|himself|herself|the body|his body)\b", "stretches both arms forwards", f"{_AS} arms held out"),
+        (rf"\b(?:mov|wav|flapp?)(?:es|ing|s) {_OWN}(?:arms?|wings?|hands?)(?: up and down)? like (?:an? )?(?:wings?|chicken|bird|eagle|butterfly)\b|\b(?:act(?:s|ing)|mov(?:es|ing)|impersonat(?:es|ing)|imitat(?:es|ing)) (?:like )?(?:an? )?(?:chicken|bird|duck)\b(?: flapping (?:its|his) wings)?|\bflap(?:s|ping) (?:its|his|her|their) (?:arms|wings)\b",
+         "circles the arms", f"{_AS} circling the arms"),
+        (r"\b(?:beat|slap|hit)(?:s|ting|ping|ing)? (?=with (?:his|her|its|the) (?:left|right) (?:hand|arm))", "punches ", f"{_AS} punching"),
+        (r"\b(?:performs?|does|makes|making) (?:an? )?(?:hard |strong )?(?:slap|hit|blow) (?=with (?:his|her|its|the) (?:left|right) (?:hand|arm))", "punches ", f"{_AS} punching"),
+        (r"\b(?:performs?|does|makes|making)? ?(?:an? )?(?:hard |strong |light )?(?:hit|stroke|swing|shot)s? with an? (?:mini-?)?golf[- ]club\b", "plays golf", "is shown as a golf swing"),
+        (r"\b(?:base ?ball )?pitch(?:es|ing)\b", "throws a ball", f"{_AS} throwing a ball"),
+        (r"\b(?:performs?|does|makes|making) (?:an? )?drumming (?:motion|movement)s?\b", "knocks", f"{_AS} knocking"),
+        (r"\b(?:point|show)(?:s|ing)? (?:to )?(?:up|upwards?|the sky|the ceiling)\b", "raises the right hand", f"{_AS} a raised hand"),
+        (r"\bhigh[- ]?fives?\b", "raises the right hand", f"{_AS} a raised hand"),
+        (r"\bshoots? (?:with )?(?:a |the )?(?:gun|pistol|rifle)\b", "points ahead", f"{_AS} pointing"),
+        (r"\bpaddl(?:es|ing)\b(?: in the air)?", "circles the arms", f"{_AS} circling the arms"),
+        (r"\bwiggl(?:es|ing) (?:his|her|its|the|their) (?:upper body|hips?|body|torso)\b", "dances", f"{_AS} dancing"),
+        # balance and ways
+        (r"\bbalanc(?:es|ing)\b(?: (?:over|on|along|across|something)(?: (?:an? |the )?(?:small |narrow )?[a-z]+)?)?(?= while|$|[.,]| and)", "walks slowly", "balancing is shown as walking slowly"),
+        (r"\b(?:moves?|walks?|walking|moving) (?:very )?unsteadily\b(?:, (?:perhaps|maybe)? ?drunk[a-z ]*)?|\b(?:intoxicated|alcoholi[sz]ed)\b|(?:\b(?:walks?|walking|moves?) )?without (?:a )?stable posture\b", "staggers", "an unsteady gait is shown as staggering"),
+        (r"\bturn(?:s|ing)? (?:around )?on (?:his|her|its|their|the) (?:left |right )?(?:heels?|foot)\b", "turns around", "on which foot it turns is not shown"),
+        (r"\b(?:dodg|avoid|evad)(?:es|s|ing) (?:an? |and |the |some )?(?:moving |big |small )?obstacles? to (?:the|its|his) (left|right)\b", r"sidesteps to the \1", f"{_AS} a step aside"),
+        (r"(?:,? (?:and|while))? ?\b(?:dodg|avoid|evad)(?:es|s|ing) (?:an? |and |the |some )?(?:moving |big |small )?obstacles?\b(?: while walking)?", "", "the obstacle is not shown"),
+        (r"\b(?:over|around|into|onto) (?:an? |the |some )?(?:[a-z0-9]+ ){0,2}(?:obstacles?|hurdles?)\b(?: by putting one (?:leg|foot) after (?:the other|another))?", "", "the obstacle is not shown"),
+        (r"\bcross(?:es|ing) (?:an? |the )?(?:high |low |large )?obstacles?\b", "walks", f"{_AS} walking"),
+        (r"\b(?:bump|crash|collid)(?:s|es|ing)? (?:into|with|against) (?:an? |the |some )?(?:[a-z]+)\b(?: to (?:his|her|its|the) (?:left|right))?", "stumbles", f"{_AS} stumbling"),
+        (r"\b(?:is )?(?:bend|lean)(?:s|ing)? (?:the |his |her |its )?(?:upper body |body |torso )?back(?:wards?)?\b(?! and forth)", "stretches", "bending backwards is shown as stretching"),
+        (r"\b(?:is |starts )?(?:warming|warms)[- ]up\b|\b(?:is )?loosening(?: up)?\b", "circles the arms", f"{_AS} circling the arms"),
+        (r"\bdanc(?:es|ing) the (?:swing|twist|jive|cha)\b|\b(?:does|dancing) the (?:wiener|viennese) wal(?:z|tz)(?:er)?\b|\bbreak[- ]?danc(?:es|ing)\b", "dances", "the kind of dance is not shown"),
+        (r"\b(?:performs?|does) (?:some (?:kind of )?|an? )?kata\b|\bfenc(?:es|ing)\b", "punches", f"{_AS} punching"),
+        (r"\b(?:in|at|with|by) an? (?:[a-z]+[- ]?){0,3}degrees? angle\b", "", "the angle is not kept"),
+        (r"\bgo(?:es|ing)? on an trajectory\b|\bmoves? somewhere\b", "walks", f"{_AS} walking"),
         (r"\b(?:climb|walk|go|run|step|jog|ascend|descend|com|mov|hurr|march|rac|jump)(?:s|es|ing|ies|ping|ning)?(?: (?:slowly|quickly|carefully|back))*"
          r"(?: (?:straight |back )?(?:up and down|up|down|on|onto|over|to))?(?: (?:of|on|onto))?(?: (?:the|an?|some|a few|one|two|three|four|five|several|small|little|high|short))*"
          r" (?:flight of )?(?:stairs?|staircases?|stairways?|stairwell|steps(?= (?:up|down)\b)|ladders?|upstairs|downstairs|podest|platform|curb|stepladder)(?: steps?)?(?: (?:up|down))?\b"
@@ -122,6 +189,8 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
          "step_up_and_down", "stairs are shown as stepping up and down on the spot"),
         (r"\b(?:does|doing|practi[cs]es|performs?|performing) (?:some )?yoga(?: exercises?| poses?| positions?)?\b|\byoga (?:exercises?|poses?|positions?)\b",
          "in the tree pose, then the warrior pose", "yoga is shown as two of its poses"),
+        (r"\b(?:(?:walk|step|go|climb|jump|mov|hop)(?:s|es|ing|ping)? )?(?:straight )?(?:up|down|onto|off)(?: an?| one| two| the)?(?: small| little| high| low)* (?:step|stair)s?\b(?! (?:forward|back|ahead|to))",
+         ", step_up_and_down", "stairs are shown as stepping up and down on the spot"),
         # sport
         (r"\b(?:exercises|works? out|training|(?:warm(?:ing|s)?[- ]?up|fitness|floor|gym(?:nastic)?s?) (?:exercises?|training)|"
          r"does (?:some )?(?:warm[- ]?ups?|exercises?|gymnastics|yoga|pilates)|gymnastics|yoga|pilates)\b", "circles the arms", f"{_AS} circling the arms"),
@@ -182,7 +251,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
          "a change of speed is not shown"),
         (r"\b(?:as if|like|as though) (?:(?:he|she|it|they|a|the) )?(?:person )?(?:is |was |were |got |gets |had )?(?:been |being )?"
          r"(?:pushed|shoved|hit|puched)[a-z ]*", "", "what it looks like is not shown"),
-        (r"\blike (?:an? )?(?:crab|robot|model|soldier|bodybuilder|wings?|bird|plane|airplane|duck|penguin|ape|monkey|old man)s?\b|\bcrab-?wise\b", "",
+        (r"\blike (?:an? )?(?:crab|robot|model|soldier|bodybuilder|wings?|bird|plane|airplane|duck|penguin|ape|monkey|old man|stork|chicken|dog|cat|boxer|bodybuilder|dancer)s?\b|\bcrab-?wise\b", "",
          "whom it resembles is not shown"),
         (r"\b(?:jump|hop)(s|ing)? (?:up )?(?:and |while )(?:turn(?:s|ing)?|rotat(?:es|ing)|spin(?:s|ning)?)\b", "jumps, then turns",
          "jump and turn are shown one after the other"),
@@ -203,7 +272,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\bvomit(?:s|ing)?\b|\bthrows? up\b(?= *$| because)", "bends down", f"{_AS} bending down"),
         (r"\b(?:gets?|getting) (?:dressed|undressed|changed)\b", "reaches for something twice", f"{_AS} reaching out with the hands"),
         (r"\b(?:put|tak|get|plac)(?:s|es|ting|ing)? (?:on |off |out )?(?!(?:a )?(?:step|seat|steps|turn|few|one|two|three|four)\b|(?:his|her|the|both|its) (?:left |right )?(?:arms?|hands?|legs?|foot|feet|knees?)\b|up\b|back\b|down\b)"
-         rf"{_OWN}(?:jacket|coat|shoes?|boots?|shirt|sweater|pullover|trousers|pants|dress|bag|backpack|gloves|scarf|apron|something|things?|clothes|toys?|books?|bottle|glass|plates?|groceries|keys?)\b{_THING}",
+         rf"{_OWN}(?:jacket|coat|shoes?|boots?|shirt|sweater|pullover|trousers|pants|dress|bag|backpack|gloves|scarf|apron|something|things?|objects?|items?|clothes|toys?|books?|bottle|glass|plates?|groceries|keys?)\b{_THING}",
          "reaches for something twice", f"{_AS} reaching out with the hands"),
         (r"\b(?:snap|flick)(?:s|ping|ing)? (?:his |her |the )?fingers?\b|\bshak(?:es|ing) (?:a|his|her|the) fist\b", "waves", "a moving hand is shown as waving"),
         (r"\b(?:staple|load|unload|assembl|repair|fix|examin|handl)(?:s|es|ing)\b" + _THING, "reaches for something twice", f"{_AS} reaching out with the hands"),
@@ -213,7 +282,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\b(?:swim|swimming|swims)\b(?: [a-z]*stroke| breaststroke| the crawl)?", "circles the arms", f"{_AS} circling the arms, standing"),
         (r"\bdriv(?:es|ing) (?:a |the |his |her )?(?:car|bus|truck)\b", "sits", "driving is shown as sitting"),
         (r"\brid(?:es|ing) (?:a |the |his |her )?(?:bike|bicycle|horse|motorbike)\b", "sits", "riding is shown as sitting"),
-        (r"\blower(?:s|ing) (?:his |her |the |both |its )?(?:arms?|hands?)\b(?=$|[,.])", "stands", "arms that go down are shown as hanging"),
+        (r"\blower(?:s|ing) (?:his |her |the |both |its )?(?:arms?|hands?)\b(?: again)?(?=$|[,.])", "stands", "arms that go down are shown as hanging"),
     )),
 )  # fmt: skip
 _COMPILED: list[re.Pattern[str]] = []
