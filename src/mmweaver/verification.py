@@ -1,7 +1,7 @@
 """Whether what mmweaver wrote is still as it was written, and which command makes what is not.
 
-verify("walk/") -> Verification: a result folder, a folder of --texts or of rooms, a data set, a labelled set of
-activities, a run of mmweaver train, a weight file, a .mmw file, or any file next to a SHA256SUMS
+verify("walk/") -> Verification: a result folder, a folder of --texts or of rooms, a stream, a data set, a labelled set
+of activities, a run of mmweaver train, a weight file, a .mmw file, or any file next to a SHA256SUMS
 """
 
 import shlex
@@ -18,6 +18,7 @@ from mmweaver.core.tensor_files import read_tensors
 from mmweaver.datasets.activity_store import SET_FILE, STORE
 from mmweaver.datasets.dataset_plan import command_of, room_name
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
+from mmweaver.stream_folder import BIN, is_stream, parts_of
 
 REQUEST = "request.toml"
 BATCH_LIST = "sequences.json"
@@ -83,6 +84,8 @@ def _verified_folder(folder: Path) -> Verification:
         return _verified_activity_set(folder)
     if any((folder / name).is_file() for name in (CHECKPOINT, "best.safetensors", "weights.safetensors")):
         return _verified_run(folder)
+    if is_stream(folder):
+        return _verified_stream(folder)
     below = sorted(one for one in folder.iterdir() if one.is_dir() and (one / SUMS_FILE).is_file())
     if (folder / BATCH_LIST).is_file() or (below and not (folder / SUMS_FILE).is_file()):
         return _verified_batch(folder, below)
@@ -150,6 +153,16 @@ def _verified_batch(folder: Path, below: list[Path]) -> Verification:
         else:
             again = f"mmweaver generate --texts ... --out {shlex.quote(str(folder))}, as it was made"
             found.blame([Damage(file=one, what="is missing")], again)
+    return found
+
+
+def _verified_stream(folder: Path) -> Verification:
+    """The whole parts of a recording that a stream wrote; adc_data.bin grows and has no checksum."""
+    found = Verification(path=folder, kind="stream")
+    for part in parts_of(folder):
+        _check_sums(found, part, _command_of_results(folder))
+    if (folder / BIN).is_file():
+        found.unchecked.append(str(folder / BIN))
     return found
 
 

@@ -3,13 +3,14 @@
 python -m studies run kitml --sentences <folder of kitml_text>
 python -m studies run kitml --sentences <folder> --list        # the sentences to annotate, with their readings
 
-The sentences are split by motion into a half on which the lexicon was developed and a half for checking. The understood
-ones among 300 sentences of the checking half, drawn with a fixed seed after the grammar was frozen from those that no
-earlier sample had judged, were annotated by hand: correct if every movement that the sentence names is shown in its
-order, with its side, direction, hand or foot where one is given. The verdicts are in results/kitml/judgements.json
-with the reading they were given for; a reading that has changed since makes its verdict void, and the result counts
-those. Four earlier samples (judgements_first.json and so on) are unchanged: their faults were fixed, so they no longer
-check anything. docs/motion.md says what else limits the figures.
+The sentences are split by motion into a half on which the lexicon was developed and a half for checking. Of this second
+half 300 drawn uniformly are never read, only counted. Of the others, those in no earlier sample, 1,100 were read to
+widen the grammar (the development draw). Then it was frozen, 300 of those left were drawn, and the understood ones
+annotated by hand: correct if every movement that the sentence names is shown in its order, with its side, direction,
+hand or foot where one is given. The verdicts are in results/kitml/judgements.json with the reading they were given for;
+a reading that has changed since makes its verdict void, and the result counts those. Five earlier samples
+(judgements_first.json and so on) are unchanged; they evaluate earlier grammars. docs/motion.md says what else limits
+the figures.
 """
 
 import argparse
@@ -32,8 +33,9 @@ from studies.study import Reads
 
 DRAWN = 300  # sentences of the checking half that were never judged before
 Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | wrong), why
-SEED, UNIFORM_SEED = 2027, 2028
-EARLIER = ("first", "second", "third", "fourth")
+DEVELOPED = 1100  # sentences of the checking half that were read to widen the grammar
+SEED, UNIFORM_SEED, DEVELOPMENT_SEED = 2029, 2028, 4242
+EARLIER = ("first", "second", "third", "fourth", "fifth")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,11 +92,13 @@ def understood(sentences: list[Sentence]) -> dict[str, str]:
     return found
 
 
-def sampled(readings: dict[str, str], checking: list[Sentence], before: Collection[str]) -> list[str]:
-    """The names to annotate: those understood of 300 of the checking half in a fixed order, without earlier ones."""
-    order = stream(SEED, "kitml", "fresh").permutation(len(checking))
-    drawn = [checking[k].name for k in order if checking[k].name not in before][:DRAWN]
-    return [name for name in drawn if name in readings]
+def fresh_draw(checking: list[Sentence], before: Collection[str]) -> tuple[list[str], list[str]]:
+    """Names of the development draw and of the 300 to annotate, neither judged before nor drawn uniformly."""
+    uniform = set(uniform_draw(checking))
+    free = [sentence.name for sentence in checking if sentence.name not in before and sentence.name not in uniform]
+    order = stream(DEVELOPMENT_SEED, "kitml", "development draw").permutation(len(free))
+    developed, rest = ([free[k] for k in part] for part in (order[:DEVELOPED], order[DEVELOPED:]))
+    return developed, [rest[k] for k in stream(SEED, "kitml", "third fresh").permutation(len(rest))[:DRAWN]]
 
 
 def uniform_draw(checking: list[Sentence]) -> list[str]:
@@ -109,7 +113,8 @@ def result_row(
     readings = understood(sentences)
     checking = [sentence for sentence in sentences if sentence.is_for_checking]
     developed = [sentence for sentence in sentences if not sentence.is_for_checking]
-    names = sampled(readings, checking, {name for earlier in before.values() for name in earlier})
+    developed_on, drawn = fresh_draw(checking, {name for earlier in before.values() for name in earlier})
+    names = [name for name in drawn if name in readings]
     valid = [name for name in names if judgements.get(name, {}).get("reading") == readings[name]]
     wrong = sum(judgements[name]["verdict"] == "wrong" for name in valid)
     seen = {_plain(sentence.text) for sentence in developed}
@@ -120,6 +125,12 @@ def result_row(
         ),
         "understood_draw": _share(
             sum(name in readings for name in uniform_draw(checking)), DRAWN, "the same, of 300 drawn from that half"
+        ),
+        "understood_development_draw": _share(
+            sum(name in readings for name in developed_on), len(developed_on), "the same, of those read to widen it"
+        ),
+        "understood_fresh_draw": _share(
+            len(names), len(drawn), "the same, of those drawn for annotation: none in an earlier sample, so harder"
         ),
         "understood_new_sentences": _share(
             sum(s.name in readings for s in checking if _plain(s.text) not in seen),
@@ -196,7 +207,8 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         sentences = sentences_of(options.sentences / "kitml_annotations.json")
         readings, texts = understood(sentences), {s.name: s.text for s in sentences}
         before = {name for earlier in _before(run.out).values() for name in earlier}
-        names = sampled(readings, [s for s in sentences if s.is_for_checking], before)
+        _, drawn = fresh_draw([s for s in sentences if s.is_for_checking], before)
+        names = [name for name in drawn if name in readings]
         json.dump([{"name": n, "text": texts[n], "reading": readings[n]} for n in names], sys.stdout, indent=1)
         return
     measure(run, options.sentences)

@@ -200,13 +200,16 @@ KITML = MetricTable(
         ("understood", "understood, of all"),
         ("understood_checking_half", "understood, of the half not developed on"),
         ("understood_draw", "understood, of 300 drawn uniformly from that half"),
+        ("understood_development_draw", "understood, of 1,100 of that half read to widen the grammar"),
+        ("understood_fresh_draw", "understood, of 300 in no earlier sample (harder than the half)"),
         ("understood_new_sentences",
          "understood, of those among them whose words occur in no sentence of the other half"),
         ("wrong_first_sample", "wrong by hand, first sample (faults mended since)"),
         ("wrong_second_sample", "wrong by hand, second sample (faults mended since)"),
         ("wrong_third_sample", "wrong by hand, third sample (faults mended since)"),
         ("wrong_fourth_sample", "wrong by hand, fourth sample (grammar before the freeze)"),
-        ("wrong", "wrong by hand, understood ones among 300 never judged before (the frozen grammar)"),
+        ("wrong_fifth_sample", "wrong by hand, fifth sample (grammar before the development draw)"),
+        ("wrong", "wrong by hand, understood ones of the 300 in no earlier sample (this grammar)"),
     ),
 )  # fmt: skip
 STRANGERS = MetricTable(

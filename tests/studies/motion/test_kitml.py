@@ -2,7 +2,7 @@ import json
 from pathlib import Path
 
 from mmweaver.motion.language.sentence import parse
-from studies.motion.kitml import Sentence, reading_of, result_row, sampled, sentences_of, understood
+from studies.motion.kitml import Sentence, fresh_draw, reading_of, result_row, sentences_of, understood
 
 
 def sentences(count: int) -> list[Sentence]:
@@ -16,13 +16,15 @@ def test_half_of_the_motions_is_for_checking():
 
 
 def test_shares_and_judgements(tmp_path: Path):
-    some = sentences(400)
+    some = sentences(4000)
     readings = understood(some)
-    assert len(readings) == 200
+    assert len(readings) == 2000
     checking = [sentence for sentence in some if sentence.is_for_checking]
-    names = sampled(readings, checking, ())
-    assert set(names) <= set(readings)
-    assert not set(sampled(readings, checking, names[:5])) & set(names[:5])
+    developed, drawn = fresh_draw(checking, ())
+    assert len(drawn) == 300
+    assert not set(developed) & set(drawn)
+    assert not set(fresh_draw(checking, drawn[:5])[1]) & set(drawn[:5])
+    names = [name for name in drawn if name in readings]
     verdicts = {
         name: {"reading": "walk forwards", "verdict": "wrong" if k < 3 else "right"} for k, name in enumerate(names)
     }
