@@ -192,6 +192,13 @@ REALISM = MetricTable(
         ("recorded: 5 %, middle, 95 %", "{metric:recorded}"), ("", "{outside}"),
     ),
 )  # fmt: skip
+MARS_EXERCISES = MetricTable(
+    sources=("mars_exercises/library",),
+    columns=(
+        ("exercise", "{dataset.name}"), ("figure", "{words}"), ("ours", "{metric:.2f}{space_unit}"),
+        ("recorded", "{metric.recorded:.2f}"), ("mean pose", "{metric.baseline.mean_pose:.2f}"),
+    ),
+)  # fmt: skip
 KITML = MetricTable(
     sources=("kitml/reading",),
     columns=(("share", "{label}"), ("n", "{metric.n:,}"), ("value", "{metric:percent.1}"),
@@ -267,6 +274,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
     "multi_person": MULTI_PERSON.render, "signal_statistics": statistics_table, "mars": MARS.render,
     "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
+    "mars_exercises": MARS_EXERCISES.render,
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,

@@ -159,7 +159,7 @@ HANDS: tuple[Activity, ...] = (
     _hands("knock_elbow", "raising a forearm", "a person raises the right hand from the elbow twice", 0.6, 1.2,
            counted_s=(0.45, 0.9, 0.1), clearance_m=0.5),
     _hands("arm_extension", "extending an arm upwards at the side", "a person extends the left arm up at the side", 1.1,
-           2.6, counted_s=(1.1, 2.4, 0.1), clearance_m=0.8),
+           4.0, counted_s=(1.1, 4.0, 0.1), clearance_m=0.8),
     _hands("hands_up", "holding the hands up", "a person does squats with the hands up", 0.8, 2.0, clearance_m=0.6),
     _hands("sweep", "sweeping", "a person sweeps the floor", 1.0, 3.0, clearance_m=0.7),
     _hands("vacuum", "vacuuming", "a person vacuums", 1.0, 3.0, clearance_m=0.8),

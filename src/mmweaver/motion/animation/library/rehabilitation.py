@@ -75,15 +75,15 @@ def limb_extension(context: StepContext) -> Controls:
     lift_weight(controls, side, np.minimum(1.0, 3 * up))
     shift_foot(controls, side, 0.0, body.leg_m * np.sin(angle), body.leg_m * (1 - np.cos(angle)))
     controls.spine_rad[:, 0] += OUTWARD[side] * 0.1 * up
-    _arm_aside(context, controls, side, up, vary(context, 2.5, 0.1))
+    _arm_aside(context, controls, side, up, vary(context, 1.95, 0.1))
     controls.arm_rad[:, 1 - side, 1] += 0.15 * up
     controls.knee_out_rad[:, side] *= 1 - 0.5 * over
     return controls
 
 
 def arm_extension(context: StepContext, controls: Controls) -> Controls:
-    """The straight arm goes up at the side, above the shoulder, and comes down, again and again."""
-    up, top = _there_and_back(context, 2.6, 1.1, 4.5), vary(context, 2.6, 0.07)
+    """The straight arm goes up at the side until the hand is as high as the head, and comes down, again and again."""
+    up, top = _there_and_back(context, 4.0, 1.1, 6.0), vary(context, 2.0, 0.07)
     for side in sides(context):
         _arm_aside(context, controls, side, up, top)
         controls.spine_rad[:, 0] += OUTWARD[side] * 0.04 * up * (len(sides(context)) == 1)
