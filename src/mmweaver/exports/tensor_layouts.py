@@ -72,12 +72,13 @@ def hupr_frame(
 def write_rf_genesis(result: StoredResult, out: Path) -> str:
     """`radar_frames.npy`, complex128 (frame, tx, rx, chirp, sample), with `TI1843_config.json` in RF-Genesis' units.
 
-    RF-Genesis lets all transmitters send at once; these samples keep the TDM timing of the radar.
+    RF-Genesis lets all transmitters send at once; these samples keep the TDM timing of the radar. Transmitters, in the
+    samples and in `tx_loc`, are in firing order, which is the order of RF-Genesis' own AWR1843.
 
     Reference: Chen and Zhang, RF Genesis (SenSys 2023), as of its public repository.
     """
     adc = result.adc
-    np.save(out / "radar_frames.npy", adc.samples.transpose(0, 2, 3, 1, 4).astype(np.complex128))
+    np.save(out / "radar_frames.npy", _in_firing_order(adc).transpose(0, 2, 3, 1, 4).astype(np.complex128))
     _write_json(out / "TI1843_config.json", rf_genesis_settings(adc.config))
     return f"{len(adc.samples)} frames of RF-Genesis"
 
@@ -87,7 +88,10 @@ def rf_genesis_settings(config: RadarConfig) -> dict[str, object]:
     half_m = config.wavelength_m / 2
     places = {
         name: [[round(float(value) / half_m, 4) for value in (x, z, y)] for x, y, z in positions]
-        for name, positions in (("tx_loc", config.tx_position_m), ("rx_loc", config.rx_position_m))
+        for name, positions in (
+            ("tx_loc", [config.tx_position_m[tx] for tx in config.tx_order]),
+            ("rx_loc", config.rx_position_m),
+        )
     }
     return {
         "c0": 299792458, "num_tx": config.num_tx, "num_rx": config.num_rx, "fc": config.start_frequency_hz,
@@ -136,8 +140,8 @@ def write_drai(result: StoredResult, out: Path) -> str:
 
 
 def _in_firing_order(adc: AdcCube) -> np.ndarray:
-    """(frame, loop, slot, rx, sample)."""
-    return adc.samples[:, :, list(adc.config.tx_order)]
+    """(frame, loop, slot, rx, sample); those of a transmit code are in it already."""
+    return adc.samples if adc.config.is_coded else adc.samples[:, :, list(adc.config.tx_order)]
 
 
 def _check_hupr(config: RadarConfig) -> None:

@@ -1,0 +1,83 @@
+"""Pictures: a few decoders alone, upright, of a bounded size, without a word on stderr."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files import safe_pictures
+from mmweaver.core.safe_files.safe_pictures import ORIENTATION, open_picture, read_animation
+
+PIXELS = np.random.default_rng(0).integers(0, 255, (40, 60, 3), dtype=np.uint8)
+
+
+@pytest.mark.parametrize("kind", ["PNG", "TIFF", "BMP", "PPM"])
+def test_lossless_kinds_come_back_whatever_the_file_is_called(tmp_path: Path, kind: str):
+    Image.fromarray(PIXELS).save(tmp_path / "a.jpg", kind)
+    found = open_picture(tmp_path / "a.jpg")
+    assert np.array_equal(np.asarray(found.image), PIXELS)
+    assert found.stored_size == (60, 40)
+    assert found.orientation == 1
+
+
+@pytest.mark.parametrize("kind", ["EPS", "GIF", "DDS", "TGA", "ICO", "PDF"])
+def test_other_decoders_are_out_of_reach(tmp_path: Path, kind: str):
+    Image.fromarray(PIXELS).save(tmp_path / "a.png", kind)
+    with pytest.raises(InputError, match="is not a picture that can be read"):
+        open_picture(tmp_path / "a.png")
+
+
+@pytest.mark.parametrize("kind", ["PNG", "TIFF"])
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_pictures_are_upright(tmp_path: Path, orientation: int, kind: str):
+    """Turned by the tag, whichever the kind: the tag's own definition, row and column of each corner."""
+    exif = Image.Exif()
+    exif[ORIENTATION] = orientation
+    Image.fromarray(PIXELS).save(tmp_path / "a", kind, exif=exif)
+    found = open_picture(tmp_path / "a")
+    turned = [PIXELS, PIXELS[:, ::-1], PIXELS[::-1, ::-1], PIXELS[::-1], PIXELS.swapaxes(0, 1), np.rot90(PIXELS, -1),
+              PIXELS[::-1, ::-1].swapaxes(0, 1), np.rot90(PIXELS)]  # fmt: skip
+    assert np.array_equal(np.asarray(found.image), turned[orientation - 1])
+    assert found.orientation == orientation
+
+
+def test_sizes_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    Image.fromarray(PIXELS[:20]).save(tmp_path / "small.png")
+    with pytest.raises(InputError, match="has only 60 x 20 pixels"):
+        open_picture(tmp_path / "small.png")
+    monkeypatch.setattr(safe_pictures, "MAX_PIXELS", 2000)
+    Image.fromarray(PIXELS).save(tmp_path / "large.png")
+    with pytest.raises(InputError, match="is too large"):
+        open_picture(tmp_path / "large.png")
+    Image.fromarray(PIXELS).save(tmp_path / "large.gif")
+    with pytest.raises(InputError, match="is too large"):
+        read_animation(tmp_path / "large.gif")
+
+
+def test_a_damaged_tiff_is_refused_without_messages(tmp_path: Path, capfd: pytest.CaptureFixture[str]):
+    """libtiff and Pillow write to stderr themselves."""
+    stream = io.BytesIO()
+    Image.fromarray(PIXELS).save(stream, "TIFF", compression="tiff_adobe_deflate")
+    data = bytearray(stream.getvalue())
+    data[20:60] = b"\xff" * 40
+    samples = data.find(b"\x15\x01\x03\x00")  # samples a pixel
+    assert samples > 0
+    (tmp_path / "a.tif").write_bytes(data)
+    more = bytes(data[: samples + 8]) + b"\x00\x08" + bytes(data[samples + 10 :])
+    (tmp_path / "b.tif").write_bytes(more)
+    for name in ("a.tif", "b.tif"):
+        with pytest.raises(InputError):
+            open_picture(tmp_path / name)
+    assert capfd.readouterr().err == ""
+
+
+def test_an_animation_is_read(tmp_path: Path):
+    frames = [Image.fromarray(np.full((40, 60, 3), value, np.uint8)) for value in (0, 255)]
+    frames[0].save(tmp_path / "a.gif", save_all=True, append_images=frames[1:])
+    assert [int(picture.mean()) for picture in read_animation(tmp_path / "a.gif")] == [0, 255]
+    (tmp_path / "a.gif").write_bytes(b"GIF89a")
+    with pytest.raises(InputError, match=r"damaged or no \.gif"):
+        read_animation(tmp_path / "a.gif")

@@ -1,0 +1,102 @@
+"""A FIFO or a device given for any file of any command is refused at once, in one line that names it."""
+
+import os
+import signal
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mmweaver.cli.main import _parser_and_commands, main
+from tests.fuzz.set_readers import GOLDEN
+
+pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no FIFO here")
+SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
+ROOM = {name: str(SAMPLE / file) for name, file in
+        (("--rgb", "rgb.webp"), ("--depth", "depth.png"), ("--camera", "camera.json"))}  # fmt: skip
+WEIGHTS = str(SAMPLE.parent / "weights" / "weaver.safetensors")
+WRITTEN = {"--out", "-o", "--html", "--picture", "out"}
+# What a command needs besides the option that is tried.
+NEEDED: dict[str, dict[str, str]] = {
+    "generate": {**ROOM, "--text": "a person waves", "--out": "OUT"},
+    "export": {"--to": "mat", "--out": "OUT"}, "process": {"file": "BIN", "--radar": "awr1843", "--out": "OUT"},
+    "points": {"-o": "OUT"}, "radar": {"radar": "awr1843"}, "decompress": {"-o": "OUT"}, "rooms": {"out": "OUT"},
+    "compress": {"file": "BIN", "--radar": "awr1843", "-o": "OUT", "--bytes": "9999"},
+    "evaluate": {"task": "zero-shot-activity"}, "motion": {"text": "a person waves"},
+    "dataset": {"out": "OUT", "--rooms": "office"}, "train": {"recipe": "weaver", "--data": "DATA", "--out": "OUT"},
+}  # fmt: skip
+# Other options that an option needs (a word) or does not go with (None).
+WITH: dict[tuple[str, str], dict[str, str | None]] = {
+    ("generate", "--depth-model"): {"--depth": None}, ("generate", "--texts"): {"--text": None},
+    ("generate", "--motion"): {"--text": None}, ("generate", "--capture"): dict.fromkeys(ROOM),
+    ("generate", "--body-model"): {"--text": None, "--motion": "MOTION"},
+    ("dataset", "--activities"): {"--rooms": None, **ROOM},
+    ("dataset", "--room"): {"--rooms": None, "--activities": "A"},
+    ("generate", "--motion-model"): {"--motion-model-for": "all"},
+    ("generate", "--sam"): {"--segmenter": "builtin"},
+    ("train", "--captures"): {"--data": None, "--from": WEIGHTS},
+    ("train", "--from"): {"--data": None, "--captures": "CAPTURE"},
+    **{("dataset", name): {"--rooms": None, "--activities": "A", **ROOM} for name in ROOM},
+    **{("train", name): {"--data": None, "--captures": "CAPTURE", "--from": WEIGHTS, **ROOM} for name in ROOM},
+}  # fmt: skip
+
+
+def _options() -> list[tuple[str, str]]:
+    """Every option and argument of every command that names something to read."""
+    found = []
+    for command, parser in _parser_and_commands()[1].items():
+        for action in parser._actions:
+            kind = getattr(action.type, "__name__", "")
+            name = action.option_strings[0] if action.option_strings else action.dest
+            if (kind in ("Path", "source") or name in ("--config", "radar")) and name not in WRITTEN:
+                found.append((command, name))
+    return found
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    folder = tmp_path_factory.mktemp("files")
+    (folder / "a.bin").write_bytes(bytes(4096))
+    (folder / "a.toml").write_text('[activities]\na = "a person waves"\nb = "a person walks"\n')
+    np.savez(folder / "m.npz", poses=np.zeros((4, 66)), trans=np.zeros((4, 3)), mocap_framerate=60.0)
+    with zipfile.ZipFile(GOLDEN) as archive:
+        archive.extractall(folder)
+    os.mkfifo(folder / "fifo")
+    return {"BIN": str(folder / "a.bin"), "A": str(folder / "a.toml"), "MOTION": str(folder / "m.npz"),
+            "CAPTURE": str(folder / "results"), "DATA": str(folder), "FIFO": str(folder / "fifo")}  # fmt: skip
+
+
+@pytest.mark.parametrize("special", ["FIFO", "/dev/zero"])
+@pytest.mark.parametrize(("command", "name"), _options())
+def test_it_is_refused_at_once(
+    command: str, name: str, special: str, files: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
+    place = files.get(special, special)
+    words = {**NEEDED.get(command, {}), **WITH.get((command, name), {}), name: place}
+    known = {**files, "OUT": str(tmp_path / "out")}
+    argv = [command]
+    for option, word in words.items():
+        if word is not None:
+            argv += [option] * option.startswith("-") + [known.get(word, word)]
+    assert _status(argv) == 2
+    error = capsys.readouterr().err
+    assert Path(place).name in error, error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def _status(argv: list[str]) -> Any:
+    """Of a command that may take 20 seconds of a loaded machine."""
+
+    def late(*_: Any) -> None:
+        raise TimeoutError(f"mmweaver {argv[0]} waits")
+
+    previous = signal.signal(signal.SIGALRM, late)
+    signal.setitimer(signal.ITIMER_REAL, 20)
+    try:
+        return main(argv)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, previous)
