@@ -40,9 +40,11 @@ from mmweaver.motion.people import subject_of
 from mmweaver.request import Request, parse_request
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
 from mmweaver.scene.photo.capture_photo import read_capture_photo
+from mmweaver.scene.photo.estimated_depth import scale_note
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
 from mmweaver.streaming import (
     CHUNK_FRAMES,
     StreamChunk,
@@ -132,19 +134,27 @@ class Weaver:
             inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
             models = ("depth_model", "segmenter", "sam")
             inputs |= {name: str(seen[name]) for name in models if seen.get(name) is not None}
-        return self._reconstruct(photo, assumptions, inputs, stages)
+        room = self._reconstruct(photo, assumptions, inputs, stages)
+        note = scale_note(-room.scene.floor_z_m) if depth is None else None
+        if note is None:
+            return room
+        return replace(room, scene=replace(room.scene, assumptions=(*room.scene.assumptions, note)))
 
     def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None, **seen: Any) -> Room:
         """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
+
+        Or of a scan by Stray Scanner, Polycam (raw data), ScanNet or TUM RGB-D.
 
         `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `seen`:
         `classes`, `segmenter` and `sam` as in `read_room`.
         """
         stages = Stages(self._listener)
         with stages("read the photo"):
-            found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
-            given = {"depth": found.folder / "depth.zst", "rgb": rgb or found.folder / "color.avi"}
-            inputs = {"photo": photo, **{name: file_digest(path) for name, path in given.items()}}
+            if scan_kind(Path(capture)) is not None and rgb is None:
+                found = read_scan_photo(Path(capture), photo)
+            else:
+                found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
+            inputs = {"photo": photo, **{name: file_digest(path) for name, path in found.files.items()}}
             inputs |= {name: str(source) for name, source in seen.items() if source is not None}
             whole = replace(found.photo, classes=classes_of(found.photo, **seen))
         return self._reconstruct(whole, found.assumptions, inputs, stages)

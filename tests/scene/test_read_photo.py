@@ -329,3 +329,38 @@ def test_models_replace_depth_and_classes(files: Files, tmp_path: Path):
     assert photo.depth_m.shape == (72, 96)
     assert photo.classes is not None
     assert any("estimated from the colours" in sentence for sentence in assumptions)
+
+
+def _exif(focal_mm: float) -> Image.Exif:
+    exif = Image.Exif()
+    exif.get_ifd(0x8769)[0xA405] = focal_mm  # FocalLengthIn35mmFilm
+    return exif
+
+
+def test_the_focal_length_of_a_phone_is_taken(tmp_path: Path):
+    rgb = np.random.default_rng(0).integers(0, 255, (480, 640, 3), dtype=np.uint8)
+    Image.fromarray(rgb).save(tmp_path / "phone.jpg", exif=_exif(26))
+    np.save(tmp_path / "depth.npy", np.full((480, 640), 2.0))
+    photo, notes = read_photo(tmp_path / "phone.jpg", tmp_path / "depth.npy")
+    assert photo.intrinsics.fx == pytest.approx(26 * 800 / np.hypot(36, 24))
+    assert any("26 mm on 35 mm film" in note for note in notes)
+    Image.fromarray(rgb).save(tmp_path / "odd.jpg", exif=_exif(0))
+    photo, notes = read_photo(tmp_path / "odd.jpg", tmp_path / "depth.npy")
+    assert photo.intrinsics.fx == 384.0
+    assert any("D455" in note for note in notes)
+
+
+def test_heic_is_read(tmp_path: Path):
+    heif = pytest.importorskip("pillow_heif")
+    heif.register_heif_opener()
+    rgb = np.zeros((480, 640, 3), np.uint8)
+    rgb[:, :320] = 200
+    Image.fromarray(rgb).save(tmp_path / "phone.heic", exif=_exif(26), quality=90)
+    np.save(tmp_path / "depth.npy", np.full((480, 640), 2.0))
+    photo, _ = read_photo(tmp_path / "phone.heic", tmp_path / "depth.npy")
+    assert np.abs(photo.rgb[:, 40:280].astype(int) - 200).mean() < 5
+    assert photo.intrinsics.fx == pytest.approx(26 * 800 / np.hypot(36, 24))
+    content = (tmp_path / "phone.heic").read_bytes()
+    (tmp_path / "cut.heic").write_bytes(content[: len(content) // 2])
+    with pytest.raises(InputError):
+        read_photo(tmp_path / "cut.heic", tmp_path / "depth.npy")

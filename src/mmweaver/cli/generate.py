@@ -228,13 +228,10 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
         return _text_and_out(arguments)
     if arguments.rgb is None and arguments.depth is None:
         raise InputError("which room? give --rgb and --depth, or try --demo")
-    if arguments.depth is not None and arguments.depth_model is not None:
-        raise InputError("--depth-model is for a photo without depth; leave out one of --depth and --depth-model")
     if arguments.depth is None and arguments.depth_model is None:
         raise InputError(
             "--rgb needs --depth too, for the room is built from the distance of each pixel; a metric depth model can"
-            " estimate it: --depth-model DIR, or a Hub name such as"
-            " depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf"
+            " estimate it: --depth-model auto (downloaded once), DIR or a Hub name"
         )
     if arguments.rgb is None:
         raise InputError("--depth needs --rgb too: the colour picture of the same view")

@@ -64,8 +64,8 @@ def _add_input_options(room: Options) -> None:
     )  # fmt: skip
     room.add_argument("--empty-room", type=Path, dest="background", default=argparse.SUPPRESS, help=argparse.SUPPRESS)
     room.add_argument(
-        "--depth-model", type=source, metavar="DIR|HUB",
-        help=Rare("where there is no --depth: a metric depth model that estimates it"),
+        "--depth-model", type=source, metavar="auto|DIR|HUB",
+        help=Rare("where there is no --depth: a metric depth model that estimates it (auto: downloaded once)"),
     )  # fmt: skip
     room.add_argument(
         "--classes", type=Path, metavar="PNG",
@@ -86,7 +86,10 @@ def _add_input_options(room: Options) -> None:
     )  # fmt: skip
     room.add_argument(
         "--capture", type=Path, metavar="DIR",
-        help=Rare("instead of --rgb: a capture folder of mmwave-capture-std; its RealSense's photo and depth"),
+        help=Rare(
+            "instead of --rgb: a folder with photos and depth: mmwave-capture-std (a RealSense), Stray Scanner, Polycam"
+            " (raw data), ScanNet or TUM RGB-D"
+        ),
     )  # fmt: skip
     room.add_argument(
         "--photo", type=whole, default=0, metavar="N", help=Rare("which photo of the capture (default 0)")

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import ClassMask, RgbdPhoto
+from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
 from mmweaver.core.shapes import DepthPixels, RgbPixels
-from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, read_camera_file
+from mmweaver.geometry.pinhole import resized
+from mmweaver.scene.photo.camera_file import d455_intrinsics, intrinsics_for, lens_intrinsics, read_camera_file
 from mmweaver.scene.photo.estimated_depth import EXAMPLE, estimate_depth
 from mmweaver.scene.photo.picture_files import Turned, read_depth, read_rgb
 from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
@@ -38,9 +39,10 @@ def read_photo(
         depth: a 16-bit PNG in camera.json's `depth_unit_m` (0.001 by default, 0 = hole), a .npy in metres (float) or
             in that unit (integers), or a TIFF of either; the same view as the colour picture. Where one has more
             pixels than the other, both are resampled to one size.
-        camera: camera.json with fx, fy, cx, cy in pixels of the colour picture. None takes the field of view of a
-            RealSense D455.
-        depth_model: folder or Hub name of a metric depth model, where there is no `depth`.
+        camera: camera.json with fx, fy, cx, cy in pixels of the colour picture. None takes the focal length of the
+            picture's EXIF, else what the depth model estimates, else the field of view of a RealSense D455.
+        depth_model: folder or Hub name of a metric depth model, or "auto", where there is no `depth`; a Prompt Depth
+            Anything refines a coarse `depth`.
         classes: a picture of COCO-Stuff's class numbers (see `class_file`), or
         segmenter: folder or Hub name of a segmentation model, or "builtin" for the built-in one.
         sam: folder or Hub name of a SAM model that refines the segmenter's edges.
@@ -58,24 +60,34 @@ def read_photo(
         depth_m, depth_turned = read_depth(depth, numbers.get("depth_unit_m"))
         _check_same_view(rgb, depth, rgb_size, depth_m, turned)
         _check_turned(rgb, depth, turned, depth_turned)
-    elif depth_model is not None:
-        depth_m = estimate_depth(pixels, depth_model)
-        notes.append(f"The depth was estimated from the colours by {depth_model}; it may err by tens of per cent.")
     else:
+        depth_m = None
+    estimated = None
+    if depth_model is not None:
+        estimated = estimate_depth(pixels, depth_model, measured_m=depth_m)
+        notes.append(
+            f"The depth was estimated from the colours by {estimated.model}; it may err by tens of per cent."
+            if depth_m is None
+            else f"The measured depth was refined from the colours by {estimated.model}."
+        )
+        depth_m = estimated.depth_m
+    if depth_m is None:
         raise InputError(
-            f"{rgb} has no depth: give --depth, or a model that estimates it: --depth-model DIR or Hub name, for"
-            f" example {EXAMPLE}"
+            f"{rgb} has no depth: give --depth, or a model that estimates it: --depth-model auto ({EXAMPLE}, downloaded"
+            " once), a folder or another Hub name"
         )
     depth_m, fill_notes = fill_scattered_holes(depth_m)
-    pixels, depth_m, size_notes = _to_common_size(pixels, depth_m)
+    pixels, depth_m, size_notes = to_common_size(pixels, depth_m)
     height, width = depth_m.shape
     numbers = {"width": float(rgb_size[0]), "height": float(rgb_size[1]), **numbers}
-    intrinsics = d455_intrinsics(width, height) if camera is None else intrinsics_for(camera, numbers, width, height)
+    intrinsics, lens_note = (
+        _without_camera_file(rgb_size, (width, height), turned, None if estimated is None else estimated.focal_px)
+        if camera is None
+        else (intrinsics_for(camera, numbers, width, height), None)
+    )
     photo = RgbdPhoto(rgb=pixels, depth_m=depth_m, intrinsics=intrinsics)
     photo = replace(photo, classes=classes_of(photo, classes=classes, segmenter=segmenter, sam=sam))
-    assumptions = _assumptions(
-        photo, has_camera=camera is not None, rotated=turned.orientation != 1 and depth is not None
-    )
+    assumptions = _assumptions(lens_note=lens_note, rotated=turned.orientation != 1 and depth is not None)
     return photo, (*assumptions, *fill_notes, *size_notes, *notes)
 
 
@@ -123,7 +135,7 @@ def _check_turned(rgb: Path, depth: Path, colours: Turned, depths: Turned) -> No
         )
 
 
-def _to_common_size(pixels: np.ndarray, depth_m: np.ndarray) -> tuple[RgbPixels, DepthPixels, tuple[str, ...]]:
+def to_common_size(pixels: np.ndarray, depth_m: np.ndarray) -> tuple[RgbPixels, DepthPixels, tuple[str, ...]]:
     """Both at the depth's size, or an integer multiple of a small one; depth is repeated, never interpolated."""
     from PIL import Image
 
@@ -140,14 +152,28 @@ def _to_common_size(pixels: np.ndarray, depth_m: np.ndarray) -> tuple[RgbPixels,
     return colours, np.repeat(np.repeat(depth_m, factor, axis=0), factor, axis=1), (note,)
 
 
-def _assumptions(photo: RgbdPhoto, *, has_camera: bool, rotated: bool) -> tuple[str, ...]:
-    camera = photo.intrinsics
-    notes = []
-    if not has_camera:
-        notes.append(
-            f"No camera file: the field of view of a RealSense D455 was assumed (focal length {camera.fx:.1f} pixels"
-            f" on {camera.width} x {camera.height})."
-        )
+def _without_camera_file(
+    rgb_size: tuple[int, int], size: tuple[int, int], turned: Turned, focal_px: float | None
+) -> tuple[CameraIntrinsics, str]:
+    """Intrinsics of a picture resampled from `rgb_size` to `size`, and the sentence that says what they come from.
+
+    `focal_px`: what a depth model estimated on the picture as it was.
+    """
+    if turned.focal_35mm is not None:
+        camera = resized(lens_intrinsics(*rgb_size, turned.focal_35mm), *size)
+        said = f"the focal length of the picture's EXIF tag was taken ({turned.focal_35mm:g} mm on 35 mm film;"
+    elif focal_px is not None:
+        camera = resized(replace(d455_intrinsics(*rgb_size), fx=focal_px, fy=focal_px), *size)
+        said = "the focal length that the depth model estimated was taken ("
+    else:
+        camera = d455_intrinsics(*size)
+        said = "the field of view of a RealSense D455 was assumed (focal length"
+    pixels = f"{camera.fx:.1f} pixels on {camera.width} x {camera.height})."
+    return camera, f"No camera file: {said}{'' if said.endswith('(') else ' '}{pixels}"
+
+
+def _assumptions(*, lens_note: str | None, rotated: bool) -> tuple[str, ...]:
+    notes = [] if lens_note is None else [lens_note]
     if rotated:
         notes.append("The colour picture was rotated upright by its EXIF tag; the depth was assumed to be upright.")
     return tuple(notes)

@@ -8,8 +8,9 @@ import logging
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +24,8 @@ MAX_PIXELS = 50_000_000
 FORMATS = ("PNG", "JPEG", "TIFF", "WEBP", "BMP", "PPM")  # JPEG includes the MPO of many phones
 _MIN_SIDE = 32
 ORIENTATION = 0x0112
+_EXIF, _FOCAL_35MM = 0x8769, 0xA405
+_HEIF_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"mif1", b"msf1")
 # EXIF's orientation: what turns the stored picture upright, as Pillow numbers it (Image.Transpose)
 _TURN = {2: 0, 3: 3, 4: 1, 5: 5, 6: 4, 7: 6, 8: 2}
 
@@ -34,6 +37,7 @@ class Picture:
     image: "Image.Image"
     stored_size: tuple[int, int]  # (width, height) in the file
     orientation: int  # EXIF's, 1 to 8; 1 = as stored
+    focal_35mm: float | None = None  # EXIF's focal length in millimetres on 35 mm film; None where it is not said
 
 
 def open_picture(path: Path) -> Picture:
@@ -49,7 +53,7 @@ def open_picture(path: Path) -> Picture:
         foreign_errors(path, "damaged ({reason}); give a whole picture file"),
     ):
         try:
-            image = Image.open(file, formats=FORMATS)
+            image = Image.open(file, formats=(*FORMATS, *_heif(path, file)))
         except UnidentifiedImageError:
             raise InputError(_unknown(path)) from None
         except Image.DecompressionBombError:
@@ -65,10 +69,38 @@ def open_picture(path: Path) -> Picture:
                 image.load()
         else:
             image.load()
-            orientation = image.getexif().get(ORIENTATION, 1)
+            orientation = image.getexif().get(ORIENTATION, 1)  # a HEIC is upright already, and its tag says so
             if orientation in range(2, 9):
                 image = image.transpose(Image.Transpose(_TURN[orientation]))
-    return Picture(image=image, stored_size=size, orientation=orientation if orientation in range(2, 9) else 1)
+        focal_35mm = _focal_35mm(image.getexif())
+    orientation = orientation if orientation in range(2, 9) else 1
+    return Picture(image=image, stored_size=size, orientation=orientation, focal_35mm=focal_35mm)
+
+
+def _heif(path: Path, file: BufferedReader) -> tuple[str, ...]:
+    """The name of the decoder of HEIC, where the file is one. Raises InputError where it is not installed."""
+    start = file.read(12)
+    file.seek(0)
+    if start[4:8] != b"ftyp" or start[8:12] not in _HEIF_BRANDS:
+        return ()
+    try:
+        import pillow_heif
+    except ImportError:
+        raise InputError(
+            f"{path} is a HEIC; install its reader: pip install 'mmweaver[phone]', or save a JPEG"
+        ) from None
+    pillow_heif.register_heif_opener()
+    return ("HEIF",)
+
+
+def _focal_35mm(exif: "Image.Exif") -> float | None:
+    """The focal length on 35 mm film, where it is said and some lens could have it."""
+    value: Any = exif.get_ifd(_EXIF).get(_FOCAL_35MM)
+    try:
+        focal_mm = float(value)
+    except (TypeError, ValueError, ZeroDivisionError):
+        return None
+    return focal_mm if 8 <= focal_mm <= 300 else None
 
 
 def read_animation(path: Path) -> list[np.ndarray]:

@@ -31,6 +31,18 @@ def d455_intrinsics(width: int, height: int) -> CameraIntrinsics:
     )  # fmt: skip
 
 
+def lens_intrinsics(width: int, height: int, focal_35mm: float) -> CameraIntrinsics:
+    """The intrinsics of a whole picture by its focal length on 35 mm film, which compares diagonals (CIPA DCG-001).
+
+    >>> round(lens_intrinsics(4000, 3000, 26.0).fx)
+    3005
+    """
+    focal = focal_35mm * math.hypot(width, height) / math.hypot(36.0, 24.0)
+    return CameraIntrinsics(
+        fx=focal, fy=focal, cx=(width - 1) / 2, cy=(height - 1) / 2, width=width, height=height
+    )  # fmt: skip
+
+
 def read_camera_file(path: Path) -> dict[str, float]:
     """The numbers of a camera.json: fx, fy, cx, cy in pixels, and width, height and depth_unit_m if it has them.
 

@@ -33,6 +33,7 @@ class CapturedPhoto:
 
     photo: RgbdPhoto
     folder: Path
+    files: dict[str, Path]  # by what they hold: rgb, depth, camera
     assumptions: tuple[str, ...]
 
 
@@ -108,7 +109,8 @@ def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None
         depth_m, colours = np.rot90(depth_m, -1).copy(), np.rot90(colours, -1).copy()
         intrinsics = rotated_clockwise(intrinsics)
     photo = RgbdPhoto(rgb=colours, depth_m=depth_m, intrinsics=intrinsics)
-    return CapturedPhoto(photo=photo, folder=folder, assumptions=_assumptions(index))
+    files = {"depth": folder / DEPTH, "rgb": rgb or folder / COLOUR}
+    return CapturedPhoto(photo=photo, folder=folder, files=files, assumptions=_assumptions(index))
 
 
 def _assumptions(index: int) -> tuple[str, ...]:

@@ -1,40 +1,107 @@
 """Monocular depth for photos without depth, by pretrained metric models such as Depth Anything."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.shapes import DepthPixels, RgbPixels
+from mmweaver.core.shapes import Array, DepthPixels, RgbPixels
 from mmweaver.scene.photo.pretrained import load_pretrained
 
 EXAMPLE = "depth-anything/Depth-Anything-V2-Metric-Indoor-Small-hf"
+AUTO = "auto"  # stands for EXAMPLE, downloaded once and kept in the Hub's cache
+PROMPTED = "prompt_depth_anything"
+MOGE = "Ruicheng/moge-2-vitl-normal"
+USUAL_HEIGHT_M = (0.6, 2.2)  # of a hand-held or mounted camera above the floor
 ALWAYS_METRIC = {"zoedepth", "depth_pro"}
-SOMETIMES_METRIC = {"depth_anything", "prompt_depth_anything"}
+SOMETIMES_METRIC = {"depth_anything", PROMPTED}
 
 
-def estimate_depth(rgb: RgbPixels, source: str) -> DepthPixels:
-    """Estimates depth in metres along the optical axis, (height, width); nan where the model gives none above 5 cm.
+@dataclass(frozen=True, kw_only=True)
+class EstimatedDepth:
+    """What a model says of a picture."""
 
-    Raises InputError where the model cannot be loaded or its depth is not metric.
+    depth_m: DepthPixels  # along the optical axis, nan where the model gives none above 5 cm
+    focal_px: float | None  # for models that estimate it, such as Depth Pro
+    model: str
+
+
+def estimate_depth(
+    rgb: RgbPixels, source: str, *, measured_m: Float[Array, "rows columns"] | None = None
+) -> EstimatedDepth:
+    """Estimates the depth of a picture (height, width, 3).
+
+    `source` is a folder, a Hub name or AUTO. `measured_m`: coarse depth of the same view, such as a phone's LiDAR
+    gives, for models that take it as a prompt. Raises InputError where the model cannot be loaded, its depth is not
+    metric, or it takes no prompt.
     """
     import torch
     from PIL import Image
 
-    _, processor, model = load_pretrained(source, "--depth-model", _depth_class)
+    source = EXAMPLE if source == AUTO else source
+    if source.rpartition("/")[2].lower().startswith("moge"):
+        return _of_moge(rgb, source)
+    config, processor, model = load_pretrained(source, "--depth-model", _depth_class)
     height, width = rgb.shape[:2]
+    prompt: dict[str, Any] = {}
+    if measured_m is not None:
+        if config.model_type != PROMPTED:
+            raise InputError(
+                f"--depth-model {source} takes no measured depth; leave out one of --depth and --depth-model, or give a"
+                " Prompt Depth Anything"
+            )
+        prompt = {"prompt_depth": np.nan_to_num(measured_m).astype(np.float32), "prompt_scale_to_meter": 1.0}
     try:
-        inputs = processor(images=Image.fromarray(rgb), return_tensors="pt")
+        inputs = processor(images=Image.fromarray(rgb), return_tensors="pt", **prompt)
         with torch.inference_mode():
             outputs = model(**inputs)
-        found = processor.post_process_depth_estimation(outputs, target_sizes=[(height, width)])[0]["predicted_depth"]
+        said = processor.post_process_depth_estimation(outputs, target_sizes=[(height, width)])[0]
+        found, focal = said["predicted_depth"], said.get("focal_length")
     except (ValueError, TypeError, RuntimeError) as error:
         raise InputError(f"--depth-model {source} cannot process this picture ({error}); try another model") from None
     depth_m = np.asarray(found.cpu().numpy(), dtype=float).reshape(height, width)
     measured = np.isfinite(depth_m) & (depth_m > 0.05)
     if not measured.any():
         raise InputError(f"--depth-model {source} gives no depth for this picture; try another model")
-    return np.where(measured, depth_m, np.nan)
+    focal_px = None if focal is None else float(focal)
+    if focal_px is not None and not 0.2 * width <= focal_px <= 10 * width:
+        focal_px = None
+    return EstimatedDepth(depth_m=np.where(measured, depth_m, np.nan), focal_px=focal_px, model=source)
+
+
+def scale_note(camera_height_m: float) -> str | None:
+    """A sentence where estimated depth puts the camera at a height at which nobody holds one; None elsewhere."""
+    low_m, high_m = USUAL_HEIGHT_M
+    if low_m <= camera_height_m <= high_m:
+        return None
+    return (
+        f"By the estimated depth the camera is {camera_height_m:.2f} m above the floor; most are at {low_m:g} to"
+        f" {high_m:g} m, so all distances are probably off by about that ratio."
+    )
+
+
+def _of_moge(rgb: RgbPixels, source: str) -> EstimatedDepth:
+    """By Microsoft's MoGe 2 (package `moge`), which gives points in metres and the camera."""
+    try:
+        import torch
+        from moge.model.v2 import MoGeModel
+    except ImportError:
+        raise InputError(
+            f"--depth-model {source} needs the package moge, which is not on PyPI (github.com/microsoft/MoGe); or take"
+            f" {AUTO}"
+        ) from None
+    try:
+        with torch.inference_mode():
+            picture = torch.from_numpy(rgb.copy()).permute(2, 0, 1).float() / 255
+            said = MoGeModel.from_pretrained(MOGE if "/" not in source else source).infer(picture)
+    except Exception as error:  # a package that this one does not control
+        raise InputError(f"--depth-model {source} cannot process this picture ({error}); try another model") from None
+    depth_m = said["depth"].cpu().numpy().astype(float)
+    measured = np.isfinite(depth_m) & (depth_m > 0.05)
+    focal_px = float(said["intrinsics"][0, 0]) * rgb.shape[1]  # in widths of the picture
+    return EstimatedDepth(depth_m=np.where(measured, depth_m, np.nan), focal_px=focal_px, model=source)
 
 
 def _depth_class(transformers: Any, config: Any) -> Any:

@@ -24,16 +24,20 @@ _UINT16_SATURATED = 65535
 
 @dataclass(frozen=True, kw_only=True)
 class Turned:
-    """How a picture lay in its file."""
+    """How a picture lay in its file, and the lens that took it."""
 
     stored_size: tuple[int, int]  # (width, height)
     orientation: int  # EXIF's; 1 = it was upright
+    focal_35mm: float | None = None  # millimetres on 35 mm film, from EXIF
 
 
 def read_rgb(path: Path) -> tuple[RgbPixels, Turned]:
     """The upright picture, uint8 (height, width, 3), and how it lay in the file."""
     picture = open_picture(path)
-    image, turned = picture.image, Turned(stored_size=picture.stored_size, orientation=picture.orientation)
+    image = picture.image
+    turned = Turned(
+        stored_size=picture.stored_size, orientation=picture.orientation, focal_35mm=picture.focal_35mm
+    )  # fmt: skip
     if image.mode.startswith("I;16") or image.mode == "I":
         grey = np.clip(np.asarray(image).astype(np.int64) // 256, 0, 255).astype(np.uint8)
         return np.repeat(grey[:, :, None], 3, axis=2), turned

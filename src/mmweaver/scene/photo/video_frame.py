@@ -22,11 +22,16 @@ def read_video_frame(path: Path, index: int) -> RgbPixels:
         raise InputError(
             f"{path} is a video; install the reader: pip install 'mmweaver[capture]', or give the picture with --rgb"
         ) from None
+    kind = "mov" if path.suffix.lower() in (".mp4", ".mov", ".m4v") else "avi"
     if index < 0:
         raise InputError(f"{path} has no frame {index}; choose one from 0")
     count = 0
     # one format, from the opened file: a playlist, which names other files and hosts, is not followed
-    with open_regular(path) as file, foreign_errors(path, NO_VIDEO), av.open(file, "r", format="avi") as container:
+    with (
+        open_regular(path) as file,
+        foreign_errors(path, NO_VIDEO),
+        av.open(file, "r", format=kind) as container,
+    ):
         if not container.streams.video:
             raise InputError(f"{path} holds no video")
         # A damaged frame is an error; by default it would be filled from its neighbours.

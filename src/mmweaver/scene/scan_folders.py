@@ -1,0 +1,203 @@
+"""One photo with depth of a scan: folders of Stray Scanner, Polycam (raw data), ScanNet and TUM RGB-D.
+
+The depth of phones is coarse; colours are resampled to it as `read_photo` does. Phones store pictures as the sensor
+lies; the recorded pose says which side is up, and the photo is rotated upright.
+Facts of the formats: their publishers' documentation (Stray Robots, Polycam, ScanNet, TUM Computer Vision Group).
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
+from mmweaver.core.safe_files.safe_text import read_json, read_text
+from mmweaver.core.shapes import DepthPixels, RgbPixels
+from mmweaver.geometry.pinhole import resized, rotated_clockwise
+from mmweaver.scene.photo.capture_photo import CapturedPhoto
+from mmweaver.scene.photo.picture_files import read_depth, read_rgb
+from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
+from mmweaver.scene.photo.video_frame import read_video_frame
+from mmweaver.scene.read_photo import to_common_size
+
+MILLIMETRE, TUM_UNIT_M = 0.001, 0.0002
+TUM_APART_S = 0.03  # colour and depth farther apart are of other moments
+# fx, fy, cx, cy of 640 x 480 (Sturm et al., IROS 2012, and the data set's page); by default those of ROS
+TUM_CAMERAS = {
+    "freiburg1": (517.3, 516.5, 318.6, 255.3), "freiburg2": (520.9, 521.0, 325.1, 249.7),
+    "freiburg3": (535.4, 539.2, 320.1, 247.6), "": (525.0, 525.0, 319.5, 239.5),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Frame:
+    """What a folder says of one frame: pictures as they are stored, and where up is in them."""
+
+    rgb: RgbPixels
+    depth_m: DepthPixels
+    camera: CameraIntrinsics  # of the colours
+    files: dict[str, Path]
+    up: tuple[float, float] = (0.0, 1.0)  # part of the upward direction to the right and to the top of the picture
+    notes: tuple[str, ...] = ()
+
+
+def scan_kind(folder: Path) -> str | None:
+    """The name of the app or data set whose folder this is; None for others.
+
+    >>> scan_kind(Path("no_such_folder")) is None
+    True
+    """
+    if (folder / "camera_matrix.csv").is_file() and (folder / "depth").is_dir():
+        return "Stray Scanner"
+    if (folder / "keyframes" / "depth").is_dir():
+        return "Polycam"
+    if (folder / "intrinsic").is_dir() and (folder / "color").is_dir() and (folder / "depth").is_dir():
+        return "ScanNet"
+    if (folder / "rgb").is_dir() and (folder / "depth").is_dir():
+        return "TUM RGB-D"
+    return None
+
+
+def read_scan_photo(folder: Path, index: int = 0) -> CapturedPhoto:
+    """Photo `index` of a scan, in the order of its frames.
+
+    Raises InputError where the folder is of no known kind, has no such photo, or a file is missing or damaged.
+    """
+    kind = scan_kind(folder)
+    if kind is None:
+        raise InputError(f"{folder} is no scan of Stray Scanner, Polycam (raw data), ScanNet or TUM RGB-D")
+    frame = _READERS[kind](folder, index)
+    rgb, depth_m, camera = _upright(frame)
+    depth_m, fill_notes = fill_scattered_holes(depth_m)
+    rgb, depth_m, size_notes = to_common_size(rgb, depth_m)
+    photo = RgbdPhoto(rgb=rgb, depth_m=depth_m, intrinsics=resized(camera, depth_m.shape[1], depth_m.shape[0]))
+    notes = (f"Photo {index} of the {kind} scan was used.", *frame.notes, *fill_notes, *size_notes)
+    return CapturedPhoto(photo=photo, folder=folder, files=frame.files, assumptions=notes)
+
+
+def _stray(folder: Path, index: int) -> _Frame:
+    """rgb.mp4, depth/000000.png in millimetres, camera_matrix.csv of the video, odometry.csv with the poses."""
+    depth = _chosen(folder / "depth", index, ".png")
+    matrix = _table(folder / "camera_matrix.csv")
+    if matrix.shape != (3, 3):
+        raise InputError(f"{folder / 'camera_matrix.csv'} holds {matrix.shape} numbers; it must be 3 x 3")
+    video = folder / "rgb.mp4"
+    number = int(depth.stem) if depth.stem.isdigit() else index
+    rgb = read_video_frame(video, number)
+    up, notes = (0.0, 1.0), ("No odometry.csv: the picture was taken as upright.",)
+    odometry = folder / "odometry.csv"
+    if odometry.is_file():
+        rows = _table(odometry, header=True)
+        chosen = rows[rows[:, 1] == number] if rows.shape[1] >= 9 else rows[:0]
+        if len(chosen):
+            up, notes = _up_of_quaternion(chosen[0, 5:9]), ()
+    camera = _camera(matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], rgb)
+    files = {"rgb": video, "depth": depth}
+    return _Frame(rgb=rgb, depth_m=read_depth(depth, MILLIMETRE)[0], camera=camera, up=up, files=files, notes=notes)
+
+
+def _polycam(folder: Path, index: int) -> _Frame:
+    """keyframes/: images, depth in millimetres and cameras (JSON with fx, fy, cx, cy and the pose t_ij, y up)."""
+    keyframes = folder / "keyframes"
+    kind = "corrected_" if (keyframes / "corrected_images").is_dir() else ""
+    colour = _chosen(keyframes / f"{kind}images", index, ".jpg")
+    depth, place = keyframes / "depth" / f"{colour.stem}.png", keyframes / f"{kind}cameras" / f"{colour.stem}.json"
+    said, rgb = read_json(place), read_rgb(colour)[0]
+    try:
+        fx, fy, cx, cy, right, top = (float(said[key]) for key in ("fx", "fy", "cx", "cy", "t_10", "t_11"))
+    except (KeyError, TypeError, ValueError):
+        raise InputError(f"{place} lacks fx, fy, cx, cy or the pose t_10, t_11") from None
+    files = {"rgb": colour, "depth": depth, "camera": place}
+    return _Frame(
+        rgb=rgb, depth_m=read_depth(depth, MILLIMETRE)[0], camera=_camera(fx, fy, cx, cy, rgb), up=(right, top),
+        files=files,
+    )  # fmt: skip
+
+
+def _scannet(folder: Path, index: int) -> _Frame:
+    """color/0.jpg, depth/0.png in millimetres, intrinsic/intrinsic_color.txt, pose/0.txt (camera to world, z up)."""
+    colour = _chosen(folder / "color", index, ".jpg", ".png")
+    depth, matrix = folder / "depth" / f"{colour.stem}.png", _table(folder / "intrinsic" / "intrinsic_color.txt")
+    if matrix.shape[0] < 3 or matrix.shape[1] < 3:
+        raise InputError(f"{folder / 'intrinsic' / 'intrinsic_color.txt'} holds no 4 x 4 matrix")
+    rgb, up = read_rgb(colour)[0], (0.0, 1.0)
+    pose = folder / "pose" / f"{colour.stem}.txt"
+    if pose.is_file():
+        world = _table(pose)
+        if world.shape == (4, 4) and np.isfinite(world).all():
+            up = float(world[2, 0]), -float(world[2, 1])
+    files = {"rgb": colour, "depth": depth}
+    camera = _camera(matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], rgb)
+    return _Frame(rgb=rgb, depth_m=read_depth(depth, MILLIMETRE)[0], camera=camera, up=up, files=files)
+
+
+def _tum(folder: Path, index: int) -> _Frame:
+    """rgb/ and depth/ of PNGs named by their time in seconds, depth in 0.2 mm."""
+    colour = _chosen(folder / "rgb", index, ".png", ".jpg")
+    depths = {_seconds(file): file for file in (folder / "depth").iterdir() if file.suffix == ".png"}
+    nearest = min(depths, key=lambda time_s: abs(time_s - _seconds(colour)), default=np.inf)
+    if abs(nearest - _seconds(colour)) > TUM_APART_S:
+        raise InputError(f"{folder / 'depth'} holds no depth within {1e3 * TUM_APART_S:g} ms of {colour.name}")
+    which = next((name for name in TUM_CAMERAS if name and name in str(folder.resolve())), "")
+    rgb = read_rgb(colour)[0]
+    numbers = np.array(TUM_CAMERAS[which]) * rgb.shape[1] / 640
+    note = f"The camera is that of {which}." if which else "No freiburg1, 2 or 3 in the folder's name: ROS's camera."
+    files = {"rgb": colour, "depth": depths[nearest]}
+    return _Frame(
+        rgb=rgb, depth_m=read_depth(depths[nearest], TUM_UNIT_M)[0], camera=_camera(*map(float, numbers), rgb),
+        files=files, notes=(note,),
+    )  # fmt: skip
+
+
+_READERS = {"Stray Scanner": _stray, "Polycam": _polycam, "ScanNet": _scannet, "TUM RGB-D": _tum}
+
+
+def _chosen(folder: Path, index: int, *endings: str) -> Path:
+    files = [file for file in folder.iterdir() if file.suffix.lower() in endings] if folder.is_dir() else []
+    files.sort(key=lambda file: (len(file.stem), file.stem) if file.stem.isdigit() else (0, file.stem))
+    if not 0 <= index < len(files):
+        raise InputError(f"{folder} holds {len(files)} pictures ({', '.join(endings)}); there is no photo {index}")
+    return files[index]
+
+
+def _table(path: Path, *, header: bool = False) -> np.ndarray:
+    """Rows of numbers between commas or spaces."""
+    lines = [line for line in read_text(path).splitlines() if line.strip()][1 if header else 0 :]
+    try:
+        rows = np.array([[float(word) for word in line.replace(",", " ").split()] for line in lines])
+    except ValueError:
+        raise InputError(f"{path} holds no table of numbers") from None
+    if rows.ndim != 2 or not np.isfinite(rows).all():
+        raise InputError(f"{path} holds no table of numbers")
+    return rows
+
+
+def _seconds(file: Path) -> float:
+    try:
+        return float(file.stem)
+    except ValueError:
+        raise InputError(f"{file} is not named by its time in seconds, as TUM's pictures are") from None
+
+
+def _camera(fx: float, fy: float, cx: float, cy: float, rgb: RgbPixels) -> CameraIntrinsics:
+    height, width = rgb.shape[:2]
+    if not (0.2 * width < fx < 20 * width and 0.5 < fx / fy < 2 and 0 < cx < width and 0 < cy < height):
+        raise InputError(f"no camera of {width} x {height} pixels has fx {fx:g}, fy {fy:g}, cx {cx:g}, cy {cy:g}")
+    return CameraIntrinsics(fx=fx, fy=fy, cx=cx, cy=cy, width=width, height=height)
+
+
+def _up_of_quaternion(xyzw: np.ndarray) -> tuple[float, float]:
+    """Where the world's y axis points in the picture, by the rotation of a camera (x right, y down) into the world."""
+    x, y, z, w = xyzw / max(float(np.linalg.norm(xyzw)), 1e-9)
+    return float(2 * (x * y + w * z)), -float(1 - 2 * (x * x + z * z))
+
+
+def _upright(frame: _Frame) -> tuple[RgbPixels, DepthPixels, CameraIntrinsics]:
+    """The pictures turned by quarters so that the upward direction points to their top."""
+    right, top = frame.up
+    turns = int(np.rint(np.arctan2(right, top) / (np.pi / 2))) % 4  # counterclockwise, 90 degrees each
+    camera = frame.camera
+    for _ in range((4 - turns) % 4):
+        camera = rotated_clockwise(camera)
+    return np.rot90(frame.rgb, turns).copy(), np.rot90(frame.depth_m, turns).copy(), camera

@@ -1,0 +1,134 @@
+"""Scans of phones and data sets: each writes the sample room as its app does, sensors turned by quarters."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import RgbdPhoto
+from mmweaver.generate import Weaver
+from mmweaver.geometry.pinhole import resized, rotated_clockwise
+from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
+
+SIZE = (320, 240)
+# rotations of a camera (x right, y down) into a world with y up, as x, y, z, w: upright, and up to the picture's right
+QUATERNIONS = ((1.0, 0.0, 0.0, 0.0), (0.70710678, 0.70710678, 0.0, 0.0))
+
+
+def lying(clockwise: int) -> tuple[np.ndarray, np.ndarray, tuple[float, float, float, float]]:
+    """The sample photo at SIZE, rotated clockwise so many quarters: colours, depth in metres, and fx, fy, cx, cy."""
+    photo, _ = sample_photo()
+    camera, step = resized(photo.intrinsics, *SIZE), photo.rgb.shape[1] // SIZE[0]
+    rgb = np.array(Image.fromarray(photo.rgb).resize(SIZE, Image.Resampling.BOX))
+    depth_m = np.nan_to_num(photo.depth_m[::step, ::step])
+    for _ in range(clockwise):
+        camera = rotated_clockwise(camera)
+    turned = np.rot90(rgb, -clockwise).copy(), np.rot90(depth_m, -clockwise).copy()
+    return *turned, (camera.fx, camera.fy, camera.cx, camera.cy)
+
+
+def save(path: Path, values: np.ndarray, unit_m: float | None = None) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(values if unit_m is None else np.round(values / unit_m).astype(np.uint16)).save(path, quality=95)
+
+
+def stray(folder: Path, clockwise: int = 0) -> None:
+    av = pytest.importorskip("av")
+    rgb, depth_m, (fx, fy, cx, cy) = lying(clockwise)
+    save(folder / "depth" / "000000.png", depth_m, 0.001)
+    with av.open(str(folder / "rgb.mp4"), "w") as video:
+        stream = video.add_stream("libx264", rate=30, options={"crf": "4"})
+        stream.height, stream.width = rgb.shape[:2]
+        stream.pix_fmt = "yuv444p"
+        video.mux(stream.encode(av.VideoFrame.from_ndarray(rgb, format="rgb24")))
+        video.mux(stream.encode())
+    (folder / "camera_matrix.csv").write_text(f"{fx}, 0.0, {cx}\n0.0, {fy}, {cy}\n0.0, 0.0, 1.0\n")
+    numbers = ", ".join(map(str, QUATERNIONS[clockwise]))
+    (folder / "odometry.csv").write_text(
+        f"timestamp, frame, x, y, z, qx, qy, qz, qw\n0.1, 000000, 0, 0, 0, {numbers}\n"
+    )
+
+
+def polycam(folder: Path, clockwise: int = 0) -> None:
+    rgb, depth_m, (fx, fy, cx, cy) = lying(clockwise)
+    save(folder / "keyframes" / "images" / "100.jpg", rgb)
+    save(folder / "keyframes" / "depth" / "100.png", depth_m, 0.001)
+    up = ({"t_10": 0.0, "t_11": 1.0}, {"t_10": 1.0, "t_11": 0.0})[clockwise]  # clockwise: up lies to the right
+    place = folder / "keyframes" / "cameras" / "100.json"
+    place.parent.mkdir()
+    place.write_text(json.dumps({"fx": fx, "fy": fy, "cx": cx, "cy": cy, **up}))
+
+
+def scannet(folder: Path, clockwise: int = 0) -> None:
+    rgb, depth_m, (fx, fy, cx, cy) = lying(clockwise)
+    save(folder / "color" / "0.jpg", rgb)
+    save(folder / "depth" / "0.png", depth_m, 0.001)
+    pose = ("1 0 0 0\n0 0 1 0\n0 -1 0 0\n0 0 0 1\n", "0 1 0 0\n0 0 1 0\n1 0 0 0\n0 0 0 1\n")[clockwise]
+    matrix = f"{fx} 0 {cx} 0\n0 {fy} {cy} 0\n0 0 1 0\n0 0 0 1\n"
+    for name, text in (("intrinsic/intrinsic_color.txt", matrix), ("pose/0.txt", pose)):
+        (folder / name).parent.mkdir()
+        (folder / name).write_text(text)
+
+
+def tum(folder: Path) -> None:
+    rgb, depth_m, _ = lying(0)
+    save(folder / "rgb" / "1305031102.175304.png", rgb)
+    save(folder / "depth" / "1305031102.160407.png", depth_m, 0.0002)
+
+
+def assert_same_depth(found: RgbdPhoto, depth_m: np.ndarray) -> None:
+    step = found.depth_m.shape[0] // depth_m.shape[0]
+    assert np.nanmedian(np.abs(found.depth_m[::step, ::step] - depth_m)[depth_m > 0]) < 0.002
+
+
+@pytest.mark.parametrize("clockwise", [0, 1])
+@pytest.mark.parametrize("write", [stray, polycam, scannet])
+def test_a_scan_is_the_upright_photo(write: Callable[[Path, int], None], clockwise: int, tmp_path: Path):
+    write(tmp_path, clockwise)
+    rgb, depth_m, numbers = lying(0)
+    found = read_scan_photo(tmp_path).photo
+    camera = resized(found.intrinsics, *SIZE)
+    assert (camera.fx, camera.fy, camera.cx, camera.cy) == pytest.approx(numbers, abs=0.01)
+    assert_same_depth(found, depth_m)
+    step = found.rgb.shape[0] // rgb.shape[0]
+    assert np.abs(found.rgb[::step, ::step].astype(int) - rgb).mean() < 8
+
+
+def test_tum_has_its_unit_and_camera(tmp_path: Path):
+    tum(tmp_path / "rgbd_dataset_freiburg1_room")
+    read = read_scan_photo(tmp_path / "rgbd_dataset_freiburg1_room")
+    assert_same_depth(read.photo, lying(0)[1])
+    assert resized(read.photo.intrinsics, 640, 480).fx == pytest.approx(517.3, abs=0.1)
+    assert "freiburg1" in " ".join(read.assumptions)
+
+
+def test_a_room_of_a_scan(tmp_path: Path):
+    polycam(tmp_path, 1)
+    room = Weaver().read_capture(tmp_path)
+    assert room.scene.floor_z_m == pytest.approx(Weaver().sample_room().scene.floor_z_m, abs=0.03)
+    assert set(room.inputs) >= {"photo", "rgb", "depth"}
+
+
+def test_others_are_refused_in_one_line(tmp_path: Path):
+    assert scan_kind(tmp_path) is None
+    with pytest.raises(InputError, match="is no scan of"):
+        read_scan_photo(tmp_path)
+    polycam(tmp_path / "p")
+    with pytest.raises(InputError, match="there is no photo 3"):
+        read_scan_photo(tmp_path / "p", 3)
+    (tmp_path / "p" / "keyframes" / "cameras" / "100.json").write_text('{"fx": 1}')
+    with pytest.raises(InputError, match="lacks fx"):
+        read_scan_photo(tmp_path / "p")
+    scannet(tmp_path / "s")
+    (tmp_path / "s" / "pose" / "0.txt").write_text("a b")
+    with pytest.raises(InputError, match="no table of numbers"):
+        read_scan_photo(tmp_path / "s")
+    tum(tmp_path / "t")
+    (tmp_path / "t" / "depth" / "1305031102.160407.png").rename(tmp_path / "t" / "depth" / "1305031109.png")
+    with pytest.raises(InputError, match="no depth within 30 ms"):
+        read_scan_photo(tmp_path / "t")
