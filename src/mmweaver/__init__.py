@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.version import __version__
 
 if TYPE_CHECKING:
+    from mmweaver.comparison.compare_signals import Comparison, compare
     from mmweaver.core.errors import InputError
     from mmweaver.core.presets import PRESETS
     from mmweaver.core.radar_config import RadarConfig
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "AdcCube": "core.records",
+    "Comparison": "comparison.compare_signals",
     "Generation": "generation",
     "InputError": "core.errors",
     "PRESETS": "core.presets",
@@ -33,6 +35,7 @@ _HOME = {
     "Recording": "recordings.read_recording",
     "Scene": "core.records",
     "Weaver": "generate",
+    "compare": "comparison.compare_signals",
     "load_radar": "formats.radar_file",
     "process_recording": "recordings.processing",
     "read_radar_npz": "formats.npz_files",
@@ -44,6 +47,7 @@ _MODULES = ("register", "testing")
 __all__ = [
     "PRESETS",
     "AdcCube",
+    "Comparison",
     "Generation",
     "InputError",
     "PointCloud",
@@ -54,6 +58,7 @@ __all__ = [
     "Scene",
     "Weaver",
     "__version__",
+    "compare",
     "load_radar",
     "process_recording",
     "read_radar_npz",

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.dsp.cube import remove_static
+from mmweaver.dsp.plane_waves import best_wave_share, plane_waves
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.dsp.windows import hann
 
@@ -136,7 +136,7 @@ def _transmitters(cube: RadarCube) -> Iterator[str]:
     still = cube.values[:FRAMES_LOOKED_AT, :, config.num_loops // 2].mean(axis=0)  # (range, antenna)
     strongest = np.argsort(-(np.abs(still) ** 2).sum(axis=1))[:CELLS]
     signal = still[strongest].reshape(-1, config.num_tx, config.num_rx)
-    waves = _plane_waves(config)
+    waves = plane_waves(config)
     fired = np.array(config.tx_order)
     shares = {}
     for order in permutations(range(config.num_tx)):
@@ -153,20 +153,10 @@ def _transmitters(cube: RadarCube) -> Iterator[str]:
         )
 
 
-def _plane_waves(config: RadarConfig) -> np.ndarray:
-    """Steering vectors (antenna, direction) of unit norm over the front."""
-    across, up = np.meshgrid(np.linspace(-0.95, 0.95, 61), np.linspace(-0.7, 0.7, 15))
-    direction = np.stack([across.ravel(), np.zeros(across.size), up.ravel()])
-    turns = config.antenna_position_m @ direction / config.wavelength_m
-    return np.exp(-2j * np.pi * turns) / np.sqrt(config.num_antennas)
-
-
 def _wave_share(signal: np.ndarray, waves: np.ndarray) -> float:
     """Share of the energy of cells (cell, antenna) in their best plane wave, weighted by amplitude."""
-    best = (np.abs(signal.conj() @ waves) ** 2).max(axis=1)
-    energy = (np.abs(signal) ** 2).sum(axis=1)
-    weight = np.sqrt(energy)
-    return float((weight * best / np.maximum(energy, 1e-300)).sum() / max(float(weight.sum()), 1e-300))
+    weight = np.linalg.norm(signal, axis=1)
+    return float((weight * best_wave_share(signal, waves)).sum() / max(float(weight.sum()), 1e-300))
 
 
 def _velocity_sign(cube: RadarCube) -> Iterator[str]:

@@ -1,0 +1,121 @@
+"""Maps of two signals on the same ranges, velocities and azimuths, in the same decibels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.comparison.signal_evidence import FEWEST_LOOPS, SignalEvidence
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import RadarCube
+from mmweaver.core.virtual_array import azimuth_row
+from mmweaver.dsp.cube import remove_static
+from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
+
+FEWEST_BINS = 4
+AZIMUTHS = 61
+LOWEST_DB = -300.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class CommonAxes:
+    """Centres of the cells that both signals are shown in."""
+
+    range_m: np.ndarray
+    radial_velocity_mps: np.ndarray | None  # None where one of them has too few loops a frame
+    azimuth_rad: np.ndarray | None  # None where one of them has a row of fewer than three antennas
+    reference: str  # what 0 dB is
+
+
+@dataclass(frozen=True, kw_only=True)
+class SignalMaps:
+    """Power of one signal in dB on the common axes."""
+
+    range_profile_db: np.ndarray  # (range,), static power, mean over frames
+    range_doppler_db: np.ndarray | None  # (range, doppler), mean over frames
+    range_azimuth_db: np.ndarray | None  # (range, azimuth)
+    moving_over_time_db: np.ndarray | None  # (frame, range), mean chirp removed
+
+
+def common_window_m(a: RadarCube, b: RadarCube, names: tuple[str, str]) -> tuple[float, float]:
+    """The ranges that both show. Raises InputError where they share fewer than four bins."""
+    ranges = [one.grid.range_m for one in (a, b)]
+    near, far = max(float(one[0]) for one in ranges), min(float(one[-1]) for one in ranges)
+    step_m = max(one.config.range_resolution_m for one in (a, b))
+    if far - near < (FEWEST_BINS - 1) * step_m:
+        spans = [f"{name} shows {one[0]:.2f} to {one[-1]:.2f} m" for name, one in zip(names, ranges, strict=True)]
+        raise InputError(f"nothing to compare: {spans[0]}, {spans[1]}; give recordings of common ranges")
+    return near, far
+
+
+def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
+    """Axes as coarse as the coarser of both, as far as both reach."""
+    configs = [one.cube.config for one in (a, b)]
+    near, far = common_window_m(a.cube, b.cube, (a.signal.name, b.signal.name))
+    near, far = max(near, a.window_m[0]), min(far, a.window_m[1])
+    step_m = max(one.range_resolution_m for one in configs)
+    velocity = None
+    if min(one.num_loops for one in configs) >= FEWEST_LOOPS:
+        step = max(one.velocity_resolution_mps for one in configs)
+        count = int(min(one.max_velocity_mps for one in configs) / step)
+        velocity = np.arange(-count, count + 1) * step
+    rows = [azimuth_row(one.cube.grid.antenna_position_m, one.cube.grid.wavelength_m) for one in (a, b)]
+    azimuth = azimuth_axis_rad(AZIMUTHS) if min(len(row) for row in rows) >= 3 else None
+    if all(np.isfinite(one.cube.scale) for one in (a, b)):
+        reference = "dBm at the receiver's port"
+    elif a.noise is not None and b.noise is not None:
+        reference = "dB over the noise of a sample"
+    else:
+        reference = "dB relative to the strongest static range"
+    return CommonAxes(
+        range_m=np.arange(near, far + 1e-9, step_m), radial_velocity_mps=velocity, azimuth_rad=azimuth,
+        reference=reference,
+    )  # fmt: skip
+
+
+def maps_of(evidence: SignalEvidence, axes: CommonAxes) -> SignalMaps:
+    """The maps of one signal on common axes; energy is kept, whatever the size of its own cells."""
+    cube, range_m = evidence.cube, evidence.range_m
+    gain = _gain(evidence, axes)
+    profile = _on_axis(evidence.still_power.mean(axis=0), range_m, axes.range_m)
+    doppler = azimuth = moving = None
+    if axes.radial_velocity_mps is not None:
+        own = _on_axis(evidence.power.mean(axis=0), range_m, axes.range_m)
+        doppler = _on_axis(own.T, cube.grid.radial_velocity_mps, axes.radial_velocity_mps).T
+        over_time = range_doppler_power(remove_static(cube)).sum(axis=2)
+        moving = _on_axis(over_time.T, range_m, axes.range_m).T
+    if axes.azimuth_rad is not None:
+        azimuth = _on_axis(range_azimuth_power(cube, axes.azimuth_rad).mean(axis=0), range_m, axes.range_m)
+    return SignalMaps(
+        range_profile_db=_db(profile * gain), range_doppler_db=None if doppler is None else _db(doppler * gain),
+        range_azimuth_db=None if azimuth is None else _db(azimuth * gain),
+        moving_over_time_db=None if moving is None else _db(moving * gain),
+    )  # fmt: skip
+
+
+def _gain(evidence: SignalEvidence, axes: CommonAxes) -> float:
+    """What power is multiplied with, so that 1 is 0 dB of the common reference."""
+    if axes.reference.startswith("dBm"):
+        return evidence.cube.scale**2
+    if evidence.noise is not None and "noise" in axes.reference:
+        return evidence.noise_share / max(float(np.median(evidence.noise)), 1e-300)
+    return 1 / max(float(evidence.still_power.mean(axis=0)[evidence.in_window].max()), 1e-300)
+
+
+def _on_axis(power: np.ndarray, own: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Power along the first axis, moved from cells at `own` to cells at `wanted` centres; sums are kept."""
+    from_edges, to_edges = _edges(own), _edges(wanted)
+    summed = np.concatenate([np.zeros((1, *power.shape[1:])), np.cumsum(power, axis=0)])
+    place = np.interp(to_edges, from_edges, np.arange(len(from_edges)))
+    low = np.minimum(place.astype(int), len(own) - 1)
+    share = (place - low).reshape(-1, *[1] * (power.ndim - 1))
+    at_edges = summed[low] + share * (summed[low + 1] - summed[low])
+    return np.diff(at_edges, axis=0)
+
+
+def _edges(centre: np.ndarray) -> np.ndarray:
+    half = (centre[1] - centre[0]) / 2
+    return np.append(centre - half, centre[-1] + half)
+
+
+def _db(power: np.ndarray) -> np.ndarray:
+    return 10 * np.log10(np.maximum(power, 10 ** (LOWEST_DB / 10)))

@@ -1,0 +1,115 @@
+"""What may stand on either side of a comparison: files and folders of any kind, records, or folders of these."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.comparison.signal_evidence import ComparedSignal
+from mmweaver.compression.mmw_codec import read_cube
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, PointCloud, RadarCube
+from mmweaver.dsp.cube import radar_cube
+from mmweaver.formats.capture_std import is_capture
+from mmweaver.recordings.read_recording import read_recording
+from mmweaver.stored_result import ADC_FILE, StoredResult, read_result
+from mmweaver.stream_folder import is_stream
+
+CUBE, POINTS = "radar.npz", "points.npz"
+RAW_SUFFIXES = (".bin", ".npy", ".npz", ".pcap", ".pcapng")
+MOST_RECORDINGS = 200
+
+
+@dataclass(frozen=True, kw_only=True)
+class RawReading:
+    """How raw samples are read; see `recordings.read_recording`."""
+
+    radar: str | Path | RadarConfig | None = None
+    layout: str | None = None
+    axes: str | None = None
+    iq_order: str | None = None
+    tx_order: tuple[int, ...] | None = None
+
+
+def signals_of(source: Any, reading: RawReading, name: str) -> list[ComparedSignal]:
+    """The signals of one side: of a file, a folder, a record that has a cube, samples, or a sequence of these.
+
+    Raises InputError for anything else.
+    """
+    if isinstance(source, ComparedSignal):
+        return [source]
+    if isinstance(source, str | Path):
+        return _of_path(Path(source), reading)
+    if isinstance(source, AdcCube):
+        return [ComparedSignal(name=name, cube=radar_cube(source), adc=source)]
+    if isinstance(source, RadarCube):
+        return [ComparedSignal(name=name, cube=source)]
+    if isinstance(getattr(source, "cube", None), RadarCube):  # Generation, Recording, ProcessedRecording, StoredResult
+        return [_of_record(source, name)]
+    if isinstance(source, Sequence) and source:
+        return [one for part in source for one in signals_of(part, reading, name)]
+    raise InputError(f"{name} cannot be compared: give a path, a RadarCube, an AdcCube or what Weaver.generate gives")
+
+
+def _of_record(source: Any, name: str) -> ComparedSignal:
+    if isinstance(source, StoredResult):
+        return _of_result(source)
+    adc, points, meta = (getattr(source, part, None) for part in ("adc", "points", "meta"))
+    is_seen_by_cube = getattr(source, "compensate_tdm", True)
+    return ComparedSignal(
+        name=name, cube=source.cube, adc=adc if isinstance(adc, AdcCube) and is_seen_by_cube else None,
+        points=points if isinstance(points, PointCloud) else None, meta=meta if isinstance(meta, dict) else {},
+    )  # fmt: skip
+
+
+def _of_path(path: Path, reading: RawReading) -> list[ComparedSignal]:
+    if not path.exists():
+        raise InputError(f"{path} does not exist; give a recording, a result folder or a .mmw file")
+    if not path.is_dir() or _is_signal(path) or reading.layout == "hupr":
+        return [_of_one(path, reading)]
+    inside = sorted(one for one in path.iterdir() if _is_signal(one))
+    inside += sorted(path.glob("*/adc_data.bin")) if not inside else []
+    if not inside:
+        return [_of_one(path, reading)]  # whose reader says what is missing
+    if len(inside) > MOST_RECORDINGS:
+        raise InputError(f"{path} holds {len(inside)} recordings; compare at most {MOST_RECORDINGS} at a time")
+    return [_of_one(one, reading) for one in inside]
+
+
+def _is_signal(path: Path) -> bool:
+    """Whether a path is one signal."""
+    if path.is_dir():
+        return (path / CUBE).is_file() or is_stream(path) or is_capture(path)
+    return path.suffix.lower() in (".mmw", *RAW_SUFFIXES) and path.name not in (POINTS, "pose.npz", "analysis.npz")
+
+
+def _of_one(path: Path, reading: RawReading) -> ComparedSignal:
+    if path.suffix.lower() == ".mmwl":
+        raise InputError(f"{path} holds packed raw samples; unpack it with mmweaver decompress first")
+    if path.suffix.lower() == ".mmw":
+        return ComparedSignal(name=path.name, cube=read_cube(path))
+    if path.is_dir() and (path / CUBE).is_file() and (path / POINTS).is_file():
+        return _of_result(read_result(path))
+    brings_its_radar = path.suffix == ".npz" or (path.is_dir() and _is_signal(path))
+    given = RawReading() if brings_its_radar else reading
+    if path.suffix != ".npy" and not path.is_dir():
+        given = replace(given, axes=None, layout=None)  # meant for the other side
+    found = read_recording(
+        path, given.radar, layout=given.layout, axes=given.axes, iq_order=given.iq_order, tx_order=given.tx_order
+    )
+    return replace(_of_record(found, path.name), name=path.name or str(path))
+
+
+def _of_result(result: StoredResult) -> ComparedSignal:
+    """With its raw samples where it holds any, in the scale of its cube."""
+    adc = None
+    if (result.folder / ADC_FILE).is_file():
+        counts = (result.meta.get("adc_data_bin") or {}).get("counts_per_unit")
+        scale = result.cube.scale / counts if isinstance(counts, int | float) and counts > 0 else np.nan
+        adc = replace(result.adc, scale=float(scale))
+    return ComparedSignal(
+        name=result.folder.name or str(result.folder), cube=result.cube, adc=adc, points=result.points, meta=result.meta
+    )

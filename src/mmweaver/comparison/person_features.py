@@ -1,0 +1,149 @@
+"""Features of a moving person: energy behind the body, echo at twice the range, slow time of someone who sits."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from mmweaver.comparison.measured_feature import CannotSeeError, Feature, FrameValues, decibels
+from mmweaver.comparison.signal_evidence import NEAREST_BODY_M, SignalEvidence
+from mmweaver.dsp.slow_time import moving_cells
+from mmweaver.dsp.windows import hann
+
+BODY_HALF_M = 0.3
+LEAST_NOISE_SHARE = 0.1  # an energy below a tenth of the noise in its bins cannot be told from none
+SLOW_OVER_REST = 100.0  # 20 dB: movement of a seated person's range bin over the median bin
+SEATED_MPS = 0.3  # a breathing chest is slower
+WINDOW_S = 8.0
+LOWEST_HZ = 0.1
+WAVES = 4  # multiples of the body's phase that an echo at twice the range is fitted with
+
+
+def behind_body(evidence: SignalEvidence, near_m: float, far_m: float) -> FrameValues:
+    """Moving energy from `near_m` to `far_m` behind the strongest moving bin over that within 0.3 m of it, in dB.
+
+    Paths body -> room -> radar and back are longer than the direct one: their energy lies behind the body at its own
+    Doppler. Raises CannotSeeError.
+    """
+    if evidence.moving_profile is None:
+        raise CannotSeeError(f"{evidence.cube.config.num_loops} loops a frame separate no movement from clutter")
+    profile, noise = evidence.moving_profile
+    if not (evidence.body_bin >= 0).any():
+        raise CannotSeeError("nobody moves 13 dB above the noise")
+    range_m, step_m = evidence.range_m, evidence.cube.config.range_resolution_m
+    values, limited = np.full(len(profile), np.nan), np.zeros(len(profile), bool)
+    for frame, body in enumerate(evidence.body_bin):
+        behind_m = range_m - range_m[body]
+        if body < 0 or behind_m[-1] < far_m - step_m:
+            continue
+        there = (behind_m >= near_m) & (behind_m <= far_m)
+        least = LEAST_NOISE_SHARE * noise[frame] * there.sum()
+        energy = float(profile[frame, there].sum())
+        limited[frame] = energy < least
+        values[frame] = decibels(max(energy, least) / profile[frame, np.abs(behind_m) <= BODY_HALF_M].sum())
+    seen = np.isfinite(values)
+    if not seen.any():
+        raise CannotSeeError(f"the range window ends at {range_m[-1]:.1f} m, less than {far_m:g} m behind the body")
+    return FrameValues(values, at_most=bool(limited[seen].mean() > 0.5))
+
+
+def echo_at_twice_the_range(evidence: SignalEvidence) -> FrameValues:
+    """Power at twice the body's range whose phase swings by twice the breath, over the body's own power, in dB.
+
+    Radar -> body -> radar -> body -> radar: twice the way and twice the Doppler. The slow time of the bins at twice the
+    range is fitted with 1, w, w^2, w^3 of the body's phasor w = exp(j phase); the power in w^2 counts. Raises
+    CannotSeeError.
+    """
+    body, phase = _seated(evidence)
+    range_m = evidence.range_m
+    twice = np.abs(range_m - 2 * range_m[body]) <= max(2.5 * evidence.cube.config.range_resolution_m, 0.05)
+    if 2 * range_m[body] > range_m[-1] or not twice.any():
+        raise CannotSeeError(f"twice the body's {range_m[body]:.2f} m lies outside the range window")
+    basis = np.exp(1j * np.outer(phase, np.arange(WAVES)))
+    values = []
+    for part in _windows(len(phase), evidence.cube.config.frame_period_s):
+        there, own = evidence.still[part][:, twice], evidence.still[part][:, body]
+        fitted = np.linalg.lstsq(basis[part], there.reshape(len(there), -1), rcond=None)[0]
+        double = (np.abs(fitted[2].reshape(there.shape[1:])) ** 2).mean(axis=1).max()
+        values.append(double / (np.abs(own - own.mean(axis=0)) ** 2).mean())
+    return FrameValues(decibels(np.array(values)))
+
+
+def seated_slow_time(evidence: SignalEvidence, low_hz: float, high_hz: float) -> FrameValues:
+    """Displacement of a seated person from `low_hz` to `high_hz` over all of it, a value every 8 s, in dB.
+
+    Breathing is below 0.6 Hz; what is above 3 Hz is tremor, heart sounds and noise. Raises CannotSeeError.
+    """
+    period_s = evidence.cube.config.frame_period_s
+    if 0.5 / period_s < high_hz:
+        raise CannotSeeError(f"{1 / period_s:.1f} frames a second show nothing above {0.5 / period_s:.1f} Hz")
+    _, phase = _seated(evidence)
+    values = []
+    for part in _windows(len(phase), period_s):
+        count = len(phase[part])
+        trend = np.polyval(np.polyfit(np.arange(count), phase[part], 1), np.arange(count))
+        energy = np.abs(np.fft.rfft((phase[part] - trend) * hann(count))) ** 2
+        hz = np.fft.rfftfreq(count, period_s)
+        values.append(energy[(hz >= low_hz) & (hz < high_hz)].sum() / energy[hz >= LOWEST_HZ].sum())
+    return FrameValues(decibels(np.array(values)))
+
+
+def _seated(evidence: SignalEvidence) -> tuple[int, np.ndarray]:
+    """Range bin and phase (frame,) of somebody who sits. Raises CannotSeeError."""
+    config, profile = evidence.cube.config, evidence.slow_profile
+    duration_s = len(evidence.still) * config.frame_period_s
+    if profile is None or duration_s < WINDOW_S:
+        raise CannotSeeError(f"slow time needs {WINDOW_S:g} s, and this is {duration_s:.1f} s")
+    if (evidence.body_bin >= 0).mean() > 0.5 and _speed_mps(evidence) > SEATED_MPS:
+        raise CannotSeeError("the person moves about")
+    far = evidence.range_m >= NEAREST_BODY_M
+    if not far.any() or profile[far].max() < SLOW_OVER_REST * np.median(profile[far]):
+        raise CannotSeeError("nobody sits and breathes: no range bin moves 20 dB above the others")
+    cells = [cell for cell in moving_cells(evidence.cube) if cell.range_m >= NEAREST_BODY_M]
+    if not cells:
+        raise CannotSeeError("no range bin has a peak of movement")
+    return int(np.argmin(np.abs(evidence.range_m - cells[0].range_m))), cells[0].phase_rad
+
+
+def _speed_mps(evidence: SignalEvidence) -> float:
+    """Median speed of the strongest moving cell of the frames."""
+    moving = np.abs(evidence.cube.grid.radial_velocity_mps) > 0
+    frames = np.flatnonzero(evidence.body_bin >= 0)
+    power = evidence.power[frames, evidence.body_bin[frames]][:, moving]
+    speed = np.abs(evidence.cube.grid.radial_velocity_mps[moving])
+    return float(np.median(speed[power.argmax(axis=1)]))
+
+
+def _windows(frames: int, period_s: float) -> list[slice]:
+    """Runs of 8 s or a little more that fill the frames."""
+    count = max(1, int(frames * period_s / WINDOW_S))
+    edges = np.linspace(0, frames, count + 1).astype(int)
+    return [slice(low, high) for low, high in pairwise(edges)]
+
+
+FEATURES = (
+    Feature(
+        name="behind_body_near", title="moving energy 0.6 to 1 m behind the body", unit="dB", tolerance=4.0,
+        definition="moving energy 0.6 to 1 m behind the strongest moving range bin, over that within 0.3 m of it",
+        measure=lambda evidence: behind_body(evidence, 0.6, 1.0),
+    ),
+    Feature(
+        name="behind_body_far", title="moving energy 1 to 2 m behind the body", unit="dB", tolerance=4.0,
+        definition="moving energy 1 to 2 m behind the strongest moving range bin, over that within 0.3 m of it",
+        measure=lambda evidence: behind_body(evidence, 1.0, 2.0),
+    ),
+    Feature(
+        name="echo_at_twice_the_range", title="echo at twice a seated person's range", unit="dB", tolerance=5.0,
+        definition="power at twice the range whose phase is twice the body's, over the body's moving power",
+        measure=echo_at_twice_the_range, whole_frames=True,
+    ),
+    Feature(
+        name="seated_3_to_5_hz", title="seated person, 3 to 5 Hz", unit="dB", tolerance=4.0,
+        definition="energy of a seated person's displacement from 3 to 5 Hz, over all of it above 0.1 Hz",
+        measure=lambda evidence: seated_slow_time(evidence, 3.0, 5.0), whole_frames=True,
+    ),
+    Feature(
+        name="seated_7_to_10_hz", title="seated person, 7 to 10 Hz", unit="dB", tolerance=4.0,
+        definition="energy of a seated person's displacement from 7 to 10 Hz, over all of it above 0.1 Hz",
+        measure=lambda evidence: seated_slow_time(evidence, 7.0, 10.0), whole_frames=True,
+    ),
+)  # fmt: skip
