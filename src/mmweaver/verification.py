@@ -16,13 +16,14 @@ from mmweaver.core.safe_files.safe_text import read_json, read_toml
 from mmweaver.core.staging import COMMITTED
 from mmweaver.core.tensor_files import read_tensors
 from mmweaver.datasets.activity_store import SET_FILE, STORE
-from mmweaver.datasets.dataset_plan import command_of, room_name
+from mmweaver.datasets.dataset_plan import check_plan, command_of, room_name, shell_words
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
 from mmweaver.stream_folder import BIN, is_stream, parts_of
 
 REQUEST = "request.toml"
 BATCH_LIST = "sequences.json"
 CHECKPOINT = "checkpoint.pt"
+COMMANDS_OF_FOLDERS = ("generate", "process", "rooms")  # what a request.toml of a folder of results may name
 
 
 @dataclass
@@ -101,7 +102,7 @@ def _verified_folder(folder: Path) -> Verification:
 def _verified_dataset(folder: Path) -> Verification:
     found = Verification(path=folder, kind="data set")
     try:
-        plan = read_json(folder / PLAN_FILE)
+        plan = check_plan(read_json(folder / PLAN_FILE), folder / PLAN_FILE)
         command = command_of(plan, folder)
         names = [room_name(kind, layout) for kind in plan["kinds"] for layout in range(plan["num_layouts"])]
     except (OSError, ValueError, KeyError, TypeError):
@@ -120,7 +121,7 @@ def _verified_activity_set(folder: Path) -> Verification:
     found = Verification(path=folder, kind="labelled set")
     place = shlex.quote(str(folder))
     try:
-        made_by = " ".join(str(read_json(folder / SET_FILE)["command"]).split())
+        made_by = shell_words(read_json(folder / SET_FILE)["command"])
     except (OSError, ValueError, KeyError, TypeError):
         made_by = ""
     is_known = made_by.startswith("mmweaver dataset ")
@@ -231,6 +232,8 @@ def _command_of_results(folder: Path) -> str:
     try:
         command = read_toml(request)["command"]
     except (OSError, ValueError, KeyError):
+        command = None
+    if command not in COMMANDS_OF_FOLDERS:
         return f"the command that made {place}, with --overwrite (its {REQUEST} is missing or damaged)"
     if command == "rooms":
         return f"mmweaver rooms NEW_FOLDER --config {shlex.quote(str(request))}"

@@ -71,7 +71,13 @@ def read_sums(folder: Path) -> dict[str, str] | None:
     sums: dict[str, str] = {}
     for line in lines[:-1]:
         digest, gap, name = line[:64], line[64:66], line[66:]
-        if gap != "  " or not name or not set(digest) <= set("0123456789abcdef") or name.startswith(("/", "../")):
+        if (
+            gap != "  "
+            or not name
+            or not set(digest) <= set("0123456789abcdef")
+            or name.startswith("/")
+            or ".." in name.split("/")
+        ):
             return _damaged(file)
         sums[name] = digest
     return sums

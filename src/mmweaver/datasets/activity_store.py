@@ -29,6 +29,7 @@ from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.checked_folder import CheckedFolder
+from mmweaver.datasets.dataset_plan import shell_words
 from mmweaver.datasets.zarr_arrays import zarr_module
 from mmweaver.formats.npz_files import POINT_COLUMNS
 
@@ -41,6 +42,7 @@ NUMBERS = {"label": "int32", "subject": "int32", "place": "int32", "room": "int3
            "heading": "float32", "height": "float32"}  # fmt: skip
 UNITS = {"heading": "rad", "height": "m", "joints": "m", "frame_time": "s", "range": "m", "radial_velocity": "m/s"}
 IQ_DIMENSIONS = ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
+MADE_BY = "mmweaver dataset"
 MOST = 2**31 - 1  # of a number that counts something
 FARTHEST_M = 1000.0  # of joints and points; what is beyond is damage
 _PEAK = 16384.0  # of the largest float16 of a sequence
@@ -157,12 +159,20 @@ def is_activity_set(folder: Path) -> bool:
     return (folder / SET_FILE).is_file()
 
 
+def _made_by(command: Any) -> str:
+    try:
+        words = shell_words(command)
+    except ValueError:
+        return MADE_BY
+    return words if words.startswith(f"{MADE_BY} ") else MADE_BY
+
+
 def read_activity_set(folder: Path) -> ActivitySet:
     """Opens a set. Raises InputError for a folder that is none, is not complete, or is damaged."""
     if not is_activity_set(folder):
         raise InputError(f"{folder} holds no labelled set (no {SET_FILE}); make one: mmweaver dataset OUT --activities")
     plan = read_json(folder / SET_FILE)
-    made_by = str(plan.get("command", "mmweaver dataset")) if isinstance(plan, dict) else "mmweaver dataset"
+    made_by = _made_by(plan.get("command")) if isinstance(plan, dict) else MADE_BY
     if not (folder / STORE).is_dir():
         raise InputError(f"{folder} is not complete; make the rest with: {made_by}")
     files = CheckedFolder.of(folder, made_by)

@@ -190,6 +190,14 @@ def check_plan(plan: Any, place: Path) -> dict[str, Any]:
     return plan
 
 
+def shell_words(command: Any) -> str:
+    """A command line that a file holds, each word quoted anew: whoever pastes it into a shell runs that command alone.
+
+    Raises ValueError for what is no command line.
+    """
+    return shlex.join(shlex.split(" ".join(str(command).split())))
+
+
 def room_name(kind: str, layout: int) -> str:
     """The name of a room's folder."""
     return f"{kind.replace(' ', '_')}_{layout:03d}"

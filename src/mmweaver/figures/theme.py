@@ -40,6 +40,7 @@ STYLE: Any = {
     "legend.fontsize": 8.0,
     "legend.frameon": False,
     "text.color": INK,
+    "text.parse_math": False,  # a name from a file may hold a $
     "axes.labelcolor": INK,
     "xtick.color": INK,
     "ytick.color": INK,

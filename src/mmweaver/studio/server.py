@@ -150,7 +150,8 @@ class StudioServer:
 
     async def _upload(self, request: Request) -> Response:
         session = self._session(request)
-        if int(request.headers.get("content-length") or uploads.MAX_BYTES + 1) > uploads.MAX_BYTES:
+        length = request.headers.get("content-length", "")
+        if not length.isdecimal() or int(length) > uploads.MAX_BYTES:
             raise InputError(f"an upload has at most {uploads.MAX_BYTES // 1_000_000} MB")
         folder = session.folder / f"upload-{len(list(session.folder.iterdir()))}"
         folder.mkdir()
