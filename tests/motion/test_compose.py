@@ -33,30 +33,31 @@ def speeds(made: Motion) -> np.ndarray:
 
 @pytest.mark.parametrize("text", ACTIVITIES)
 def test_every_activity_keeps_bones_floor_and_human_limits(text: str):
-    for seed in range(3):
-        duration = 5.0 if "," in text else 2.0
-        made = motion(text, seed=seed, duration_s=duration)
-        joints, time = made.pose.joints_m, made.pose.time_s
-        assert np.isfinite(joints).all()
-        assert time[0] < 0
-        assert time[-1] > duration
-        for parent, child in BONES:
-            length = np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1)
-            assert np.ptp(length) < 1e-3
-        assert joints[..., 2].min() > FLOOR_Z_M - 0.01
-        low = joints[:, [10, 11], 2].min(axis=1) - FLOOR_Z_M
-        if "jump" not in text and "jog" not in text:
-            assert low.max() < 0.05, "the lowest foot is on the floor"
-        speed = speeds(made)
-        acceleration = np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1) * 120**2
-        assert speed.max() < 7.0
-        assert speed.max() > (0.005 if text == "stands" else 0.02)
-        assert acceleration.max() < 160
-        assert speed[:, 0].max() < 2.6
+    """Each with a seed of its own; `library/test_activity_registry.py` tries every activity with three."""
+    seed = len(text) % 7
+    duration = 5.0 if "," in text else 2.0
+    made = motion(text, seed=seed, duration_s=duration)
+    joints, time = made.pose.joints_m, made.pose.time_s
+    assert np.isfinite(joints).all()
+    assert time[0] < 0
+    assert time[-1] > duration
+    for parent, child in BONES:
+        length = np.linalg.norm(joints[:, child] - joints[:, parent], axis=-1)
+        assert np.ptp(length) < 1e-3
+    assert joints[..., 2].min() > FLOOR_Z_M - 0.01
+    low = joints[:, [10, 11], 2].min(axis=1) - FLOOR_Z_M
+    if "jump" not in text and "jog" not in text:
+        assert low.max() < 0.05, "the lowest foot is on the floor"
+    speed = speeds(made)
+    acceleration = np.linalg.norm(np.diff(joints, 2, axis=0), axis=-1) * 120**2
+    assert speed.max() < 7.0
+    assert speed.max() > (0.005 if text == "stands" else 0.02)
+    assert acceleration.max() < 160
+    assert speed[:, 0].max() < 2.6
 
 
 def test_the_same_seed_gives_the_same_bits_and_another_seed_another_motion():
-    for text in ACTIVITIES:
+    for text in ("walks", "sits and drinks", "walks to the left, then sits down"):
         duration = 5.0 if "," in text else 2.0
         one, same, other = (motion(text, seed=seed, duration_s=duration).pose for seed in (3, 3, 4))
         assert np.array_equal(one.joints_m, same.joints_m)
@@ -73,7 +74,7 @@ def test_heights():
         motion("stands", height_m=3.0)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_directions_are_the_viewers(seed: int):
     def way(text: str) -> tuple[np.ndarray, np.ndarray]:
         pelvis = motion(text, seed=seed).pose.joints_m[:, 0]
@@ -131,7 +132,7 @@ def planted(joints: np.ndarray, foot: str, toe: str) -> list[np.ndarray]:
     return [ball[run] for run in runs if flat[run[0]] and len(run) > 8]
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_feet_do_not_slide(seed: int):
     for text in ("walks", "walks quickly to the left", "walks, then claps", "walks in a circle", "turns around"):
         joints = motion(text, seed=seed, duration_s=3.0, height_m=1.75).pose.joints_m
@@ -141,7 +142,7 @@ def test_feet_do_not_slide(seed: int):
             assert np.linalg.norm(np.ptp(run[:, :2], axis=0)) < 0.03
 
 
-@pytest.mark.parametrize("num_seeds", [20, pytest.param(100, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("num_seeds", [10, pytest.param(100, marks=pytest.mark.slow)])
 def test_collision_free_over_many_seeds(num_seeds: int):
     """A body never overlaps a box, whatever the seed; nor leaves the radar's window."""
     scene = furnished()
