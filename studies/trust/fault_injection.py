@@ -9,6 +9,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import resource
 import sys
 from collections.abc import Callable
@@ -20,6 +21,8 @@ from unittest import mock
 CHANGING = {"os.rename", "os.mkdir", "os.rmdir", "os.remove", "os.truncate", "os.link", "os.chmod", "os.fsync"}
 REMOVING = {"os.rmdir", "os.remove"}  # work on a full disk
 KILLED = 99
+LOGS = ("log.jsonl",)
+STAGED_BY = re.compile(r"\.mmweaver-[0-9a-f]{8}-\d+-\d+-\d+")
 HIDDEN_COMMITTED = ".mmweaver-committed"
 
 
@@ -139,3 +142,11 @@ def tree(folder: Path, but: tuple[str, ...] = ()) -> dict[str, str]:
         name = path.relative_to(folder).as_posix()
         found[name] = "folder" if path.is_dir() else hashlib.sha256(path.read_bytes()).hexdigest()
     return found
+
+
+def what_a_run_finds(folder: Path) -> frozenset[tuple[str, str]]:
+    """What is below a folder, as far as a later run can tell: not who left it, and not how long lines of a log took."""
+    found = tree(folder, LOGS)
+    for log in (path for name in LOGS for path in folder.rglob(name)):
+        found[log.relative_to(folder).as_posix()] = re.sub(r"\d+", "0", log.read_text(encoding="utf-8"))
+    return frozenset((STAGED_BY.sub(".mmweaver-", name), content) for name, content in found.items())

@@ -17,12 +17,12 @@ from mmweaver.activity_sets.activity_list import ActivityList
 from mmweaver.activity_sets.leak_report import leak_report
 from mmweaver.activity_sets.matched_draws import Draw, PlannedSequence, matched_draws, places_of, shuffled
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
-from mmweaver.core.checksums import write_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import check_output_folder, is_empty
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
+from mmweaver.core.staging import remove
 from mmweaver.datasets.activity_store import (
     ACTIVITIES_FILE,
     LEAKS_FILE,
@@ -118,6 +118,11 @@ class SetBuilder:
         return float(range_m[0]), float(range_m[-1])
 
     # making ----------------------------------------------------------------------------------------------------------
+    @property
+    def finished(self) -> int:
+        """How many sequences are there already."""
+        return len(list((self.out / PARTS).glob("[0-9]*.npz")))
+
     def make(self, listener: Callable[[int, int], object] | None = None) -> dict[str, Any]:
         """Makes what is missing and returns the leak report with the number of sequences. Raises InputError."""
         self._begin()
@@ -127,6 +132,7 @@ class SetBuilder:
                 if listener is not None:
                     listener(number + 1, len(self.plan))
             self._assemble()
+        remove(self.out / PARTS)
         return read_json(self.out / LEAKS_FILE)
 
     def _begin(self) -> None:
@@ -136,7 +142,6 @@ class SetBuilder:
         text = json.dumps(self._description(), indent=1, ensure_ascii=False) + "\n"
         if create_once(self.out / SET_FILE, text) != text:
             raise InputError(f"{self.out} holds a set of other settings; choose another folder or the same settings")
-        (self.out / PARTS).mkdir(exist_ok=True)
 
     def _description(self) -> dict[str, Any]:
         return {
@@ -192,8 +197,6 @@ class SetBuilder:
             (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
             (stage / ACTIVITIES_FILE).write_text(self.activities_text, encoding="utf-8")
             shutil.copyfile(self.out / SET_FILE, stage / SET_FILE)
-            write_sums(stage)
-        shutil.rmtree(self.out / PARTS)
 
     def _part_file(self, number: int) -> Path:
         return self.out / PARTS / f"{number:06d}.npz"

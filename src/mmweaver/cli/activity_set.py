@@ -79,7 +79,11 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
             bar.total = total
             bar.update(done - bar.n)
 
-        report = builder.make(show)
+        try:
+            report = builder.make(show)
+        except KeyboardInterrupt:
+            kept = f"{builder.finished} sequences are finished in {arguments.out}; the same command makes the rest"
+            raise KeyboardInterrupt(kept if builder.finished else "") from None
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), "leaks": report}))
     elif not arguments.quiet:

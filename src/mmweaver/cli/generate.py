@@ -99,10 +99,13 @@ def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
     """One sentence after the other, written as they come."""
     from mmweaver.cli.stream import check_stream_options, run_stream
     from mmweaver.core.output_checks import check_output_folder, is_empty
+    from mmweaver.core.staging import sweep
     from mmweaver.result_folder import plain
+    from mmweaver.stream_folder import PARTS
 
     check_stream_options(arguments)
-    check_output_folder(out, overwrite=False, inputs=_inputs(arguments))
+    check_output_folder(out, overwrite=True, inputs=_inputs(arguments))
+    sweep(out / PARTS)
     if out.is_dir() and not is_empty(out):
         raise InputError(f"{out} is not empty; a stream needs a folder of its own")
     background = _background(arguments)
