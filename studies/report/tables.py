@@ -257,7 +257,7 @@ FAULTS = RowTable(
         ("command", "`{dataset.name}`"), ("events", "{events}"),
         *((head, f"{{metrics.{kind}:.0f}} of {{tried.{kind}}}") for kind, head in (
             ("kill", "killed"), ("full", "disk full from there on"), ("once", "one write fails"),
-            ("large", "no larger file"))),
+            ("large", "no larger file"), ("disk", "small disk"))),
     ),
 )  # fmt: skip
 DAMAGED_SETS = RowTable(

@@ -5,14 +5,18 @@ Events are those of Python's audit hooks (PEP 578) that change something below a
 
 import contextlib
 import errno
+import functools
 import hashlib
 import io
 import json
+import mmap
 import os
 import re
 import resource
+import subprocess
 import sys
-from collections.abc import Callable
+import tempfile
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,7 +36,7 @@ class Fault:
 
     "kill": the process ends at event `number`. "full": from that event on the disk takes nothing more. "once": that
     event alone fails for want of room. "large": no file may grow beyond `number` bytes (RLIMIT_FSIZE), so that writing
-    fails half-way, in native libraries too.
+    fails half-way, in native libraries too. "disk": the file system has room for so many pages (`small_disk`).
     """
 
     kind: str
@@ -150,3 +154,33 @@ def what_a_run_finds(folder: Path) -> frozenset[tuple[str, str]]:
     for log in (path for name in LOGS for path in folder.rglob(name)):
         found[log.relative_to(folder).as_posix()] = re.sub(r"\d+", "0", log.read_text(encoding="utf-8"))
     return frozenset((STAGED_BY.sub(".mmweaver-", name), content) for name, content in found.items())
+
+
+@contextlib.contextmanager
+def small_disk(place: Path, pages: int) -> Iterator[Callable[[], None]]:
+    """A file system (tmpfs) with so many pages at a folder; gives the function that makes space there.
+
+    Raises PermissionError without the right to mount.
+    """
+    if not may_mount():
+        raise PermissionError("a small file system can only be mounted by root")
+    size = pages * mmap.PAGESIZE
+    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "mmweaver-faults", str(place)], check=True)
+    try:
+        yield lambda: subprocess.run(["mount", "-o", "remount,size=1g", str(place)], check=True) and None
+    finally:
+        subprocess.run(["umount", str(place)], check=True)
+
+
+@functools.cache
+def may_mount() -> bool:
+    """Whether this process may mount a file system."""
+    with tempfile.TemporaryDirectory() as place:
+        command = ["mount", "-t", "tmpfs", "-o", "size=64k", "mmweaver-faults", place]
+        try:
+            if subprocess.run(command, check=False, capture_output=True).returncode:
+                return False
+        except OSError:
+            return False
+        subprocess.run(["umount", place], check=True)
+        return True

@@ -5,6 +5,7 @@ import functools
 import hashlib
 import importlib
 import io
+import mmap
 import pickle
 import shutil
 from collections.abc import Callable, Iterator
@@ -15,7 +16,15 @@ from unittest import mock
 
 import mmweaver
 from mmweaver.cli.main import main
-from studies.trust.fault_injection import HIDDEN_COMMITTED, Fault, Outcome, run_in_child, tree, what_a_run_finds
+from studies.trust.fault_injection import (
+    HIDDEN_COMMITTED,
+    Fault,
+    Outcome,
+    run_in_child,
+    small_disk,
+    tree,
+    what_a_run_finds,
+)
 
 # files with times of day, seconds or paths in them, and checksums of those
 VARYING = ("log.jsonl",)
@@ -124,7 +133,9 @@ class FaultedRuns:
         self.computed: dict[bytes, Any] = {}
         self.second_runs: dict[frozenset[tuple[str, str]], list[str]] = {}  # by what they began with
         _emptied(work / "first")
-        if self._main(command.argv, work / "first") != 0:  # in this process, so that children need not import anything
+        with contextlib.redirect_stdout(io.StringIO()):
+            status = self._main(command.argv, work / "first")  # in this process: children need not import anything
+        if status != 0:
             raise RuntimeError(f"{command.name} fails without a fault")
         self.old = work / "old"
         _emptied(self.old)
@@ -135,6 +146,7 @@ class FaultedRuns:
         assert outcome.status == 0, f"{command.name}: {outcome}"
         self.events = outcome.events
         self.expected = tree(work / "out", command.varying)
+        self.pages = _pages(work / "out")
 
     def _fresh(self) -> Path:
         out = self.work / "out"
@@ -151,6 +163,8 @@ class FaultedRuns:
 
     def problems(self, fault: Fault) -> list[str]:
         """What is wrong after a fault and, once more, after the command is run again; nothing where all is survived."""
+        if fault.kind == "disk":
+            return self._problems_of_small_disk(fault.number)
         out = self._fresh()
         outcome = self._run(self.command.argv, out, fault)
         found = [] if fault.kind == "kill" else self._after_failure(outcome, out)
@@ -160,6 +174,16 @@ class FaultedRuns:
         if state not in self.second_runs:  # from the same files the same command does the same
             self.second_runs[state] = self._of_second_run(out)
         return found + self.second_runs[state]
+
+    def _problems_of_small_disk(self, pages: int) -> list[str]:
+        """What is wrong where the result lies on a disk that it does not fit on, and after space is made there."""
+        out = self.work / "out"
+        _emptied(out)
+        with small_disk(out, _pages(self.old) + pages) as make_space:
+            shutil.copytree(self.old, out, dirs_exist_ok=True)
+            found = self._after_failure(self._run(self.command.argv, out), out)
+            make_space()
+            return found + self._of_second_run(out)
 
     def _of_second_run(self, out: Path) -> list[str]:
         second, found = self._run(self.command.argv, out), []
@@ -194,6 +218,11 @@ class FaultedRuns:
             changed = sorted(name for name in {*now, *self.before} if now.get(name) != self.before.get(name))
             found.append(f"half-written: {changed[:4]}")
         return found
+
+
+def _pages(folder: Path) -> int:
+    """Pages that a tmpfs gives to a folder: each file has its own, and the root one."""
+    return 1 + sum(-(-path.stat().st_size // mmap.PAGESIZE) for path in folder.rglob("*") if path.is_file())
 
 
 def _of_parts(now: dict[str, str], expected: dict[str, str]) -> list[str]:

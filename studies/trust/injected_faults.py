@@ -15,7 +15,7 @@ from mmweaver.core.errors import InputError
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.schema import metric
-from studies.trust.fault_injection import Fault
+from studies.trust.fault_injection import Fault, may_mount
 from studies.trust.faulted_commands import FaultedRuns, faulted_commands, prepare_inputs
 
 KINDS = {
@@ -23,8 +23,10 @@ KINDS = {
     "full": "the disk is full from an event on",
     "once": "one event fails for want of room",
     "large": "no file may grow beyond a size (RLIMIT_FSIZE)",
+    "disk": "a file system (tmpfs) has room for a part of the result",
 }
 LIMITS = (0, 100, 3_000, 20_000, 200_000)  # bytes of a file
+PARTS = (0.0, 0.3, 0.6, 0.9)  # of the result, that a small file system has room for
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -45,7 +47,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
             runs = FaultedRuns(commands[name], Path(work) / "run")
             tried: Counter[str] = Counter()
             failed: dict[str, list[str]] = {}
-            for fault in faults_of(runs.events, options.points):
+            for fault in faults_of(runs.events, options.points, runs.pages):
                 tried[fault.kind] += 1
                 problems = runs.problems(fault)
                 if problems:
@@ -53,8 +55,11 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
             _write(run, name, runs.events, tried, failed, points=options.points, started=started)
 
 
-def faults_of(events: int, points: int | None = None) -> Iterator[Fault]:
-    """Faults of a command that makes so many events: at each, or at `points` of them from the first to the last."""
+def faults_of(events: int, points: int | None = None, pages: int = 0) -> Iterator[Fault]:
+    """Faults of a command that makes so many events: at each, or at `points` of them from the first to the last.
+
+    With the number of pages of its result there are small file systems too, where they can be mounted.
+    """
     if points is None or points >= events:
         numbers = list(range(1, events + 1))
     else:
@@ -62,6 +67,8 @@ def faults_of(events: int, points: int | None = None) -> Iterator[Fault]:
     for kind in ("kill", "full", "once"):
         yield from (Fault(kind=kind, number=number) for number in numbers)
     yield from (Fault(kind="large", number=limit) for limit in LIMITS)
+    if pages and may_mount():
+        yield from (Fault(kind="disk", number=1 + int(part * pages)) for part in PARTS)
 
 
 def _write(
