@@ -49,6 +49,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/stream.py
 	$(BIN)/python benchmarks/devices.py
 	$(BIN)/python benchmarks/dataset.py
+	$(BIN)/python benchmarks/checksums.py
 
 faults: $(STAMP)  ## kills, full disks and failed writes at every event of every command that writes; an hour or more
 	$(BIN)/python -m studies run injected_faults

@@ -93,6 +93,16 @@ DATASET_COST = MatrixTable(
         ("sequences_a_s_4_workers", "4 workers", "{metric:.1f}"),
     ),
 )  # fmt: skip
+CHECKSUMS_COST = MatrixTable(
+    sources=("benchmark/checksums",), corner="reading an epoch, CPU", missing="",
+    prefixes=(("with signals", "signals_"), ("geometry only", "geometry_only_")),
+    lines=(
+        ("first_epoch_cpu_s", "the first of a process: every file is hashed", "{metric:.2f} s"),
+        ("later_epoch_cpu_s", "each later one", "{metric:.2f} s"),
+        ("unchecked_epoch_cpu_s", "without checks (baseline)", "{metric:.2f} s"),
+        ("mb", "size of the data set", "{metric:.0f} MB"),
+    ),
+)  # fmt: skip
 REAL_ROOMS = RowTable(
     sources=("real_rooms/physics",),
     columns=(
@@ -260,6 +270,10 @@ FAULTS = RowTable(
             ("large", "no larger file"), ("disk", "small disk"))),
     ),
 )  # fmt: skip
+RANDOM_KILLS = RowTable(
+    sources=("trust/random_kills",),
+    columns=(("command", "`{dataset.name}`"), ("killed", "{n}"), ("survived", "{metrics.survived:.0f}")),
+)
 DAMAGED_SETS = RowTable(
     sources=("trust/damaged_sets",),
     columns=(("set", "{dataset.name}"), ("damage", "{kind}"), ("tried", "{n}"),
@@ -271,6 +285,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "rendered_noise": RENDERED_NOISE.render, "scatterer_tracks": TRACKS.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
+    "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
     "multi_person": MULTI_PERSON.render, "signal_statistics": statistics_table, "mars": MARS.render,
     "micro_doppler": MICRO_DOPPLER.render, "motion_realism": REALISM.render,
@@ -279,5 +294,6 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
+    "random_kills": RANDOM_KILLS.render,
     "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip

@@ -164,10 +164,13 @@ def small_disk(place: Path, pages: int) -> Iterator[Callable[[], None]]:
     """
     if not may_mount():
         raise PermissionError("a small file system can only be mounted by root")
-    size = pages * mmap.PAGESIZE
-    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "mmweaver-faults", str(place)], check=True)
+
+    def mount(*options: str) -> None:
+        subprocess.run(["mount", *options, str(place)], check=True)
+
+    mount("-t", "tmpfs", "-o", f"size={pages * mmap.PAGESIZE}", "mmweaver-faults")
     try:
-        yield lambda: subprocess.run(["mount", "-o", "remount,size=1g", str(place)], check=True) and None
+        yield lambda: mount("-o", "remount,size=1g")
     finally:
         subprocess.run(["umount", str(place)], check=True)
 

@@ -1,7 +1,7 @@
 """Does every command that writes survive a kill, a full disk and one failed write, at each event of the file system?
 
 A fault is survived when a failure is one line with exit status 2 and leaves nothing half-written, and when the same
-command, run again, ends with the same bits and nothing left over (`faulted_commands.FaultedRuns`).
+command, run again, ends with the same bits and nothing left over (`faulted_runs.FaultedRuns`).
 """
 
 import argparse
@@ -16,7 +16,8 @@ from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
 from studies.schema import metric
 from studies.trust.fault_injection import Fault, may_mount
-from studies.trust.faulted_commands import FaultedRuns, faulted_commands, prepare_inputs
+from studies.trust.faulted_commands import faulted_commands, prepare_inputs
+from studies.trust.faulted_runs import FaultedRuns
 
 KINDS = {
     "kill": "the process is killed at an event",

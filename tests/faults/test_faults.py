@@ -13,16 +13,14 @@ import pytest
 if not sys.platform.startswith("linux"):
     pytest.skip("faults are injected into forked processes", allow_module_level=True)
 
-from studies.trust.fault_injection import Fault
-from studies.trust.faulted_commands import FaultedRuns, faulted_commands, prepare_inputs
+from studies.trust.fault_injection import Fault, may_mount
+from studies.trust.faulted_commands import faulted_commands, prepare_inputs
+from studies.trust.faulted_runs import FaultedRuns
 from studies.trust.injected_faults import faults_of
 from studies.trust.random_kills import KilledRuns, killed_commands
 
 QUICK = ("process",)
-ALL = (
-    *QUICK, "decompress", "motion", "decompress --overwrite", "compress", "rooms", "generate", "generate --overwrite",
-    "generate --texts", "dataset", "train",
-)  # fmt: skip
+ALL = tuple(command.name for command in faulted_commands(Path()))
 
 
 @pytest.fixture(scope="module")
@@ -42,6 +40,20 @@ def test_a_sample_of_events(name: str, inputs: Path, tmp_path: Path):
     middle, late = runs.events // 2, runs.events - 2
     faults = [Fault(kind="kill", number=late), Fault(kind="once", number=middle), Fault(kind="large", number=1000)]
     assert {fault: runs.problems(fault) for fault in faults} == {fault: [] for fault in faults}
+    if may_mount():
+        assert runs.problems(Fault(kind="disk", number=runs.pages // 2)) == []
+
+
+# a quick command of it: test_a_sample_of_events
+@pytest.mark.slow
+@pytest.mark.skipif(not may_mount(), reason="only root may mount a small file system")
+@pytest.mark.parametrize("name", ["generate", "decompress", "dataset", "train"])
+def test_a_full_disk(name: str, inputs: Path, tmp_path: Path):
+    prepare_inputs(inputs)
+    runs = faulted(name, inputs, tmp_path)
+    faults = [fault for fault in faults_of(runs.events, 1, runs.pages) if fault.kind == "disk"]
+    assert faults
+    assert {fault: runs.problems(fault) for fault in faults} == {fault: [] for fault in faults}
 
 
 @pytest.mark.slow  # a sample of it: test_a_sample_of_events
@@ -49,7 +61,7 @@ def test_a_sample_of_events(name: str, inputs: Path, tmp_path: Path):
 def test_every_event(name: str, inputs: Path, tmp_path: Path):
     prepare_inputs(inputs)
     runs = faulted(name, inputs, tmp_path)
-    assert {fault: found for fault in faults_of(runs.events) if (found := runs.problems(fault))} == {}
+    assert {fault: found for fault in faults_of(runs.events, None, runs.pages) if (found := runs.problems(fault))} == {}
 
 
 def test_points_are_spread_from_the_first_event_to_the_last():
@@ -59,8 +71,8 @@ def test_points_are_spread_from_the_first_event_to_the_last():
 
 
 @pytest.mark.slow  # the kinds of faults of test_a_sample_of_events hold the same behaviour
-@pytest.mark.parametrize("name", ["generate", "dataset --workers 2"])
+@pytest.mark.parametrize("name", ["generate", "train", "dataset --workers 2"])
 def test_random_kills(name: str, tmp_path: Path):
-    prepare_inputs(tmp_path / "inputs", which=())
+    prepare_inputs(tmp_path / "inputs", which=("data",))
     killed = KilledRuns(killed_commands(tmp_path / "inputs")[name], tmp_path / "runs", random.Random(14))
     assert killed.problems(10) == []
