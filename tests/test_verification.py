@@ -3,6 +3,7 @@
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 
@@ -77,6 +78,44 @@ def test_many_sequences(results: Path):
     assert [one.file.name for one in verify(folder).damaged] == ["sequences.json"]
 
 
+def test_a_list_of_sequences_that_says_what_they_are_not(results: Path):
+    folder = results.parent
+    (folder / "sequences.json").write_text('{"sequences": [{"folder": "0000", "text": "waves", "seed": 0}]}')
+    (results / "meta.json").write_text('{"text": "waves", "seed": 0}')
+    assert verify(folder).is_sound
+    (results / "meta.json").write_text('{"text": "waves", "seed": 4}')
+    assert [one.file.name for one in verify(folder).damaged] == ["sequences.json"]
+
+
+@pytest.fixture
+def stream(tmp_path: Path) -> Path:
+    folder = tmp_path / "stream"
+    for name in ("00000000", "00000020"):
+        with staged_folder(folder / "parts" / name) as stage:
+            (stage / "radar.npz").write_text("cube")
+    (folder / "parts.jsonl").write_text('{"first_frame": 0, "frames": 20}\n{"first_frame": 20, "frames": 1}\n{"fi')
+    return folder
+
+
+def test_a_stream(stream: Path):
+    found = verify(stream)
+    assert (found.kind, found.checked, found.is_sound) == ("stream", 2, True)
+    assert found.unchecked == [str(stream)]  # it was not finished
+    flip(stream / "parts" / "00000000" / "radar.npz")
+    shutil.rmtree(stream / "parts" / "00000020")
+    assert [one.what for one in verify(stream).damaged] == ["is not as it was written", "is missing"]
+
+
+def test_files_with_checksums_of_their_own(tmp_path: Path):
+    file = tmp_path / "points.npz"
+    np.savez(file, x=np.arange(100))
+    assert verify(file).is_sound
+    flip(file, 200)
+    found = verify(file)
+    assert [one.what for one in found.damaged] == ["is not as it was written"]
+    assert found.commands == [f"the command that wrote {file}, with --overwrite"]
+
+
 def test_a_data_set(tiny_signals: Path, tmp_path: Path):
     assert verify(tiny_signals).is_sound
     data = tmp_path / "set"
@@ -104,7 +143,7 @@ def test_a_training_run(tmp_path: Path):
 
 
 def test_what_cannot_be_verified(tmp_path: Path):
-    (tmp_path / "a.npz").write_text("a")
-    for path in (tmp_path, tmp_path / "a.npz", tmp_path / "nothing"):
+    (tmp_path / "a.png").write_text("a")
+    for path in (tmp_path, tmp_path / "a.png", tmp_path / "nothing"):
         with pytest.raises(InputError):
             verify(path)

@@ -4,6 +4,7 @@
     OUT/parts/00000000/              radar.npz, points.npz, pose.npz, radar.json, SHA256SUMS of the frames from 0 on
     OUT/parts.jsonl                  a line a part: first frame, frames, sentence, what was assumed
     OUT/adc_data.bin                 raw samples of all frames, where they are asked for
+    OUT/SHA256SUMS                   of these files, once the stream has ended
 
 A part gets its name when all of it is on the disk, so that a kill leaves whole parts. Memory does not grow with the
 length. Reference: decision 207.
@@ -18,9 +19,11 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.atomic_files import append_line, atomic_file, staged_folder
+from mmweaver.core.checksums import SUMS_FILE, write_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube
+from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.formats.dca1000 import words_of
 from mmweaver.formats.npz_files import read_radar_npz, write_points_npz, write_pose_npz, write_radar_npz
 from mmweaver.result_folder import plain
@@ -39,6 +42,17 @@ def parts_of(folder: Path) -> list[Path]:
     found = sorted(part for part in (folder / PARTS).iterdir() if part.is_dir() and part.name.isdecimal())
     if not found:
         raise InputError(f"{folder} holds no whole part yet; let the stream run longer")
+    return found
+
+
+def listed_parts(folder: Path) -> list[Path]:
+    """The parts that parts.jsonl lists; a kill may have left half a line at its end. Raises InputError."""
+    found = []
+    for line in read_text(folder / LIST).splitlines():
+        try:
+            found.append(folder / PARTS / f"{int(parse_json(line, LIST)['first_frame']):08d}")
+        except (InputError, KeyError, TypeError, ValueError):
+            continue
     return found
 
 
@@ -90,8 +104,10 @@ class StreamFolder:
         self.frames, self.parts = self.frames + len(cube.values), self.parts + 1
 
     def finish(self) -> dict[str, Any]:
-        """Writes how long it became; returns the content of meta.json."""
+        """Writes how long it became, and the checksums; returns the content of meta.json."""
         self._write_meta()
+        with atomic_file(self.out / SUMS_FILE) as temporary:
+            write_sums(self.out, names=("radar.json", META, LIST, BIN), target=temporary)
         return plain(self._meta())
 
     def _append_samples(self, adc: AdcCube) -> None:

@@ -1,9 +1,11 @@
 """Whether what mmweaver wrote is still as it was written, and which command makes what is not.
 
-verify("walk/") -> Verification: a result folder, a folder of --texts or of rooms, a stream, a data set, a labelled set
-of activities, a run of mmweaver train, a weight file, a .mmw file, or any file next to a SHA256SUMS
+verify("walk/") -> Verification: a result folder, a folder of --texts, of rooms or of exports, a stream, a data set, a
+labelled set of activities, a run of mmweaver train, any file next to a SHA256SUMS, or one with checksums of its own
+(.mmw, .mmwl, .npz, .zip, weights)
 """
 
+import contextlib
 import shlex
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,7 +20,7 @@ from mmweaver.core.tensor_files import read_tensors
 from mmweaver.datasets.activity_store import SET_FILE, STORE
 from mmweaver.datasets.dataset_plan import check_plan, command_of, room_name, shell_words
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
-from mmweaver.stream_folder import BIN, is_stream, parts_of
+from mmweaver.stream_folder import LIST, PARTS, is_stream, listed_parts
 
 REQUEST = "request.toml"
 BATCH_LIST = "sequences.json"
@@ -63,15 +65,18 @@ def verify(path: Path | str) -> Verification:
         return _verified_folder(path)
     if not path.is_file():
         raise InputError(f"{path} does not exist; give a file or folder that mmweaver wrote")
-    if path.suffix == ".mmw":
-        return _verified_mmw(path)
     if path.suffix == ".safetensors":
         found = Verification(path=path, kind="weights")
         _check_tensors(found, path)
         return found
     sums = read_sums(path.parent)
     if sums is None or path.name not in sums:
-        raise InputError(f"{path} has no checksum: it is no .mmw or weights, and no {SUMS_FILE} next to it names it")
+        if path.suffix in OWN_CHECKSUMS:
+            return _verified_alone(path)
+        raise InputError(
+            f"{path} has no checksum: {', '.join(OWN_CHECKSUMS)} and .safetensors have their own, and no {SUMS_FILE}"
+            " next to it names it"
+        )
     found = Verification(path=path, kind="file", checked=1)
     damage = damage_of_file(path.parent, path.name, sums[path.name], use_cache=False)
     found.blame([damage] if damage else [], _command_of_results(path.parent))
@@ -85,7 +90,7 @@ def _verified_folder(folder: Path) -> Verification:
         return _verified_activity_set(folder)
     if any((folder / name).is_file() for name in (CHECKPOINT, "best.safetensors", "weights.safetensors")):
         return _verified_run(folder)
-    if is_stream(folder):
+    if is_stream(folder) or _lists(folder, LIST):
         return _verified_stream(folder)
     below = sorted(one for one in folder.iterdir() if one.is_dir() and (one / SUMS_FILE).is_file())
     if (folder / BATCH_LIST).is_file() or (below and not (folder / SUMS_FILE).is_file()):
@@ -145,6 +150,8 @@ def _verified_batch(folder: Path, below: list[Path]) -> Verification:
         try:
             entries = read_json(folder / BATCH_LIST)["sequences"]
             listed = [folder / Path(entry["folder"]).name for entry in entries]
+            if not all(_is_of(entry, one) for entry, one in zip(entries, listed, strict=True)):
+                raise ValueError
         except (OSError, ValueError, KeyError, TypeError):
             again = f"mmweaver generate --texts ... --out {shlex.quote(str(folder))}, as it was made"
             found.blame([Damage(file=folder / BATCH_LIST, what="is not as it was written")], again)
@@ -157,14 +164,12 @@ def _verified_batch(folder: Path, below: list[Path]) -> Verification:
     return found
 
 
-def _verified_stream(folder: Path) -> Verification:
-    """The whole parts of a recording that a stream wrote; adc_data.bin grows and has no checksum."""
-    found = Verification(path=folder, kind="stream")
-    for part in parts_of(folder):
-        _check_sums(found, part, _command_of_results(folder))
-    if (folder / BIN).is_file():
-        found.unchecked.append(str(folder / BIN))
-    return found
+def _is_of(entry: dict[str, Any], folder: Path) -> bool:
+    """Whether an entry of the list says of a folder what that says itself."""
+    if not (folder / "meta.json").is_file():
+        return True
+    meta = read_json(folder / "meta.json")
+    return all(entry[name] == meta.get(name) for name in ("text", "seed"))
 
 
 def _verified_run(folder: Path) -> Verification:
@@ -191,16 +196,51 @@ def _check_tensors(found: Verification, file: Path) -> None:
         found.unchecked.append(str(file))
 
 
-def _verified_mmw(file: Path) -> Verification:
+def _verified_stream(folder: Path) -> Verification:
+    found = Verification(path=folder, kind="stream")
+    again = "make the stream anew in another folder: whole parts that are there stay readable"
+    _check_sums(found, folder, again)
+    parts = set((folder / PARTS).glob("[0-9]*")) if (folder / PARTS).is_dir() else set()
+    with contextlib.suppress(InputError):  # where the list is missing the checksums say so
+        parts |= set(listed_parts(folder))
+    for part in sorted(parts):
+        if part.is_dir():
+            _check_sums(found, part, again)
+        else:
+            found.blame([Damage(file=part, what="is missing")], again)
+    return found
+
+
+def _verified_alone(file: Path) -> Verification:
+    """A file with checksums of its own: CRC-32 of each chunk of .mmw and .mmwl, and of each entry of a zip."""
+    found = Verification(path=file, kind=file.suffix, checked=1)
+    if not OWN_CHECKSUMS[file.suffix](file):
+        again = f"the command that wrote {shlex.quote(str(file))}, with --overwrite"
+        found.blame([Damage(file=file, what="is not as it was written")], again)
+    return found
+
+
+def _is_sound_mmw(file: Path) -> bool:
     from mmweaver.compression.mmw_codec import describe_mmw
 
-    found = Verification(path=file, kind=".mmw", checked=1)
     try:
         describe_mmw(file)
     except InputError:
-        again = f"mmweaver compress RECORDING -o {shlex.quote(str(file))} --overwrite"
-        found.blame([Damage(file=file, what="is not as it was written")], again)
-    return found
+        return False
+    return True
+
+
+def _is_sound_mmwl(file: Path) -> bool:
+    from mmweaver.compression.lossless_file import LosslessFile
+
+    try:
+        LosslessFile(file).check()
+    except InputError:
+        return False
+    return True
+
+
+OWN_CHECKSUMS = {".mmw": _is_sound_mmw, ".mmwl": _is_sound_mmwl, ".npz": is_sound_zip, ".zip": is_sound_zip}
 
 
 def _check_sums(found: Verification, folder: Path, command: str) -> None:

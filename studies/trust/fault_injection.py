@@ -36,7 +36,8 @@ class Fault:
 
     "kill": the process ends at event `number`. "full": from that event on the disk takes nothing more. "once": that
     event alone fails for want of room. "large": no file may grow beyond `number` bytes (RLIMIT_FSIZE), so that writing
-    fails half-way, in native libraries too. "disk": the file system has room for so many pages (`small_disk`).
+    fails half-way, in native libraries too. "interrupt": Ctrl-C comes at event `number`. "disk": the file system has
+    room for so many pages (`small_disk`).
     """
 
     kind: str
@@ -121,7 +122,9 @@ class _Injector:
             return
         if fault.kind == "kill":
             os._exit(KILLED)
-        if event not in REMOVING and (fault.kind == "full" or self.count == fault.number):
+        if fault.kind == "interrupt" and self.count == fault.number:
+            raise KeyboardInterrupt
+        if event not in REMOVING and (fault.kind == "full" or (fault.kind, self.count) == ("once", fault.number)):
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), path)
 
 

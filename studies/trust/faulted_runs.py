@@ -29,6 +29,8 @@ from studies.trust.fault_injection import (
 )
 from studies.trust.faulted_commands import FaultedCommand
 
+NOTHING = "interrupted; nothing was written"
+
 
 class FaultedRuns:
     """Runs one command with faults, and says what was not survived."""
@@ -73,7 +75,8 @@ class FaultedRuns:
             return self._problems_of_small_disk(fault.number)
         out = self._fresh()
         outcome = self._run(out, fault)
-        found = [] if fault.kind == "kill" else self._after_failure(outcome, out)
+        is_interrupted = fault.kind == "interrupt"
+        found = [] if fault.kind == "kill" else self._after_failure(outcome, out, is_interrupted=is_interrupted)
         if fault.kind == "kill" and outcome.status is not None:
             found.append(f"was not killed but ended with {outcome.status}")
         state = what_a_run_finds(out)
@@ -104,14 +107,16 @@ class FaultedRuns:
             found.append(f"run again: other files: {different[:4]}")
         return found
 
-    def _after_failure(self, outcome: Outcome, out: Path) -> list[str]:
+    def _after_failure(self, outcome: Outcome, out: Path, *, is_interrupted: bool = False) -> list[str]:
         now = tree(out)
         if outcome.status == 0:  # an event that may fail, or a file that never grew so large
             return [] if tree(out, self.command.varying) == self.expected else ["status 0 without the result"]
         found = []
         lines = [line for line in outcome.stderr.splitlines() if line.strip()]
-        if outcome.status != 2:
+        if outcome.status != (130 if is_interrupted else 2):
             found.append(f"status {outcome.status}")
+        elif is_interrupted and NOTHING in outcome.stderr and now != self.before:
+            found.append(f"not true: {outcome.stderr[:200]!r}")
         elif len(lines) != 1 or len(lines[0]) > 500 or not lines[0].startswith("mmweaver: error: "):
             found.append(f"not one line: {outcome.stderr[:200]!r}")
         if any(HIDDEN_COMMITTED in name for name in now):

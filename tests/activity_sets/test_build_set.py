@@ -92,8 +92,10 @@ def test_other_settings_are_refused(activity_set: Path, tmp_path: Path):
 
 def test_a_finished_set_is_left_alone(activity_set: Path):
     before = (activity_set / "SHA256SUMS").stat().st_mtime_ns
+    (activity_set / "parts").mkdir()  # where a kill came before they were removed
     builder(activity_set).make()
     assert (activity_set / "SHA256SUMS").stat().st_mtime_ns == before
+    assert not (activity_set / "parts").exists()
 
 
 def test_an_activity_without_a_place_is_named(tmp_path: Path):

@@ -62,7 +62,8 @@ def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]):
 @pytest.mark.parametrize(
     ("raised", "status", "word"),
     [
-        (KeyboardInterrupt(), 130, "interrupted"),
+        (KeyboardInterrupt(), 130, "interrupted; nothing was written"),
+        (KeyboardInterrupt("3 of 4 are kept"), 130, "interrupted; 3 of 4 are kept"),
         (MemoryError(), 2, "memory"),
         (OSError(28, "No space left on device", "x/y"), 2, "x/y: No space left"),
     ],

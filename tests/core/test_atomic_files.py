@@ -47,6 +47,26 @@ def test_a_full_folder_is_refused_and_overwritten_on_demand(tmp_path: Path):
     assert set(read_sums(out) or {}) == {"new.txt"}
 
 
+def test_files_that_stay_keep_their_checksums(tmp_path: Path):
+    for name in ("old", "new"):
+        with staged_folder(tmp_path, overwrite=True) as stage:
+            (stage / "both.txt").write_text(name)
+            (stage / f"{name}.txt").write_text(name)
+    assert set(read_sums(tmp_path) or {}) == {"both.txt", "old.txt", "new.txt"}
+    assert damages(tmp_path) == []
+
+
+def test_an_interruption_leaves_all_files_or_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    def interrupted(_: Path) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), atomic_files(tmp_path / "a.txt", tmp_path / "b.txt") as paths:
+        for path in paths:
+            path.write_text("new")
+        monkeypatch.setattr("mmweaver.core.atomic_files.sync", interrupted)
+    assert names(tmp_path) == []
+
+
 def test_an_existing_folder_is_filled_and_stays_the_same_folder(tmp_path: Path):
     """It may be a mount point, or the working directory of a shell."""
     before = tmp_path.stat().st_ino

@@ -39,6 +39,7 @@ def test_a_sample_of_events(name: str, inputs: Path, tmp_path: Path):
     runs = faulted(name, inputs, tmp_path)
     middle, late = runs.events // 2, runs.events - 2
     faults = [Fault(kind="kill", number=late), Fault(kind="once", number=middle), Fault(kind="large", number=1000)]
+    faults += [Fault(kind="interrupt", number=number) for number in (4, middle, late)]
     assert {fault: runs.problems(fault) for fault in faults} == {fault: [] for fault in faults}
     if may_mount():
         assert runs.problems(Fault(kind="disk", number=runs.pages // 2)) == []
@@ -62,6 +63,15 @@ def test_every_event(name: str, inputs: Path, tmp_path: Path):
     prepare_inputs(inputs)
     runs = faulted(name, inputs, tmp_path)
     assert {fault: found for fault in faults_of(runs.events, None, runs.pages) if (found := runs.problems(fault))} == {}
+
+
+@pytest.mark.slow  # a sample of it: test_a_sample_of_events
+@pytest.mark.parametrize("name", [name for name in ALL if not name.startswith(("dataset", "train"))])
+def test_an_interruption_at_every_event(name: str, inputs: Path, tmp_path: Path):
+    prepare_inputs(inputs)
+    runs = faulted(name, inputs, tmp_path)
+    faults = [Fault(kind="interrupt", number=number + 1) for number in range(runs.events)]
+    assert {fault: found for fault in faults if (found := runs.problems(fault))} == {}
 
 
 def test_points_are_spread_from_the_first_event_to_the_last():

@@ -68,7 +68,7 @@ def _status(argv: list[str]) -> int:
             print(json.dumps({"error": str(error), "ways_on": getattr(error, "ways_on", {})}, ensure_ascii=False))
         return _fail(str(error))
     except KeyboardInterrupt as stopped:
-        _fail(f"interrupted; {stopped or _kept()}")
+        _fail(f"interrupted; {str(stopped) or _kept()}")
         return INTERRUPTED
     except BrokenPipeError:
         _close_stdout()

@@ -5,8 +5,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-from mmweaver.core.errors import InputError
-
 EXAMPLES = """examples:
   mmweaver points xwr68xx_log.dat -o points.npz          # the data port of a TI demo, people tracking too
   mmweaver points radar_data.csv -o points.npz           # Frame #,# Obj,X,Y,Z,Doppler,Intensity
@@ -38,11 +36,11 @@ def run(arguments: argparse.Namespace) -> int:
     import numpy as np
 
     from mmweaver.core.atomic_files import atomic_file
+    from mmweaver.core.output_checks import check_output_file
     from mmweaver.formats.npz_files import write_points_npz
     from mmweaver.formats.point_clouds.read_points import points_kind, read_points
 
-    if arguments.out.exists() and not arguments.overwrite:
-        raise InputError(f"{arguments.out} exists; choose another -o or allow it with --overwrite")
+    check_output_file(arguments.out, overwrite=arguments.overwrite, inputs=[arguments.file])
     cloud = read_points(arguments.file, arguments.kind)
     with atomic_file(arguments.out) as temporary:
         write_points_npz(temporary, cloud)

@@ -136,6 +136,13 @@ class LosslessFile:
                 first = last
             return target.tell()
 
+    def check(self) -> None:
+        """Raises InputError where a block fails its checksum, or the last one is not whole."""
+        for index in range(len(self.block_frames)):
+            self._payload(index)
+        if self.cut_short:
+            raise self._damaged(f"{self.cut_short} bytes at its end are no whole block")
+
     def block(self, index: int) -> bytes:
         """The bytes of a block of frames, as the recording had them. Raises InputError where it is damaged."""
         count = self.block_frames[index]

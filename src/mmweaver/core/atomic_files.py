@@ -12,7 +12,7 @@ from pathlib import Path
 from mmweaver.core.checksums import SUMS_FILE, read_sums, sums_text, write_sums
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write, check_output_folder, is_empty, resolved
-from mmweaver.core.staging import COMMITTED, finish_moving, remove, staging_path, sweep, sync, sync_tree
+from mmweaver.core.staging import COMMITTED, finish_moving, is_staged, remove, staging_path, sweep, sync, sync_tree
 
 _written: list[Path] = []
 
@@ -42,7 +42,6 @@ def atomic_files(*paths: Path) -> Iterator[list[Path]]:
         for temporary in staged:
             sync(temporary)
         _rename_all(staged, targets)
-        _written.extend(Path(path) for path in paths)
     except OSError as error:
         raise cannot_write(Path(paths[0]), error) from error
     finally:
@@ -76,14 +75,15 @@ def _rename_all(staged: list[Path], targets: list[Path]) -> None:
             is_new = not target.exists()
             if not is_new:
                 _forget_sum(target)
+            new += [target] if is_new else []
             temporary.replace(target)
-            if is_new:
-                new.append(target)
+            _written.append(target)
         for folder in {target.parent for target in targets}:
             sync(folder)
-    except OSError:
+    except BaseException:  # an interruption, too, leaves all or none
         for target in new:
             remove(target)
+        _written[:] = [path for path in _written if path not in new]
         raise
 
 
@@ -112,6 +112,8 @@ def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = F
         stage.mkdir()
         yield stage
         write_sums(stage)
+        if not is_new:
+            _keep_sums(target, stage)
         sync_tree(stage)
         if is_new:
             _rename_new(stage, target, keep_existing=keep_existing)
@@ -126,6 +128,18 @@ def staged_folder(out: Path, *, overwrite: bool = False, keep_existing: bool = F
         _remove_empty(made)
 
 
+def _keep_sums(folder: Path, stage: Path) -> None:
+    """Adds the checksums of files of a folder that stay to those of new files."""
+    try:
+        known = read_sums(folder) or {}
+    except InputError:
+        return
+    new = read_sums(stage) or {}
+    stay = {name: digest for name, digest in known.items() if name not in new and (folder / name).is_file()}
+    if stay:
+        (stage / SUMS_FILE).write_text(sums_text({**stay, **new}), encoding="utf-8")
+
+
 def _rename_new(stage: Path, target: Path, *, keep_existing: bool) -> None:
     try:
         stage.rename(target)
@@ -134,7 +148,7 @@ def _rename_new(stage: Path, target: Path, *, keep_existing: bool) -> None:
             raise
     try:
         sync(target.parent)
-    except OSError:
+    except BaseException:
         if stage.parent.is_dir() and not stage.exists():
             target.rename(stage)  # what is not on the disk is not reported as written, and not left either
         raise
@@ -146,8 +160,13 @@ def _move_into(stage: Path, folder: Path) -> None:
             if (folder / file.name).is_dir() and not file.is_dir():
                 raise IsADirectoryError(21, f"{file.name} is a folder there")
     stage.rename(folder / COMMITTED)
-    sync(folder)
-    finish_moving(folder)
+    try:
+        sync(folder)
+        finish_moving(folder)
+    except KeyboardInterrupt:
+        finish_moving(folder)
+        _written.append(folder)
+        raise
 
 
 def create_once(path: Path, text: str) -> str:
@@ -196,8 +215,8 @@ def append_line(path: Path, line: str) -> None:
 
 
 def written() -> list[Path]:
-    """What this process has written completely, since `forget_written`."""
-    return list(_written)
+    """What this process has written completely, since `forget_written`; not what lies in a folder yet unfinished."""
+    return [path for path in _written if not any(is_staged(part) for part in path.parts)]
 
 
 def forget_written() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.staging import finish_moving, is_staged, staging_path, sweep
+from mmweaver.core.staging import finish_moving, is_staged, remove, staging_path, sweep
 
 LONGEST_NAME = 255  # bytes, where the file system does not say
 ADVICE = {
@@ -116,9 +116,10 @@ def _check_place(folder: Path, out: Path) -> None:
         if any(len(os.fsencode(name)) > longest for name in (*folder.parts[len(nearest.parts) :], resolved(out).name)):
             raise OSError(errno.ENAMETOOLONG, os.strerror(errno.ENAMETOOLONG))
         probe.mkdir()
-        probe.rmdir()
     except OSError as error:
         raise cannot_write(out, error) from None
+    finally:
+        remove(probe)
 
 
 def _short(path: Path) -> str:

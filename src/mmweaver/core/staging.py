@@ -75,7 +75,15 @@ def sweep(folder: Path, *, again: bool = False) -> None:
 
 
 def remove(path: Path) -> None:
-    """Removes a file or a folder, as far as it can be."""
+    """Removes a file or a folder, as far as it can be; when it is interrupted, before it lets itself be."""
+    try:
+        _remove(path)
+    except KeyboardInterrupt:
+        _remove(path)
+        raise
+
+
+def _remove(path: Path) -> None:
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path, ignore_errors=True)
         return
