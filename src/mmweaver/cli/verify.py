@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 EXAMPLES = """examples:
-  mmweaver verify walk/                  # a result folder, or one of --texts or of rooms
+  mmweaver verify walk/                  # a result folder, or one of --texts, --stream, rooms or exports
   mmweaver verify data/ --json           # a data set, or a labelled set of activities
   mmweaver verify run/                   # a training run: weights and checkpoint
-  mmweaver verify walk.mmw
+  mmweaver verify walk.mmw               # or any .mmwl, .npz or .zip
 """
 DAMAGED, MOST_SHOWN = 1, 20
 
