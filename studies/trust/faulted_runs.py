@@ -10,13 +10,14 @@ import hashlib
 import importlib
 import io
 import mmap
-import pickle
 import shutil
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 from unittest import mock
+
+import numpy as np
 
 from studies.trust.fault_injection import (
     HIDDEN_COMMITTED,
@@ -38,7 +39,7 @@ class FaultedRuns:
     def __init__(self, command: FaultedCommand, work: Path):
         """Runs it without a fault first: the files of that run are what every other must end with."""
         self.command, self.work = command, work
-        self.computed: dict[bytes, Any] = {}
+        self.computed: dict[str, Any] = {}
         self.second_runs: dict[frozenset[tuple[str, str]], list[str]] = {}  # by what they began with
         emptied(work / "first")
         with contextlib.redirect_stdout(io.StringIO()):
@@ -151,7 +152,7 @@ def stopped_clocks() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def computed_once(names: tuple[str, ...], results: dict[bytes, Any]) -> Iterator[None]:
+def computed_once(names: tuple[str, ...], results: dict[str, Any]) -> Iterator[None]:
     """Functions, given as "module:function", take their results from `results` by their arguments, or add them."""
     with contextlib.ExitStack() as patches:
         for name in names:
@@ -162,7 +163,7 @@ def computed_once(names: tuple[str, ...], results: dict[bytes, Any]) -> Iterator
         yield
 
 
-def _taken_from(results: dict[bytes, Any], owner: Any, name: str) -> Any:
+def _taken_from(results: dict[str, Any], owner: Any, name: str) -> Any:
     function = getattr(owner, name)
 
     def remembered(*arguments: Any, **options: Any) -> Any:
@@ -174,23 +175,19 @@ def _taken_from(results: dict[bytes, Any], owner: Any, name: str) -> Any:
     return mock.patch.object(owner, name, remembered)
 
 
-class _Keys(pickle.Pickler):
-    """Equal arguments become equal bytes: records by their fields, without what they cache, and tensors by values."""
-
-    def reducer_override(self, value: Any) -> Any:
-        if is_dataclass(value) and not isinstance(value, type):
-            return tuple, ([getattr(value, field.name) for field in fields(value)],)
-        if type(value).__name__ == "Tensor":
-            return str, (f"{value.dtype} {value.shape}", value.detach().numpy().tobytes())
-        return NotImplemented
-
-
-def _key_of(arguments: Any) -> bytes:
-    pickled = io.BytesIO()
-    pickler = _Keys(pickled)
-    pickler.fast = True  # else objects that occur twice would differ from equal ones
-    pickler.dump(arguments)
-    return hashlib.sha256(pickled.getvalue()).digest()
+def _key_of(value: Any) -> str:
+    """The same text for equal arguments: records by their fields, without what they cache, and arrays by values."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return f"{type(value).__name__}{[_key_of(getattr(value, field.name)) for field in fields(value)]}"
+    if type(value).__name__ == "Tensor":
+        value = value.detach().numpy()
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype} {value.shape} {hashlib.sha256(value.tobytes()).hexdigest()}"
+    if isinstance(value, (tuple, list)):
+        return str([_key_of(one) for one in value])
+    if isinstance(value, dict):
+        return str([(name, _key_of(one)) for name, one in value.items()])
+    return repr(value)
 
 
 def emptied(folder: Path) -> None:
