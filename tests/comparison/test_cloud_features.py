@@ -33,7 +33,7 @@ def test_numbers_of_a_known_cloud():
     }.items():  # fmt: skip
         assert found[name][0] == pytest.approx(expected, abs=1e-6), name
         assert np.isnan(found[name][1:]).all()
-    near = SignalEvidence(signal, (0.0, 2.01))
+    near = SignalEvidence(signal, points_m=(0.0, 2.01))
     assert found["points"][0] > FEATURES[0].measure(near).values[0] > 0
 
 

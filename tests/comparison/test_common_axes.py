@@ -16,7 +16,7 @@ COARSE = replace(RADAR, num_samples=64, num_range_bins=24, num_loops=8)  # half 
 
 def both() -> tuple[SignalEvidence, SignalEvidence]:
     pair = [evidence(samples(POINTS, config=config, noise=1e-3)) for config in (RADAR, COARSE)]
-    window_m = common_window_m(pair[0].cube, pair[1].cube, ("A", "B"))
+    window_m = common_window_m(("A", "B"), [one.range_m for one in pair])
     return SignalEvidence(pair[0].signal, window_m), SignalEvidence(pair[1].signal, window_m)
 
 
@@ -51,11 +51,13 @@ def test_without_a_scale_decibels_are_over_noise():
 
 def test_ranges_that_do_not_meet_are_one_line():
     near, far = (
-        evidence(samples([still(1.0)], config=replace(RADAR, first_range_bin=low, num_range_bins=16))).signal.cube
+        evidence(
+            samples([still(1.0)], config=replace(RADAR, first_range_bin=low, num_range_bins=16))
+        ).signal.cube.grid.range_m
         for low in (0, 30)
     )
     with pytest.raises(InputError, match="nothing to compare: A shows"):
-        common_window_m(near, far, ("A", "B"))
+        common_window_m(("A", "B"), (near, far))
 
 
 def test_two_loops_have_no_doppler_map():

@@ -1,12 +1,12 @@
 """Maps of two signals on the same ranges, velocities and azimuths, in the same decibels."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from mmweaver.comparison.signal_evidence import FEWEST_LOOPS, SignalEvidence
+from mmweaver.comparison.signal_evidence import FEWEST_LOOPS, ComparedSignal, SignalEvidence
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import RadarCube
 from mmweaver.core.virtual_array import azimuth_row
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power, range_doppler_power
@@ -36,21 +36,32 @@ class SignalMaps:
     moving_over_time_db: np.ndarray | None  # (frame, range), mean chirp removed
 
 
-def common_window_m(a: RadarCube, b: RadarCube, names: tuple[str, str]) -> tuple[float, float]:
-    """The ranges that both show. Raises InputError where they share fewer than four bins."""
-    ranges = [one.grid.range_m for one in (a, b)]
+def shown_m(signal: ComparedSignal) -> np.ndarray:
+    """Ranges of the bins that a signal shows: all of its samples' band, or what its cube keeps."""
+    if signal.adc is None:
+        return signal.cube.grid.range_m
+    config = signal.adc.config
+    return np.arange(config.num_unambiguous_range_bins) * config.range_resolution_m
+
+
+def common_window_m(names: Sequence[str], ranges: Sequence[np.ndarray]) -> tuple[float, float]:
+    """The ranges that all signals show, of the ranges of their bins. Raises InputError for fewer than four bins."""
     near, far = max(float(one[0]) for one in ranges), min(float(one[-1]) for one in ranges)
-    step_m = max(one.config.range_resolution_m for one in (a, b))
+    step_m = max(float(np.diff(one[:2])[0]) if len(one) > 1 else np.inf for one in ranges)
     if far - near < (FEWEST_BINS - 1) * step_m:
-        spans = [f"{name} shows {one[0]:.2f} to {one[-1]:.2f} m" for name, one in zip(names, ranges, strict=True)]
-        raise InputError(f"nothing to compare: {spans[0]}, {spans[1]}; give recordings of common ranges")
+        last, first = (
+            pick(range(len(ranges)), key=key)
+            for pick, key in ((max, lambda at: float(ranges[at][0])), (min, lambda at: float(ranges[at][-1])))
+        )
+        spans = [f"{names[at]} shows {ranges[at][0]:.2f} to {ranges[at][-1]:.2f} m" for at in sorted({last, first})]
+        raise InputError(f"nothing to compare: {', '.join(spans)}; give recordings of common ranges")
     return near, far
 
 
 def common_axes(a: SignalEvidence, b: SignalEvidence) -> CommonAxes:
     """Axes as coarse as the coarser of both, as far as both reach."""
     configs = [one.cube.config for one in (a, b)]
-    near, far = common_window_m(a.cube, b.cube, (a.signal.name, b.signal.name))
+    near, far = common_window_m((a.signal.name, b.signal.name), (a.range_m, b.range_m))
     near, far = max(near, a.window_m[0]), min(far, a.window_m[1])
     step_m = max(one.range_resolution_m for one in configs)
     velocity = None

@@ -7,14 +7,14 @@ Reference: docs/compare.md, decision 220.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mmweaver.comparison import board_features, cloud_features, person_features, room_features
-from mmweaver.comparison.common_axes import CommonAxes, SignalMaps, common_axes, common_window_m, maps_of
+from mmweaver.comparison.common_axes import CommonAxes, SignalMaps, common_axes, common_window_m, maps_of, shown_m
 from mmweaver.comparison.compared_sides import RawReading, signals_of
 from mmweaver.comparison.effect_size import Difference, Spread, difference_of, spread_of
 from mmweaver.comparison.measured_feature import CannotSeeError, Feature, FrameValues
@@ -175,59 +175,66 @@ def compare_signals(
 ) -> Comparison:
     """Compares signals in memory, one or more a side. Raises InputError where they have no common ranges."""
     sides, notes = _with_same_detector(a, b)
-    wide = [SignalEvidence(side[0]) for side in sides]
-    window_m = common_window_m(wide[0].cube, wide[1].cube, names)
-    evidence = [[SignalEvidence(one, window_m) for one in side] for side in sides]
-    features = tuple(_compared(feature, evidence[0], evidence[1]) for feature in FEATURES)
-    first = evidence[0][0], evidence[1][0]
-    axes = common_axes(*first)
+    labels = [name if len(side) == 1 else one.name for name, side in zip(names, sides, strict=True) for one in side]
+    every = [*sides[0], *sides[1]]
+    window_m = common_window_m(labels, [shown_m(one) for one in every])
+    points_m = common_window_m(labels, [one.cube.grid.range_m for one in every])
+    first = [SignalEvidence(side[0], window_m, points_m) for side in sides]
+    measured = [
+        # of all but the first, what was computed is forgotten at once: folders hold many recordings
+        [measure_all(kept), *(measure_all(SignalEvidence(one, window_m, points_m)) for one in side[1:])]
+        for kept, side in zip(first, sides, strict=True)
+    ]
+    features = tuple(_compared(feature, measured[0], measured[1]) for feature in FEATURES)
+    axes = common_axes(first[0], first[1])
     maps = maps_of(first[0], axes), maps_of(first[1], axes)
-    facts = [_facts(name, side) for name, side in zip(names, evidence, strict=True)]
     return Comparison(
-        sides=(facts[0], facts[1]), features=features, axes=axes, maps=maps,
+        sides=(_facts(names[0], sides[0]), _facts(names[1], sides[1])), features=features, axes=axes, maps=maps,
         clouds=(first[0].points, first[1].points), map_distance_db=_map_distances(*maps),
-        chamfer_m=_chamfer(*first), notes=(*notes, *_notes(evidence)),
+        chamfer_m=_chamfer(first[0], first[1]), notes=(*notes, *_notes(sides)),
     )  # fmt: skip
 
 
-def measure(feature: Feature, evidence: SignalEvidence) -> SideValue:
-    """A feature of one signal, a value a frame; of one or two long frames a value a quarter of them."""
-    try:
-        found, units = feature.measure(evidence), "frames"
-        if len(found.values) < FEWEST_UNITS and not feature.whole_frames:
-            parts = evidence.quarters()
-            if parts is not None:
-                found, units = _of_quarters(feature, found, parts), "quarters of frames"
-    except CannotSeeError as reason:
-        return SideValue(spread=None, units="", cannot_see=str(reason))
+def measure_all(evidence: SignalEvidence) -> dict[str, SideValue]:
+    """All features of one signal by name."""
+    parts = evidence.quarters() if len(evidence.cube.values) < FEWEST_UNITS else None
+    return {feature.name: measure(feature, evidence, parts) for feature in FEATURES}
+
+
+def measure(feature: Feature, evidence: SignalEvidence, parts: SignalEvidence | None = None) -> SideValue:
+    """A feature of one signal, a value a frame; of its `parts`, quarters of few frames, where these show it."""
+    found, units = _seen(feature, evidence), "frames"
+    if parts is not None and not feature.whole_frames and not isinstance(found, CannotSeeError):
+        of_parts = _seen(feature, parts)
+        if not isinstance(of_parts, CannotSeeError):
+            found, units = of_parts, "quarters of frames"
+    if isinstance(found, CannotSeeError):
+        return SideValue(spread=None, units="", cannot_see=str(found))
     values = found.values[np.isfinite(found.values)]
-    if not len(values):
-        return SideValue(spread=None, units="", cannot_see="no frame shows it")
     return SideValue(spread=spread_of(values, in_order=True), units=units, at_most=found.at_most, values=values)
 
 
-def _of_quarters(feature: Feature, whole: FrameValues, parts: SignalEvidence) -> FrameValues:
+def _seen(feature: Feature, evidence: SignalEvidence) -> FrameValues | CannotSeeError:
     try:
-        found = feature.measure(parts)
-    except CannotSeeError:
-        return whole
-    return found if np.isfinite(found.values).sum() >= FEWEST_UNITS else whole
+        found = feature.measure(evidence)
+    except CannotSeeError as reason:
+        return reason
+    return found if np.isfinite(found.values).any() else CannotSeeError("no frame shows it")
 
 
-def _compared(feature: Feature, a: list[SignalEvidence], b: list[SignalEvidence]) -> FeatureComparison:
+def _compared(feature: Feature, a: list[dict[str, SideValue]], b: list[dict[str, SideValue]]) -> FeatureComparison:
     by_recording = min(len(a), len(b)) >= FEWEST_RECORDINGS
-    own, other = (_of_side(feature, side, by_recording) for side in (a, b))
+    own, other = (_of_side([one[feature.name] for one in side], by_recording) for side in (a, b))
     difference = None
     if own.values is not None and other.values is not None:
         difference = difference_of(own.values, other.values, feature.tolerance, in_order=not by_recording)
     return FeatureComparison(feature=feature, a=own, b=other, difference=difference)
 
 
-def _of_side(feature: Feature, side: list[SignalEvidence], by_recording: bool) -> SideValue:
+def _of_side(each: list[SideValue], by_recording: bool) -> SideValue:
     """Of several recordings their medians, or all their frames where recordings are few."""
-    each = [measure(feature, one) for one in side]
     seen = [one for one in each if one.values is not None and one.spread is not None]
-    if len(side) == 1 or not seen:
+    if len(each) == 1 or not seen:
         return each[0]
     if by_recording:
         values = np.array([one.spread.median for one in seen if one.spread is not None])
@@ -243,23 +250,21 @@ def _with_same_detector(
     a: Sequence[ComparedSignal], b: Sequence[ComparedSignal]
 ) -> tuple[list[list[ComparedSignal]], list[str]]:
     """Stored points only where both sides were detected in the same way; else CFAR for all."""
-    from dataclasses import replace
-
     kinds = {one.meta.get("points") if one.points is not None else None for one in (*a, *b)}
     if len(kinds) == 1 and None not in kinds:
         return [list(a), list(b)], [f"points as stored, by {kinds.pop()}"]
     return [[replace(one, points=None) for one in side] for side in (a, b)], ["points by CFAR on both cubes"]
 
 
-def _notes(evidence: list[list[SignalEvidence]]) -> list[str]:
+def _notes(sides: list[list[ComparedSignal]]) -> list[str]:
     notes = []
-    configs = [side[0].cube.config for side in evidence]
+    configs = [side[0].cube.config for side in sides]
     if configs[0].num_antennas != configs[1].num_antennas:
         counts = " and ".join(str(one.num_antennas) for one in configs)
         notes.append(f"arrays differ, {counts} antennas: the best plane wave, antennas and azimuths with them")
     if any(not np.isclose(*values, rtol=0.2) for values in _resolutions(configs)):
         notes.append("resolutions differ: peaks over medians and sparsity depend on them")
-    if any(len(side) > 1 for side in evidence):
+    if any(len(side) > 1 for side in sides):
         notes.append("pictures, map distances and Chamfer are of the first recording of each side")
     return notes
 
@@ -269,12 +274,12 @@ def _resolutions(configs: list[RadarConfig]) -> list[tuple[float, float]]:
     return [(a.range_resolution_m, b.range_resolution_m), (a.velocity_resolution_mps, b.velocity_resolution_mps)]
 
 
-def _facts(name: str, side: list[SignalEvidence]) -> SideFacts:
-    cube = side[0].cube
+def _facts(name: str, side: list[ComparedSignal]) -> SideFacts:
+    config, range_m = side[0].cube.config, shown_m(side[0])
     return SideFacts(
-        name=name, recordings=tuple(one.signal.name for one in side), radar=cube.config.name,
-        frames=sum(len(one.cube.values) for one in side), antennas=cube.config.num_antennas,
-        range_m=(float(cube.grid.range_m[0]), float(cube.grid.range_m[-1])), has_samples=side[0].signal.adc is not None,
+        name=name, recordings=tuple(one.name for one in side), radar=config.name,
+        frames=sum(len(one.cube.values) for one in side), antennas=config.num_antennas,
+        range_m=(float(range_m[0]), float(range_m[-1])), has_samples=side[0].adc is not None,
     )  # fmt: skip
 
 

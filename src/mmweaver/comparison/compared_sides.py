@@ -20,7 +20,7 @@ from mmweaver.stream_folder import is_stream
 
 CUBE, POINTS = "radar.npz", "points.npz"
 RAW_SUFFIXES = (".bin", ".npy", ".npz", ".pcap", ".pcapng")
-MOST_RECORDINGS = 200
+MOST_RECORDINGS, MOST_BYTES = 200, 4_000_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +76,16 @@ def _of_path(path: Path, reading: RawReading) -> list[ComparedSignal]:
         return [_of_one(path, reading)]  # whose reader says what is missing
     if len(inside) > MOST_RECORDINGS:
         raise InputError(f"{path} holds {len(inside)} recordings; compare at most {MOST_RECORDINGS} at a time")
-    return [_of_one(one, reading) for one in inside]
+    signals: list[ComparedSignal] = []
+    size = 0
+    for one in inside:
+        signals.append(_of_one(one, reading))
+        size += signals[-1].cube.values.nbytes + (0 if signals[-1].adc is None else signals[-1].adc.samples.nbytes)
+        if size > MOST_BYTES:
+            raise InputError(
+                f"{path}: the first {len(signals)} of {len(inside)} recordings fill the memory; give fewer"
+            )
+    return signals
 
 
 def _is_signal(path: Path) -> bool:

@@ -34,10 +34,14 @@ class ComparedSignal:
 
 @dataclass(frozen=True)
 class SignalEvidence:
-    """What features are measured on; `window_m` are the ranges that both sides show."""
+    """What features are measured on; `window_m` are the ranges that all signals show, `points_m` those of their cubes.
+
+    They differ where samples show more than the cube whose points were detected.
+    """
 
     signal: ComparedSignal
     window_m: tuple[float, float] = (0.0, np.inf)
+    points_m: tuple[float, float] = (0.0, np.inf)
 
     @cached_property
     def cube(self) -> RadarCube:
@@ -131,7 +135,7 @@ class SignalEvidence:
         """The signal's points, or those of CFAR, within the common ranges."""
         cloud = self.signal.points if self.signal.points is not None else point_cloud(self.signal.cube)
         distance = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
-        return cloud.select((distance >= self.window_m[0]) & (distance <= self.window_m[1]))
+        return cloud.select((distance >= self.points_m[0]) & (distance <= self.points_m[1]))
 
     @property
     def num_point_frames(self) -> int:
