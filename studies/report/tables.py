@@ -270,6 +270,10 @@ FAULTS = RowTable(
             ("large", "no larger file"), ("disk", "small disk"))),
     ),
 )  # fmt: skip
+RANDOM_KILLS = RowTable(
+    sources=("trust/random_kills",),
+    columns=(("command", "`{dataset.name}`"), ("killed", "{n}"), ("survived", "{metrics.survived:.0f}")),
+)
 DAMAGED_SETS = RowTable(
     sources=("trust/damaged_sets",),
     columns=(("set", "{dataset.name}"), ("damage", "{kind}"), ("tried", "{n}"),
@@ -290,5 +294,6 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
+    "random_kills": RANDOM_KILLS.render,
     "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip
