@@ -18,10 +18,10 @@ ERRORS = ("nmse_active_db", "nmse_moving_db", "nmse_db")
 Scores = dict[tuple[str, int], dict[str, list[float | None]]]  # {(signal, bytes): {codec: value of each of ERRORS}}
 
 
-def _codec_scores(results: Path) -> tuple[Scores, list[str]]:
+def _codec_scores(results: Path, sources: str = "codecs/*") -> tuple[Scores, list[str]]:
     """Errors of every codec, and the codecs, ours first."""
     found: Scores = {}
-    records = sorted(records_of(results, "codecs/*"), key=lambda record: record["method"] not in OURS)
+    records = sorted(records_of(results, sources), key=lambda record: record["method"] not in OURS)
     for record in records:
         for row in record["rows"]:
             scores = [row["metrics"][name]["value"] for name in ERRORS]
@@ -53,16 +53,25 @@ def _with_best(scores: dict[str, list[float | None]], codec: str) -> str:
 
 def codec_margins_table(results: Path) -> str:
     """How many dB less error .mmw has than the best baseline, active / moving / all cells; losses in bold."""
-    found, _ = _codec_scores(results)
+    return _margins_table(results, "codecs/*")
+
+
+def codec_cuts_table(results: Path) -> str:
+    """The same of recordings cut in many ways."""
+    return _margins_table(results, "codec_cuts/*")
+
+
+def _margins_table(results: Path, sources: str) -> str:
+    found, _ = _codec_scores(results, sources)
     sizes = sorted({size for _, size in found})
     signals = dict.fromkeys(signal for signal, _ in found)
-    lines = [[signal, *(_margins(found[signal, size]) for size in sizes)] for signal in signals]
+    lines = [[signal, *(_margins(found.get((signal, size), {})) for size in sizes)] for signal in signals]
     return markdown(["signal", *(f"{size:,} B" for size in sizes)], lines)
 
 
 def _margins(scores: dict[str, list[float | None]]) -> str:
     words = []
-    for index, ours in enumerate(scores[OURS[0]]):
+    for index, ours in enumerate(scores.get(OURS[0], ())):
         best = _least(score[index] for codec, score in scores.items() if codec not in OURS)
         margin = None if best is None or ours is None else round(best - ours, 2)
         words.append(f"**{number(margin)}**" if margin is not None and margin < 0 else number(margin))

@@ -9,6 +9,7 @@ from pathlib import Path
 from studies.report.computed_tables import (
     ablation_table,
     activities_table,
+    codec_cuts_table,
     codec_margins_table,
     codecs_table,
     statistics_table,
@@ -54,6 +55,10 @@ TRACKS = RowTable(
         ("nmse_db, free points", "{metrics.nmse_db.baseline.free_points:number}"),
         ("CPU s of all", "{seconds.all:.0f}"),
     ),
+)  # fmt: skip
+CODEC_CUTS_SECONDS = PivotTable(
+    sources=("codec_cuts/mmw", "codec_cuts/klt_context"), rows=(("signal", "{dataset.name}"),),
+    across="{record.method}, {size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
 )  # fmt: skip
 CODEC_SECONDS = PivotTable(
     sources=("codecs/mmw",), rows=(("signal", "{dataset.name}"),), across="{size.bytes_allowed}", sorts=True,
@@ -283,7 +288,8 @@ DAMAGED_SETS = RowTable(
 TABLES: dict[str, Callable[[Path], str]] = {
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
     "rendered_noise": RENDERED_NOISE.render, "scatterer_tracks": TRACKS.render,
-    "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_seconds": CODEC_SECONDS.render,
+    "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
+    "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,
