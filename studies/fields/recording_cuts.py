@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -49,7 +50,7 @@ def cut(
     config, samples = adc.config, adc.samples
     samples = samples.reshape(-1, *samples.shape[2:])
     samples = samples[: frames * loops].reshape(frames, loops, *samples.shape[1:])
-    changes = {"num_loops": loops, "frame_period_s": loops * config.loop_period_s * 1.25}
+    changes: dict[str, Any] = {"num_loops": loops, "frame_period_s": loops * config.loop_period_s * 1.25}
     if antennas is not None:
         samples = samples[:, :, :1, :antennas]
         changes |= {"tx_position_m": config.tx_position_m[:1], "rx_position_m": config.rx_position_m[:antennas],
@@ -63,7 +64,7 @@ def cut(
     return AdcCube(samples=np.ascontiguousarray(samples), config=changed, scale=float("nan"))
 
 
-def _signal(name: str, source: Source, **how: int | bool) -> Callable[[Path | None], StudySignal]:
+def _signal(name: str, source: Source, **how: Any) -> Callable[[Path | None], StudySignal]:
     def make(data: Path | None) -> StudySignal:
         if data is None:
             raise InputError("this signal is a recording; say where the recordings lie with --data")

@@ -60,6 +60,11 @@ CODEC_CUTS_SECONDS = PivotTable(
     sources=("codec_cuts/mmw", "codec_cuts/klt_context"), rows=(("signal", "{dataset.name}"),),
     across="{record.method}, {size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
 )  # fmt: skip
+LOSSLESS = RowTable(
+    sources=("lossless_codecs/*",),
+    columns=(("recording", "{dataset.name}"), ("codec", "{record.method}"), ("bytes", "{size.bytes:,}"),
+             ("of the raw words", "{metrics.share:percent.1}"), ("CPU s", "{seconds.cpu:.2f}")),
+)  # fmt: skip
 CODEC_SECONDS = PivotTable(
     sources=("codecs/mmw",), rows=(("signal", "{dataset.name}"),), across="{size.bytes_allowed}", sorts=True,
     head_template="{size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
@@ -289,7 +294,8 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
     "rendered_noise": RENDERED_NOISE.render, "scatterer_tracks": TRACKS.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
-    "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "codec_seconds": CODEC_SECONDS.render,
+    "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "lossless_codecs": LOSSLESS.render,
+    "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,

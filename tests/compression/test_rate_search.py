@@ -24,5 +24,7 @@ def test_few_trials_suffice():
 def test_what_cannot_be_reached_is_refused():
     with pytest.raises(InputError, match="too few"):
         within_bytes(segment_of(crowd(num_frames=1)), 5, lambda _: None)
+    with pytest.raises(InputError, match="so many frames"):
+        within_bytes(segment_of(crowd(num_frames=1)), -5, lambda _: None)
     with pytest.raises(InputError, match="cannot be reached"):
         within_error(segment_of(crowd(num_frames=1)), 300.0, lambda _: None)
