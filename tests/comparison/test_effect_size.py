@@ -29,6 +29,7 @@ def test_the_effect_is_in_units_of_spread_and_tolerance():
     found = difference_of(a, b, 4.0, in_order=False)
     assert found.effect_size == pytest.approx(10 / 5, abs=0.2)
     assert found.wasserstein == pytest.approx(10, abs=0.6)
+    assert found.separable is not None
     assert found.separable > 0.97
     low, high = found.effect_interval_95 or (0, 0)
     assert low < found.effect_size < high
@@ -39,5 +40,6 @@ def test_the_effect_is_in_units_of_spread_and_tolerance():
 def test_few_values_have_no_interval():
     found = difference_of(np.ones(1), np.full(8, 2.0), 1.0, in_order=True)
     assert found.interval_95 is None
+    assert found.separable is None
     assert found.effect_size == 1
     assert spread_of(np.ones(3), in_order=True).interval_95 is None

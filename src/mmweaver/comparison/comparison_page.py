@@ -101,7 +101,7 @@ def _row(one: "FeatureComparison") -> str:
         effect,
         _value(one.a, one),
         _value(one.b, one),
-        f"{100 * found.separable:.0f} %",
+        "" if found.separable is None else f"{100 * found.separable:.0f} %",
         f"{found.wasserstein:.3g} {unit}",
     )
     mark = ' class="away"' if one.gives_away else ""
@@ -115,4 +115,4 @@ def _feature(one: "FeatureComparison") -> str:
 def _value(side: "SideValue", one: "FeatureComparison") -> str:
     if side.spread is None:
         return f"cannot be seen here: {escape(side.cannot_see or '')}"
-    return f"{escape(side.text(one.feature.unit))}<br><small>{side.spread.units} {escape(side.units)}</small>"
+    return f"{escape(side.text(one.feature.unit))}<br><small>of {escape(side.units)}: {side.spread.units}</small>"

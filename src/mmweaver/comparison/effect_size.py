@@ -36,7 +36,7 @@ class Difference:
     interval_95: Interval | None
     effect_size: float  # difference over the spread of the units and the feature's tolerance
     effect_interval_95: Interval | None
-    separable: float  # chance to tell a unit of A from one of B by this feature: 0.5 none, 1 always
+    separable: float | None  # chance to tell a unit of A from one of B by this feature: 0.5 none; None for few units
     wasserstein: float  # mean distance between the two distributions, in the feature's unit
 
 
@@ -67,14 +67,15 @@ def difference_of(a: np.ndarray, b: np.ndarray, tolerance: float, *, in_order: b
     scale = float(np.sqrt((_variance(a) + _variance(b)) / 2 + tolerance**2))
     gap = float(np.median(b) - np.median(a))
     interval = None
-    if min(len(a), len(b)) >= FEWEST_FOR_INTERVAL:
+    is_enough = min(len(a), len(b)) >= FEWEST_FOR_INTERVAL
+    if is_enough:
         draws = [bootstrap_medians(one, seed + at, in_order=in_order) for at, one in enumerate((a, b))]
         interval = _interval(draws[1] - draws[0])
     larger = (b[:, None] > a[None, :]).mean() + 0.5 * (b[:, None] == a[None, :]).mean()
     return Difference(
         difference=gap, interval_95=interval, effect_size=gap / scale,
         effect_interval_95=None if interval is None else (interval[0] / scale, interval[1] / scale),
-        separable=float(max(larger, 1 - larger)), wasserstein=float(wasserstein_distance(a, b)),
+        separable=float(max(larger, 1 - larger)) if is_enough else None, wasserstein=float(wasserstein_distance(a, b)),
     )  # fmt: skip
 
 
