@@ -70,6 +70,20 @@ def test_folders_of_recordings_spread_over_recordings():
     assert found.sides[0].frames == 8
 
 
+def test_lost_frames_are_left_out_and_a_signal_of_zeros_is_one_line():
+    whole = made(0)
+    lost = whole.samples.copy()
+    lost[2] = 0
+    found = compare(whole, replace(whole, samples=lost))
+    by_name = {one.feature.name: one for one in found.features}
+    for name in ("noise_level", "antenna_spread", "clutter_peak_over_median", "leakage_level"):
+        spread = by_name[name].b.spread
+        assert spread is not None
+        assert spread.units == 5, name
+    with pytest.raises(InputError, match="nothing but zeros"):
+        compare(whole, replace(whole, samples=0 * lost))
+
+
 def test_nothing_in_common_is_one_line():
     near, far = (replace(RADAR, first_range_bin=low, num_range_bins=8) for low in (0, 40))
     from mmweaver.dsp.cube import radar_cube

@@ -19,6 +19,7 @@ from mmweaver.comparison.compared_sides import RawReading, signals_of
 from mmweaver.comparison.effect_size import Difference, Spread, difference_of, spread_of
 from mmweaver.comparison.measured_feature import CannotSeeError, Feature, FrameValues
 from mmweaver.comparison.signal_evidence import FEWEST_UNITS, ComparedSignal, SignalEvidence
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud
 from mmweaver.core.version import __version__
@@ -177,6 +178,9 @@ def compare_signals(
     sides, notes = _with_same_detector(a, b)
     labels = [name if len(side) == 1 else one.name for name, side in zip(names, sides, strict=True) for one in side]
     every = [*sides[0], *sides[1]]
+    for label, one in zip(labels, every, strict=True):
+        if not one.cube.values.any():
+            raise InputError(f"{label} holds nothing but zeros; give a recording with a signal")
     window_m = common_window_m(labels, [shown_m(one) for one in every])
     points_m = common_window_m(labels, [one.cube.grid.range_m for one in every])
     first = [SignalEvidence(side[0], window_m, points_m) for side in sides]
@@ -216,9 +220,12 @@ def measure(feature: Feature, evidence: SignalEvidence, parts: SignalEvidence | 
 
 def _seen(feature: Feature, evidence: SignalEvidence) -> FrameValues | CannotSeeError:
     try:
-        found = feature.measure(evidence)
+        with np.errstate(divide="ignore", invalid="ignore"):  # of lost frames, which are zero
+            found = feature.measure(evidence)
     except CannotSeeError as reason:
         return reason
+    if len(found.values) == len(evidence.is_lost):
+        found = replace(found, values=np.where(evidence.is_lost, np.nan, found.values))
     return found if np.isfinite(found.values).any() else CannotSeeError("no frame shows it")
 
 

@@ -36,4 +36,4 @@ class Feature:
 def decibels(ratio: np.ndarray | float) -> np.ndarray:
     """10 log10 of a ratio of powers; nan where it is not positive."""
     power = np.asarray(ratio, float)
-    return np.asarray(10 * np.log10(np.where(power > 0, power, np.nan)))
+    return np.asarray(10 * np.log10(np.where((power > 0) & np.isfinite(power), power, np.nan)))

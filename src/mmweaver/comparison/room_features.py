@@ -49,7 +49,12 @@ def antenna_spread(evidence: SignalEvidence) -> FrameValues:
     if evidence.cube.config.num_antennas < 3:
         raise CannotSeeError("fewer than three antennas")
     return FrameValues(
-        np.array([np.median(np.nanstd(decibels(np.abs(cells) ** 2), axis=1)) for cells in _strong_cells(evidence)])
+        np.array(
+            [
+                np.median(20 * np.log10(np.maximum(np.abs(cells), 1e-30)).std(axis=1))
+                for cells in _strong_cells(evidence)
+            ]
+        )
     )
 
 

@@ -69,6 +69,11 @@ class SignalEvidence:
         return range_doppler_power(self.cube)
 
     @cached_property
+    def is_lost(self) -> np.ndarray:
+        """Mask (frame,) of frames that hold nothing but zeros: lost packets."""
+        return ~self.cube.values.any(axis=(1, 2, 3))
+
+    @cached_property
     def still(self) -> np.ndarray:
         """Values at zero Doppler, complex128 (frame, range, antenna)."""
         return self.cube.values[:, :, self.cube.config.num_loops // 2].astype(np.complex128)
