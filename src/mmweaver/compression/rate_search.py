@@ -177,6 +177,11 @@ def _evened(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Pro
             break
     noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
     if noise_step and with_noise < step:
+        trial = _coded(segment, with_noise, 0, noise_step)
+        noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded) - sum(one.front_bytes for one in samples)
+        noise_factor = noise_bytes / sum(one.at(noise_step, 1).num_bytes for one in segment.noise_samples())
+        noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor, noise_factor)
+    if noise_step and with_noise < step:
         one = _finest(segment, num_bytes, with_noise, 0, progress, noise_step)
         if one.num_bytes <= num_bytes and one.all_error <= allowed * CLOSE_ERROR:
             return one
@@ -188,24 +193,28 @@ def _evened(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Pro
 
 
 def _noise_steps(
-    segment: SegmentEncoder, num_bytes: int, allowed: float, samples: list[CellSample], factor: float
-) -> tuple[float, float]:
+    segment: SegmentEncoder, num_bytes: int, allowed: float, samples: list[CellSample], factor: float,
+    noise_factor: float = 1.0,
+) -> tuple[float, float]:  # fmt: skip
     """Steps of a noise layer that leaves the error allowed, and of the signal; 0 where there is no room for one.
 
-    The noise has more bytes where the signal's step would be finer than 1 / NOISE_STEPS of its own.
+    The noise has more bytes where the signal's step would be finer than 1 / NOISE_STEPS of its own. `noise_factor`: its
+    bytes in estimated ones.
     """
     noise = segment.noise_samples()
 
     def signal_step(noise_step: float) -> float:
-        left = num_bytes - sum(one.at(noise_step, 1).num_bytes for one in noise)
+        left = num_bytes - noise_factor * sum(one.at(noise_step, 1).num_bytes for one in noise)
         return _step_of_size(samples, max(left, 1) / factor, 0, segment.finest_step, segment.coarsest_step)
 
     limit = NOISE_SHARE * allowed
     enough = _step_of(segment, lambda step: sum(one.at(step, 1).all_error for one in noise) <= limit)
-    if sum(one.at(enough, 1).num_bytes for one in noise) > MOST_SHARE * num_bytes:
+    if noise_factor * sum(one.at(enough, 1).num_bytes for one in noise) > MOST_SHARE * num_bytes:
         return 0.0, 0.0
     noise_step, step = enough, signal_step(enough)
-    low = math.log(_step_of_size(noise, MOST_SHARE * num_bytes, 1, segment.finest_step, segment.coarsest_step))
+    low = math.log(
+        _step_of_size(noise, MOST_SHARE * num_bytes / noise_factor, 1, segment.finest_step, segment.coarsest_step)
+    )
     high = math.log(enough)
     for _ in range(NOISE_TRIALS):
         middle = math.exp((low + high) / 2)
