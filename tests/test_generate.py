@@ -146,9 +146,11 @@ def test_every_method_takes_a_background_recording(method: str, room: Room, tmp_
     known_static, sampled, recorded = (
         one.values[:, :, rest].mean(axis=0) for one in (made.cube, without.cube, recording)
     )
-    # two people stand before it and occlude some of it
-    assert np.median(np.abs(known_static - recorded) / np.abs(recorded)) < 0.75
-    assert np.median(np.abs(sampled - recorded) / np.abs(recorded)) > 0.95
+    # two people stand before it and occlude some of it, differently for each placement
+    of_known, of_sampled = (
+        float(np.median(np.abs(one - recorded) / np.abs(recorded))) for one in (known_static, sampled)
+    )
+    assert of_known < 0.8 < 0.95 < of_sampled
     assert made.adc is not None
     again = radar_cube(made.adc).values
     assert np.linalg.norm(again - made.cube.values) < 10 ** (-36 / 20) * np.linalg.norm(made.cube.values)
@@ -242,7 +244,7 @@ def test_unknown_names_list_the_known():
 
 
 def test_public_names_are_few_and_all_there():
-    assert len(set(mmweaver.__all__) - {"__version__"}) <= 15
+    assert len(set(mmweaver.__all__) - {"__version__"}) <= 17
     for name in mmweaver.__all__:
         assert getattr(mmweaver, name) is not None
     assert set(mmweaver.__all__) <= set(dir(mmweaver))

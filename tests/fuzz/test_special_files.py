@@ -22,6 +22,7 @@ WRITTEN = {"--out", "-o", "--html", "--picture", "out"}
 NEEDED: dict[str, dict[str, str]] = {
     "generate": {**ROOM, "--text": "a person waves", "--out": "OUT"},
     "export": {"--to": "mat", "--out": "OUT"}, "process": {"file": "BIN", "--radar": "awr1843", "--out": "OUT"},
+    "compare": {"a": "CAPTURE", "b": "CAPTURE"},
     "points": {"-o": "OUT"}, "radar": {"radar": "awr1843"}, "decompress": {"-o": "OUT"}, "rooms": {"out": "OUT"},
     "compress": {"file": "BIN", "--radar": "awr1843", "-o": "OUT", "--bytes": "9999"},
     "evaluate": {"task": "zero-shot-activity"}, "motion": {"text": "a person waves"},
@@ -36,6 +37,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("dataset", "--room"): {"--rooms": None, "--activities": "A"},
     ("generate", "--motion-model"): {"--motion-model-for": "all"},
     ("generate", "--sam"): {"--segmenter": "builtin"},
+    ("compare", "--radar"): {"a": "BIN"}, ("compare", "--radar-b"): {"b": "BIN"},
     ("train", "--captures"): {"--data": None, "--from": WEIGHTS},
     ("train", "--from"): {"--data": None, "--captures": "CAPTURE"},
     **{("dataset", name): {"--rooms": None, "--activities": "A", **ROOM} for name in ROOM},

@@ -37,7 +37,10 @@ class BitStream(ABC):
         """Codes symbols, each of its own distribution (n, symbol). A decoder uses only the length of `values`."""
 
     def uniform(self, sizes: Integers, values: Integers) -> Integers:
-        """Codes integers uniform on 0 ... size - 1. Sizes beyond 2^23 must be multiples of 2^16."""
+        """Codes integers uniform on 0 ... size - 1.
+
+        Beyond 2^23, sizes count as multiples of 2^16: the values of what is left over cannot be coded.
+        """
         huge = sizes > LARGEST_UNIFORM
         if not huge.any():
             return self._uniform_small(sizes, values)

@@ -12,7 +12,7 @@ import torch
 from jaxtyping import Float, Int
 
 from mmweaver.compression.class_map import ClassMapCoder
-from mmweaver.compression.entropy import BitModel, BitStream, Mixture, NumberModel
+from mmweaver.compression.entropy import LARGEST_UNIFORM, BitModel, BitStream, Mixture, NumberModel
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 
 Integers = Int[np.ndarray, "_"]
@@ -87,14 +87,15 @@ def quantize(points: Points, steps: PointSteps, axes: Axes, num_directions: int,
         place = bins.numpy()[frame, slot].astype(np.float64) - float(first[0]) + 0.5
         cell = np.clip(np.floor(place).astype(np.int64), 0, num - 1)
         parts = _parts(size, sharpness)
-        cells.append((cell, np.clip(np.floor((place - cell) * parts).astype(np.int64), 0, parts - 1)))
+        cells.append((cell, np.clip(np.floor((place - cell) * parts).astype(np.int64), 0, _largest(parts))))
     phases = _phases(size)
     phase = np.rint(np.angle(value) / (2 * np.pi) * phases).astype(np.int64) % phases
+    phase = np.minimum(phase, _largest(phases))
     direction = np.zeros((len(size), 2), np.int64)
     for side in range(num_directions):
         parts = _direction_parts(size, steps.direction_sixteenths[side])
         cosine = points.direction.numpy()[frame, slot, side].astype(np.float64)
-        direction[:, side] = np.clip(np.floor((cosine + 1) / 2 * parts).astype(np.int64), 0, parts - 1)
+        direction[:, side] = np.clip(np.floor((cosine + 1) / 2 * parts).astype(np.int64), 0, _largest(parts))
     order = np.lexsort((cells[1][0], cells[0][0], frame))
     return CodedPoints(
         frame=frame[order], range_cell=cells[0][0][order], doppler_cell=cells[1][0][order], size=size[order],
@@ -311,6 +312,11 @@ def _phases(size: Integers) -> Integers:
 
 def _parts(size: Integers, sixteenths: int) -> Integers:
     return np.maximum((size * sixteenths + SIXTEENTHS - 1) // SIXTEENTHS, 1)
+
+
+def _largest(parts: Integers) -> Integers:
+    """The largest value that `BitStream.uniform` codes of so many: beyond 2^23 they count as multiples of 2^16."""
+    return np.where(parts > LARGEST_UNIFORM, parts >> 16 << 16, parts) - 1
 
 
 def _direction_parts(size: Integers, sixteenths: int) -> Integers:
