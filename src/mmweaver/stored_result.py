@@ -56,6 +56,7 @@ def read_result(folder: Path) -> StoredResult:
     meta = read_json(folder / "meta.json") if (folder / "meta.json").is_file() else {}
     if not isinstance(meta, dict):
         raise InputError(f"{folder / 'meta.json'} is no JSON object; this is not a result folder of mmweaver")
+    _check_meta(folder / "meta.json", meta)
     return StoredResult(
         folder=folder,
         cube=read_radar_npz(folder / "radar.npz"),
@@ -63,3 +64,15 @@ def read_result(folder: Path) -> StoredResult:
         poses=read_poses_npz(folder / "pose.npz") if (folder / "pose.npz").is_file() else (),
         meta=meta,
     )
+
+
+def _check_meta(path: Path, meta: dict[str, Any]) -> None:
+    """Raises InputError where what is used of a meta.json is of another type."""
+    text, written = meta.get("text") or "", meta.get("adc_data_bin") or {}
+    texts = text if isinstance(text, list) else [text]
+    if not all(isinstance(one, str) for one in texts):
+        raise InputError(f"{path}: its text is no sentence and no list of sentences; generate the results again")
+    order = (written.get("tx_order") or []) if isinstance(written, dict) else None
+    is_order = isinstance(order, list) and all(type(one) is int for one in order)
+    if not is_order or not isinstance(written.get("iq_order", "iq"), str):
+        raise InputError(f"{path}: its adc_data_bin has no iq_order or tx_order; generate the results again")

@@ -97,6 +97,16 @@ def _logs() -> list[tuple[str, str, bytes]]:
     columns = {"frame": m.npy_bytes(np.array([1e300])), "pts": m.npy_bytes(np.zeros((1, 5)))}
     digits = "9" * 400
     return [
+        *(
+            ("result folder", what, archive_of({"meta.json": json.dumps(meta).encode()}))
+            for what, meta in {
+                "samples that are described by a text": {"adc_data_bin": "iq"},
+                "an order of transmitters that is a number": {"adc_data_bin": {"tx_order": 1}},
+                "an order of I and Q that is a list": {"adc_data_bin": {"iq_order": ["iq"]}},
+                "a sentence that is a number": {"text": 1.5},
+            }.items()
+        ),
+        ("arrays of others", "NaN in CubeLearn's", m.npy_bytes(np.full((2, 1, 128, 12, 256), np.nan, np.float16))),
         ("points csv", "a field of 200,000 characters", (csv + "1,0,1,0," + "7" * 200_000).encode()),
         ("points csv", "frame 1e300", (csv + "1e300,0,1,0,0\n").encode()),
         ("points RadHAR", "infinite velocity", text.format("inf").encode()),

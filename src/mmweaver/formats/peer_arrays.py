@@ -64,6 +64,7 @@ def read_cubelearn(path: Path, config: RadarConfig) -> AdcCube:
             f"{path} has shape {values.shape} of {values.dtype}; CubeLearn's with radar {config.name!r} is (2, frames,"
             f" {', '.join(map(str, wanted))}) of real numbers, I and Q"
         )
+    ArrayChecks(path).numbers("the array", values, low=-MAX_SAMPLE, high=MAX_SAMPLE)
     if config.is_coded or not config.complex_samples:
         raise InputError(f"CubeLearn's radar is a TDM one with complex samples, not {config.name!r}")
     samples = (values[0] + 1j * values[1].astype(np.float64)).astype(np.complex64)
