@@ -284,6 +284,15 @@ RANDOM_KILLS = RowTable(
     sources=("trust/random_kills",),
     columns=(("command", "`{dataset.name}`"), ("killed", "{n}"), ("survived", "{metrics.survived:.0f}")),
 )
+HOSTILE_INPUT = RowTable(
+    sources=("trust/hostile_input",),
+    columns=(
+        ("reader", "{dataset.name}"), ("cases", "{n}"),
+        *((head, f"{{metrics.{name}:.0f}}") for head, name in (
+            ("refused", "refused"), ("accepted", "accepted"), ("failed", "failed"))),
+        ("slowest (CPU s)", "{metrics.slowest_s:.2f}"), ("largest (MB)", "{metrics.largest_mb:.0f}"),
+    ),
+)  # fmt: skip
 DAMAGED_SETS = RowTable(
     sources=("trust/damaged_sets",),
     columns=(("set", "{dataset.name}"), ("damage", "{kind}"), ("tried", "{n}"),
@@ -306,6 +315,6 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
-    "random_kills": RANDOM_KILLS.render,
+    "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
     "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip

@@ -36,3 +36,10 @@ def test_a_type_that_the_page_lacks_is_a_mistake():
 def test_other_bytes_are_refused(data: bytes):
     with pytest.raises(InputError, match="hold no sequence"):
         unpack(data)
+
+
+def test_a_type_that_the_page_does_not_read_is_refused():
+    data = pack({}, {"a": np.zeros(3, np.float32)})
+    for kind in (b"x)", b"O8", b"c8"):
+        with pytest.raises(InputError, match="no type is called"):
+            unpack(data.replace(b"f4", kind))

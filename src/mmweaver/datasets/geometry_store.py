@@ -124,6 +124,11 @@ class StoredGeometry:
         """The `TracedMotion` of one sequence."""
         from mmweaver.paths.resynthesis import TracedMotion
 
+        if index >= len(self._visibility):
+            raise InputError(
+                f"{self.files.folder} is damaged: it has the geometry of {len(self._visibility)} sequences, not of"
+                f" sequence {index}; make it again"
+            )
         sizes = {"points": DEFAULT_NUM_POINTS, "faces": len(self.room.reflectors), "ghosts": GHOST_POINTS}
         seen = Visibility.unpacked(self._visibility[index], **sizes, static_paths=len(self.room.paths))
         joints_m = self.node_joints_m[index]

@@ -42,9 +42,12 @@ def unpack(data: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     try:
         (length,) = struct.unpack_from("<I", data)
         header = parse_json(data[4 : 4 + length], "the header")
+        listed = header.pop("arrays")
+        if unknown := {kind for kind, _, _ in listed.values()} - set(TYPES):
+            raise ValueError(f"no type is called {min(unknown)!r}")
         arrays = {
             name: np.frombuffer(data, f"<{kind}", int(np.prod(shape)), 4 + length + offset).reshape(shape)
-            for name, (kind, shape, offset) in header.pop("arrays").items()
+            for name, (kind, shape, offset) in listed.items()
         }
     except (struct.error, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise InputError(f"these bytes hold no sequence for the page: {error}") from None
