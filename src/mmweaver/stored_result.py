@@ -42,9 +42,9 @@ class StoredResult:
         if not file.is_file():
             raise InputError(f"{self.folder} holds no {ADC_FILE}, which this format needs; generate it with --bin")
         written = self.meta.get("adc_data_bin") or {}
-        order = written.get("tx_order")
+        order = written.get("tx_order") or None  # as `_check_meta` reads it
         return read_bin(
-            file, self.cube.config, iq_order=written.get("iq_order", "iq"),
+            file, self.cube.config, iq_order=written.get("iq_order") or "iq",
             tx_order=None if order is None else tuple(order),
         )  # fmt: skip
 
