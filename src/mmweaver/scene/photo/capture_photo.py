@@ -130,7 +130,8 @@ def _coloured(
     """The colour of each depth pixel, reprojected; where depth is missing, that of a point at the median depth."""
     filled = np.where(np.isfinite(depth_m), depth_m, np.nanmedian(depth_m))
     points_m = unproject(filled, intrinsics) - np.array([D455_BASELINE_M, 0.0, 0.0])
-    pixels, _ = project(points_m, colour_intrinsics)
+    with np.errstate(all="ignore"):  # a damaged lens puts points anywhere
+        pixels = np.nan_to_num(project(points_m, colour_intrinsics)[0])
     column = np.clip(np.rint(pixels[..., 0]), 0, colour_intrinsics.width - 1).astype(int)
     row = np.clip(np.rint(pixels[..., 1]), 0, colour_intrinsics.height - 1).astype(int)
     return rgb[row, column]
