@@ -1,7 +1,12 @@
 import json
 from pathlib import Path
 
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.language.sentence import parse
+from studies.motion import kitml
 from studies.motion.kitml import Sentence, fresh_draw, reading_of, result_row, sentences_of, understood
 
 
@@ -15,7 +20,15 @@ def test_half_of_the_motions_is_for_checking():
     assert 0.45 < share < 0.55
 
 
-def test_shares_and_judgements(tmp_path: Path):
+def test_shares_and_judgements(monkeypatch: pytest.MonkeyPatch):
+    known, walk = "a person walks forward", parse("a person walks forward")
+
+    def parsed(text: str) -> MotionPlan:  # 8,000 sentences, of which there are two
+        if text != known:
+            raise InputError("unknown")
+        return walk
+
+    monkeypatch.setattr(kitml, "parse", parsed)
     some = sentences(4000)
     readings = understood(some)
     assert len(readings) == 2000
