@@ -7,7 +7,6 @@ else
 BIN := $(VENV)/bin
 endif
 STAMP := $(VENV)/.installed
-TY := $(BIN)/ty check --no-progress --output-format concise --python $(VENV)
 # A file of tests stays with one process, which then makes its data once; long files are not kept for the end.
 PYTEST := $(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
 # Benchmarks measure one thread; the tests set their own.
@@ -28,13 +27,11 @@ test-slow: $(STAMP)  ## every night: pyright, and all tests, those marked slow t
 	$(BIN)/pyright --pythonpath $(BIN)/python
 	$(PYTEST) -m "slow or not slow" --check-every-call
 
-# One thread: with several, ty 0.0.105 was seen to report, once in some thirty runs, that Self is not its own class.
-lint: export TY_MAX_PARALLELISM := 1
 lint: $(STAMP)
 	$(BIN)/ruff check --quiet .
 	$(BIN)/ruff format --quiet --check .
 	$(BIN)/lint-imports --no-logo
-	$(TY) || $(TY)
+	$(BIN)/ty check --no-progress --output-format concise --python $(VENV)
 
 unit: $(STAMP)
 	$(PYTEST)
