@@ -19,6 +19,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from mmweaver.core.errors import MAX_CHARACTERS, InputError
 
 CASE_LIMIT_S, CASE_LIMIT_MB = 20.0, 1000.0
@@ -35,6 +37,11 @@ class Reader:
     damaged: Callable[[random.Random], bytes]
     read: Callable[[Path], Any]
     wrong: Callable[[Any], str | None] = lambda _: None
+
+
+def wrong_numbers(values: np.ndarray) -> str | None:
+    """What is wrong with an array as a result: numbers that are not finite, or none at all."""
+    return None if values.size and np.isfinite(values).all() else "numbers that are not finite, or none"
 
 
 @dataclass(kw_only=True)

@@ -41,7 +41,7 @@ from tests.formats.point_clouds.test_read_points import XYZV, out_of_box, packet
 from tests.formats.test_pcap import pcapng_of
 from tests.formats.test_peer_arrays import hupr_array, simulated_frame
 from tests.fuzz import mutators as m
-from tests.fuzz.harness import Reader
+from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.set_readers import members_reader
 
 ACTIVITIES = """[activities]
@@ -156,7 +156,7 @@ def _captures(folder: Path, config: RadarConfig) -> list[Reader]:
         return read_pcap(path, config).adc.samples
 
     return [
-        _read("dca.pcapng", ".pcapng", capture, blocks, wrong=_wrong_numbers),
+        _read("dca.pcapng", ".pcapng", capture, blocks, wrong=wrong_numbers),
         _read("mmwl", ".mmwl", packed, [], damaged=lambda rng: _lossless(lossless, rng)),
     ]
 
@@ -180,10 +180,6 @@ def _lossless(data: bytes, rng: random.Random) -> bytes:
     body = zlib.compress(head, 9)
     start = LOSSLESS.pack(magic, version, min(len(body), 0xFFFF)) + body
     return start + CHECK.pack(zlib.crc32(start)) + blocks
-
-
-def _wrong_numbers(values: np.ndarray) -> str | None:
-    return None if values.size and np.isfinite(values).all() else "numbers that are not finite, or none"
 
 
 # texts --------------------------------------------------------------------------------------------------------------
@@ -215,7 +211,7 @@ def _texts() -> list[Reader]:
         _read("sentence", ".txt", lambda path: parse(read_text(path)), [line.encode() for line in SENTENCES]),
         _read("activities.toml", ".toml", read_activities, [ACTIVITIES.encode()]),
         _read("command of --config", ".toml", command, [REQUEST.encode()]),
-        _read("antennas.json", ".json", antennas, [], wrong=_wrong_numbers, **of_json(ANTENNAS)),
+        _read("antennas.json", ".json", antennas, [], wrong=wrong_numbers, **of_json(ANTENNAS)),
         _read("log of a training", ".jsonl", log, [rows]),
         _read("request of the studio", ".json", asked, [], **of_json(ASKED)),
         _read("sequence for the page", ".wire", lambda path: unpack(path.read_bytes()), [sound]),
@@ -239,7 +235,7 @@ def _folders(folder: Path) -> list[Reader]:
         return [read_stream_cube(parts).values]
 
     def wrong(arrays: list[np.ndarray]) -> str | None:
-        return next((problem for values in arrays if (problem := _wrong_numbers(values))), None)
+        return next((problem for values in arrays if (problem := wrong_numbers(values))), None)
 
     return [
         members_reader("result folder", results, result, wrong),
@@ -278,7 +274,7 @@ def _tensors(folder: Path) -> list[Reader]:
         return read_checkpoint(path, what="no checkpoint ({reason}); train anew")
 
     return [
-        _read("weights", ".safetensors", loaded, [], damaged=weights, wrong=_wrong_numbers),
+        _read("weights", ".safetensors", loaded, [], damaged=weights, wrong=wrong_numbers),
         _read("checkpoint", ".pt", saved, [checkpoint]),
     ]
 
@@ -295,6 +291,6 @@ def _arrays() -> list[Reader]:
         return read_cubelearn(path, MMMESH).samples if layout == "cubelearn" else read_hupr(path, radar).values
 
     return [
-        _read("arrays of others", ".npy", other, [], wrong=_wrong_numbers,
+        _read("arrays of others", ".npy", other, [], wrong=wrong_numbers,
               damaged=lambda rng: m.mutated_npy(rng.choice((hupr, cubelearn)), rng))
     ]  # fmt: skip

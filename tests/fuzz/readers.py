@@ -40,7 +40,7 @@ from mmweaver.scene.segmentation.class_file import read_class_file
 from tests import captures
 from tests.formats.test_mmwave_studio import SETUP
 from tests.fuzz import mutators as m
-from tests.fuzz.harness import Reader
+from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.log_readers import log_readers
 from tests.fuzz.set_readers import set_readers
 
@@ -241,21 +241,21 @@ def _recordings(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
             name="adc_data.bin",
             suffix=".bin",
             read=lambda path: read_bin(path, config).samples,
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=lambda rng: m.mutated_bytes(raw, rng),
         ),
         Reader(
             name="samples npy",
             suffix=".npy",
             read=lambda path: read_adc_npy(path, config, axes).samples,
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=lambda rng: m.mutated_npy(samples, rng),
         ),
         Reader(
             name="dca.pcap",
             suffix=".pcap",
             read=lambda path: read_pcap(path, config).adc.samples,
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=pcap,
         ),
         _capture(folder),
@@ -289,10 +289,6 @@ def _capture(folder: Path) -> Reader:
     return Reader(name="capture folder", suffix=".member", read=read, damaged=damaged)
 
 
-def _wrong_numbers(values: np.ndarray) -> str | None:
-    return None if values.size and np.isfinite(values).all() else "numbers that are not finite, or none"
-
-
 # results ------------------------------------------------------------------------------------------------------------
 def _results(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
     cube = process_recording(folder / "recording.bin", config).cube
@@ -322,7 +318,7 @@ def _results(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
             name="radar.npz",
             suffix=".npz",
             read=radar,
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=lambda rng: m.mutated_npz(held["radar"], rng),
         ),
         Reader(
@@ -343,7 +339,7 @@ def _results(folder: Path, config: Any, adc: AdcCube) -> list[Reader]:
             name="mmw",
             suffix=".mmw",
             read=described,
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=lambda rng: m.mutated_mmw(rng.choice(mmw), rng),
         ),
     ]
@@ -391,21 +387,21 @@ def _others(folder: Path) -> list[Reader]:
             name="motion npy",
             suffix=".npy",
             read=motion(20.0),
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=lambda rng: m.mutated_npy(rest, rng),
         ),
         Reader(
             name="motion npz",
             suffix=".npz",
             read=motion(None),
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=lambda rng: m.mutated_npz(rng.choice((amass, joints)), rng),
         ),
         Reader(
             name="motion bvh",
             suffix=".bvh",
             read=motion(None),
-            wrong=_wrong_numbers,
+            wrong=wrong_numbers,
             damaged=lambda rng: _text_of(bvh, rng),
         ),
         Reader(

@@ -64,7 +64,7 @@ class FeatureComparison:
 
     @property
     def gives_away(self) -> bool:
-        """Whether the whole interval of the effect size lies beyond 1: B can be told from A by this feature.
+        """Whether the whole interval of the effect size lies beyond 1: B can be distinguished from A by this feature.
 
         An upper limit above the other side's value tells nothing.
         """

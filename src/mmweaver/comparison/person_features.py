@@ -10,7 +10,7 @@ from mmweaver.dsp.slow_time import moving_cells
 from mmweaver.dsp.windows import hann
 
 BODY_HALF_M = 0.3
-LEAST_NOISE_SHARE = 0.1  # an energy below a tenth of the noise in its bins cannot be told from none
+LEAST_NOISE_SHARE = 0.1  # an energy below a tenth of the noise in its bins cannot be distinguished from none
 SLOW_OVER_REST = 100.0  # 20 dB: movement of a seated person's range bin over the median bin
 SEATED_MPS = 0.3  # a breathing chest is slower
 WINDOW_S = 8.0

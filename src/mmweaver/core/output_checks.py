@@ -32,15 +32,20 @@ def resolved(path: Path | str) -> Path:
     return Path(os.path.realpath(path))
 
 
+def _mode(target: Path, out: Path) -> int | None:
+    """Type and permissions of what is there, None for nothing. Raises InputError where that is unknown."""
+    try:
+        return target.lstat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except OSError as error:
+        raise cannot_write(out, error) from None
+
+
 def check_output_file(out: Path, *, overwrite: bool, inputs: Iterable[Path | None] = ()) -> None:
     """Raises InputError where a file cannot be written, or is one of `inputs` (files, or folders with recordings)."""
     target = resolved(out)
-    try:
-        mode = target.lstat().st_mode
-    except (FileNotFoundError, NotADirectoryError):
-        mode = None
-    except OSError as error:
-        raise cannot_write(out, error) from None
+    mode = _mode(target, out)
     if mode is not None:
         if stat.S_ISDIR(mode):
             raise InputError(f"{out} is a folder; name a file")
@@ -62,12 +67,7 @@ def check_output_folder(
     `files`: what will be written into it; none of them may be a folder, or one of `inputs`.
     """
     target = resolved(out)
-    try:
-        mode = target.lstat().st_mode
-    except (FileNotFoundError, NotADirectoryError):
-        mode = None
-    except OSError as error:
-        raise cannot_write(out, error) from None
+    mode = _mode(target, out)
     if mode is not None and not stat.S_ISDIR(mode):
         what = "a link that leads nowhere" if stat.S_ISLNK(mode) else "a file, not a folder"
         raise InputError(f"{out} is {what}; choose another --out")

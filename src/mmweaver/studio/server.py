@@ -168,12 +168,9 @@ class StudioServer:
 
     async def _presence(self, socket: WebSocket) -> None:
         """Open as long as the tab; its end is the session's."""
-        try:
-            session = self.workshop.sessions.get(socket.query_params.get("session", ""))
-        except InputError:
-            await socket.close(code=1008)
+        session = await self._accepted(socket)
+        if session is None:
             return
-        await socket.accept()
         with contextlib.suppress(WebSocketDisconnect):
             while True:
                 await socket.receive_text()
@@ -181,12 +178,9 @@ class StudioServer:
 
     async def _live(self, socket: WebSocket) -> None:
         """Sentences come, chunks go; a chunk is made when the page has taken the one before the last."""
-        try:
-            session = self.workshop.sessions.get(socket.query_params.get("session", ""))
-        except InputError:
-            await socket.close(code=1008)
+        session = await self._accepted(socket)
+        if session is None:
             return
-        await socket.accept()
         try:
             live = self.workshop.live(session, parse_json(await socket.receive_text(), "the request"))
             in_flight = 0
@@ -205,6 +199,16 @@ class StudioServer:
             await socket.close()
         except WebSocketDisconnect:
             pass
+
+    async def _accepted(self, socket: WebSocket) -> Session | None:
+        """The session that the socket names; where there is none, the socket is closed."""
+        try:
+            session = self.workshop.sessions.get(socket.query_params.get("session", ""))
+        except InputError:
+            await socket.close(code=1008)
+            return None
+        await socket.accept()
+        return session
 
     # what they share -------------------------------------------------------------------------------------------------
     def _session(self, request: Request) -> Session:

@@ -76,7 +76,7 @@ def _along_seat(context: StepContext, u: PerTime) -> Controls:
 
 
 def falling_off(context: StepContext) -> Controls:
-    """From sitting down to the floor beside the feet, to the own side; within about a second."""
+    """From sitting down to the floor next to the feet, to the own side; within about a second."""
     lasts = float(np.clip(0.9 * context.duration_s, 0.9, (1.5, 1.25, 1.05)[context.step.speed + 1]))
     u = np.clip((context.time_s - context.start_s) / lasts, 0.0, 1.0)
     seated, fallen = sitting(context), on_side(context, 0.4 + 0.6 * u)
