@@ -58,7 +58,7 @@ def exact_samples(paths: Paths, config: RadarConfig) -> np.ndarray:
 
 
 def test_both_orders_of_a_path_over_a_wall_add_up():
-    """Against every sample on its own; blocks of 2 ms at several m/s cost what the physics test allows too."""
+    """Against every sample on its own; at several m/s to first order in a block."""
     config = replace(AWR1843, num_loops=6, num_samples=64, first_range_bin=0)
     paths = sampled_paths(np.random.default_rng(0), 30)
     got = AdcSynthesis(config).moving(paths[None])[0].numpy()

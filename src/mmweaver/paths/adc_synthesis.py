@@ -7,6 +7,7 @@ factors approximate. Reference: docs/radar_primer.md, equations 7 and 12.
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -30,7 +31,10 @@ class AdcSynthesis:
         self.config, self.device = self._elements.config, torch.device(device)
         self.clock = FrameClock(self.config)
         self.array = ArrayPhases(self.config, self.device)
-        self._centre_m = _double(self.clock.centre_m, self.device)
+        # how much a beat turns at each sample where its path is a metre longer
+        per_m = 2j * math.pi * self.config.chirp_slope_hz_per_s / SPEED_OF_LIGHT_MPS
+        since_middle_s = (np.arange(self.config.num_samples) - self.config.num_samples / 2) / self.config.sample_rate_hz
+        self._turn_per_m = torch.from_numpy((per_m * since_middle_s).astype(np.complex64)).to(self.device)
         self._segments = [_SegmentFactors(segment, self.device) for segment in self.clock.segments]
 
     def moving(self, paths: Paths) -> Tensor:
@@ -59,19 +63,19 @@ class AdcSynthesis:
         some = weights.ne(0).any(dim=0).nonzero()[:, 0]
         chosen = paths if len(some) == len(paths) else paths[some]
         amplitude = (weights[:, some] * chosen.amplitude).to(torch.complex64)  # (set, path)
-        shape = (config.num_tx, len(weights), config.num_rx, config.num_samples)
-        adc = torch.zeros(shape, dtype=torch.complex64, device=self.device)
+        count = len(weights)
+        adc = torch.zeros((2, count, config.num_tx, config.num_rx, config.num_samples), dtype=torch.complex64)
+        adc = adc.to(self.device)
         for first in range(0, len(some), ROWS_AT_ONCE):
             rows = slice(first, first + ROWS_AT_ONCE)
             length_m = self._elements.lengths(chosen.length_m[rows]).to(self.device)
-            slow = phasor(length_m / config.wavelength_m)  # (path, tx, rx)
-            each = amplitude[:, rows].to(self.device)
-            for m in range(config.num_tx):
-                fast = fast_time(length_m[:, m].mean(dim=-1) / SPEED_OF_LIGHT_MPS, 0.0, config)
-                left = (each[:, None, :] * slow[:, m].T).flatten(0, 1)  # (set * rx, path)
-                adc[m] += (left @ fast).unflatten(0, (len(weights), config.num_rx))
-        adc = self._elements.slots(adc, 0).transpose(0, 1)
-        return adc[0] if weight is None else adc
+            mean_m = length_m.mean(dim=(1, 2))
+            slow = phasor(length_m / config.wavelength_m) * amplitude[:, rows].to(self.device)[..., None, None]
+            late = slow * (length_m - mean_m[:, None, None]).float()
+            left = torch.stack([slow, late]).flatten(3).transpose(2, 3).flatten(0, 2)  # (2 * set * tx * rx, path)
+            adc += (left @ fast_time(mean_m / SPEED_OF_LIGHT_MPS, 0.0, config)).view(adc.shape)
+        samples = self._elements.slots(adc[0].addcmul_(adc[1], self._turn_per_m), 1)
+        return samples[0] if weight is None else samples
 
     def occluded(self, paths: ScenePaths) -> Tensor:
         """Samples of the static paths that are occluded in each frame, complex64 (frame, tx, rx, sample)."""
@@ -94,20 +98,23 @@ class AdcSynthesis:
             adc.zero_()
             return
         length_m = paths.departure.at(segment.node_s).norm(dim=-1) + paths.arrival.at(segment.node_s).norm(dim=-1)
-        shift_hz = length_m @ segment.slope_at_blocks / config.wavelength_m  # (frame, path, block)
-        carrier = phasor(length_m @ segment.to_chirps / config.wavelength_m) * paths.amplitude[..., None]
-        carrier = carrier.unflatten(-1, (-1, config.num_tx))  # (frame, path, loop, tx)
-        ends_m = [end.at(segment.block_s).transpose(1, 2) for end in (paths.departure, paths.arrival)]
+        by_chirp_m = (length_m @ segment.to_chirps).unflatten(-1, (-1, config.num_tx))  # (frame, path, loop, tx)
+        by_block_m = length_m @ segment.to_blocks  # (frame, path, block)
+        shift_hz = length_m @ segment.slope_at_blocks / config.wavelength_m
+        carrier = phasor(by_chirp_m / config.wavelength_m) * paths.amplitude[..., None, None]
+        array = self.array(*(end.at(segment.block_s) for end in (paths.departure, paths.arrival)), paths.is_reciprocal)
+        between = segment.between_blocks.to(torch.complex64)
         for index, block in enumerate(segment.segment.blocks):
-            departure_m, arrival_m = (end[:, index] for end in ends_m)  # (frame, path, 3)
-            array = self.array(departure_m, arrival_m, paths.is_reciprocal)
-            centred_m = torch.stack([departure_m, arrival_m])[:, None] - self._centre_m[:, None, None]
-            delay_s = centred_m.norm(dim=-1).sum(dim=0) / SPEED_OF_LIGHT_MPS  # (tx, frame, path)
+            phases = torch.einsum("fpbtr,bl->fpltr", array.phase, between[:, block])
+            later_m = (by_chirp_m[:, :, block] - by_block_m[..., index, None, None]).float()
+            fast = fast_time(by_block_m[..., index] / SPEED_OF_LIGHT_MPS, shift_hz[..., index], config)
             for m in range(config.num_tx):
-                slow = carrier[:, :, block, m, None] * array[:, :, None, m]  # (frame, path, loop, rx)
-                fast = fast_time(delay_s[m], shift_hz[..., index], config)
-                product = slow.flatten(2).transpose(1, 2) @ fast
-                adc[:, block, m] = product.unflatten(1, (-1, config.num_rx))
+                chirp = carrier[:, :, block, m, None]
+                slow = chirp * phases[:, :, :, m]  # (frame, path, loop, rx)
+                late = slow * later_m[..., m, None] + chirp * array.excess[:, :, index, None, m]
+                both = torch.cat([slow.flatten(2), late.flatten(2)], dim=2).transpose(1, 2) @ fast
+                plain, tilted = both.unflatten(1, (2, -1, config.num_rx)).unbind(1)
+                adc[:, block, m] = plain.addcmul_(tilted, self._turn_per_m)
 
 
 class _SegmentFactors:
@@ -117,7 +124,9 @@ class _SegmentFactors:
         self.segment, self.loops = segment, segment.loops
         self.node_s, self.block_s = _double(segment.node_s, device), _double(segment.block_s, device)
         self.to_chirps = _double(segment.weights(segment.chirp_s.ravel()), device)  # (node, loop * tx)
-        self.slope_at_blocks = _double(segment.slopes(segment.block_s), device)  # (node, block)
+        self.to_blocks = _double(segment.weights(segment.block_s), device)  # (node, block)
+        self.slope_at_blocks = _double(segment.slopes(segment.block_s), device)
+        self.between_blocks = _double(between(segment.block_s, segment.chirp_s.mean(axis=1)), device)  # (block, loop)
 
 
 class ArrayPhases:
@@ -128,21 +137,47 @@ class ArrayPhases:
         self.tx_m = _double(np.asarray(config.tx_position_m), device)
         self.rx_m = _double(np.asarray(config.rx_position_m), device)
 
-    def __call__(self, departure_m: Tensor, arrival_m: Tensor, is_reciprocal: Tensor) -> Tensor:
-        """Complex64 (frame, path, tx, rx) of paths between these places (frame, path, 3); both orders of reciprocal."""
-        array = self._to_each(departure_m, self.tx_m)[..., :, None] * self._to_each(arrival_m, self.rx_m)[..., None, :]
+    def __call__(self, departure_m: Tensor, arrival_m: Tensor, is_reciprocal: Tensor) -> "PairPhases":
+        """Of paths between these places (frame, path, time, 3); both orders of reciprocal ones (frame, path)."""
+        pairs = self._pairs(departure_m, arrival_m)
         both = is_reciprocal.nonzero(as_tuple=True)
         if len(both[0]):
-            out, back = self._to_each(arrival_m[both], self.tx_m), self._to_each(departure_m[both], self.rx_m)
-            array[both] += out[..., :, None] * back[..., None, :]
-        return array
+            back = self._pairs(arrival_m[both], departure_m[both])
+            pairs.phase[both] += back.phase
+            pairs.excess[both] += back.excess
+        return pairs
 
-    def _to_each(self, place_m: Tensor, antenna_m: Tensor) -> Tensor:
-        """exp(j k (|p - a| - |p|)) for each place and antenna; written so that nothing cancels."""
-        distance = place_m.norm(dim=-1)[..., None]
-        excess = antenna_m.square().sum(dim=-1) - 2 * (place_m @ antenna_m.T)
-        difference = excess / ((distance.square() + excess).clamp(min=0).sqrt() + distance)
-        return phasor(difference / self.wavelength_m)
+    def _pairs(self, departure_m: Tensor, arrival_m: Tensor) -> "PairPhases":
+        out_m, back_m = excess_m(departure_m, self.tx_m)[..., :, None], excess_m(arrival_m, self.rx_m)[..., None, :]
+        phase = phasor(out_m / self.wavelength_m) * phasor(back_m / self.wavelength_m)
+        return PairPhases(phase=phase, excess=phase * (out_m + back_m).float())
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairPhases:
+    """What a path's length from each transmitter to each receiver does to its phase, relative to the array's centre."""
+
+    phase: Tensor  # (..., tx, rx) complex64, the sum over both orders of a reciprocal path
+    excess: Tensor  # the same, each times how much longer the path is, in m
+
+
+def excess_m(place_m: Tensor, antenna_m: Tensor) -> Tensor:
+    """|p - a| - |p| (..., antenna) for places p (..., 3) and antennas a; written so that nothing cancels."""
+    distance = place_m.norm(dim=-1)[..., None]
+    excess = antenna_m.square().sum(dim=-1) - 2 * (place_m @ antenna_m.T)
+    return excess / ((distance.square() + excess).clamp(min=0).sqrt() + distance)
+
+
+def between(nodes: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """(node, time): values at nodes times this are values in between, straight from node to node and beyond them."""
+    if len(nodes) == 1:
+        return np.ones((1, len(at)))
+    left = np.clip(np.searchsorted(nodes, at) - 1, 0, len(nodes) - 2)
+    share = (at - nodes[left]) / (nodes[left + 1] - nodes[left])
+    weights = np.zeros((len(nodes), len(at)))
+    weights[left, np.arange(len(at))] = 1 - share
+    weights[left + 1, np.arange(len(at))] += share
+    return weights
 
 
 def unpadded(paths: Paths) -> Paths:

@@ -95,7 +95,7 @@ class CubeRenderer:
         """Writes or adds one segment's share of the cube, paths (frame, path), to values (frame, range, ...)."""
         config = self.config
         length_m, rate_mps = paths.length_m, paths.rate_mps
-        array = self._array(paths.departure.position_m, paths.arrival.position_m, paths.is_reciprocal)
+        array = self._array(paths.departure.position_m, paths.arrival.position_m, paths.is_reciprocal).phase
         array = (array * paths.amplitude[..., None, None])[:, :, None]  # (frame, path, 1, tx, rx)
         plain, late = segment.spectra(self._cycles(paths, length_m, rate_mps, segment.time_s))
         late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]

@@ -9,7 +9,7 @@ from mmweaver.core.radar_config import RadarConfig
 
 NUM_NODES = 3  # instants of a segment at which positions are asked for
 LONGEST_SEGMENT_S = 10e-3  # positions and path lengths are quadratic in time for so long
-BLOCK_S = 2.0e-3  # range and angle count as constant for so long
+BLOCK_S = 2.5e-3  # within which range changes to first order in time, and angles linearly from one to the next
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,9 +54,6 @@ class FrameClock:
 
     def __init__(self, config: RadarConfig):
         self.config = config
-        # Fast time sees one delay for all receivers of a transmitter: taken at their middle it errs least.
-        tx, rx = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
-        self.centre_m = (tx + rx.mean(axis=0)) / 2  # (tx, 3)
         middle_s = config.idle_time_s + config.adc_start_time_s + config.num_samples / config.sample_rate_hz / 2
         loop_s = np.arange(config.num_loops) * config.loop_period_s
         self.chirp_s = loop_s[:, None] + config.tx_delay_s[None, :] + middle_s  # (loop, tx) since the frame's start
