@@ -6,6 +6,7 @@ nothing a radar sees.
 
 import re
 from dataclasses import dataclass
+from functools import cache
 
 _OWN = r"(?:(?:his|her|its|their|the|both|a|an|some|one|my|own) )*"
 _SIDE = r"(?:left|right)"
@@ -318,17 +319,15 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\blower(?:s|ing) (?:his |her |the |both |its )?(?:arms?|hands?)\b(?: again)?(?=$|[,.])", "stands", "arms that go down are shown as hanging"),
     )),
 )  # fmt: skip
-_COMPILED: list[re.Pattern[str]] = []
+_pattern = cache(re.compile)  # when first tried: most sentences need few of them, and all take 0.1 CPU-s
 _HELD = re.compile(r"<(\d+)>")
 
 
 def with_approximations(text: str, *, only_always: bool = False) -> str:
     """The sentence with what is known instead of what is not; a token after each replacement says which it was."""
-    if not _COMPILED:
-        _COMPILED.extend(re.compile(one.pattern) for one in APPROXIMATIONS)
     folded = text.lower()
     held: list[str] = []  # replacements, kept out of the text until all patterns have been tried
-    for number, (pattern, one) in enumerate(zip(_COMPILED, APPROXIMATIONS, strict=True)):
+    for number, one in enumerate(APPROXIMATIONS):
         if only_always and not one.always:
             continue
 
@@ -336,7 +335,7 @@ def with_approximations(text: str, *, only_always: bool = False) -> str:
             held.append(f"{_filled(found, one.instead)} {MARK}{number}")
             return f" <{len(held) - 1}> "
 
-        folded = pattern.sub(hold, folded)
+        folded = _pattern(one.pattern).sub(hold, folded)
     return " ".join(_HELD.sub(lambda found: held[int(found[1])], folded).split()) if held else text
 
 
