@@ -80,6 +80,7 @@ def test_signals_and_geometry_are_not_mixed(folders: dict[bool, Path]):
         generate_dataset(folders[True], replace(TINY_PLAN, geometry_only=False), AWR1843)
 
 
+@pytest.mark.slow  # test_network_training.py trains on such a set; what is special here is the missing ray caster
 def test_the_network_trains_on_it_without_a_ray_caster(folders: dict[bool, Path], tmp_path: Path):
     code = f"""
 import sys

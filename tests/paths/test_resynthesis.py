@@ -4,7 +4,6 @@ import json
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -109,4 +108,4 @@ joints = np.broadcast_to(joints, (2, 3, 22, 3))
 look = TracedMotion(joints_m=joints, visibility=seen, subject=0, height_m=1.75, seed=0)
 assert np.isfinite(Resynthesis(room).samples(look, np.arange(2)).numpy()).all()
 """
-    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).resolve().parents[2])
+    subprocess.run([sys.executable, "-c", code], check=True)

@@ -67,6 +67,7 @@ def test_there_is_room_to_walk(scene: Scene):
     assert space.is_free[np.ix_(chosen, across & (space.x_m < 0.6))].mean() > 0.95
 
 
+@pytest.mark.slow  # it renders the photo again
 def test_its_depth_is_remade_from_the_seed(maker: ModuleType):
     """The whole depth is rendered again; the photo takes half a minute, so its light is rendered coarsely."""
     photo, _ = sample_photo()

@@ -55,6 +55,7 @@ def test_which_parameters_are_tuned(captures):
         assert ("pose" in tuned) is everything
 
 
+@pytest.mark.slow  # test_which_parameters_are_tuned; tests/cli/test_train.py tunes
 def test_without_joints_only_static_clutter_changes(captures, start, tmp_path: Path):
     empty = [replace(capture, pose=None) for capture in captures]
     tuned = tune(empty, tmp_path, replace(RECIPE, steps=12, learning_rate=1e-2), start=start)

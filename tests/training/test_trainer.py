@@ -58,6 +58,7 @@ def two_processes_equal_one(two: Path, one: Path) -> None:
         assert first["validation"] == pytest.approx(second["validation"], rel=1e-5)
 
 
+@pytest.mark.slow  # three processes that import torch
 def test_two_processes_equal_one_with_the_same_batch(tmp_path: Path):
     """Without the launcher, which is a third process that imports torch."""
     pytest.importorskip("accelerate")
@@ -74,7 +75,7 @@ def test_two_processes_equal_one_with_the_same_batch(tmp_path: Path):
     two_processes_equal_one(tmp_path / "two", tmp_path / "one")
 
 
-@pytest.mark.slow  # the test above, and test_resuming.py for a run that goes on where it stopped
+@pytest.mark.slow  # test_resuming.py has a run that goes on where it stopped
 def test_two_processes_equal_one_even_after_a_kill(tmp_path: Path):
     pytest.importorskip("accelerate")
     killed = launched(str(tmp_path / "two"), "5")

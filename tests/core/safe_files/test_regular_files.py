@@ -26,11 +26,11 @@ def test_links_are_followed(tmp_path: Path):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no FIFO here")
-def test_what_is_no_regular_file_is_named(tmp_path: Path):
+def test_what_is_no_regular_file_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "link").symlink_to(tmp_path / "fifo")
     with socket.socket(socket.AF_UNIX) as listening:
-        os.chdir(tmp_path)  # names of sockets are short
+        monkeypatch.chdir(tmp_path)  # names of sockets are short
         listening.bind("socket")
         kinds = {"fifo": "a FIFO", "link": "a FIFO", "socket": "a socket", ".": "a folder", "/dev/zero": "a device"}
         for name, kind in kinds.items():

@@ -16,37 +16,48 @@ from mmweaver.scene.procedural.room_kinds import KINDS
 TOUCH_M = 0.006
 
 
-@pytest.fixture(scope="module", params=list(KINDS))
-def rooms(request: pytest.FixtureRequest) -> list[ProceduralRoom]:
-    return [make_room(request.param, layout, seed) for seed, layout in ((0, 1), (5, 7))]
+SEEDS_AND_LAYOUTS = (0, 1), (5, 7)
+
+
+# slow: a second room of each kind
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param((kind, number), id=f"{kind}-{number}", marks=[pytest.mark.slow] if number else [])
+        for kind in KINDS
+        for number in range(2)
+    ],
+)
+def room(request: pytest.FixtureRequest) -> ProceduralRoom:
+    kind, number = request.param
+    seed, layout = SEEDS_AND_LAYOUTS[number]
+    return make_room(kind, layout, seed)
 
 
 def _rows(boxes: Boxes, rows: np.ndarray) -> Boxes:
     return Boxes(centre_m=boxes.centre_m[rows], half_m=boxes.half_m[rows], yaw_rad=boxes.yaw_rad[rows])
 
 
-def test_nothing_overlaps(rooms: list[ProceduralRoom]):
-    for room in rooms:
-        piece = np.array(room.boxes.piece)
-        cut = room.boxes.overlap(room.boxes, 0.001)
-        # Different pieces only: the cushions of a sofa press into it.
-        cut &= piece[:, None] != piece[None, :]
-        assert not cut.any(), [(room.boxes.names[a], room.boxes.names[b]) for a, b in np.argwhere(cut)[:4]]
+def test_nothing_overlaps(room: ProceduralRoom):
+    piece = np.array(room.boxes.piece)
+    cut = room.boxes.overlap(room.boxes, 0.001)
+    # Different pieces only: the cushions of a sofa press into it.
+    cut &= piece[:, None] != piece[None, :]
+    assert not cut.any(), [(room.boxes.names[a], room.boxes.names[b]) for a, b in np.argwhere(cut)[:4]]
 
 
-def test_nothing_floats(rooms: list[ProceduralRoom]):
+def test_nothing_floats(room: ProceduralRoom):
     """Every box is connected to floor, walls or ceiling by boxes that touch."""
-    for room in rooms:
-        boxes, (w, d, h) = room.boxes, room.shell.size_m
-        low = boxes.centre_m[:, 2] - boxes.half_m[:, 2] - room.floor_z_m
-        high = boxes.centre_m[:, 2] + boxes.half_m[:, 2] - room.floor_z_m
-        corners = boxes.corners_m() @ _turn(room).T + np.array(room.shell.radar_m[:2])
-        at_wall = (corners < TOUCH_M).any(axis=(1, 2)) | (corners > np.array([w, d]) - TOUCH_M).any(axis=(1, 2))
-        held = (low < TOUCH_M) | at_wall | (high > h - TOUCH_M)
-        touching = boxes.overlap(boxes, -TOUCH_M)
-        for _ in range(12):
-            held = held | touching[held].any(axis=0)
-        assert held.all(), {boxes.names[i] for i in np.flatnonzero(~held)}
+    boxes, (w, d, h) = room.boxes, room.shell.size_m
+    low = boxes.centre_m[:, 2] - boxes.half_m[:, 2] - room.floor_z_m
+    high = boxes.centre_m[:, 2] + boxes.half_m[:, 2] - room.floor_z_m
+    corners = boxes.corners_m() @ _turn(room).T + np.array(room.shell.radar_m[:2])
+    at_wall = (corners < TOUCH_M).any(axis=(1, 2)) | (corners > np.array([w, d]) - TOUCH_M).any(axis=(1, 2))
+    held = (low < TOUCH_M) | at_wall | (high > h - TOUCH_M)
+    touching = boxes.overlap(boxes, -TOUCH_M)
+    for _ in range(12):
+        held = held | touching[held].any(axis=0)
+    assert held.all(), {boxes.names[i] for i in np.flatnonzero(~held)}
 
 
 def _turn(room: ProceduralRoom) -> np.ndarray:
@@ -54,25 +65,23 @@ def _turn(room: ProceduralRoom) -> np.ndarray:
     return np.array([[cosine, -sine], [sine, cosine]])
 
 
-def test_meshes_lie_in_their_boxes_and_in_the_room(rooms: list[ProceduralRoom]):
-    for room in rooms:
-        used = room.mesh.faces[room.mesh.piece >= 0]
-        points = room.vertices_m[np.unique(used)]
-        nearest = np.concatenate([room.boxes.distance_m(some).min(axis=1) for some in np.array_split(points, 20)])
-        assert nearest.max() < 1e-6
-        inside = room.mesh.vertices_m
-        assert inside.min() > -1e-6
-        assert (inside <= np.array(room.shell.size_m) + 1e-6).all()
+def test_meshes_lie_in_their_boxes_and_in_the_room(room: ProceduralRoom):
+    used = room.mesh.faces[room.mesh.piece >= 0]
+    points = room.vertices_m[np.unique(used)]
+    nearest = np.concatenate([room.boxes.distance_m(some).min(axis=1) for some in np.array_split(points, 20)])
+    assert nearest.max() < 1e-6
+    inside = room.mesh.vertices_m
+    assert inside.min() > -1e-6
+    assert (inside <= np.array(room.shell.size_m) + 1e-6).all()
 
 
-def test_there_is_room_to_walk_and_the_window_holds_walls_and_furniture(rooms: list[ProceduralRoom]):
-    for room in rooms:
-        assert room.free_m2 >= MIN_FREE_M2
-        assert room.walkable_m2 >= MIN_WALKABLE_M2
-        ground = np.hypot(room.boxes.centre_m[:, 0], room.boxes.centre_m[:, 1])
-        assert (ground < 3.4).any()
-        offsets = [abs(float(p.normal @ p.centre_m)) for p in room.planes if p.kind == "wall"]
-        assert min(offsets) < 3.4
+def test_there_is_room_to_walk_and_the_window_holds_walls_and_furniture(room: ProceduralRoom):
+    assert room.free_m2 >= MIN_FREE_M2
+    assert room.walkable_m2 >= MIN_WALKABLE_M2
+    ground = np.hypot(room.boxes.centre_m[:, 0], room.boxes.centre_m[:, 1])
+    assert (ground < 3.4).any()
+    offsets = [abs(float(p.normal @ p.centre_m)) for p in room.planes if p.kind == "wall"]
+    assert min(offsets) < 3.4
 
 
 SLOW_PHOTOS = [kind for kind in KINDS if kind not in ("living_room", "kitchen", "corridor")]
@@ -132,14 +141,13 @@ def test_invalid_requests_are_refused(kind: str, layout: int, seed: int):
         make_room(kind, layout, seed)
 
 
-def test_every_kind_has_its_furniture(rooms: list[ProceduralRoom]):
+def test_every_kind_has_its_furniture(room: ProceduralRoom):
     needed = {
         "office": "desk", "living_room": "sofa", "lab": "lab bench", "kitchen": "oven", "library": "bookcase",
         "bedroom": "bed", "dining_room": "dining table", "meeting_room": "meeting table", "classroom": "school table",
         "corridor": "bench", "gym": "treadmill", "workshop": "workbench",
     }  # fmt: skip
-    for room in rooms:
-        assert needed[room.kind] in room.boxes.names
+    assert needed[room.kind] in room.boxes.names
 
 
 def test_the_simulator_accepts_the_true_scene():

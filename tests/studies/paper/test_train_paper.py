@@ -34,6 +34,7 @@ def words(data: Path, features: Path, out: Path, *more: str) -> list[str]:
     return ["run", "train_paper", "--data", str(data), "--features", str(features), "--out", str(out), *few, *more]
 
 
+@pytest.mark.slow  # test_paper_training.py takes its steps, test_paper_method.py reads its weights
 def test_weights_are_read_again_and_their_page_gives_the_baseline(
     tiny_geometry: Path, features: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ):

@@ -94,6 +94,7 @@ def test_summary_tells_inside_from_outside():
         assert row["baseline"] == {"frozen": 0.0}
 
 
+@pytest.mark.slow  # of all clips
 def test_recorded_clips_are_steady_walks_and_windows_about_a_jump(real_data: Path):
     path = real_data / "motion" / "cmu" / "cmu_joints_m_120fps.npz"
     walks = recorded(path, "walking", most=3)
