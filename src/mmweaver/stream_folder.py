@@ -11,6 +11,7 @@ length. Reference: decision 207.
 """
 
 import json
+import math
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -56,23 +57,38 @@ def listed_parts(folder: Path) -> list[Path]:
     return found
 
 
-def read_stream_cube(folder: Path) -> RadarCube:
-    """All whole parts as one cube. Raises InputError where a part is missing or damaged, or memory does not hold it."""
+def read_stream_cube(folder: Path, frames: slice = slice(None)) -> RadarCube:
+    """The frames of all whole parts, or a stretch of them, as one cube; parts without any of them are not read.
+
+    Raises InputError where a part is missing or damaged, or memory does not hold the cube.
+    """
+    first, last = frames.start or 0, math.inf if frames.stop is None else frames.stop
     parts = parts_of(folder)
+    starts = [int(part.name) for part in parts]
+    parts = [part for part, start, end in zip(parts, starts, [*starts[1:], math.inf], strict=True)
+             if start < last and end > first]  # fmt: skip
     size = sum((part / "radar.npz").stat().st_size for part in parts)
     if size > LARGEST_BYTES:
         raise InputError(f"{folder} holds {size / 1e9:.0f} GB; read its parts one by one, such as {parts[0]}")
-    cubes, frames = [], 0
+    cubes, at = [], int(parts[0].name) if parts and first else 0
+    skipped = first - at
     for part in parts:
-        if int(part.name) != frames:
-            raise InputError(f"{folder}: the part that begins with frame {frames} is missing")
+        if int(part.name) != at:
+            raise InputError(f"{folder}: the part that begins with frame {at} is missing")
         cubes.append(read_radar_npz(part / "radar.npz"))
-        frames += len(cubes[-1].values)
-    first = cubes[0]
-    grid = first.grid.of(first.config, frames)
-    return RadarCube(
-        values=np.concatenate([cube.values for cube in cubes]), grid=grid, config=first.config, scale=first.scale
-    )
+        at += len(cubes[-1].values)
+    if at <= first:
+        raise InputError(f"{folder} holds {at} frames, and none of them is selected")
+    one = cubes[0]
+    values = np.concatenate([cube.values for cube in cubes])[skipped : min(last, at) - first + skipped]
+    grid = one.grid.of(one.config, len(values), first)
+    return RadarCube(values=values, grid=grid, config=one.config, scale=one.scale)
+
+
+def num_frames_of_stream(folder: Path) -> int:
+    """Number of frames of all whole parts. Raises InputError where there is none."""
+    last = parts_of(folder)[-1]
+    return int(last.name) + len(read_radar_npz(last / "radar.npz").values)
 
 
 class StreamFolder:

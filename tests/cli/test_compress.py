@@ -75,3 +75,15 @@ def test_bad_wishes_leave_nothing_behind(words: list[str], recording: Path, caps
     assert main(["compress", str(recording), "-o", str(recording.with_name("a.mmw")), *words]) == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
     assert not recording.with_name("a.mmw").exists()
+
+
+def test_frames_are_added(recording: Path, capsys: pytest.CaptureFixture[str]):
+    from mmweaver.compression.mmw_codec import read_cube
+
+    out = recording.with_name("a.mmw")
+    for words in (["--keep-noise"], ["--append", "--effort", "fast"]):
+        assert main(["compress", str(recording), "-o", str(out), "--bytes", "2000", *words]) == 0
+    assert "added to" in capsys.readouterr().out
+    assert len(read_cube(out).values) == 6
+    assert out.stat().st_size <= 4000
+    assert main(["compress", str(recording), "-o", str(out), "--bytes", "2000", "--append", "--overwrite"]) == 2

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mmweaver.compression.mmw_codec import compress_cube, describe_mmw, read_cube
+from mmweaver.compression.mmw_codec import describe_mmw, read_cube
 from mmweaver.compression.mmw_writer import MmwWriter
 from mmweaver.core.errors import InputError
 from tests.compression.test_mmw_codec import plain_cube
@@ -31,6 +31,7 @@ def test_pieces_are_one_recording(tmp_path: Path):
     assert len(read_cube(path, slice(12, 20)).values) == 8
 
 
+@pytest.mark.usefixtures("stored_exactly")
 def test_a_record_cut_short_is_replaced(tmp_path: Path):
     path = tmp_path / "a.mmw"
     with MmwWriter(path) as writer:
@@ -45,9 +46,11 @@ def test_a_record_cut_short_is_replaced(tmp_path: Path):
     assert np.array_equal(read_cube(path).values, whole.values)
 
 
+@pytest.mark.usefixtures("stored_exactly")
 def test_what_does_not_fit_is_refused(tmp_path: Path):
     path = tmp_path / "a.mmw"
-    path.write_bytes(compress_cube(piece(0, 3), num_bytes=800))
+    with MmwWriter(path) as writer:
+        writer.append(piece(0, 3), num_bytes=900)
     with pytest.raises(InputError, match="exists"):
         MmwWriter(path)
     before = path.read_bytes()

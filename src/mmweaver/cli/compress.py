@@ -21,6 +21,7 @@ NUM_STAGES = 4
 EXAMPLES = """examples:
   mmweaver compress walk/radar.npz -o walk.mmw --bytes 10000
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmw --quality 30
+  mmweaver compress hour_2.bin --radar radar.json -o capture.mmw --quality 30 --append
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmwl --lossless
   mmweaver compress adc_data.bin --radar radar.json -o capture.mmwl --max-error 2
   mmweaver compress walk/radar.npz --compare --bytes 10000
@@ -71,12 +72,18 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     size.add_argument(
         "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
     )
+    size.add_argument(
+        "--effort", choices=("full", "fast"), default="full", help="fast: no fit of scatterers, at most 0.05 s a frame"
+    )
     output = parser.add_argument_group("output")
     output.add_argument("-o", "--out", type=Path, metavar="FILE", help="the .mmw or .mmwl file to write")
     output.add_argument(
         "--compare", action="store_true", help="print what other codecs make of it in --bytes; write nothing"
     )
     output.add_argument("--overwrite", action="store_true", help="replace the file if it exists")
+    output.add_argument(
+        "--append", action="store_true", help="add the frames to those of the .mmw file; --bytes are those added"
+    )
     output.add_argument("--json", action="store_true", help="print a machine-readable summary on stdout")
     output.add_argument("--quiet", action="store_true", help="print nothing but errors")
     parser.set_defaults(run=run)
@@ -96,41 +103,64 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("name the file to write with -o")
     from mmweaver.core.output_checks import check_output_file
 
-    check_output_file(arguments.out, overwrite=arguments.overwrite, inputs=[arguments.file])
+    if arguments.append and (is_raw or arguments.overwrite):
+        raise InputError("--append adds to a .mmw file; leave out --lossless, --max-error and --overwrite")
+    may_exist = arguments.overwrite or arguments.append
+    check_output_file(arguments.out, overwrite=may_exist, inputs=[arguments.file])
     return _compress_samples(arguments) if is_raw else _compress_cube(arguments)
 
 
 def _compress_cube(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.progress import StageBar
-    from mmweaver.core.atomic_files import atomic_file
 
     start = time.monotonic()
     with StageBar(NUM_STAGES, quiet=arguments.quiet) as bar:
         bar("read the recording")
-        cube = _cube_of(arguments)
-        from mmweaver.compression.mmw_codec import compress_cube, errors_db
+        from mmweaver.compression.long_recording import PIECE_VALUES, compress_recording
+        from mmweaver.recordings.recording_pieces import RecordingPieces
 
-        data = compress_cube(
-            cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise, progress=bar
-        )
-        bar("check")
-        errors = errors_db(data, cube)
-        with atomic_file(arguments.out) as temporary:
-            temporary.write_bytes(data)
-    before = cube.values.size * 8
+        pieces = RecordingPieces(arguments.file, radar_of(arguments), **_how_read(arguments))
+        frames, num_values = pieces.num_frames, pieces.num_frames * pieces.num_values_a_frame
+        is_appended = arguments.append and arguments.out.exists()
+        before = arguments.out.stat().st_size if is_appended else 0
+        if is_appended or num_values > PIECE_VALUES:
+            errors = compress_recording(
+                pieces, arguments.out, num_bytes=arguments.bytes, quality_db=arguments.quality,
+                keep_noise=arguments.keep_noise, effort=arguments.effort, append=is_appended, progress=bar,
+            )  # fmt: skip
+        else:
+            errors = _compress_at_once(arguments, pieces.cube(range(frames)), bar)
+    size = arguments.out.stat().st_size - before
     summary = {
-        "out": str(arguments.out), "bytes": len(data), "cube_bytes": before, "ratio": round(before / len(data), 1),
-        "frames": len(cube.values), "seconds": round(time.monotonic() - start, 2), **errors,
+        "out": str(arguments.out), "bytes": size, "cube_bytes": 8 * num_values,
+        "ratio": round(8 * num_values / size, 1), "frames": frames, "seconds": round(time.monotonic() - start, 2),
+        **errors,
     }  # fmt: skip
     if arguments.json:
         print(json.dumps(summary, indent=2))
     elif not arguments.quiet:
         print(
-            f"wrote {arguments.out}: {len(data):,} bytes for {len(cube.values)} frames, {summary['ratio']:,} times"
-            f" fewer than complex64, in {summary['seconds']:.1f} s; error {errors['signal_error_db']:.1f} dB in cells"
-            f" with signal, {errors['all_error_db']:.1f} dB in all"
+            f"{'added to' if is_appended else 'wrote'} {arguments.out}: {size:,} bytes for {frames} frames,"
+            f" {summary['ratio']:,} times fewer than complex64, in {summary['seconds']:.1f} s; error"
+            f" {errors['signal_error_db']:.1f} dB in cells with signal, {errors['all_error_db']:.1f} dB in all"
         )
     return 0
+
+
+def _compress_at_once(arguments: argparse.Namespace, cube: Any, bar: Any) -> dict[str, float]:
+    """Writes the file of a recording that fits into one piece; returns its errors."""
+    from mmweaver.compression.mmw_codec import compress_cube, errors_db
+    from mmweaver.core.atomic_files import atomic_file
+
+    data = compress_cube(
+        cube, num_bytes=arguments.bytes, quality_db=arguments.quality, keep_noise=arguments.keep_noise,
+        effort=arguments.effort, progress=bar,
+    )  # fmt: skip
+    bar("check")
+    errors = errors_db(data, cube)
+    with atomic_file(arguments.out) as temporary:
+        temporary.write_bytes(data)
+    return errors
 
 
 def _compress_samples(arguments: argparse.Namespace) -> int:
@@ -197,7 +227,9 @@ def _compare(arguments: argparse.Namespace) -> int:
 def _cube_of(arguments: argparse.Namespace) -> Any:
     from mmweaver.recordings.read_recording import read_recording
 
-    return read_recording(
-        arguments.file, radar_of(arguments), layout=arguments.layout, axes=arguments.axes, iq_order=arguments.iq_order,
-        tx_order=arguments.tx_order, range_m=arguments.range_m, range_bins=arguments.range_bins,
-    ).cube  # fmt: skip
+    return read_recording(arguments.file, radar_of(arguments), **_how_read(arguments)).cube
+
+
+def _how_read(arguments: argparse.Namespace) -> dict[str, Any]:
+    names = ("layout", "axes", "iq_order", "tx_order", "range_m", "range_bins")
+    return {name: getattr(arguments, name) for name in names}

@@ -11,6 +11,7 @@ import numpy as np
 from mmweaver.compression.cell_choice import active_cells, active_power
 from mmweaver.compression.chunk import DecodedChunk, decode_chunk
 from mmweaver.compression.mmw_container import LISTED, MAX_RATIO, MmwFile, MmwHeader, header_for, pack_mmw
+from mmweaver.compression.mode_choice import EFFORTS
 from mmweaver.compression.old_chunk import decode_old_chunk
 from mmweaver.compression.rate_search import Progress, error_db, within_bytes, within_error
 from mmweaver.compression.segment import COARSER, Scale, SegmentEncoder
@@ -29,6 +30,7 @@ def compress_cube(
     num_bytes: int | None = None,
     quality_db: float | None = None,
     keep_noise: bool = False,
+    effort: str = "full",
     progress: Progress = lambda _: None,
     without: tuple[str, ...] = (),
 ) -> bytes:
@@ -36,13 +38,14 @@ def compress_cube(
 
     Cells without signal (less than 12 dB above the median power) may have 12 dB more error, and stay empty where they
     hold less than that; with `keep_noise` all cells have the same error. Where everything fits, the cube is stored
-    without loss. `without`: modes that are not tried, see `mode_choice`. Raises InputError where the cube cannot be
-    stored (values that are not finite, other axes than its radar's) or the request cannot be met.
+    without loss. `effort`: "full", or "fast" without a fit of scatterers. `without`: modes that are not tried, see
+    `mode_choice`. Raises InputError where the cube cannot be stored (values that are not finite, other axes than its
+    radar's) or the request cannot be met.
     """
     check_request(num_bytes, quality_db)
-    if num_bytes is not None and num_bytes * MAX_RATIO < cube.values.nbytes:
-        least = -(-cube.values.nbytes // MAX_RATIO)
-        raise InputError(f"{num_bytes} bytes are too few; {len(cube.values)} frames need at least {least}")
+    without = (*without, *modes_without(effort))
+    if num_bytes is not None:
+        check_ratio(cube, num_bytes)
     check_writable(cube)
     scale = scale_of(cube)
     segment = SegmentEncoder(cube, scale, coarser=1 if keep_noise else COARSER, without=without)
@@ -75,6 +78,20 @@ def check_request(num_bytes: int | None, quality_db: float | None) -> None:
         raise InputError(f"{num_bytes} bytes are too few; a .mmw file needs at least {LEAST_BYTES}")
     if quality_db is not None and not 1 <= quality_db <= 90:
         raise InputError(f"a quality of {quality_db:g} dB is not possible; choose 1 to 90")
+
+
+def modes_without(effort: str) -> tuple[str, ...]:
+    """Modes that an effort leaves out. Raises InputError for an unknown effort."""
+    if effort not in EFFORTS:
+        raise InputError(f"unknown effort {effort!r}; choose {' or '.join(EFFORTS)}")
+    return EFFORTS[effort]
+
+
+def check_ratio(cube: RadarCube, num_bytes: int) -> None:
+    """Raises InputError where readers would distrust so few bytes for a cube."""
+    if num_bytes * MAX_RATIO < cube.values.nbytes:
+        least = -(-cube.values.nbytes // MAX_RATIO)
+        raise InputError(f"{num_bytes} bytes are too few; {len(cube.values)} frames need at least {least}")
 
 
 def scale_of(cube: RadarCube) -> Scale:

@@ -1,19 +1,27 @@
 """Writes a long recording as a .mmw file piece by piece, at constant memory, and appends to one."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 
-from mmweaver.compression.mmw_codec import check_request, check_writable, encoded_chunks, scale_of
+from mmweaver.compression.mmw_codec import (
+    check_ratio,
+    check_request,
+    check_writable,
+    encoded_chunks,
+    modes_without,
+    scale_of,
+)
 from mmweaver.compression.mmw_container import MmwFile, MmwHeader, header_for, pack_header, pack_record
 from mmweaver.compression.segment import COARSER, SegmentEncoder
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
 from mmweaver.core.records import RadarCube
 
-FEWEST_BYTES_A_FRAME = 4
+HEADER_MARGIN = 24  # a period of many digits takes more bytes than that of one frame
 
 
 class MmwWriter:
@@ -26,6 +34,7 @@ class MmwWriter:
     def __init__(self, path: Path | str, *, append: bool = False):
         """Raises InputError where the file exists and `append` is not set, or cannot be continued."""
         self.path = Path(path)
+        self.last_chunks: list[bytes] = []  # of the piece written last
         self._header: MmwHeader | None = None
         self._last_s: float | None = None
         self._end = 0
@@ -36,7 +45,8 @@ class MmwWriter:
             if file.version < 3:
                 raise InputError(f"{path} is of version {file.version}, which cannot be appended to; compress it again")
             self._header, self._end = file.header, file.num_bytes - file.cut_short
-            self._last_s = float(file.frame_time_s[-1]) if file.records else None
+            self._last_s = float(file.records[-1].frame_time_s[-1])
+        self._first_end, self._joined_s = self._end, self._last_s
         try:
             self._stream = self.path.open("r+b" if self._header else "xb")
             self._stream.truncate(self._end)
@@ -51,14 +61,17 @@ class MmwWriter:
         num_bytes: int | None = None,
         quality_db: float | None = None,
         keep_noise: bool = False,
+        effort: str = "full",
     ) -> int:
-        """Encodes and writes a piece in `num_bytes` or to `quality_db`; returns the bytes written.
+        """Encodes and writes a piece in at most `num_bytes` or to `quality_db`; returns the bytes written.
 
-        Frame times continue the recording's. Raises InputError where the piece has another radar or scale, or cannot be
-        stored.
+        A new file's header is not counted. Frame times continue the recording's. Raises InputError where the piece has
+        another radar or scale, or cannot be stored.
         """
         check_request(num_bytes, quality_db)
         check_writable(cube)
+        if num_bytes is not None:
+            check_ratio(cube, num_bytes)
         if self._header is None:
             self._header = header_for(cube.config, cube.scale, cube.grid.frame_time_s)
             self._write(pack_header(self._header))
@@ -67,14 +80,46 @@ class MmwWriter:
             raise InputError(
                 f"{self.path} holds frames of another radar or scale; write these into a file of their own"
             )
-        segment = SegmentEncoder(cube, scale_of(cube), coarser=1 if keep_noise else COARSER)
-        chunks = encoded_chunks(segment, num_bytes=num_bytes, quality_db=quality_db)
+        without = modes_without(effort)
+        segment = SegmentEncoder(cube, scale_of(cube), coarser=1 if keep_noise else COARSER, without=without)
+        parts = segment.plan_for(num_bytes)
+        if num_bytes is not None:
+            num_bytes -= self._framing(cube.grid.frame_time_s, parts)
+        chunks = self.last_chunks = encoded_chunks(segment, num_bytes=num_bytes, quality_db=quality_db)
         before = self._end
         for chunk, part in zip(chunks, segment.parts, strict=True):
             time_s = cube.grid.frame_time_s[part.start : part.stop]
             self._write(pack_record(chunk, time_s, self._header, self._last_s))
             self._last_s = float(time_s[-1])
         return self._end - before
+
+    def following(self, cube: RadarCube, frames_before: int) -> RadarCube:
+        """A piece of a recording that follows the frames that the file held; `frames_before` of it are written."""
+        if self._joined_s is None or self._header is None:
+            return cube
+        first_s = self._joined_s + self._header.period_s * (1 + frames_before)
+        time_s = cube.grid.frame_time_s
+        return replace(cube, grid=replace(cube.grid, frame_time_s=first_s + time_s - time_s[0]))
+
+    def num_bytes_of_header(self, cube: RadarCube) -> int:
+        """Bytes of the header that the first piece brings; 0 where there is one."""
+        if self._header is not None:
+            return 0
+        return len(pack_header(header_for(cube.config, cube.scale, cube.grid.frame_time_s))) + HEADER_MARGIN
+
+    def undo(self) -> None:
+        """Takes back all that was written; a new file is empty then."""
+        self._stream.truncate(self._first_end)
+
+    def _framing(self, time_s: np.ndarray, parts: list[range]) -> int:
+        """Bytes of the records besides their chunks."""
+        assert self._header is not None
+        total, last_s = 0, self._last_s
+        for part in parts:
+            own = time_s[part.start : part.stop]
+            total += len(pack_record(b"", own, self._header, last_s))
+            last_s = float(own[-1])
+        return total
 
     def close(self) -> None:
         """Closes the file."""

@@ -16,6 +16,7 @@ FIT_STAGES, LAST_STEPS, LEAST_GAIN = 20, 6, 12.0
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
 FREE_MODES = ("transforms", "scatterers", "low rank")
+EFFORTS = {"full": (), "fast": ("scatterers",)}  # modes that are not tried: the fit takes most of the time
 
 
 class ModeChooser:

@@ -179,7 +179,7 @@ def _evened(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Pro
     if noise_step and with_noise < step:
         trial = _coded(segment, with_noise, 0, noise_step)
         noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded) - sum(one.front_bytes for one in samples)
-        noise_factor = noise_bytes / sum(one.at(noise_step, 1).num_bytes for one in segment.noise_samples())
+        noise_factor = noise_bytes / max(1.0, sum(one.at(noise_step, 1).num_bytes for one in segment.noise_samples()))
         noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor, noise_factor)
     if noise_step and with_noise < step:
         one = _finest(segment, num_bytes, with_noise, 0, progress, noise_step)

@@ -30,9 +30,15 @@ HEADROOM = 0.5  # share of full scale of the largest word where `write_bin` choo
 
 
 def read_bin(
-    path: Path | str, config: RadarConfig, *, iq_order: str = "iq", tx_order: tuple[int, ...] | None = None
+    path: Path | str,
+    config: RadarConfig,
+    *,
+    iq_order: str = "iq",
+    tx_order: tuple[int, ...] | None = None,
+    frames: slice = slice(None),
 ) -> AdcCube:
-    """Reads a recording; samples are in counts of the converter, so their scale is unknown (nan).
+    """Reads a recording, or a stretch of its frames; samples are in counts of the converter, so their scale is unknown
+    (nan).
 
     `tx_order` is the firing order of the recording where it differs from the configuration's; the returned
     configuration then has it, because the TDM timing depends on it. Raises InputError where the file cannot be read,
@@ -40,9 +46,15 @@ def read_bin(
     """
     config = _checked(config, iq_order, tx_order)
     path = Path(path)
-    num_frames = _num_frames(path, check_regular(path), config)
-    words = read_words(path, "<i2", count=num_frames * bytes_of_frame(config) // 2)
+    chosen = range(num_frames_of_bin(path, config))[frames]
+    frame_words = bytes_of_frame(config) // 2
+    words = read_words(path, "<i2", count=len(chosen) * frame_words, first=chosen.start * frame_words)
     return adc_of_words(words, config, iq_order=iq_order)
+
+
+def num_frames_of_bin(path: Path | str, config: RadarConfig) -> int:
+    """Number of frames of a recording. Raises InputError where it is empty or ends within a frame."""
+    return _num_frames(Path(path), check_regular(path), config)
 
 
 def bytes_of_frame(config: RadarConfig) -> int:

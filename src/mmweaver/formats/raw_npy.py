@@ -26,8 +26,10 @@ MAX_SAMPLE = 1e12  # whatever the unit; its powers and sums stay finite in float
 ORDER = ("frame", "loop", "tx", "rx", "sample")
 
 
-def read_adc_npy(path: Path | str, config: RadarConfig, axes: str) -> AdcCube:
+def read_adc_npy(path: Path | str, config: RadarConfig, axes: str, *, frames: slice = slice(None)) -> AdcCube:
     """Reads an array whose axes are named in order, such as "frame,loop,tx,rx,sample" or "loop,antenna,sample".
+
+    `frames`: a stretch of them; where "frame" is the first axis, nothing else is read.
 
     `tx` is in firing order (`config.tx_order`; of a coded radar its chirps); `antenna` (or `vrx`) = tx * num_rx + rx
     and `chirp` = loop * num_tx + tx, with that same tx. An axis that is not named has size 1. Real samples must be real
@@ -36,12 +38,17 @@ def read_adc_npy(path: Path | str, config: RadarConfig, axes: str) -> AdcCube:
     file's unit, so their scale is unknown (nan). Raises InputError where the file is not such an array.
     """
     names = [name.strip() for name in axes.split(",")]
-    values = read_npy(path)
+    values = read_npy(path, mapped=frames != slice(None))
     sizes = {"loop": config.num_loops, "tx": config.num_slots, "rx": config.num_rx, "sample": config.num_samples}
     parts = _checked_axes(Path(path), names, values.shape, sizes)
-    sizes["frame"] = values.shape[names.index("frame")] if "frame" in names else 1
     if not values.size:
         raise InputError(f"{path} is empty: its shape is {values.shape}")
+    if "frame" in names:
+        axis = names.index("frame")
+        values = values[(slice(None),) * axis + (frames,)]
+        sizes["frame"] = values.shape[axis]
+    else:
+        sizes["frame"] = 1
     values = _numbers(Path(path), values, config)
     values = values.reshape([sizes[part] for part in parts])
     missing = [name for name in ORDER if name not in parts]

@@ -18,7 +18,7 @@ from mmweaver.core.channel_calibration import ChannelCalibration
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.range_window import chosen_range
-from mmweaver.core.records import AdcCube, RadarCube
+from mmweaver.core.records import AdcCube, CubeGrid, RadarCube
 from mmweaver.dsp.cube import cropped, radar_cube, tdm_compensation
 from mmweaver.formats.capture_std import PACKETS, RADAR, is_capture, read_radar_capture
 from mmweaver.formats.dca1000 import read_bin
@@ -47,6 +47,7 @@ class Recording:
     iq_order: str | None = None  # of files of int16 pairs
     axes: str | None = None  # of a .npy, where they were given
     radar_source: str | None = None  # preset or file that the radar came from
+    first_frame: int = 0  # of the stretch that was read
     packets: PacketCapture | None = None  # of a capture folder or file
     calibration: ChannelCalibration | None = None  # whose errors were taken away
 
@@ -57,7 +58,8 @@ class Recording:
             return self.stored_cube
         if self.adc is None:
             raise ValueError("a recording needs samples or a cube")
-        return radar_cube(self.adc, compensate_tdm=self.compensate_tdm)
+        cube = radar_cube(self.adc, compensate_tdm=self.compensate_tdm)
+        return replace(cube, grid=CubeGrid.of(cube.config, len(cube.values), self.first_frame))
 
 
 def read_recording(
@@ -70,8 +72,9 @@ def read_recording(
     tx_order: tuple[int, ...] | None = None,
     range_m: tuple[float, float] | None = None,
     range_bins: tuple[int, int] | None = None,
+    frames: slice = slice(None),
 ) -> Recording:
-    """Reads a recording; which kind it is follows from the path.
+    """Reads a recording, or a stretch of its `frames`; which kind it is follows from the path.
 
     `range_m` (near, far) or `range_bins` (first, last) choose the range bins of its cube; by default those of a preset,
     or all of a .cfg.
@@ -83,7 +86,9 @@ def read_recording(
     "cubelearn". Raises
     InputError where the file cannot be read so.
     """
-    found = _read(Path(path), radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order)
+    if frames.step not in (None, 1) or (frames.start or 0) < 0:
+        raise ValueError("frames are a stretch that begins with a frame of the recording")
+    found = _read(Path(path), radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order, frames=frames)
     return _with_range(found, range_m, range_bins)
 
 
@@ -95,6 +100,7 @@ def _read(
     axes: str | None,
     iq_order: str | None,
     tx_order: tuple[int, ...] | None,
+    frames: slice,
 ) -> Recording:
     """The recording with the range bins of its radar."""
     if layout is not None and (layout not in LAYOUTS or axes is not None):
@@ -103,11 +109,11 @@ def _read(
         raise InputError(f"{path} does not exist; give a recording or a capture folder")
     if path.is_dir() and layout is None:
         given = {"--radar": radar, "--axes": axes, "--tx-order": tx_order, "--iq-order": iq_order}
-        found = _from_folder(path, radar, [name for name, value in given.items() if value is not None])
+        found = _from_folder(path, radar, [name for name, value in given.items() if value is not None], frames)
         if found is not None:
             return found
     if path.suffix == ".npz":
-        return _from_cube(path, radar)
+        return _stretch(_from_cube(path, radar), frames)
     if (path.suffix == ".npy" or path.is_dir()) and axes is None:
         layout = layout or detect_layout(path)
     source = radar if radar is not None or layout == "cubelearn" else layout
@@ -121,20 +127,38 @@ def _read(
         config = replace(config, tx_order=tx_order)
     source = None if isinstance(source, RadarConfig) else str(source)
     if layout is not None:
-        return _from_layout(path, config, layout, source)
-    found = _of_samples(path, config, axes, iq_order or "iq", source)
+        return _stretch(_from_layout(path, config, layout, source), frames)
+    found = _of_samples(path, config, axes, iq_order or "iq", source, frames)
     return _calibrated(found, None if source is None else read_ti_calibration(source))
 
 
-def _of_samples(path: Path, config: RadarConfig, axes: str | None, iq_order: str, source: str | None) -> Recording:
+def _of_samples(
+    path: Path, config: RadarConfig, axes: str | None, iq_order: str, source: str | None, frames: slice
+) -> Recording:
     """A .npy with named axes, the packets or the .bin of a DCA1000."""
-    found = Recording(path=path, files={"recording": path}, config=config, radar_source=source)
+    found = Recording(
+        path=path, files={"recording": path}, config=config, radar_source=source, first_frame=frames.start or 0
+    )
     if axes is not None:
-        return replace(found, adc=read_adc_npy(path, config, axes), axes=axes)
+        return replace(found, adc=read_adc_npy(path, config, axes, frames=frames), axes=axes)
     if path.suffix.lower() in PACKET_SUFFIXES:
         packets = read_pcap(path, config, iq_order=iq_order)
-        return replace(found, adc=packets.adc, packets=packets, iq_order=iq_order)
-    return replace(found, adc=read_bin(path, config, iq_order=iq_order), iq_order=iq_order)
+        found = Recording(path=path, files=found.files, config=config, radar_source=source)
+        return _stretch(replace(found, adc=packets.adc, packets=packets, iq_order=iq_order), frames)
+    return replace(found, adc=read_bin(path, config, iq_order=iq_order, frames=frames), iq_order=iq_order)
+
+
+def _stretch(found: Recording, frames: slice) -> Recording:
+    """Some frames of a recording that was read whole."""
+    if frames == slice(None):
+        return found
+    cube, adc = found.stored_cube, found.adc
+    if cube is not None:
+        grid = replace(cube.grid, frame_time_s=cube.grid.frame_time_s[frames])
+        cube = replace(cube, values=cube.values[frames], grid=grid)
+    if adc is not None:
+        adc = replace(adc, samples=adc.samples[frames])
+    return replace(found, stored_cube=cube, adc=adc, first_frame=frames.start or 0)
 
 
 def _calibrated(found: Recording, calibration: ChannelCalibration | None) -> Recording:
@@ -159,15 +183,17 @@ def as_config(radar: str | Path | RadarConfig) -> RadarConfig:
     return radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
 
 
-def _from_folder(path: Path, radar: str | Path | RadarConfig | None, given: list[str]) -> Recording | None:
+def _from_folder(
+    path: Path, radar: str | Path | RadarConfig | None, given: list[str], frames: slice
+) -> Recording | None:
     """A folder's recording; None for a folder of HuPR's frames. Raises InputError where it is none of them."""
     if (path / CUBE).is_file():
-        return _from_cube(path / CUBE, radar)
+        return _stretch(_from_cube(path / CUBE, radar), frames)
     if is_stream(path):
-        cube = read_stream_cube(path)
+        cube = read_stream_cube(path, frames)
         return Recording(path=path, files={"recording": path}, config=cube.config, stored_cube=cube)
     if is_capture(path):
-        return _from_capture(path, given)
+        return _stretch(_from_capture(path, given), frames)
     if any(path.glob("*.npy")):
         return None
     raise InputError(

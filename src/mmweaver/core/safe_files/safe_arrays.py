@@ -114,12 +114,14 @@ def is_sound_zip(path: Path | str) -> bool:
         return False
 
 
-def read_words(path: Path | str, dtype: str, *, count: int) -> np.ndarray:
-    """The first `count` numbers of a raw file, (count,). Raises InputError where it has fewer."""
-    needed = count * np.dtype(dtype).itemsize
+def read_words(path: Path | str, dtype: str, *, count: int, first: int = 0) -> np.ndarray:
+    """`count` numbers of a raw file, (count,), from number `first` on. Raises InputError where it has fewer."""
+    size = np.dtype(dtype).itemsize
+    needed = (first + count) * size
     if check_regular(path) < needed:
         raise InputError(f"{path} has fewer than {needed} bytes; is it truncated?")
     with open_regular(path) as file, foreign_errors(path, "unreadable ({reason})"):
+        file.seek(first * size)
         return _filled(file, np.dtype(dtype), (count,), "C")
 
 

@@ -1,0 +1,66 @@
+"""A recording of any length, read in pieces where its file allows."""
+
+from dataclasses import replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.records import RadarCube
+from mmweaver.core.safe_files.safe_arrays import read_npy
+from mmweaver.formats.dca1000 import num_frames_of_bin
+from mmweaver.recordings.read_recording import PACKET_SUFFIXES, read_recording
+from mmweaver.stream_folder import is_stream, num_frames_of_stream
+
+
+class RecordingPieces:
+    """The frames of a recording, read when they are asked for.
+
+    An adc_data.bin, a .npy whose first axis is "frame" and a folder of `generate --stream` are read in part; anything
+    else at once, at the first use.
+    """
+
+    def __init__(self, path: str | Path, radar: Any = None, **how: Any):
+        """Arguments as those of `read_recording`. Raises InputError where the first frame cannot be read so."""
+        self.path, self._radar, self._how = Path(path), radar, how
+        self._in_part = self._is_read_in_part(how.get("axes"))
+        self._first = self._read(slice(0, 1)) if self._in_part else None
+
+    @cached_property
+    def num_frames(self) -> int:
+        """Number of frames."""
+        if self._first is None:
+            return len(self._whole.values)
+        if self.path.is_dir():
+            return num_frames_of_stream(self.path)
+        if self.path.suffix == ".npy":
+            return len(read_npy(self.path, mapped=True))
+        return num_frames_of_bin(self.path, self._first.config)
+
+    @property
+    def num_values_a_frame(self) -> int:
+        """Complex numbers of a frame of the cube."""
+        one = self._whole if self._first is None else self._first
+        return one.values[0].size
+
+    def cube(self, frames: range) -> RadarCube:
+        """The range-Doppler cube of a stretch of frames. Raises InputError where they cannot be read."""
+        stretch = slice(frames.start, frames.stop)
+        if self._in_part:
+            return self._read(stretch)
+        whole = self._whole
+        grid = replace(whole.grid, frame_time_s=whole.grid.frame_time_s[stretch])
+        return replace(whole, values=whole.values[stretch], grid=grid)
+
+    def _read(self, frames: slice) -> RadarCube:
+        return read_recording(self.path, self._radar, frames=frames, **self._how).cube
+
+    @cached_property
+    def _whole(self) -> RadarCube:
+        return self._read(slice(None))
+
+    def _is_read_in_part(self, axes: str | None) -> bool:
+        if self.path.suffix == ".npy":
+            return axes is not None and axes.split(",")[0].strip() == "frame"
+        if self.path.is_dir():
+            return is_stream(self.path)
+        return self.path.is_file() and self.path.suffix.lower() not in (".npz", *PACKET_SUFFIXES)
