@@ -25,6 +25,7 @@ from tests import shape_checks
 from tests.cpu_summary import CpuSummary
 
 if TYPE_CHECKING:
+    from mmweaver.core.board import Board
     from mmweaver.core.radar_config import RadarConfig
     from mmweaver.core.records import RadarCube, RgbdPhoto, Scene
     from mmweaver.models.learned_paths import LearnedRoom
@@ -98,12 +99,14 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
     encode = Learned._encode
     encoded: dict[Any, tuple[Scene, LearnedRoom]] = {}
 
-    def encoded_once(self: Learned, scene: Scene, config: RadarConfig, background: RadarCube | None) -> LearnedRoom:
+    def encoded_once(
+        self: Learned, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
+    ) -> LearnedRoom:
         if self.weights is not None or background is not None:
-            return encode(self, scene, config, background)
-        key = id(scene), config
+            return encode(self, scene, config, background, board)
+        key = id(scene), config, None if board is None else board.digest
         if key not in encoded:
-            encoded[key] = scene, encode(self, scene, config, None)  # the scene is kept, so its id stays its own
+            encoded[key] = scene, encode(self, scene, config, None, board)  # the scene is kept, so its id stays its own
         return encoded[key][1]
 
     with pytest.MonkeyPatch.context() as patch:

@@ -62,8 +62,8 @@ def test_the_five_lines_of_the_readme(tmp_path: Path, monkeypatch: pytest.Monkey
 
 def test_the_files_and_keys_promised(walk: Path):
     assert {file.name for file in walk.iterdir()} == {
-        "radar.npz", "pose.npz", "points.npz", "adc_data.bin", "radar.json", "meta.json", "preview.png", "preview.gif",
-        "SHA256SUMS",
+        "radar.npz", "pose.npz", "points.npz", "adc_data.bin", "radar.json", "board.json", "meta.json", "preview.png",
+        "preview.gif", "SHA256SUMS",
     }  # fmt: skip
     radar = read_npz(walk / "radar.npz")
     assert radar["cube"].shape == (6, 64, 32, 12)

@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.board import Board
+from mmweaver.core.boards import IDEAL_BOARD, compensated
 from mmweaver.core.channel_calibration import ChannelCalibration
 from mmweaver.core.default_precision import single_precision
 from mmweaver.core.errors import InputError
@@ -52,6 +54,7 @@ from mmweaver.streaming import (
     check_chunk_frames,
     check_streams,
     point_detector,
+    takes_argument,
 )
 
 
@@ -209,6 +212,7 @@ class Weaver:
         subject: int | Sequence[int | None] | None = None,
         as_recorded: bool = False,
         keep_adc: bool = False,
+        board: str | Path | Board | None = None,
     ) -> Generation:
         """The signal of people doing in the room what the text says (one text a person), or what a `motion` shows.
 
@@ -223,12 +227,15 @@ class Weaver:
         `fps` defaults to the radar's own frame rate (10 for the awr1843); `at` is where the person starts, (x right,
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
         half a metre apart. `keep_adc` also returns the raw samples, which take several times the cube's memory; the
-        cube is the same without. The same seed gives the same bits. Raises InputError for a request that cannot be met.
+        cube is the same without. `board`, whose errors the signal has: "typical" (sampled by the
+        seed; the default without a background), "typical:N", "ideal", a board.json or a `Board` (docs/board.md); for
+        another board the room is prepared anew. The same seed gives the same bits. Raises InputError for a request that
+        cannot be met.
         """
         request = self.request(
             text, motion=motion, frames=frames, seconds=seconds, fps=fps, seed=seed, at=at,
             heading_rad=heading_rad, path_m=path_m, height_m=height_m, subject=subject,
-            as_recorded=as_recorded, keep_adc=keep_adc,
+            as_recorded=as_recorded, keep_adc=keep_adc, board=board,
         )  # fmt: skip
         return self.carry_out(request, room)
 
@@ -245,6 +252,7 @@ class Weaver:
         fps: float | None = None,
         chunk_frames: int = CHUNK_FRAMES,
         keep_adc: bool = False,
+        board: str | Path | Board | None = None,
     ) -> Iterator[StreamChunk]:
         """The signal of one person who does what one sentence after the other says, without a break between them.
 
@@ -260,18 +268,21 @@ class Weaver:
         check_streams(self.method, self.method_name)
         request = self.request(
             "a person stands", frames=1, fps=fps, seed=seed, at=at, heading_rad=heading_rad, height_m=height_m,
-            subject=subject, keep_adc=keep_adc,
+            subject=subject, keep_adc=keep_adc, board=board,
         )  # fmt: skip
         motion = ContinuousMotion(
             room.scene, frame_period_s=request.config.frame_period_s, range_window_m=request.range_window_m, seed=seed,
             start_m=request.people[0].start_m, heading_rad=heading_rad, height_m=height_m, subject=subject,
         )  # fmt: skip
-        meta = {"seed": seed, "points": self.points, "weights": self.weights, "inputs": room.inputs}
+        own, given = self.board_of(request, room)
+        meta = {
+            "seed": seed, "points": self.points, "weights": self.weights, "inputs": room.inputs, "board": own.meta(),
+        }  # fmt: skip
         streamer = Streamer(
             room=room, config=request.config, method=self.method, method_name=self.method_name,
             detect_points=point_detector(self.points, self.firmware), motion=motion, seed=seed,
             chunk_frames=check_chunk_frames(chunk_frames), needs_adc=needs_adc(self.points), keep_adc=keep_adc,
-            meta=meta,
+            meta=meta, board=given,
         )  # fmt: skip
         return streamer.chunks(sentences)
 
@@ -283,9 +294,11 @@ class Weaver:
         with stages("compose the motion"):
             people = compose_request(request, room.scene)
         motions = tuple(person.pose for person in people)
+        board, given = self.board_of(request, room)
         signal = self.method(
             room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
             keep_adc=request.keep_adc or needs_adc(self.points), stages=stages, background=room.background,
+            **given,
         )  # fmt: skip
         with stages("point cloud"):
             points = detect(signal.cube, signal.adc, self.points, self.firmware)
@@ -295,12 +308,31 @@ class Weaver:
             adc = self.calibration.recorded(adc)
         return Generation(
             cube=signal.cube, points=points, adc=adc, poses=poses,
-            motions=motions, scene=room.scene, meta=self._meta(request, room, people, poses, signal), stages=stages,
+            motions=motions, scene=room.scene, meta=self._meta(request, room, people, poses, signal, board),
+            stages=stages, board=board,
         )  # fmt: skip
 
+    def board_of(self, request: Request, room: Room) -> tuple[Board, dict[str, Any]]:
+        """The board of a signal, and the method's argument for it: none for an ideal one.
+
+        What the radar's own .cfg compensates is no error of the signal. Raises InputError for a method that knows no
+        boards, where one was asked for.
+        """
+        board = request.board_with(room.background)
+        if request.board is None and self.calibration is not None:
+            board = compensated(board)
+        if board.is_ideal:
+            return board, {}
+        if takes_argument(self.method, "board"):
+            return board, {"board": board}
+        if request.board is not None:
+            raise InputError(f"method {self.method_name!r} makes signals of an ideal board alone (docs/extend.md)")
+        return IDEAL_BOARD, {}
+
     def _meta(
-        self, request: Request, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...], signal: Signal
-    ) -> dict[str, Any]:
+        self, request: Request, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...],
+        signal: Signal, board: Board,
+    ) -> dict[str, Any]:  # fmt: skip
         """What meta.json says of a sequence: all that is needed to make it again."""
         return {
             "schema_version": META_VERSION,
@@ -310,6 +342,7 @@ class Weaver:
             "seed": request.seed, "frames": request.frames, "fps": 1 / request.config.frame_period_s, "at": request.at,
             "method": signal.method or self.method_name,
             "weights": self.weights,
+            "board": board.meta(),
             "points": self.points,
             "firmware": self.firmware if self.points == "firmware" else None,
             **radar_meta(request.config),

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mmweaver.core.board import Board
+from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
 from mmweaver.core.record_display import ShownByFacts
 from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, RgbdPhoto, Scene
@@ -13,7 +15,7 @@ from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import preview_figure
 from mmweaver.geometry.aligned_photo import AlignedPhoto
-from mmweaver.result_folder import file_digest, plain, save_results
+from mmweaver.result_folder import BOARD_FILE, file_digest, plain, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
 
 if TYPE_CHECKING:
@@ -77,6 +79,7 @@ class Generation(ShownByFacts):
     scene: Scene
     meta: dict[str, Any]
     stages: Stages
+    board: Board = IDEAL_BOARD
 
     def facts(self) -> dict[str, str]:
         """What was asked for and what came of it."""
@@ -89,6 +92,7 @@ class Generation(ShownByFacts):
             "ADC samples": "none" if self.adc is None else " x ".join(map(str, self.adc.samples.shape)),
             "method": str(self.meta["method"]),
             "radar": self.cube.config.name,
+            "board": self.board.name,
             "seed": str(self.meta["seed"]),
         }
 
@@ -189,6 +193,8 @@ class Generation(ShownByFacts):
             raise InputError(
                 "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
             )
+        if not self.board.is_ideal:
+            extra = {BOARD_FILE: self.board.to_json(), **(extra or {})}
         return save_results(
             out, self.figure_data, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order,
             overwrite=overwrite, stages=self.stages, pictures=pictures, extra=extra,

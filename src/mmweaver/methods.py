@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Generic, Protocol, TypeVar, runtime_checkable
 import numpy as np
 
 from mmweaver.core.assumptions import UsualAssumption
+from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
@@ -46,10 +47,11 @@ class Method(Protocol):
     """A scene and the people moving in it -> the signal.
 
     ADC samples are given where `keep_adc` asks for them. `background` is a recording by the same radar in the same
-    place with nobody present, whose static clutter replaces that of the scene. `first_frame` is only given for part of
-    a longer signal (`Weaver.stream`): the number of the part's first frame, in the time of the poses, which may begin
-    earlier. Noise must then be another in each part, and phases the same; a method without this argument makes no
-    streams.
+    place with nobody present, whose static clutter replaces that of the scene. `board`, whose errors the signal has, is
+    only given where it has some; a method without this argument makes signals of an ideal one. `first_frame` is only
+    given for part of a longer signal (`Weaver.stream`): the number of the part's first frame, in the time of the poses,
+    which may begin earlier. Noise must then be another in each part, and phases the same; a method without this
+    argument makes no streams.
     """
 
     def __call__(
@@ -63,6 +65,7 @@ class Method(Protocol):
         keep_adc: bool,
         stages: Stages,
         background: RadarCube | None = None,
+        board: Board | None = None,
         first_frame: int = 0,
     ) -> Signal: ...
 
@@ -71,7 +74,9 @@ class Physics:
     """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
 
     def __init__(self) -> None:
-        self._prepared = _Latest(lambda scene, config, background: Simulator(scene, config, background=background))
+        self._prepared = _Latest(
+            lambda scene, config, background, board: Simulator(scene, config, background=background, board=board)
+        )
 
     def __call__(
         self,
@@ -84,10 +89,11 @@ class Physics:
         keep_adc: bool,
         stages: Stages,
         background: RadarCube | None = None,
+        board: Board | None = None,
         first_frame: int = 0,
     ) -> Signal:
         with stages("prepare the room"):
-            simulator = self._prepared.get(scene, config, background)
+            simulator = self._prepared.get(scene, config, background, board)
         grid = CubeGrid.of(config, num_frames, first_frame)
         values = np.empty(grid.shape, np.complex64)
         samples = np.empty(_adc_shape(config, num_frames if keep_adc else 0), np.complex64)
@@ -133,12 +139,13 @@ class Learned:
         keep_adc: bool,
         stages: Stages,
         background: RadarCube | None = None,
+        board: Board | None = None,
         first_frame: int = 0,
     ) -> Signal:
         from mmweaver.models.learned_paths import FrameMotion
 
         with stages("encode the room"):
-            room = self._encoded.get(scene, config, background)
+            room = self._encoded.get(scene, config, background, board)
         with stages("weave the signal"):
             motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
             cube, adc = room.signal(motions, seed=seed, keep_adc=keep_adc, first_frame=first_frame)
@@ -146,30 +153,34 @@ class Learned:
         assumptions = (LEARNED_NOTE, *several, *_of_background(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
 
-    def _encode(self, scene: Scene, config: RadarConfig, background: RadarCube | None) -> "LearnedRoom":
+    def _encode(
+        self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
+    ) -> "LearnedRoom":
         from mmweaver.models.learned_paths import LearnedRoom
         from mmweaver.models.weights import load_weights, shipped_weights
 
         network, _ = load_weights(self.weights or shipped_weights())
-        return LearnedRoom(network, scene, config, background=background)
+        return LearnedRoom(network, scene, config, background=background, board=board)
 
 
 RoomT = TypeVar("RoomT")
 
 
 class _Latest(Generic[RoomT]):
-    """The latest room that was prepared, for as long as scene, radar and background stay the same."""
+    """The latest room that was prepared, for as long as scene, radar, background and board stay the same."""
 
-    def __init__(self, prepare: Callable[[Scene, RadarConfig, RadarCube | None], RoomT]):
+    def __init__(self, prepare: Callable[[Scene, RadarConfig, RadarCube | None, Board | None], RoomT]):
         self._prepare = prepare
-        self._key: tuple[Scene, RadarConfig, RadarCube | None] | None = None
+        self._kept: tuple[Scene, RadarCube | None] | None = None  # compared by identity, so they must live on
+        self._key: tuple[RadarConfig, str | None] | None = None
         self._room: RoomT | None = None
 
-    def get(self, scene: Scene, config: RadarConfig, background: RadarCube | None) -> RoomT:
-        key = self._key
-        if self._room is None or key is None or key[0] is not scene or key[1] != config or key[2] is not background:
-            self._room = self._prepare(scene, config, background)
-            self._key = scene, config, background
+    def get(self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None) -> RoomT:
+        key = config, None if board is None else board.digest
+        kept = self._kept
+        if self._room is None or kept is None or kept[0] is not scene or kept[1] is not background or key != self._key:
+            self._room = self._prepare(scene, config, background, board)
+            self._kept, self._key = (scene, background), key
         return self._room
 
 

@@ -4,8 +4,11 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
+from mmweaver.core.board import Board
+from mmweaver.core.boards import IDEAL_BOARD, find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.motion.language.plan import MotionPlan
@@ -49,6 +52,7 @@ class Request:
     heading_rad: float | None = None  # where the first person's body faces first, from +x towards +y
     as_recorded: bool = False  # the recorded positions are kept
     keep_adc: bool = False
+    board: Board | None = None  # None: a typical one of this seed, or with a background recording an ideal one
 
     @property
     def duration_s(self) -> float:
@@ -59,6 +63,12 @@ class Request:
         """Nearest and farthest distance at which a person is placed: within the range bins that the radar keeps."""
         near_m, far_m = float(self.config.range_m[0]), float(self.config.range_m[-1])
         return max(near_m, min(NEAREST_PERSON_M, far_m / 2)), far_m
+
+    def board_with(self, background: object | None) -> Board:
+        """The board that makes the signal."""
+        if self.board is not None:
+            return self.board
+        return find_board("typical", self.config, self.seed) if background is None else IDEAL_BOARD
 
     @property
     def text(self) -> str | list[str]:
@@ -98,6 +108,7 @@ def parse_request(
     as_recorded: bool = False,
     keep_adc: bool = False,
     needs_adc: bool = False,
+    board: str | Path | Board | None = None,
 ) -> Request:
     """Checks a request and parses its sentences; takes milliseconds, so it is called before any long work.
 
@@ -140,7 +151,7 @@ def parse_request(
     )
     return Request(
         people=people, config=config, frames=count, seed=seed, motion=motion, heading_rad=heading_rad,
-        as_recorded=as_recorded, keep_adc=keep_adc,
+        as_recorded=as_recorded, keep_adc=keep_adc, board=None if board is None else find_board(board, config, seed),
     )  # fmt: skip
 
 

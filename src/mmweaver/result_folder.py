@@ -21,12 +21,14 @@ from mmweaver.formats.dca1000 import write_bin
 from mmweaver.formats.npz_files import write_points_npz, write_pose_npz, write_radar_npz
 
 META_VERSION = 1
+BOARD_FILE = "board.json"
 FILES = {
     "radar.npz": "the cube, complex64 (frame, range, doppler, antenna), and its axes in m, m/s and s",
     "pose.npz": "22 joints of each person at each frame, in metres, in the radar's frame",
     "points.npz": "point cloud: frame, x, y, z in metres, radial velocity in m/s, SNR in dB",
     "adc_data.bin": "raw ADC samples as a DCA1000 writes them, int16",
     "radar.json": "the radar: chirp, array and frame; --radar reads it",
+    BOARD_FILE: "the board whose errors the signal has; --board reads it",
     "meta.json": "all that is needed to make this again, and the assumptions",
     "request.toml": "the options of this run; --config reads them",
     SUMS_FILE: "the sha256 of all these files; mmweaver verify checks them",

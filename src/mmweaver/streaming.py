@@ -86,6 +86,7 @@ class Streamer:
     needs_adc: bool  # for the point cloud
     keep_adc: bool
     meta: dict[str, Any]
+    board: dict[str, Any]  # the method's argument for it, if it is not ideal
 
     def chunks(self, sentences: Iterable[str | None]) -> Iterator[StreamChunk]:
         """Chunks for as long as sentences come. Raises InputError where the first sentence cannot be carried out."""
@@ -135,7 +136,7 @@ class Streamer:
         return self.method(
             self.room.scene, (part.pose,), self.config, num_frames=count, seed=self.seed,
             keep_adc=self.keep_adc or self.needs_adc, stages=Stages(), background=self.room.background,
-            first_frame=first,
+            first_frame=first, **self.board,
         )  # fmt: skip
 
     def _chunk(self, part: MotionPart, signal: Signal, first: int) -> StreamChunk:
@@ -159,13 +160,18 @@ class Streamer:
 
 def check_streams(method: Method, name: str) -> None:
     """Raises InputError for a method that cannot make a part of a longer signal."""
-    call = method if inspect.isfunction(method) else type(method).__call__
-    parameters = inspect.signature(call).parameters
-    if "first_frame" not in parameters and not any(one.kind is one.VAR_KEYWORD for one in parameters.values()):
+    if not takes_argument(method, "first_frame"):
         raise InputError(
             f"method {name!r} makes no streams, for it has no argument 'first_frame' (docs/extend.md); take weaver or"
             " physics"
         )
+
+
+def takes_argument(method: Method, name: str) -> bool:
+    """Whether a method knows an optional argument of `methods.Method`."""
+    call = method if inspect.isfunction(method) else type(method).__call__
+    parameters = inspect.signature(call).parameters
+    return name in parameters or any(one.kind is one.VAR_KEYWORD for one in parameters.values())
 
 
 def check_chunk_frames(chunk_frames: int) -> int:

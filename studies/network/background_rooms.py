@@ -41,7 +41,9 @@ def views_of(kind: str, *, frames: int = 20) -> list[FigureData]:
     recording = radar_cube(true_room.run((), num_frames=frames, seed=1).adc)
     room = Room(scene=reconstruct(made_room.photo()), inputs={}, seconds={})
     weaver = Weaver("weaver", AWR1843)
-    found = [weaver.generate(one, TEXT, frames=frames) for one in (room, room.with_background(recording))]
+    found = [
+        weaver.generate(one, TEXT, frames=frames, board="ideal") for one in (room, room.with_background(recording))
+    ]
     person = replace(found[0].motion, subject=found[0].motion.subject + OTHER_SKIN)
     truth = radar_cube(true_room.run(person, num_frames=frames, seed=2).adc)
     cubes = (truth, *(one.cube for one in found))

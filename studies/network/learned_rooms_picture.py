@@ -29,7 +29,7 @@ def views_of(folder: Path, text: str = TEXT, *, frames: int = FRAMES, seed: int 
     for name in METHODS:
         weaver = Weaver(name)
         room = weaver.read_room(next(folder.glob("rgb.*")), folder / "depth.png", folder / "camera.json")
-        made = weaver.generate(room, text, frames=frames, seed=seed, keep_adc=False)
+        made = weaver.generate(room, text, frames=frames, seed=seed, keep_adc=False, board="ideal")
         found[name] = FigureData(
             title=f"{folder.name.replace('_', ' ')}: {name}", cube=made.cube, points=made.points,
             aligned=AlignedPhoto.of(made.scene), poses=made.poses, motions=made.motions,

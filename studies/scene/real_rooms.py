@@ -72,7 +72,7 @@ def room_row(name: str, weaver: Weaver, room: Room) -> dict[str, Any]:
     for text in SENTENCES:
         for seed in SEEDS:
             try:
-                total.append(agreement(weaver.generate(room, text, seed=seed, keep_adc=False)))
+                total.append(agreement(weaver.generate(room, text, seed=seed, keep_adc=False, board="ideal")))
             except InputError:
                 refused += 1
     frames = sum(one.moving for one in total)

@@ -72,7 +72,7 @@ def draw_room(path: Path, name: str, weaver: Weaver, room: Room, sentences: tupl
         axes = figure.subplots(len(sentences), 4, width_ratios=(1.25, 1.25, 1.1, 1.1), squeeze=False)
         for seed, (row, text) in enumerate(zip(axes, sentences, strict=True)):
             try:
-                result = weaver.generate(room, text, seed=seed, keep_adc=False)
+                result = weaver.generate(room, text, seed=seed, keep_adc=False, board="ideal")
             except InputError as error:
                 refused.append(text)
                 _say(row, text, str(error))

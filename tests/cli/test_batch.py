@@ -36,7 +36,8 @@ def test_a_folder_for_each_and_more_of_them_later(texts: Path, tmp_path: Path, c
     assert [one["seed"] for one in json.loads(capsys.readouterr().out)["sequences"]] == [5, 6, 7, 8]
     assert (out / "0000" / "radar.npz").stat().st_mtime_ns == first.st_mtime_ns  # left as it was
     alone = tmp_path / "alone"
-    assert main([*SHORT, "--text", "a person stands", "--seed", "6", "--out", str(alone)]) == 0
+    same = ["--seed", "6", "--board", "typical:5"]  # one board for all
+    assert main([*SHORT, "--text", "a person stands", *same, "--out", str(alone)]) == 0
     cubes = [read_radar_npz(folder / "radar.npz").values for folder in (out / "0001", alone)]
     assert np.array_equal(cubes[0], cubes[1])
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.staging import is_being_written, staging_path
@@ -89,7 +90,7 @@ def test_a_room_written_in_the_meantime_is_kept(folder: Path, tmp_path: Path):
     again = tmp_path / "again"
     shutil.copytree(folder, again)
     before = (again / "office_000" / "zarr.json").stat().st_mtime_ns
-    generate_one((again, PLAN.rooms()[0], AWR1843, PLAN.num_frames, False))
+    generate_one((again, PLAN.rooms()[0], AWR1843, PLAN.num_frames, False, IDEAL_BOARD))
     assert (again / "office_000" / "zarr.json").stat().st_mtime_ns == before
     assert not list(again.glob(".office*"))
 

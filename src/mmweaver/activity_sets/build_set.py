@@ -17,6 +17,8 @@ from mmweaver.activity_sets.activity_list import ActivityList
 from mmweaver.activity_sets.leak_report import leak_report
 from mmweaver.activity_sets.matched_draws import Draw, PlannedSequence, matched_draws, places_of, shuffled
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
+from mmweaver.core.board import Board
+from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import check_output_folder, is_empty
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
@@ -56,6 +58,7 @@ class SetOptions:
     split_by: str = "subject"
     seed: int = 0
     with_iq: bool = True
+    board: str = "typical"  # of all sequences; sampled by the seed
 
     def __post_init__(self) -> None:
         for name, most in (("each", 100_000), ("subjects", 10_000), ("places", 1000)):
@@ -109,8 +112,12 @@ class SetBuilder:
         draw = one.draw
         return self.weaver.request(
             one.text, seconds=self.options.seconds, seed=draw.seed, at=draw.start_m, heading_rad=draw.heading_rad,
-            subject=draw.subject,
+            subject=draw.subject, board=self._board,
         )  # fmt: skip
+
+    @cached_property
+    def _board(self) -> Board:
+        return find_board(self.options.board, self.weaver.radar, self.options.seed)
 
     @property
     def _window_m(self) -> tuple[float, float]:

@@ -64,7 +64,7 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
     activities = read_activities(arguments.activities)
     given = {name: getattr(arguments, name) for name in ("each", "seconds", "subjects", "split_by")}
     options = SetOptions(
-        seed=arguments.seed, with_iq=not arguments.no_iq,
+        seed=arguments.seed, with_iq=not arguments.no_iq, board=arguments.board or "typical",
         **{name: value for name, value in given.items() if value is not None},
     )  # fmt: skip
     config = chosen_range(load_radar(radar_of(arguments) or "awr1843"), arguments.range_m, arguments.range_bins)

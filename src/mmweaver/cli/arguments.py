@@ -227,6 +227,15 @@ def radar_of(arguments: argparse.Namespace, default: str | None = None) -> str |
     return joined_radar(name, **given)
 
 
+def add_board_option(parser: Options) -> None:
+    """The option that chooses the board whose errors a signal has."""
+    parser.add_argument(
+        "--board", type=source, metavar="typical|ideal|FILE",
+        help="the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
+        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate",
+    )  # fmt: skip
+
+
 def add_points_option(parser: Options) -> None:
     """The option that chooses the point cloud."""
     parser.add_argument(

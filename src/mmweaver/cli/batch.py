@@ -115,8 +115,10 @@ class Batch:
         from mmweaver.result_folder import plain, radar_meta
 
         weaver = self.weaver
+        board = weaver.board_of(request, self.room)[0]
         same = {
             "frames": request.frames, "points": weaver.points, "weights": weaver.weights, "inputs": self.room.inputs,
+            "board": board.meta(),
         }  # fmt: skip
         method = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
         return plain({**same, **method, **radar_meta(request.config)})

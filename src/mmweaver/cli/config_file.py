@@ -16,7 +16,8 @@ NOT_WRITTEN = {
     "help", "help_all", "out", "overwrite", "json", "quiet", "verbose", "log_level", "config", "workers", "ray_address",
     "dry_run",
 }  # fmt: skip
-ALWAYS_WRITTEN = {"radar", "frames", "seed", "points", "method"}  # even where they are the default, which may change
+# even where they are the default, which may change
+ALWAYS_WRITTEN = {"radar", "frames", "seed", "points", "method", "board"}
 NOT_READ = {"help", "help_all", "config"}
 
 
@@ -160,4 +161,4 @@ def _is_file(path: Path, name: str) -> bool:
     """Whether a `source` is a file or folder and no name."""
     from mmweaver.core.presets import PRESETS
 
-    return name not in PRESETS and name not in ("builtin", "small") and path.exists()
+    return name not in PRESETS and name not in ("builtin", "small", "ideal", "typical") and path.exists()

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.cli.activity_set import add_activity_options, is_activity_set_asked, run_activity_set
-from mmweaver.cli.arguments import add_board_options, add_range_options, radar_of, source, whole
+from mmweaver.cli.arguments import add_board_option, add_board_options, add_range_options, radar_of, source, whole
 from mmweaver.cli.config_file import write_request
 from mmweaver.core.errors import InputError
 
@@ -42,6 +42,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "--radar", type=source, default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json"
     )
     add_range_options(content)
+    add_board_option(content)
     add_board_options(content)
     content.add_argument("--seed", type=whole, default=0, help="the same seed gives the same bits (default 0)")
     content.add_argument(
@@ -86,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
     plan = DatasetPlan(
         kinds=_kinds(arguments.rooms), lightings=_lightings(), num_layouts=arguments.layouts,
         sequences_a_room=arguments.sequences, num_frames=arguments.frames, radar=config.name, seed=arguments.seed,
-        geometry_only=arguments.geometry_only,
+        geometry_only=arguments.geometry_only, board=_board(arguments),
     )  # fmt: skip
     workers = max(1, arguments.workers)
     check_for_leaks(plan.rooms())
@@ -125,6 +126,12 @@ def run(arguments: argparse.Namespace) -> int:
             f" there) in {arguments.out}"
         )
     return 0
+
+
+def _board(arguments: argparse.Namespace) -> str:
+    """The board of the plan: a file by its whole path. Raises InputError where it cannot be read."""
+    name = arguments.board or ("ideal" if arguments.geometry_only else "typical")
+    return str(Path(name).absolute()) if Path(name).is_file() else name
 
 
 def _kinds(text: str | None) -> tuple[str, ...]:

@@ -39,6 +39,7 @@ EXAMPLES = """examples:
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --seconds 8 --radar mmmesh --out drink/ --bin
   mmweaver generate --demo --method physics --out traced/
+  mmweaver generate --demo --board ideal --out ideal/               # no errors of a board; --board board.json: of yours
   mmweaver generate --demo --texts sentences.txt --repeat 20 --no-pictures --out set/       # one sentence a line
   mmweaver generate --demo --stream --texts - --out live/                   # sentences from standard input, no end
   mmweaver process empty.bin --radar profile.cfg --out empty/       # your room with nobody in it, a few seconds
@@ -110,7 +111,7 @@ def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
         raise InputError(f"{out} is not empty; a stream needs a folder of its own")
     background = _background(arguments)
     weaver = _weaver(arguments, background)
-    meta = run_stream(arguments, weaver, _read_room(weaver, arguments, background), out)
+    meta = run_stream(arguments, weaver, _read_room(weaver, arguments, background), out, _board(arguments))
     if arguments.json:
         print(json.dumps(plain({"out": str(out), "frames": meta["frames"], "parts": meta["parts"]}), indent=2))
     elif not arguments.quiet:
@@ -153,7 +154,13 @@ def _inputs(arguments: argparse.Namespace) -> list[Path | None]:
 
 def _request_toml(arguments: argparse.Namespace, **instead: Any) -> str:
     radar = arguments.radar or (DEFAULT_RADAR if arguments.background is None else None)
-    return request_toml(arguments.parser, arguments, radar=radar, **instead)
+    return request_toml(arguments.parser, arguments, **{"radar": radar, "board": _board(arguments), **instead})
+
+
+def _board(arguments: argparse.Namespace) -> str | None:
+    """The board by name; a typical one with the number of the seed, the same for all sequences of a run."""
+    name = arguments.board or ("typical" if arguments.background is None else "ideal")
+    return f"typical:{arguments.seed % 2**31}" if name == "typical" else name
 
 
 def _weaver(
@@ -183,7 +190,7 @@ def _settings(arguments: argparse.Namespace) -> dict[str, Any]:
     """The arguments of `Weaver.request` that every sequence shares."""
     return {
         "frames": arguments.frames, "seconds": arguments.seconds, "fps": arguments.fps, "seed": arguments.seed,
-        "keep_adc": arguments.bin,
+        "keep_adc": arguments.bin, "board": _board(arguments),
     }  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from mmweaver.cli.arguments import (
     Options,
     Rare,
+    add_board_option,
     add_board_options,
     add_layout_options,
     add_output_options,
@@ -127,6 +128,7 @@ def _add_radar_options(radar: Options) -> None:
         help="preset, TI .cfg or radar.json (default awr1843, or what --background was recorded with)",
     )  # fmt: skip
     add_range_options(radar)
+    add_board_option(radar)
     add_board_options(radar, rare=True)
     length = radar.add_mutually_exclusive_group()
     length.add_argument(

@@ -42,7 +42,9 @@ def sentences(arguments: argparse.Namespace) -> Iterable[str]:
     return sentences_of(sys.stdin) if str(arguments.texts) == STANDARD_INPUT else read_texts(arguments.texts)
 
 
-def run_stream(arguments: argparse.Namespace, weaver: "Weaver", room: "Room", out: Path) -> dict[str, Any]:
+def run_stream(
+    arguments: argparse.Namespace, weaver: "Weaver", room: "Room", out: Path, board: str | None
+) -> dict[str, Any]:
     """Writes the stream into `out` until sentences end, --frames are reached or Ctrl+C; returns meta.json."""
     from mmweaver.result_folder import META_VERSION, radar_meta
     from mmweaver.stream_folder import StreamFolder
@@ -56,7 +58,7 @@ def run_stream(arguments: argparse.Namespace, weaver: "Weaver", room: "Room", ou
     folder: StreamFolder | None = None
     interrupted = False
     chunks = weaver.stream(
-        room, sentences(arguments), seed=arguments.seed, fps=arguments.fps, keep_adc=arguments.bin,
+        room, sentences(arguments), seed=arguments.seed, fps=arguments.fps, keep_adc=arguments.bin, board=board,
         chunk_frames=PART_FRAMES if most is None else min(PART_FRAMES, most), **placing,
     )  # fmt: skip
     try:

@@ -9,7 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.core.board import Board
+from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 
 PLAN_VERSION = 2
@@ -114,17 +117,25 @@ class DatasetPlan:
     seed: int = 0
     withheld: HeldOut = field(default_factory=HeldOut)
     geometry_only: bool = False  # signals are synthesised during training from stored geometry
+    board: str = "ideal"  # "typical": each room's signals are of another board
 
     def __post_init__(self) -> None:
         for name in ("num_layouts", "sequences_a_room", "num_frames"):
             if not 1 <= getattr(self, name) <= MOST:
                 raise InputError(f"{name} must be 1 to {MOST}, not {getattr(self, name)}")
+        if self.geometry_only and self.board != "ideal":
+            raise InputError("a set of geometry alone holds no signals, so it has no board; leave out one of them")
         if not self.kinds:
             raise InputError("a data set needs at least one kind of room")
 
     def rooms(self) -> list[RoomSpec]:
         """All rooms, sorted by kind."""
         return [self._room(kind, layout) for kind in self.kinds for layout in range(self.num_layouts)]
+
+    def board_of(self, room: RoomSpec, config: RadarConfig) -> Board:
+        """The board whose errors a room's signals have. Raises InputError."""
+        number = int(stream(self.seed, "dataset board", room.kind, room.layout).integers(2**31))
+        return find_board(self.board, config, number)
 
     def _room(self, kind: str, layout: int) -> RoomSpec:
         rng = stream(self.seed, "dataset", kind, layout)
@@ -163,6 +174,8 @@ class DatasetPlan:
         values = {"plan_version": PLAN_VERSION, **asdict(self)}
         if not self.geometry_only:  # older data sets do not have it
             del values["geometry_only"]
+        if self.board == "ideal":
+            del values["board"]
         return json.dumps(values, indent=1)
 
 
@@ -175,7 +188,8 @@ def command_of(plan: dict[str, Any], folder: Path) -> str:
         f"--layouts {plan['num_layouts']}", f"--sequences {plan['sequences_a_room']}", f"--frames {plan['num_frames']}",
         f"--radar {shlex.quote(radar)}", f"--seed {plan['seed']}",
     ]  # fmt: skip
-    return " ".join([*words, *(["--geometry-only"] if plan.get("geometry_only") else []), "--repair"])
+    board = [] if plan.get("geometry_only") else [f"--board {shlex.quote(str(plan.get('board', 'ideal')))}"]
+    return " ".join([*words, *(["--geometry-only"] if plan.get("geometry_only") else []), *board, "--repair"])
 
 
 def check_plan(plan: Any, place: Path) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import resolved
 from mmweaver.core.radar_config import RadarConfig
@@ -47,7 +48,8 @@ def generate_dataset(
     open_dataset(folder, plan, config)
     sweep(resolved(folder), again=True)
     missing = [room for room in rooms if not is_done(folder, room.name)]
-    tasks = ((folder, room, config, plan.num_frames, plan.geometry_only) for room in missing)
+    boards = {room.name: plan.board_of(room, config) for room in missing}
+    tasks = ((folder, room, config, plan.num_frames, plan.geometry_only, boards[room.name]) for room in missing)
     reports = []
     try:
         with _executor(workers, ray_address) as run:
@@ -60,7 +62,7 @@ def generate_dataset(
     return reports
 
 
-Task = tuple[Path, RoomSpec, RadarConfig, int, bool]
+Task = tuple[Path, RoomSpec, RadarConfig, int, bool, Board]
 
 
 def generate_one(task: Task) -> RoomReport:
@@ -69,9 +71,9 @@ def generate_one(task: Task) -> RoomReport:
 
     from mmweaver.datasets.room_generation import generate_room
 
-    folder, spec, config, num_frames, geometry_only = task
+    folder, spec, config, num_frames, geometry_only, board = task
     with threadpool_limits(limits=1):
-        room = generate_room(spec, config, num_frames, geometry_only=geometry_only)
+        room = generate_room(spec, config, num_frames, geometry_only=geometry_only, board=board)
     write_room(folder, room)
     return RoomReport(name=spec.name, num_sequences=len(room.sequences), refused=room.refused)
 

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mmweaver.core.board import Board
+from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CubeGrid, PoseSequence, RadarCube, RgbdPhoto, Scene
@@ -67,15 +69,15 @@ class GeneratedRoom:
 
 
 def generate_room(
-    spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False
+    spec: RoomSpec, config: RadarConfig, num_frames: int, *, geometry_only: bool = False, board: Board = IDEAL_BOARD
 ) -> GeneratedRoom:
-    """Generates a room and simulates all its sequences; about 0.3 CPU-seconds per sequence.
+    """Generates a room and simulates all its sequences with one board; about 0.3 CPU-seconds per sequence.
 
     With `geometry_only` only the geometry is traced, in a third of the time; signals are synthesised from it later.
     """
     room = make_room(spec.kind, spec.layout, spec.seed)
     true_scene = room.scene(spec.lighting)
-    simulator = Simulator(true_scene, config)
+    simulator = Simulator(true_scene, config, board=board)
     photo = room.photo(spec.lighting, noise=True)
     one = trace_sequence if geometry_only else generate_sequence
     made, refused = [], []

@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
+from scipy import fft
 from torch import Tensor
 
+from mmweaver.core.board import Board
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.seeding import stream
@@ -24,7 +26,8 @@ from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.apparent_paths import signal_points
-from mmweaver.paths.background import BackgroundRecording
+from mmweaver.paths.background import BackgroundRecording, check_recording
+from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.mean_echoes import MeanEchoes
@@ -105,20 +108,32 @@ class LearnedRoom:
         room_seed: int = 0,
         device: str = "cpu",
         background: RadarCube | None = None,
+        board: Board | None = None,
     ):
-        self.network, self.config, self.device = network.to(device), config, device
-        self.radar, self.renderer = MeanPower(config), CubeRenderer(config)
+        self.network, self.nominal, self.device = network.to(device), config, device
+        self.board = None if board is None or board.is_ideal else BoardEffects(board, config)
+        view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)
+        config = config if self.board is None else self.board.radar
+        self.config = config
+        self.radar, self.renderer = MeanPower(config), CubeRenderer(config, self.board)
         self.noise_power, self.background = self.radar.noise, None
         gain = np.repeat(config.tx_noise_gain / config.tx_noise_gain.mean(), config.num_rx)
-        self._noise_factor = (np.sqrt(gain) * tdm_compensation(config)).astype(np.complex64)  # (doppler, antenna)
-        view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)
+        # (doppler, antenna), or (range, doppler, antenna)
+        self._noise_factor = (np.sqrt(gain) * tdm_compensation(config)).astype(np.complex64)
+        if self.board is not None and self.board.has_filter:
+            share = (config.first_range_bin + np.arange(config.num_range_bins)) / config.num_samples
+            at_range = self.board.noise_gain(share).astype(np.float32)
+            self._noise_factor = at_range[:, None, None] * self._noise_factor
         with torch.inference_mode(), one_thread():
             self.code: SceneEncoding = network.encode_room(view[None].to(device))
             echoes = self.code.static[0].to("cpu")
             self.static = sample_static(echoes, config, room_seed)
             size = self.static.amplitude.abs()
             self._num_noticed = int((size > NOTICED * size[0]).sum())
+            if self.board is not None:
+                self.static = self.board.on_static(self.static)
             if background is not None:
+                check_recording(background, self.nominal)
                 expected = self.radar.maps(points_of(echoes, self.radar.response)).range_azimuth
                 self.background = BackgroundRecording.of(background, expected, self.radar)
                 self.static = self.background.conditioned(self.static, self.renderer)
@@ -126,6 +141,10 @@ class LearnedRoom:
             response = self.renderer.static(self.static)
             self.layer = response.layer() if self.background is None else self.background.static  # (range, antenna)
             self._noticed = response[: self._num_noticed]
+            if self.board is not None:
+                turn = 2j * math.pi / config.wavelength_m * self.static.length_m.mean(dim=(1, 2))
+                self._layer_rate = response.scaled(turn.to(torch.complex64)).layer()  # by the carrier's drift
+                self.layer = self.layer + self.renderer.leakage(self.board) if background is None else self.layer
         self._synthesis: tuple[AdcSynthesis, Tensor] | None = None
 
     def paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
@@ -223,16 +242,21 @@ class LearnedRoom:
         """
         with torch.inference_mode(), one_thread():
             paths = self._paths(motions)
-            grid = CubeGrid.of(self.config, len(paths.occluded), first_frame)
+            grid = CubeGrid.of(self.nominal, len(paths.occluded), first_frame)
+            frames, layer = first_frame + np.arange(len(paths.occluded)), self.layer
+            if self.board is not None:
+                paths = replace(paths, moving=self.board.on_moving(paths.moving, frames, seed))
+                drift = torch.from_numpy(self.board.drift(frames, seed)).to(torch.complex64)
+                layer = layer + drift[:, None, None] * self._layer_rate
             part = (first_frame,) if first_frame else ()
             noise = cell_noise(stream(seed, "scatterer field noise", *part), self.config, len(paths.occluded), 0)
             noise *= np.float32(math.sqrt(self.noise_power)) * self._noise_factor
             values = self.renderer.moving(paths.moving)
             lost = paths.occluded[:, : self._num_noticed].bool()
             occluded_layers = [self._noticed[row].layer() for row in lost]
-            self.renderer.add_static(values, self.layer - torch.stack(occluded_layers))
+            self.renderer.add_static(values, layer - torch.stack(occluded_layers))
             values += torch.from_numpy(noise)
-            cube = RadarCube(values=values.numpy(), grid=grid, config=self.config, scale=1.0)
+            cube = RadarCube(values=values.numpy(), grid=grid, config=self.nominal, scale=1.0)
             adc = self._adc(paths, replace(cube, values=noise), seed, first_frame) if keep_adc else None
         unit = 1.0 if self.background is None else self.background.unit
         if unit == 1.0:
@@ -244,7 +268,7 @@ class LearnedRoom:
         """Samples of the paths with noise whose own cube is `noise`, and white in what no cell holds."""
         config = self.config
         if self._synthesis is None:
-            synthesis = AdcSynthesis(config)
+            synthesis = AdcSynthesis(config, board=self.board)
             self._synthesis = synthesis, self._static_adc(synthesis)
         synthesis, static = self._synthesis
         frames, count = len(paths.occluded), len(synthesis.clock.segments)
@@ -255,17 +279,27 @@ class LearnedRoom:
             some = slice(first, min(first + ADC_FRAMES_AT_ONCE, frames))
             moving = paths.moving[some.start * count : some.stop * count]
             here = replace(paths, moving=moving, occluded=paths.occluded[some])
-            clean = synthesis.moving(moving) + (static - synthesis.occluded(here))[:, None]
+            still = static - synthesis.occluded(here)
+            if self.board is not None:
+                drift = self.board.drift(first_frame + np.arange(some.start, some.stop), seed)
+                still = still + torch.from_numpy(drift).to(torch.complex64)[:, None, None, None] * self._drift_rate
+            clean = synthesis.moving(moving) + still[:, None]
+            if self.board is not None:
+                clean[:, 0, self.board.first_slot] *= self.board.first_chirp
             clean = clean.numpy() + self._sample_noise(noise.values[some], first_frame + first, seed)
             samples[some] = clean if config.complex_samples else np.real(clean)
         count_sqrt_mw = config.adc_count_sqrt_mw if self.background is None else self.background.count_sqrt_mw
         quantise(torch.from_numpy(samples), count_sqrt_mw)
-        return AdcCube(samples=samples, config=config, scale=1.0)
+        return AdcCube(samples=samples, config=self.nominal, scale=1.0)
 
     def _static_adc(self, synthesis: AdcSynthesis) -> Tensor:
         """Samples (tx, rx, sample) of the room without people."""
+        if self.board is not None:
+            carrier_over_slope_s = self.config.centre_frequency_hz / self.config.chirp_slope_hz_per_s
+            self._drift_rate = carrier_over_slope_s * synthesis.static_rate(self.static)
         if self.background is None:
-            return synthesis.static(self.static)
+            static = synthesis.static(self.static)
+            return static if self.board is None else static + synthesis.leakage(self.board)
         return torch.from_numpy(static_samples(self.background.static.numpy(), self.config))
 
     def _sample_noise(self, cells: np.ndarray, first: int, seed: int) -> np.ndarray:
@@ -278,6 +312,9 @@ class LearnedRoom:
         white = stream(seed, "learned receiver noise", first).standard_normal(shape, dtype=np.float32)
         power_mw = config.noise_power_mw if self.background is None else self.background.sample_noise_mw
         white = white.view(np.complex64)[..., 0] * np.float32(math.sqrt(power_mw / 2))
+        if self.board is not None and self.board.has_filter:
+            gain = self.board.noise_gain(np.arange(config.num_samples) / config.num_samples).astype(np.float32)
+            white = np.asarray(fft.ifft(fft.fft(white) * gain))
         if not config.complex_samples:
             white = white.real.astype(np.complex64)
         missing = cells - cube_values(white, config)

@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
@@ -19,22 +20,32 @@ from mmweaver.paths.frame_clock import FrameClock, Segment
 from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
 from mmweaver.paths.transmit_elements import TransmitElements
 
+if TYPE_CHECKING:
+    from mmweaver.paths.board_effects import BoardEffects
+
 COARSE = 16  # samples of which the fast-time factor is made, and steps between them
 ROWS_AT_ONCE = 2048  # static paths, which bounds memory
 
 
 class AdcSynthesis:
-    """The ADC samples that paths leave in one radar, on one device. `tx` axes are slots where the radar is coded."""
+    """The ADC samples that paths leave in one radar, on one device. `tx` axes are slots where the radar is coded.
 
-    def __init__(self, config: RadarConfig, device: str | torch.device = "cpu"):
+    `board`: whose antennas and range bias they are recorded with; paths are given with its IF already.
+    """
+
+    def __init__(
+        self, config: RadarConfig, device: str | torch.device = "cpu", board: "BoardEffects | None" = None
+    ):  # fmt: skip
         self._elements = TransmitElements(config)
         self.config, self.device = self._elements.config, torch.device(device)
         self.clock = FrameClock(self.config)
-        self.array = ArrayPhases(self.config, self.device)
+        mixing = None if board is None or board.channels is None else self._elements.mixing(board.channels)
+        self.array = ArrayPhases(self.config, self.device, mixing)
         # how much a beat turns at each sample where its path is a metre longer
         per_m = 2j * math.pi * self.config.chirp_slope_hz_per_s / SPEED_OF_LIGHT_MPS
         since_middle_s = (np.arange(self.config.num_samples) - self.config.num_samples / 2) / self.config.sample_rate_hz
         self._turn_per_m = torch.from_numpy((per_m * since_middle_s).astype(np.complex64)).to(self.device)
+        self._extra_m = 0.0 if board is None else board.extra_length_m
         self._segments = [_SegmentFactors(segment, self.device) for segment in self.clock.segments]
 
     def moving(self, paths: Paths) -> Tensor:
@@ -73,8 +84,10 @@ class AdcSynthesis:
             slow = phasor(length_m / config.wavelength_m) * amplitude[:, rows].to(self.device)[..., None, None]
             late = slow * (length_m - mean_m[:, None, None]).float()
             left = torch.stack([slow, late]).flatten(3).transpose(2, 3).flatten(0, 2)  # (2 * set * tx * rx, path)
-            adc += (left @ fast_time(mean_m / SPEED_OF_LIGHT_MPS, 0.0, config)).view(adc.shape)
-        samples = self._elements.slots(adc[0].addcmul_(adc[1], self._turn_per_m), 1)
+            fast = fast_time((mean_m + self._extra_m) / SPEED_OF_LIGHT_MPS, 0.0, config)
+            adc += (left @ fast).view(adc.shape)
+        samples = self.array.mixed(adc[0].addcmul_(adc[1], self._turn_per_m), 1)
+        samples = self._elements.slots(samples, 1)
         return samples[0] if weight is None else samples
 
     def occluded(self, paths: ScenePaths) -> Tensor:
@@ -84,6 +97,13 @@ class AdcSynthesis:
             return self.static(paths.static, weight)
         # each frame on its own: its bits do not depend on which others are asked for
         return torch.cat([self.static(paths.static, weight[frame : frame + 1]) for frame in range(len(weight))])
+
+    def leakage(self, board: "BoardEffects") -> Tensor:
+        """Samples of a board's leakage, complex64 (tx, rx, sample); the same in every loop."""
+        length_m, amplitude = board.leakage
+        fast = fast_time(length_m / SPEED_OF_LIGHT_MPS, 0.0, self.config)  # (tap, sample)
+        adc = torch.tensordot(self._elements.of_pairs(amplitude), fast, dims=([0], [0]))
+        return self._elements.slots(adc, 0)
 
     def static_rate(self, paths: StaticPaths) -> Tensor:
         """How fast the samples of static paths change within a chirp, complex64 (tx, rx, sample) in sqrt(mW)/s."""
@@ -107,7 +127,8 @@ class AdcSynthesis:
         for index, block in enumerate(segment.segment.blocks):
             phases = torch.einsum("fpbtr,bl->fpltr", array.phase, between[:, block])
             later_m = (by_chirp_m[:, :, block] - by_block_m[..., index, None, None]).float()
-            fast = fast_time(by_block_m[..., index] / SPEED_OF_LIGHT_MPS, shift_hz[..., index], config)
+            delay_s = (by_block_m[..., index] + self._extra_m) / SPEED_OF_LIGHT_MPS
+            fast = fast_time(delay_s, shift_hz[..., index], config)
             for m in range(config.num_tx):
                 chirp = carrier[:, :, block, m, None]
                 slow = chirp * phases[:, :, :, m]  # (frame, path, loop, rx)
@@ -130,9 +151,13 @@ class _SegmentFactors:
 
 
 class ArrayPhases:
-    """Near-field phases of a radar's antennas relative to the array's centre."""
+    """Near-field phases of a radar's antennas relative to the array's centre.
 
-    def __init__(self, config: RadarConfig, device: torch.device):
+    `mixing` (tx * rx, tx * rx): what a board records of each pair, of what each would receive alone.
+    """
+
+    def __init__(self, config: RadarConfig, device: torch.device, mixing: Tensor | None = None):
+        self._mixing = None if mixing is None else mixing.to(device)
         self.wavelength_m = config.wavelength_m
         self.tx_m = _double(np.asarray(config.tx_position_m), device)
         self.rx_m = _double(np.asarray(config.rx_position_m), device)
@@ -145,7 +170,15 @@ class ArrayPhases:
             back = self._pairs(arrival_m[both], departure_m[both])
             pairs.phase[both] += back.phase
             pairs.excess[both] += back.excess
-        return pairs
+        return PairPhases(phase=self.mixed(pairs.phase, -2), excess=self.mixed(pairs.excess, -2))
+
+    def mixed(self, values: Tensor, axis: int) -> Tensor:
+        """Values of antenna pairs, transmitters on an axis and receivers on the next, as the board records them."""
+        if self._mixing is None:
+            return values
+        axis %= values.dim()
+        pairs = values.flatten(axis, axis + 1).movedim(axis, -1) @ self._mixing.T
+        return pairs.movedim(-1, axis).unflatten(axis, values.shape[axis : axis + 2])
 
     def _pairs(self, departure_m: Tensor, arrival_m: Tensor) -> "PairPhases":
         out_m, back_m = excess_m(departure_m, self.tx_m)[..., :, None], excess_m(arrival_m, self.rx_m)[..., None, :]

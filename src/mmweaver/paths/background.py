@@ -41,12 +41,11 @@ class BackgroundRecording:
 
     @classmethod
     def of(cls, recording: RadarCube, expected: Tensor, radar: MeanPower) -> "BackgroundRecording":
-        """Of a recording by the same radar.
+        """Of a recording by the same radar (`check_recording`).
 
         `expected` (range, azimuth) is the mean power that the scene's paths predict, which gives a recording its scale
-        where it has none. Raises InputError for another radar's recording, or one that is not finite.
+        where it has none. Raises InputError where they have nothing in common.
         """
-        check_recording(recording, radar.config)
         middle = radar.config.num_loops // 2
         mean = recording.values[:, :, middle].mean(axis=0, dtype=np.complex128)
         notes: list[str] = []

@@ -7,6 +7,7 @@ Reference: docs/radar_primer.md, equations 7 and 12.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
@@ -22,6 +23,9 @@ from mmweaver.paths.adc_synthesis import ArrayPhases, phasor, unpadded
 from mmweaver.paths.frame_clock import FrameClock, Segment
 from mmweaver.paths.paths import Paths, StaticPaths
 from mmweaver.paths.transmit_elements import TransmitElements
+
+if TYPE_CHECKING:
+    from mmweaver.paths.board_effects import BoardEffects
 
 FRAMES_AT_ONCE = 4  # stay in the cache
 
@@ -55,14 +59,18 @@ class StaticResponse(TensorRecord):
 
 
 class CubeRenderer:
-    """The cube that paths leave in one radar, on the CPU; values as `dsp.cube.radar_cube` gives them."""
+    """The cube that paths leave in one radar, on the CPU; values as `dsp.cube.radar_cube` gives them.
 
-    def __init__(self, config: RadarConfig):
+    `board`: whose antennas, range bias and first chirps it is recorded with; paths are given with its IF already.
+    """
+
+    def __init__(self, config: RadarConfig, board: "BoardEffects | None" = None):
         self._elements = TransmitElements(config)
         self._static_mixing = _static_mixing(config) if config.is_coded else None
         config = self._elements.config
         self.config, self.clock = config, FrameClock(config)
-        self._array = ArrayPhases(config, torch.device("cpu"))
+        mixing = None if board is None or board.channels is None else self._elements.mixing(board.channels)
+        self._array = ArrayPhases(config, torch.device("cpu"), mixing)
         self._range_kernel = WindowKernel(hann(config.num_samples))
         bins = config.first_range_bin + np.arange(config.num_range_bins)
         self._range_bin = torch.from_numpy(bins).float()
@@ -70,13 +78,19 @@ class CubeRenderer:
         self._range_sign = torch.from_numpy((-1.0) ** bins).float()
         weight = torch.from_numpy(doppler_weight(config.num_loops))
         compensation = torch.from_numpy(tdm_compensation(config))
+        self._extra_m = 0.0 if board is None else board.extra_length_m
         static = torch.fft.fft(weight)[:, None] * compensation
+        chirps = None if board is None else _chirps(config, board.first_chirp)
+        if chirps is not None:
+            by_antenna = (weight[:, None] * chirps).repeat_interleave(config.num_rx, dim=1)
+            static = torch.fft.fft(by_antenna, dim=0) * compensation
         self.static_bins = torch.nonzero(static.abs().amax(dim=1) > 1e-6)[:, 0]  # a Hann window has three
         self._static_doppler = static[self.static_bins]
         tx, rx = (torch.tensor(place, dtype=torch.float64) for place in (config.tx_position_m, config.rx_position_m))
         self._tx_bin, self._rx_bin = (place / (2 * config.range_resolution_m) for place in (tx, rx))
         fourier = torch.fft.fft(torch.eye(config.num_loops, dtype=torch.complex64)) * weight[:, None]  # (loop, doppler)
         by_tx = fourier * compensation[:, :: config.num_rx].T[:, None]  # (tx, loop, doppler)
+        by_tx = by_tx if chirps is None else by_tx * chirps.T[..., None]
         self._segments = [_SegmentDoppler.of(segment, by_tx) for segment in self.clock.segments]
 
     def moving(self, paths: Paths) -> Tensor:
@@ -101,7 +115,7 @@ class CubeRenderer:
         late = late * (rate_mps / (2 * config.range_resolution_m)).float()[..., None, None]
         antenna_bins = self._antenna_bins(paths)[:, :, None]
         shift_bin = rate_mps / config.wavelength_m * config.num_samples / config.sample_rate_hz  # by the Doppler shift
-        place = length_m / (2 * config.range_resolution_m) + shift_bin
+        place = (length_m + self._extra_m) / (2 * config.range_resolution_m) + shift_bin
         kernel, slope = self._range_kernel(self._range_bin - place.float()[..., None])  # (frame, path, range)
         kernel, slope = kernel * self._range_sign, slope * -self._range_sign
         for first in range(0, len(values), FRAMES_AT_ONCE):
@@ -114,7 +128,8 @@ class CubeRenderer:
 
     def _cycles(self, paths: Paths, length_m: Tensor, rate_mps: Tensor, time_s: Tensor) -> Tensor:
         """Phase at each chirp, in cycles, (frame, path, tx * loop), at times (tx * loop,)."""
-        residual = self.config.chirp_slope_hz_per_s * (length_m / SPEED_OF_LIGHT_MPS) ** 2 / 2
+        delay_s = (length_m + self._extra_m) / SPEED_OF_LIGHT_MPS
+        residual = self.config.chirp_slope_hz_per_s * delay_s**2 / 2
         motion = torch.stack([length_m, rate_mps, paths.acceleration_mps2 / 2], dim=-1) / self.config.wavelength_m
         motion[..., 0] -= residual
         return motion @ torch.stack([torch.ones_like(time_s), time_s, time_s**2])
@@ -131,16 +146,28 @@ class CubeRenderer:
         config = self.config
         length_m = self._elements.lengths(paths.length_m).flatten(1)  # (path, antenna)
         mean_m = length_m.mean(dim=1)
-        delay_s = mean_m / SPEED_OF_LIGHT_MPS
+        delay_s = (mean_m + self._extra_m) / SPEED_OF_LIGHT_MPS
         cycles = length_m / config.wavelength_m - (config.chirp_slope_hz_per_s * delay_s**2 / 2)[:, None]
         echo = phasor(cycles) * paths.amplitude.to(torch.complex64)[:, None]
         off_bin = ((length_m - mean_m[:, None]) / (2 * config.range_resolution_m)).float()
-        kernel, slope = self._range_kernel(
-            self._range_bin - (mean_m / (2 * config.range_resolution_m)).float()[:, None]
-        )
+        place = ((mean_m + self._extra_m) / (2 * config.range_resolution_m)).float()
+        kernel, slope = self._range_kernel(self._range_bin - place[:, None])
         at_range, range_slope = (part * self._range_sign for part in (kernel, slope))
-        echo, tilted = (self._elements.decoded(part) for part in (echo, -off_bin * echo))
+        echo, tilted = (self._decoded(part) for part in (echo, -off_bin * echo))
         return StaticResponse(at_range=at_range, range_slope=range_slope, echo=echo, tilted=tilted)
+
+    def _decoded(self, echo: Tensor) -> Tensor:
+        return self._elements.decoded(self._array.mixed(echo.unflatten(1, (self.config.num_tx, -1)), 1).flatten(1))
+
+    def leakage(self, board: "BoardEffects") -> Tensor:
+        """What a board's leakage leaves at zero Doppler, complex64 (range, antenna)."""
+        length_m, amplitude = board.leakage
+        config = self.config
+        delay_s = length_m / SPEED_OF_LIGHT_MPS
+        kernel, _ = self._range_kernel(self._range_bin - (length_m / (2 * config.range_resolution_m)).float()[:, None])
+        turn = phasor(-config.chirp_slope_hz_per_s * delay_s**2 / 2)
+        at_range = (kernel * self._range_sign).to(torch.complex64) * turn[:, None]
+        return at_range.T @ self._elements.decoded(self._elements.of_pairs(amplitude).flatten(1))
 
     def add_static(self, values: Tensor, layer: Tensor) -> None:
         """Adds static layers (range, antenna) or (frame, range, antenna) to cube values, in place."""
@@ -150,6 +177,13 @@ class CubeRenderer:
             values[:, :, self.static_bins] += mixed.flatten(-2)
             return
         values[:, :, self.static_bins] += layer[..., None, :] * self._static_doppler
+
+
+def _chirps(config: RadarConfig, first: complex) -> Tensor:
+    """What a board multiplies each chirp (loop, tx) by."""
+    chirps = np.ones((config.num_loops, config.num_tx), np.complex64)
+    chirps[0, config.tx_delay_s == 0] = first
+    return torch.from_numpy(chirps)
 
 
 def _static_mixing(config: RadarConfig) -> Tensor:

@@ -9,6 +9,7 @@ import torch
 from scipy.interpolate import CubicSpline
 
 from mmweaver.core.assumptions import UsualAssumption
+from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube, Scene
@@ -16,7 +17,8 @@ from mmweaver.dsp.cube import static_samples
 from mmweaver.motion.micro_motion import MicroMotion, MicroMotionSettings
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.apparent_paths import static_points
-from mmweaver.paths.background import BackgroundRecording
+from mmweaver.paths.background import BackgroundRecording, check_recording
+from mmweaver.paths.board_effects import BoardEffects
 from mmweaver.paths.body_model import DEFAULT_NUM_POINTS, ScatteringBody, body_of
 from mmweaver.paths.body_paths import BodyPaths
 from mmweaver.paths.cube_rendering import CubeRenderer
@@ -62,17 +64,22 @@ class Simulator:
 
     def __init__(
         self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0,
-        background: RadarCube | None = None,
+        background: RadarCube | None = None, board: Board | None = None,
     ):  # fmt: skip
-        """`background`: a recording by this radar with nobody present, whose static clutter and noise are then used.
+        """`board`: whose errors all signals have (default: those of `impairments` alone). `background`: a recording by
+        this radar with nobody present, whose static clutter and noise are then used.
 
         Raises InputError for the recording of another radar.
         """
         self.config = config
         self.impairments = impairments or Impairments()
-        self.synthesis = AdcSynthesis(config)
+        self.board = None if board is None or board.is_ideal else BoardEffects(board, config)
+        built = config if self.board is None else self.board.radar
+        self.synthesis = AdcSynthesis(built, board=self.board)
         self.clock = self.synthesis.clock
-        self.room = RayTracedRoom(scene, config, micro_seed)
+        self.room = RayTracedRoom(scene, built, micro_seed)
+        if self.board is not None:
+            self.room.paths = self.board.on_static(self.room.paths)
         self.background: BackgroundRecording | None = None
         with one_thread():
             if background is not None:
@@ -81,22 +88,29 @@ class Simulator:
                 self._static = torch.from_numpy(samples)
             else:
                 self._static = self.synthesis.static(self.room.paths)
-                self._static += self.synthesis.static(leakage_path(config, self.impairments))
+                self._static += self._leakage()
             self._static_rate = self.synthesis.static_rate(self.room.paths)
 
     def _receiver(self, seed: int) -> Receiver:
         """The radar's own, or that of the background recording."""
-        receiver = Receiver(self.config, self.impairments, seed)
+        receiver = Receiver(self.room.config, self.impairments, seed, self.board)
         if self.background is None:
             return receiver
         return receiver.with_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
 
+    def _leakage(self) -> torch.Tensor:
+        """Samples (tx, rx, sample) of the board's leakage, or of the usual one."""
+        if self.board is not None and len(self.board.board.leakage_range_m):
+            return self.synthesis.leakage(self.board)
+        return self.synthesis.static(leakage_path(self.config, self.impairments))
+
     def _use(self, recording: RadarCube) -> BackgroundRecording:
         """Gives the room's static paths the amplitudes that a recording makes most likely."""
-        radar, paths = MeanPower(self.config), self.room.paths
+        check_recording(recording, self.config)
+        radar, paths = MeanPower(self.room.config), self.room.paths
         expected = radar.maps(static_points(paths, radar.response)).range_azimuth
         background = BackgroundRecording.of(recording, expected, radar)
-        self.room.paths = background.conditioned(paths, CubeRenderer(self.config))
+        self.room.paths = background.conditioned(paths, CubeRenderer(self.room.config, self.board))
         return background
 
     @property
@@ -148,8 +162,18 @@ class Simulator:
     def samples(self, paths: ScenePaths, frames: np.ndarray, receiver: Receiver) -> torch.Tensor:
         """What the receiver records of paths in frames of these numbers, complex64 (frame, loop, tx, rx, sample)."""
         with one_thread():
-            static = self._static - self.synthesis.occluded(paths)
-            return receiver.receive(self.synthesis.moving(paths.moving), static, self._static_rate, frames.tolist())
+            static, moving = self._static - self.synthesis.occluded(paths), paths.moving
+            if self.board is not None:
+                static = static + self._drifted(frames, receiver.seed)
+                moving = self.board.on_moving(moving, frames, receiver.seed)
+            return receiver.receive(self.synthesis.moving(moving), static, self._static_rate, frames.tolist())
+
+    def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
+        """What the carrier's drift adds to the static samples of frames: (frame, tx, rx, sample)."""
+        assert self.board is not None
+        carrier_over_slope_s = self.config.centre_frequency_hz / self.config.chirp_slope_hz_per_s
+        drift = torch.from_numpy(self.board.drift(frames, seed) * carrier_over_slope_s).float()
+        return drift[:, None, None, None] * self._static_rate
 
     def _people(
         self,

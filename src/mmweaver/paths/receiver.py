@@ -6,6 +6,7 @@ Reference: docs/radar_primer.md, section 6.
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import torch
@@ -14,6 +15,9 @@ from torch import Tensor
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.paths.transmit_elements import TransmitElements
+
+if TYPE_CHECKING:
+    from mmweaver.paths.board_effects import BoardEffects
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,8 +48,10 @@ LEAKAGE_PATH_LENGTH_M = 0.05
 class Receiver:
     """One receiver's noise and errors. Each frame has a random stream of its own, so frames may come in any order."""
 
-    def __init__(self, config: RadarConfig, impairments: Impairments, seed: int):
-        self.config, self.impairments, self.seed = config, impairments, seed
+    def __init__(
+        self, config: RadarConfig, impairments: Impairments, seed: int, board: "BoardEffects | None" = None
+    ):  # fmt: skip
+        self.config, self.impairments, self.seed, self.board = config, impairments, seed, board
         self.channels = TransmitElements(config).with_weights(channel_errors(config, impairments))
         self.count_sqrt_mw = config.adc_count_sqrt_mw
         # rms of either part of a sample's noise, and of a sample's shift in time by phase noise
@@ -92,6 +98,8 @@ class Receiver:
             samples += delay_s[..., None, :] * static_rate
         if self.impairments.channel_gain_db or self.impairments.channel_phase_rad:
             samples *= torch.from_numpy(self.channels).to(samples.device)[:, :, None]
+        if self.board is not None:
+            samples[:, 0, self.board.first_slot] *= self.board.first_chirp
         if noise is not None:
             samples += noise
         if not self.config.complex_samples:
@@ -126,6 +134,8 @@ class Receiver:
     def noise(self, shape: tuple[int, ...], frame: int) -> np.ndarray:
         """Thermal noise of one frame's samples, complex64."""
         rng = stream(self.seed, "thermal noise", frame)
+        if self.board is not None and self.board.has_filter:
+            return filtered_noise(rng, shape, self.board) * np.float32(self.noise_sqrt_mw)
         noise = rng.standard_normal((*shape, 2), dtype=np.float32).view(np.complex64)[..., 0]
         noise *= np.float32(self.noise_sqrt_mw)
         return noise
@@ -150,6 +160,15 @@ def channel_errors(config: RadarConfig, impairments: Impairments) -> np.ndarray:
     gain_db, phase_rad = impairments.channel_gain_db * errors[0], impairments.channel_phase_rad * errors[1]
     each = 10 ** (gain_db / 20) * np.exp(1j * phase_rad)
     return (each[: config.num_tx, None] * each[None, config.num_tx :]).astype(np.complex64)
+
+
+def filtered_noise(rng: np.random.Generator, shape: tuple[int, ...], board: "BoardEffects") -> np.ndarray:
+    """Noise of power 2 before the IF filter, complex64 (..., sample): sampled in the spectrum, where the filter is."""
+    generator = torch.Generator().manual_seed(int(rng.integers(1 << 62)))  # three times as fast as numpy's
+    spectrum = torch.view_as_complex(torch.empty(*shape, 2).normal_(generator=generator))
+    gain = board.noise_gain(np.fft.fftfreq(shape[-1]) % 1.0) * np.sqrt(shape[-1])
+    spectrum *= torch.from_numpy(gain.astype(np.float32))
+    return torch.fft.ifft(spectrum).numpy()
 
 
 def _stacked(frames: list[np.ndarray]) -> np.ndarray:

@@ -69,6 +69,25 @@ class TransmitElements:
         apart = values.unflatten(-1, (len(self._tx), -1))
         return _summed(self._into_tx, apart, -2).flatten(-2)
 
+    def of_pairs(self, values: Tensor) -> Tensor:
+        """Values (..., tx, rx) of physical transmitters -> of elements (..., element, rx)."""
+        return values[..., self._tx, :] if self.is_coded else values
+
+    def mixing(self, channels: Tensor) -> Tensor:
+        """What mixes physical antennas (tx * rx, tx * rx) -> the same of elements (element * rx, element * rx).
+
+        All elements of a transmitter see the same wave, so what comes from it is taken from its first one.
+        """
+        if not self.is_coded:
+            return channels
+        num_tx, rx = len(self._tx.unique()), self.config.num_rx
+        apart = channels.reshape(num_tx, rx, num_tx, rx)
+        mixed = channels.new_zeros(len(self._tx), rx, len(self._tx), rx)
+        for transmitter in range(num_tx):
+            first = int((self._tx == transmitter).nonzero()[0, 0])
+            mixed[:, :, first] = apart[self._tx][:, :, transmitter]
+        return mixed.flatten(2).flatten(0, 1)
+
     def with_weights(self, channels: np.ndarray) -> np.ndarray:
         """Channel factors (tx, rx) -> (slot, rx): of simultaneous transmitters their weighted mean."""
         if not self.is_coded:

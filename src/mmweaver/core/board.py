@@ -1,0 +1,209 @@
+"""Board: what one radar board does to every signal, and its file, board.json.
+
+Fields, units and where each enters: docs/board.md. An ideal board has the defaults: it does nothing.
+"""
+
+import dataclasses
+import hashlib
+import json
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.safe_text import MEGABYTE, parse_json, read_text
+
+BOARD_VERSION = 1
+MAX_BYTES = 4 * MEGABYTE
+MOST_TAPS, MOST_ANTENNAS, MOST_SHARES = 256, 256, 4096
+# the largest size of each number: a board beyond it is a mistake
+LIMITS = {
+    "if_gain_db": 120.0, "if_phase_deg": 36e3, "channel_gain_db": 60.0, "channel_phase_deg": 720.0,
+    "coupling_real": 10.0, "coupling_imag": 10.0, "leakage_range_m": 20.0, "leakage_level_db": 300.0,
+    "leakage_phase_deg": 720.0, "elevation_phase_deg": 360.0, "range_bias_m": 2.0, "gain_db": 100.0,
+    "first_chirp_amplitude_percent": 50.0, "first_chirp_phase_mrad": 3200.0, "drift_ppm": 100.0,
+    "noise_figure_db": 100.0, "element_spacing_m": 1.0,
+}  # fmt: skip
+
+
+def _none() -> np.ndarray:
+    return np.zeros(0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Board:
+    """The errors of one board, as they are in what it records. Raises InputError for an impossible board.
+
+    Arrays may be empty: no such error. Antenna pairs are (tx, rx) in the radar's order, antennas tx * num_rx + rx.
+    """
+
+    name: str = "ideal"
+    made_from: str = ""  # which recordings, in words
+    notes: tuple[str, ...] = ()  # what could not be seen in them, and why
+    if_share: np.ndarray = field(default_factory=_none)  # (point,) IF frequency over the sample rate, rising, 0 to 1
+    if_gain_db: np.ndarray = field(default_factory=_none)  # (point,) of echoes and noise alike
+    if_phase_deg: np.ndarray = field(default_factory=_none)  # (point,)
+    channel_gain_db: np.ndarray = field(default_factory=_none)  # (tx, rx)
+    channel_phase_deg: np.ndarray = field(default_factory=_none)  # (tx, rx)
+    coupling_real: np.ndarray = field(default_factory=_none)  # (antenna, antenna): recorded = coupling @ alone
+    coupling_imag: np.ndarray = field(default_factory=_none)
+    leakage_range_m: np.ndarray = field(default_factory=_none)  # (tap,) range at which it appears
+    leakage_level_db: np.ndarray = field(default_factory=_none)  # (tap, tx, rx) received over transmitted power
+    leakage_phase_deg: np.ndarray = field(default_factory=_none)  # (tap, tx, rx)
+    elevation_phase_deg: float = 0.0  # of transmitters above or below the first one's row
+    range_bias_m: float = 0.0  # that everything appears too far
+    first_chirp_amplitude_percent: float = 0.0  # by how much a frame's first chirp is stronger
+    first_chirp_phase_mrad: float = 0.0
+    drift_ppm: float = 0.0  # rms over time of the carrier's relative error
+    gain_db: float = 0.0  # of echoes, over what the radar's power and gains give
+    noise_figure_db: float | None = None  # None: the radar's
+    element_spacing_m: float | None = None  # between antennas that the radar puts half a wavelength apart; None: so
+
+    def __post_init__(self) -> None:
+        for each in dataclasses.fields(self):
+            value = getattr(self, each.name)
+            if each.name in LIMITS and value is not None:
+                array = np.asarray(value, float)
+                if array.size and not (np.abs(array) <= LIMITS[each.name]).all():
+                    raise self._impossible(f"{each.name} must be within {LIMITS[each.name]:g}")
+                if isinstance(value, np.ndarray):
+                    object.__setattr__(self, each.name, np.round(array, 6))  # what its file holds
+        share, taps = self.if_share, self.leakage_range_m
+        same = [
+            ("if_share, if_gain_db and if_phase_deg", [share, self.if_gain_db, self.if_phase_deg]),
+            ("channel_gain_db and channel_phase_deg", [self.channel_gain_db, self.channel_phase_deg]),
+            ("coupling_real and coupling_imag", [self.coupling_real, self.coupling_imag]),
+            ("leakage_level_db and leakage_phase_deg", [self.leakage_level_db, self.leakage_phase_deg]),
+        ]
+        for names, arrays in same:
+            if len({one.shape for one in arrays}) > 1:
+                raise self._impossible(f"{names} must have one shape")
+        if share.ndim != 1 or len(share) > MOST_SHARES or not ((share >= 0) & (share <= 1)).all():
+            raise self._impossible(f"if_share must be a list of at most {MOST_SHARES} numbers from 0 to 1")
+        if (np.diff(share) <= 0).any():
+            raise self._impossible("if_share must rise")
+        if taps.ndim != 1 or len(taps) > MOST_TAPS or (taps < 0).any():
+            raise self._impossible(f"leakage_range_m must be a list of at most {MOST_TAPS} ranges from 0 on")
+        if len(taps) != len(self.leakage_level_db) or (len(taps) and self.leakage_level_db.ndim != 3):
+            raise self._impossible("leakage_level_db must be a list of (tx, rx) tables, one a leakage_range_m")
+        if self.element_spacing_m is not None and self.element_spacing_m <= 0:
+            raise self._impossible("element_spacing_m must be above 0")
+        _ = self.pairs
+
+    def _impossible(self, why: str) -> InputError:
+        return InputError(f"board {self.name!r} is impossible: {why}")
+
+    @property
+    def pairs(self) -> tuple[int, int] | None:
+        """(tx, rx) of its tables; None where it has none. Raises InputError where they differ."""
+        found = {table.shape[-2:] for table in (self.channel_gain_db, self.leakage_level_db) if table.size}
+        if len(found) > 1 or any(len(shape) != 2 for shape in found):
+            raise self._impossible("channel_gain_db and leakage_level_db must be tables of the same (tx, rx)")
+        pairs = next(iter(found), None)
+        if self.coupling_real.size:
+            rows, *columns = self.coupling_real.shape
+            if columns != [rows] or rows > MOST_ANTENNAS or (pairs is not None and rows != pairs[0] * pairs[1]):
+                raise self._impossible("coupling_real must be a square table of all antennas")
+        return pairs
+
+    @cached_property
+    def is_ideal(self) -> bool:
+        """Whether it does nothing."""
+        return set(self.to_values()) <= {"board_version", "name", "made_from", "notes"}
+
+    def check_fits(self, config: RadarConfig) -> None:
+        """Raises InputError for a radar with other antennas."""
+        pairs, antennas = self.pairs, len(self.coupling_real)
+        own = config.num_tx, config.num_rx
+        if pairs is not None and pairs != own:
+            raise InputError(
+                f"board {self.name!r} has {pairs[0]} x {pairs[1]} antenna pairs, radar {config.name!r} {own[0]} x"
+                f" {own[1]}; take the board of this radar (mmweaver calibrate)"
+            )
+        if antennas and antennas != own[0] * own[1]:
+            raise InputError(
+                f"board {self.name!r} couples {antennas} antennas, radar {config.name!r} has {own[0] * own[1]}"
+            )
+
+    # files ----------------------------------------------------------------------------------------------------------
+    def to_values(self) -> dict[str, Any]:
+        """The content of the JSON: fields that are not the default."""
+        values: dict[str, Any] = {"board_version": BOARD_VERSION}
+        ideal = Board()
+        for each in dataclasses.fields(self):
+            value = getattr(self, each.name)
+            if isinstance(value, np.ndarray):
+                if value.size:
+                    values[each.name] = value.tolist()
+            elif each.name == "name" or value != getattr(ideal, each.name):
+                values[each.name] = list(value) if isinstance(value, tuple) else value
+        return values
+
+    def to_json(self) -> str:
+        """JSON, one line a field; `from_json` restores the same Board."""
+        lines = [f"  {json.dumps(name)}: {json.dumps(value)}" for name, value in self.to_values().items()]
+        return "{\n" + ",\n".join(lines) + "\n}\n"
+
+    @cached_property
+    def digest(self) -> str:
+        """Of its content: equal boards have equal digests."""
+        return hashlib.sha256(self.to_json().encode()).hexdigest()
+
+    def meta(self) -> dict[str, Any]:
+        """What meta.json says of it: the name and all single numbers; tables are in board.json."""
+        tables = {each.name for each in dataclasses.fields(self) if isinstance(getattr(self, each.name), np.ndarray)}
+        return {name: value for name, value in self.to_values().items() if name not in tables}
+
+    @classmethod
+    def from_json(cls, text: str, place: str = "the board file") -> "Board":
+        """Reads the JSON of `to_json`. Raises InputError for anything else; an unknown key is an error."""
+        values = parse_json(text, place)
+        if not isinstance(values, dict) or "board_version" not in values:
+            raise InputError(f"{place} is no board file (it has no board_version); mmweaver calibrate makes one")
+        version = values.pop("board_version")
+        if version != BOARD_VERSION:
+            raise InputError(f"{place} has board_version {version!r}; this version reads {BOARD_VERSION}")
+        own = {each.name: each for each in dataclasses.fields(cls)}
+        if unknown := sorted(set(values) - set(own)):
+            raise InputError(f"{place}: unknown key {', '.join(unknown)[:100]}")
+        return cls(**{name: _read_value(value, name, place) for name, value in values.items()})
+
+    def save(self, path: Path) -> None:
+        """Writes board.json, whole or not at all."""
+        with atomic_file(path) as partial:
+            partial.write_text(self.to_json(), encoding="utf-8")
+
+
+def read_board(path: Path | str) -> Board:
+    """The board of a board.json. Raises InputError."""
+    return Board.from_json(read_text(path, max_bytes=MAX_BYTES), str(path))
+
+
+def _read_value(value: Any, name: str, place: str) -> Any:
+    if name in ("name", "made_from"):
+        if not isinstance(value, str) or len(value) > 1000:
+            raise InputError(f"{place}: {name} must be a short text")
+        return value
+    if name == "notes":
+        if not isinstance(value, list) or not all(isinstance(note, str) for note in value):
+            raise InputError(f"{place}: notes must be a list of texts")
+        return tuple(value)
+    is_table = name.startswith(("if_", "channel_", "coupling_", "leakage_"))
+    if not is_table and type(value) in (int, float):
+        return float(value)
+    try:
+        array = np.asarray(value, float) if is_table and isinstance(value, list) and _is_numbers(value) else None
+    except (ValueError, OverflowError):
+        array = None
+    if array is None:
+        raise InputError(f"{place}: {name} must be {'a table of numbers' if is_table else 'a number'}")
+    return array
+
+
+def _is_numbers(value: Any) -> bool:
+    return all(map(_is_numbers, value)) if isinstance(value, list) else type(value) in (int, float)

@@ -1,0 +1,131 @@
+"""Boards by name: ideal, a file, or a typical one, sampled from the spread that recordings show.
+
+Where each figure of the spread comes from: docs/board.md.
+"""
+
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.board import Board, read_board
+from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.seeding import stream
+
+IDEAL_BOARD = Board()
+BOARD_NAMES = ("typical", "ideal")  # typical:N is the N-th typical board
+LARGEST_NUMBER = 2**31 - 1
+WIDEST_BAND_HZ = 10e9  # of one board
+# spread between boards: mean and standard deviation, or lowest and highest
+IF_END_DB, IF_NEAR_DB = (-9.0, -4.5), (-5.0, -1.0)  # of power: last 5 % of the band, range bins 2 to 6
+IF_SHARES = (0.0, 2.0, 6.0), (0.9, 0.95, 1.0)  # range bins of the high-pass filter; shares of the low-pass filter
+CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.5, 6.0  # standard deviation of each transmitter's and each receiver's
+LEAKAGE_OVER_NOISE_DB = (35.0, 43.0)  # of a chirp's range bin
+LEAKAGE_PAIRS_DB = 4.5  # standard deviation over pairs: 10 to 20 dB from the weakest of 12 to the strongest
+SKIRT_END_M = (0.5, 1.5)  # where it has fallen to the noise of a frame's cell
+ELEVATION_PHASE_DEG = (4.0, 12.0)
+RANGE_BIAS_M = (0.0, 0.10)
+FIRST_CHIRP_PERCENT, FIRST_CHIRP_MRAD = (0.3, 0.7), (1.0, 3.0)
+DRIFT_PPM = (0.3, 0.9)
+
+
+def find_board(name: str | Path | Board, config: RadarConfig, seed: int = 0) -> Board:
+    """The board that is meant: "ideal", "typical" (sampled by the seed), "typical:N" or a board.json.
+
+    Raises InputError for another name, a file that is no board, and a board that does not fit the radar.
+    """
+    if isinstance(name, Board):
+        board = name
+    elif name == "ideal":
+        board = IDEAL_BOARD
+    elif isinstance(name, str) and (name == "typical" or name.startswith("typical:")):
+        board = typical_board(config, _number(name, seed))
+    elif Path(name).suffix.lower() == ".json" or Path(name).is_file():
+        board = read_board(name)
+    else:
+        raise InputError(f"unknown board {str(name)[:100]!r}; known: typical, typical:N, ideal, or a board.json")
+    board.check_fits(config)
+    return board
+
+
+def compensated(board: Board) -> Board:
+    """The board without what a radar's own calibration takes away: antenna errors and range bias."""
+    none = np.zeros(0)
+    return replace(
+        board, channel_gain_db=none, channel_phase_deg=none, coupling_real=none, coupling_imag=none,
+        elevation_phase_deg=0.0, range_bias_m=0.0,
+    )  # fmt: skip
+
+
+def _number(name: str, seed: int) -> int:
+    _, colon, digits = name.partition(":")
+    if not colon:
+        return seed % (LARGEST_NUMBER + 1)
+    if not (digits.isascii() and digits.isdecimal() and len(digits) <= 10 and int(digits) <= LARGEST_NUMBER):
+        raise InputError(f"boards are typical:0 to typical:{LARGEST_NUMBER}, not {name[:100]!r}")
+    return int(digits)
+
+
+@lru_cache(maxsize=16)
+def typical_board(config: RadarConfig, number: int) -> Board:
+    """The board of this number for a radar: errors as recordings of several boards show them."""
+    rng = stream(number, "typical board")
+
+    def between(limits: tuple[float, float]) -> float:
+        return float(rng.uniform(*limits))
+
+    tx, rx = config.num_tx, config.num_rx
+    if_share, if_gain_db = _filters(config, between(IF_NEAR_DB), between(IF_END_DB))
+    gain_db = rng.normal(0, CHANNEL_GAIN_DB, (tx, 1)) + rng.normal(0, CHANNEL_GAIN_DB, (1, rx))
+    phase_deg = rng.normal(0, CHANNEL_PHASE_DEG, (tx, 1)) + rng.normal(0, CHANNEL_PHASE_DEG, (1, rx))
+    sign = 1 if rng.random() < 0.5 else -1
+    leakage = _leakage(config, rng, between(LEAKAGE_OVER_NOISE_DB), between(SKIRT_END_M))
+    return Board(
+        name=f"typical:{number}", made_from="the spread of recorded boards, docs/board.md",
+        if_share=if_share, if_gain_db=if_gain_db, if_phase_deg=np.zeros(len(if_share)),
+        channel_gain_db=gain_db, channel_phase_deg=phase_deg,
+        leakage_range_m=leakage[0], leakage_level_db=leakage[1], leakage_phase_deg=leakage[2],
+        elevation_phase_deg=sign * between(ELEVATION_PHASE_DEG), range_bias_m=between(RANGE_BIAS_M),
+        first_chirp_amplitude_percent=between(FIRST_CHIRP_PERCENT),
+        first_chirp_phase_mrad=between(FIRST_CHIRP_MRAD), drift_ppm=between(DRIFT_PPM),
+        element_spacing_m=_spacing_m(config),
+    )  # fmt: skip
+
+
+def _spacing_m(config: RadarConfig) -> float | None:
+    """Half a wavelength at the middle of the board's band, where the radar knows that."""
+    low_hz, high_hz = config.frequency_limits_hz
+    return SPEED_OF_LIGHT_MPS / (low_hz + high_hz) if high_hz - low_hz < WIDEST_BAND_HZ else None
+
+
+def _filters(config: RadarConfig, near_db: float, end_db: float) -> tuple[np.ndarray, np.ndarray]:
+    """High-pass filter near range 0 and low-pass filter at the end of the band: shares of the band and gains in dB."""
+    near, end = IF_SHARES
+    used = 1.0 if config.complex_samples else 0.5  # of the sample rate
+    low = np.array(near) / config.num_samples
+    share = np.concatenate([low, [3 * low[-1]], used * np.array(end)])
+    # at bin 0, 2, 6, 18 and at 90, 95 and 100 % of the band: falls that give the recorded means
+    gain_db = np.array([2 * near_db, 1.4 * near_db, 0.6 * near_db, 0.0, 0.0, 0.55 * end_db, 1.5 * end_db])
+    return share, gain_db
+
+
+def _leakage(
+    config: RadarConfig, rng: np.random.Generator, level_db: float, end_m: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Ranges (tap,), levels (tap, tx, rx) in dB of the transmitted power, and phases in degrees.
+
+    The skirt falls exponentially and reaches the noise of a frame's cell at `end_m`.
+    """
+    step_m = config.range_resolution_m
+    taps = np.arange(max(1, min(40, round(end_m / step_m)))) * step_m
+    a_chirp_dbm = 10 * np.log10(config.noise_power_mw * 1.5 / config.num_samples)
+    whole_frame_db = 10 * np.log10(max(config.num_loops / 1.5, 1.0))
+    fall_db = (level_db + whole_frame_db) * taps / max(end_m, step_m)
+    shape = (len(taps), config.num_tx, config.num_rx)
+    pairs_db = rng.normal(0, LEAKAGE_PAIRS_DB, shape[1:])
+    levels = a_chirp_dbm - config.tx_power_dbm + level_db - fall_db[:, None, None] + pairs_db
+    levels = levels + np.where(taps > 0, -6.0, 0.0)[:, None, None]  # the skirt is of echoes of its own
+    return taps, levels, rng.uniform(-180, 180, shape)
