@@ -1,6 +1,7 @@
 """The examples run as they are."""
 
 import runpy
+import sys
 from pathlib import Path
 
 import pytest
@@ -19,5 +20,6 @@ def test_an_example_runs(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", [str(path)])
     runpy.run_path(str(path), run_name="__main__")
     assert capsys.readouterr().out
