@@ -1,6 +1,7 @@
 """The commands that write, as fault injection runs them: small, and with the same bits each time."""
 
 import contextlib
+import inspect
 import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -124,5 +125,5 @@ def small_training() -> Iterator[None]:
 
     if "small" not in ENCODERS:
         ENCODERS.register("small", SmallEncoder)
-    with mock.patch.dict(TrainingRecipe.__init__.__kwdefaults__, validation_batches=1):
+    with mock.patch.dict(inspect.unwrap(TrainingRecipe.__init__).__kwdefaults__, validation_batches=1):
         yield
