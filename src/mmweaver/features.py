@@ -14,6 +14,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, RadarCube
 from mmweaver.core.shapes import Array
 from mmweaver.dsp.cube import remove_static
+from mmweaver.dsp.doppler_spectrogram import cube_spectrogram
 from mmweaver.dsp.spectra import (
     azimuth_axis_rad,
     elevation_axis_rad,
@@ -21,7 +22,6 @@ from mmweaver.dsp.spectra import (
     range_doppler_power,
     range_elevation_power,
 )
-from mmweaver.dsp.windows import hann
 from mmweaver.formats.npz_files import POINT_COLUMNS
 
 DRAI_SIZE = 32
@@ -77,20 +77,7 @@ def micro_doppler_db(cube: RadarCube, *, window_loops: int | None = None) -> Flo
     width = loops if window_loops is None else window_loops
     if not min(4, loops) <= width <= loops:
         raise InputError(f"a window has 4 to {loops} loops of this radar, not {window_loops}")
-    moving = remove_static(cube)
-    if width == loops:
-        power = range_doppler_power(moving).sum(axis=1)
-        return _decibels(power, cube)
-    chirps = np.fft.ifft(np.fft.ifftshift(moving.values, axes=2), axis=2)  # under the cube's own window
-    own = np.maximum(hann(loops), 1e-3)[:, None]
-    chirps = chirps / own * own.mean()
-    window = hann(width)
-    rows = []
-    for start in range(0, loops - width + 1, max(width // 2, 1)):
-        part = chirps[:, :, start : start + width] * (window / window.sum() * loops)[:, None]
-        spectrum = np.fft.fftshift(np.fft.fft(part, axis=2), axes=2)
-        rows.append((np.abs(spectrum) ** 2).mean(axis=3).sum(axis=1))
-    power = np.stack(rows, axis=1)  # frame, window, doppler
+    power = cube_spectrogram(remove_static(cube), width, max(width // 2, 1)).sum(axis=2)
     return _decibels(power.reshape(-1, width), cube)
 
 

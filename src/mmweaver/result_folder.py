@@ -52,15 +52,13 @@ def save_results(
     stages: Stages | None = None,
     pictures: bool = True,
     extra: dict[str, str] | None = None,
-    page: FigureData | None = None,
     more: Callable[[Path], object] | None = None,
 ) -> dict[str, Any]:
     """Writes all files into the folder `out`, or none; returns the content of meta.json.
 
     Without `pictures` there are no previews. Where `adc` is given it is written as `adc_data.bin`, I or Q first as
-    `iq_order` says. `extra`: further text files, by name. `page`: what the pictures show instead of `view`. `more`
-    writes further files that FILES knows into a folder. Raises InputError where `out` holds other files and `overwrite`
-    is not set, or where it cannot be written.
+    `iq_order` says. `extra`: further text files, by name. `more` writes further files that FILES knows into a folder.
+    Raises InputError where `out` holds other files and `overwrite` is not set, or where it cannot be written.
     """
     stages = stages or Stages()
     with staged_folder(Path(out), overwrite=overwrite) as stage:
@@ -86,9 +84,9 @@ def save_results(
                 more(stage)
         if pictures:
             with stages("draw preview.png"):
-                draw_preview(page or view, stage / "preview.png")
+                draw_preview(view, stage / "preview.png")
             with stages("draw preview.gif"):
-                draw_animation(page or view, stage / "preview.gif")
+                draw_animation(view, stage / "preview.gif")
         names = {file.name for file in stage.iterdir()} | {"meta.json", SUMS_FILE}
         meta["files"] = {name: text for name, text in FILES.items() if name in names}
         meta["seconds"] = {name: round(seconds, 3) for name, seconds in stages.seconds.items()}

@@ -16,7 +16,8 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.dsp.points import point_cloud
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import draw_azimuth_with_clutter, draw_photo
+from mmweaver.figures.photo_panel import draw_photo
+from mmweaver.figures.power_panels import draw_azimuth_with_clutter, power_bar
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.generation import Room
@@ -70,6 +71,7 @@ def draw_rooms(path: Path, rooms: Sequence[Sequence[FigureData]]) -> None:
             row[0].set_title(views[0].title)
             for axes, view, title in zip(row[1:], views, TITLES, strict=True):
                 draw_azimuth_with_clutter(axes, view)
+                power_bar(axes, view)
                 axes.set_title(title)
         save_small(figure, path)
 

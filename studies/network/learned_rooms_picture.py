@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import draw_azimuth_with_clutter, draw_doppler_time, draw_photo
+from mmweaver.figures.photo_panel import draw_photo
+from mmweaver.figures.power_panels import draw_azimuth_with_clutter, draw_micro_doppler, power_bar
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.geometry.aligned_photo import AlignedPhoto
@@ -50,8 +51,9 @@ def draw_rooms(path: Path, rooms: Sequence[dict[str, FigureData]]) -> None:
             draw_photo(row[0], views[METHODS[0]])
             row[0].set_title(views[METHODS[0]].title.partition(":")[0])
             for index, name in enumerate(METHODS):
-                draw_doppler_time(row[1 + index], views[name])
+                draw_micro_doppler(row[1 + index], views[name])
                 draw_azimuth_with_clutter(row[3 + index], views[name])
+                power_bar(row[3 + index], views[name])
                 row[1 + index].set_title(f"{name}: Doppler over time")
                 row[3 + index].set_title(f"{name}: the room, from above")
         save_small(figure, path)

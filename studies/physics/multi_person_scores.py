@@ -48,6 +48,7 @@ UNKNOWN = {
 }
 CONFIG = {"radar": AWR1843.name, "intervals": "95 % of the mean over pairs of people, bootstrap"}
 NUM_FRAMES = 20
+SPAN_DB = 50.0  # of the pictures, below the peak
 SEEDS = tuple(range(16))
 NEAR_M = 0.5  # a point so near to a pelvis, on the floor, is that person's
 RESAMPLES = 2000
@@ -192,7 +193,7 @@ def draw(pairs: list[tuple[str, Pair]], path: Path) -> None:
 
     from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
     from mmweaver.figures.figure_data import Fan
-    from mmweaver.figures.theme import POWER_MAP, SPAN_DB, STYLE, person_colour
+    from mmweaver.figures.theme import POWER_MAP, STYLE, person_colour
 
     azimuth_rad = azimuth_axis_rad()
     with matplotlib.rc_context(STYLE):

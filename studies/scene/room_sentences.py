@@ -14,7 +14,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.figures.body_in_photo import BodyPainter, PhotoPixels
 from mmweaver.figures.body_rasteriser import bodies_of
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.figures.preview import draw_doppler_time, draw_range_time
+from mmweaver.figures.power_panels import draw_micro_doppler, draw_range_time, power_bar
 from mmweaver.figures.theme import STYLE
 from mmweaver.generate import Weaver
 from mmweaver.generation import Generation, Room
@@ -109,7 +109,8 @@ def _draw_row(row: "list[Axes]", text: str, result: Generation) -> None:
         poses=result.poses, motions=result.motions,
     )  # fmt: skip
     draw_range_time(row[2], view)
-    draw_doppler_time(row[3], view)
+    draw_micro_doppler(row[3], view)
+    power_bar(row[3], view)
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

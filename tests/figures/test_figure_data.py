@@ -1,4 +1,4 @@
-"""The maps that the pictures show: decibels, fans, thinning."""
+"""The maps that the pictures show: fans, thinning, slow movement, points below the floor."""
 
 from dataclasses import replace
 
@@ -6,12 +6,8 @@ import numpy as np
 import pytest
 
 from mmweaver.core.records import CubeGrid
-from mmweaver.figures.figure_data import MAX_FRAMES, Fan, FigureData, decibels
-
-
-def test_decibels_are_relative_to_the_peak_and_limited():
-    assert decibels(np.array([1.0, 10.0, 100.0, 0.0])).tolist() == pytest.approx([-20, -10, 0, -50])
-    assert decibels(np.zeros((2, 3))).tolist() == [[-50.0] * 3] * 2
+from mmweaver.figures.figure_data import MAX_FRAMES, Fan, FigureData
+from tests.figures.views import BREATHING_M, breathing_view
 
 
 def test_a_fan_puts_a_target_at_its_position_in_metres():
@@ -65,3 +61,23 @@ def test_moving_maps_show_the_walker_and_full_maps_the_static_target(view: Figur
 def test_azimuth_of_the_walker_is_left(view: FigureData):
     azimuth_rad = view.azimuth_rad[view.range_azimuth_moving.mean(axis=0).max(axis=0).argmax()]
     assert np.tan(azimuth_rad) == pytest.approx(-0.3 / 2.5, abs=0.06)
+
+
+def test_somebody_who_just_breathes_is_slow_and_a_walker_is_not(view: FigureData):
+    assert not view.is_slow
+    assert breathing_view(view).is_slow
+    assert not replace(breathing_view(view, 0.0)).is_slow
+
+
+def test_slow_movement_is_what_changes_over_frames(view: FigureData):
+    slow = breathing_view(view)
+    profile = slow.range_doppler_moving.max(axis=(0, 2))
+    assert slow.cube.grid.range_m[profile.argmax()] == pytest.approx(BREATHING_M, abs=0.05)
+    assert slow.slow_cells[0].range_m == pytest.approx(BREATHING_M, abs=0.05)
+
+
+def test_points_below_the_floor_are_known(view: FigureData):
+    assert not view.is_below_floor.any()
+    deep = replace(view.points, z_m=np.where(view.points.frame == 3, -1.5, 0.0))
+    assert np.flatnonzero(replace(view, points=deep).is_below_floor).tolist() == [3]
+    assert not replace(view, points=deep, aligned=None).is_below_floor.any()

@@ -39,9 +39,37 @@ def elevation_rows(position_m: AntennaPositions, wavelength_m: float) -> RowPair
     return max(found, key=lambda pair: (len(pair.lower), -pair.spacing_m)) if found else None
 
 
+def elevation_columns(position_m: AntennaPositions, wavelength_m: float) -> list[PerIndex]:
+    """Antennas of each of the tallest columns, from below; empty where no two antennas stand above one another.
+
+    >>> from mmweaver.core.presets import AWR1843
+    >>> [column.tolist() for column in elevation_columns(AWR1843.antenna_position_m, AWR1843.wavelength_m)]
+    [[2, 4], [3, 5], [8, 6], [9, 7]]
+    """
+    same_m = SAME_PLACE_WAVELENGTHS * wavelength_m
+    order = np.lexsort((position_m[:, 2], np.round(position_m[:, 0] / same_m)))
+    across_m = position_m[order, 0]
+    columns = []
+    for column in np.split(order, np.flatnonzero(np.diff(across_m) > same_m) + 1):
+        apart = np.concatenate([[True], np.diff(position_m[column, 2]) > same_m])  # antennas at one place count once
+        columns.append(column[apart])
+    tallest_m = max(float(np.ptp(position_m[column, 2])) for column in columns)
+    if tallest_m < same_m:
+        return []
+    return [column for column in columns if np.ptp(position_m[column, 2]) > tallest_m - same_m]
+
+
 def has_elevation(config: RadarConfig) -> bool:
-    """Whether this radar's array resolves elevation."""
+    """Whether this radar's array sees the elevation of a lone echo, by the phase between two rows."""
     return elevation_rows(config.antenna_position_m, config.wavelength_m) is not None
+
+
+def resolves_elevation(config: RadarConfig) -> bool:
+    """Whether a map over elevation shows more than an arc: columns of a wavelength, a beam of some 35 degrees."""
+    columns = elevation_columns(config.antenna_position_m, config.wavelength_m)
+    place_m = config.antenna_position_m
+    near_m = (1.0 - SAME_PLACE_WAVELENGTHS) * config.wavelength_m
+    return any(len(column) > 2 and np.ptp(place_m[column, 2]) >= near_m for column in columns)
 
 
 def azimuth_resolution_rad(config: RadarConfig) -> float:

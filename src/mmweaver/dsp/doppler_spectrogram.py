@@ -12,19 +12,21 @@ from jaxtyping import Float
 from scipy import fft
 
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import AdcCube
+from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.dsp.cube import remove_static_adc
-from mmweaver.dsp.windows import SHORTEST_HANN, hann
+from mmweaver.dsp.spectra import range_doppler_power
+from mmweaver.dsp.windows import SHORTEST_HANN, doppler_window, hann
 
 LONGEST_WINDOW = 64  # loops
 OVERLAP = 4  # windows a window length
+SMALLEST_WEIGHT = 1e-3  # of a Doppler window that is undone: a Hann window is blind to the first loop
 SIGNAL_DB = 15.0  # range bins this far below the strongest still count
 FRAMES_A_BLOCK = 20
 
 
 @dataclass(frozen=True, kw_only=True)
 class MicroDoppler:
-    """A spectrogram: power (time, doppler), mean of the antennas and sum of the range bins that hold movement."""
+    """A spectrogram: power (time, doppler), mean of the antennas, over the range bins that hold movement."""
 
     power: Float[np.ndarray, "time doppler"]
     time_s: Float[np.ndarray, " time"]  # middle of each window
@@ -71,6 +73,45 @@ def micro_doppler(adc: AdcCube, *, window_loops: int | None = None) -> MicroDopp
         power=power.reshape(len(bins), width), time_s=(frame_s[:, None] + middle_s).ravel(),
         radial_velocity_mps=(np.arange(width) - width // 2) * step_mps,
         range_m=(first_bin * config.range_resolution_m, last_bin * config.range_resolution_m),
+    )  # fmt: skip
+
+
+def cube_spectrogram(cube: RadarCube, width: int, hop: int) -> Float[np.ndarray, "frame window range doppler"]:
+    """Power of windows of `width` loops, `hop` loops apart within each frame, mean of the antennas.
+
+    The cube's own Doppler window is undone first; a windowed tone of amplitude a shows a^2.
+    """
+    loops = cube.values.shape[2]
+    if width == loops:
+        return range_doppler_power(cube)[:, None]
+    own, window = (doppler_window(count) / doppler_window(count).sum() for count in (loops, width))
+    own = np.maximum(own, SMALLEST_WEIGHT * own.max()).astype(np.float32)[:, None]
+    starts = np.arange(0, loops - width + 1, hop)
+    power = np.empty((len(cube.values), len(starts), cube.values.shape[1], width))
+    for frame, values in enumerate(cube.values):
+        chirps = np.asarray(fft.ifft(np.fft.ifftshift(values, axes=1), axis=1)) / own  # (range, loop, antenna)
+        for index, start in enumerate(starts):
+            run = chirps[:, start : start + width] * window.astype(np.float32)[:, None]
+            spectrum = np.fft.fftshift(np.asarray(fft.fft(run, axis=1)), axes=1)
+            power[frame, index] = (np.abs(spectrum) ** 2).mean(axis=2)
+    return power
+
+
+def micro_doppler_of_cube(cube: RadarCube) -> MicroDoppler:
+    """The spectrogram of a cube, of the strongest range bin at each time and velocity; windows as `micro_doppler` has.
+
+    Clutter is taken away beforehand (`dsp.cube.remove_static`).
+    """
+    config = cube.config
+    width = min(config.num_loops, LONGEST_WINDOW)
+    hop = max(1, width // OVERLAP)
+    power = cube_spectrogram(cube, width, hop).max(axis=2)
+    middle_s = (np.arange(power.shape[1]) * hop + width / 2) * config.loop_period_s
+    step_mps = config.wavelength_m / (2 * width * config.loop_period_s)
+    return MicroDoppler(
+        power=power.reshape(-1, width), time_s=(cube.grid.frame_time_s[:, None] + middle_s).ravel(),
+        radial_velocity_mps=(np.arange(width) - width // 2) * step_mps,
+        range_m=(float(cube.grid.range_m[0]), float(cube.grid.range_m[-1])),
     )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ from jaxtyping import Bool, Complex, Float
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import RadarCube
 from mmweaver.core.shapes import PerAngle, PerIndex, RangeAngleMap, RangeDopplerMap
-from mmweaver.core.virtual_array import azimuth_row, elevation_rows, has_elevation
+from mmweaver.core.virtual_array import azimuth_row, elevation_columns, has_elevation
 
 __all__ = [
     "azimuth_axis_rad", "elevation_axis_rad", "has_elevation", "moving_doppler", "noise_power", "range_azimuth_power",
@@ -62,19 +62,18 @@ def range_azimuth_power(cube: RadarCube, azimuth_rad: PerAngle, *, moving_only: 
 
 
 def range_elevation_power(cube: RadarCube, elevation_rad: PerAngle, *, moving_only: bool = False) -> RangeAngleMap:
-    """Beamforming between two rows, power summed over Doppler and averaged over columns, (frame, range, elevation).
+    """Beamforming within columns, power summed over Doppler and averaged over columns, (frame, range, elevation).
 
-    Each column of the two rows that share columns is beamformed by itself, so the target's azimuth does not matter;
-    two rows give a wide beam. Raises InputError for an array without elevation (see `has_elevation`).
+    Each of the tallest columns is beamformed by itself, so the target's azimuth does not matter; columns of two
+    antennas give a wide beam. Raises InputError for an array without elevation (see `has_elevation`).
     """
-    pair = elevation_rows(cube.grid.antenna_position_m, cube.grid.wavelength_m)
-    if pair is None:
+    columns = elevation_columns(cube.grid.antenna_position_m, cube.grid.wavelength_m)
+    if not columns:
         raise InputError(
             f"the array of radar {cube.config.name!r} has no column of two antennas, so it has no elevation;"
             " use a radar with an elevated transmitter, such as awr1843"
         )
     direction = np.stack([np.zeros_like(elevation_rad), np.cos(elevation_rad), np.sin(elevation_rad)])
-    columns = [np.array(column) for column in zip(pair.lower, pair.upper, strict=True)]
     return _beam_power(cube, columns, direction, moving_only)
 
 

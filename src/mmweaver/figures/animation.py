@@ -9,8 +9,8 @@ import numpy as np
 
 from mmweaver.figures.body_in_photo import BodyPainter, PhotoPixels
 from mmweaver.figures.body_rasteriser import bodies_of
-from mmweaver.figures.figure_data import Fan, FigureData, decibels
-from mmweaver.figures.theme import POWER_MAP, SPAN_DB, STYLE, label_axes, person_colour, shortened
+from mmweaver.figures.figure_data import Fan, FigureData
+from mmweaver.figures.theme import POWER_MAP, STYLE, label_axes, person_colour, shortened
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ def render_pictures(view: FigureData) -> list[np.ndarray]:
     for index in range(len(view.frames)):
         pixels[:] = background
         shown = (mover.cells[index] for mover in movers if mover.cells is not None)
-        for place, values_db in zip(maps, shown, strict=True):
-            place.paint(pixels, values_db)
+        for place, shares in zip(maps, shown, strict=True):
+            place.paint(pixels, shares)
         for mover in movers:
             if mover.paint is not None:
                 mover.paint(pixels, index)
@@ -109,9 +109,9 @@ class CellsOnScreen:
         )
         return cls(place.rows, place.columns, row_cell, column_cell, colormaps[POWER_MAP](np.arange(256), bytes=True))
 
-    def paint(self, pixels: np.ndarray, values_db: np.ndarray) -> None:
-        """Writes a map (up, right) in dB into the picture (height, width, 4); nan leaves the picture as it is."""
-        power = np.rint((values_db + SPAN_DB) * (255 / SPAN_DB))
+    def paint(self, pixels: np.ndarray, shares: np.ndarray) -> None:
+        """Writes a map (up, right), 0 to 1, into the picture (height, width, 4); nan leaves the picture as it is."""
+        power = np.rint(255 * shares)
         is_empty = np.isnan(power)
         level = np.where(is_empty, 0, np.clip(power, 0, 255)).astype(np.uint8)
         place = pixels[self.rows, self.columns]
@@ -128,7 +128,7 @@ class Mover:
 
     axes: Any  # Axes or None
     update: Callable[[int], list[Any]]  # the artists to draw at a frame
-    cells: np.ndarray | None = None  # (frame, up, right) in dB
+    cells: np.ndarray | None = None  # (frame, up, right), 0 to 1 on the scale of decibels
     paint: Callable[[np.ndarray, int], None] | None = None  # into the picture (height, width, 4) at a frame
 
 
@@ -194,11 +194,11 @@ def _people_painter(axes: "Axes", view: FigureData, aligned: AlignedPhoto) -> Ca
 def _doppler_mover(axes: "Axes", view: FigureData) -> Mover:
     axes.set(xlim=view.velocity_edges_mps, ylim=view.range_edges_m)
     label_axes(axes, "Range-Doppler", "radial velocity (m/s)", "range (m)")
-    return Mover(axes, lambda _: [], decibels(view.range_doppler))
+    return Mover(axes, lambda _: [], view.scale.shares(view.range_doppler))
 
 
 def _azimuth_mover(axes: "Axes", view: FigureData) -> Mover:
-    values_db = decibels(view.range_azimuth_moving)
+    shares = view.scale.shares(view.range_azimuth_moving)
     fan = Fan.over(view.cube.grid.range_m, view.azimuth_rad)
     axes.set(xlim=fan.extent[:2], ylim=fan.extent[2:], aspect="equal")
     label_axes(axes, "From above, moving", "right (m)", "ahead (m)", y_label_pt=22.0)
@@ -213,7 +213,7 @@ def _azimuth_mover(axes: "Axes", view: FigureData) -> Mover:
             dot.set_data(person.joints_m[index, :, 0], person.joints_m[index, :, 1])
         return [*dots]
 
-    return Mover(axes, update, np.array([fan.lay(values) for values in values_db]))
+    return Mover(axes, update, np.array([fan.lay(values) for values in shares]))
 
 
 def _share_palette(pictures: list[np.ndarray]) -> "list[Image]":

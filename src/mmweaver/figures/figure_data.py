@@ -8,19 +8,26 @@ from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube
 from mmweaver.core.shapes import Array, PerFrame
-from mmweaver.core.virtual_array import has_elevation
+from mmweaver.core.virtual_array import has_elevation, resolves_elevation
 from mmweaver.dsp.cube import remove_static
+from mmweaver.dsp.doppler_spectrogram import MicroDoppler, micro_doppler_of_cube
+from mmweaver.dsp.slow_time import FEWEST_FRAMES, SlowTimeCell, moving_cells, slow_time_doppler, zero_doppler
 from mmweaver.dsp.spectra import (
     azimuth_axis_rad,
     elevation_axis_rad,
+    noise_power,
     range_azimuth_power,
     range_doppler_power,
     range_elevation_power,
 )
-from mmweaver.figures.theme import SPAN_DB
+from mmweaver.dsp.windows import SHORTEST_HANN
+from mmweaver.figures.power_scale import PowerScale
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 MAX_FRAMES = 100  # longer sequences are thinned out
+SLOW_OVER_NOISE = 10.0  # power of what changes from frame to frame over the noise
+SLOW_OVER_FAST = 316.0  # and over what moves within frames: 25 dB (a walk has -7 to 14, waving 19, standing 38)
+BELOW_FLOOR_M = 0.15  # points deeper below the floor are no echoes of anything that stands there
 Power = Float[Array, "frame range column"]
 RangeAngle = Float[Array, "range column"]
 Raster = Float[Array, "ahead aside"]
@@ -75,12 +82,74 @@ class FigureData:
 
     @cached_property
     def _moving(self) -> RadarCube:
-        return remove_static(self._shown)
+        """Less each frame's mean chirp; where movement is slow, less the mean of the frames."""
+        return remove_static(self._shown, "mean_frame" if self.is_slow else "mean_chirp")
+
+    @property
+    def is_single(self) -> bool:
+        """Whether there is one frame only, so that nothing can be shown over time."""
+        return len(self.frames) == 1
+
+    @cached_property
+    def is_slow(self) -> bool:
+        """Whether movement shows from frame to frame only: too few loops a frame, or somebody who just breathes."""
+        if len(self.cube.values) < FEWEST_FRAMES:
+            return False
+        if self.cube.config.num_loops < SHORTEST_HANN:
+            return True
+        noise = self._noise
+        if not noise:
+            return False
+        within = range_doppler_power(remove_static(self._shown, "mean_chirp")).mean(axis=0)
+        still = zero_doppler(self._shown)
+        over = (np.abs(still - still.mean(axis=0)) ** 2).mean(axis=(0, 2))
+        return bool(over.max() > max(SLOW_OVER_NOISE * noise, SLOW_OVER_FAST * within.max()))
+
+    @cached_property
+    def _noise(self) -> float | None:
+        """Noise power of a cell; where a frame has one loop, the median over range of what changes over frames."""
+        found = noise_power(self._shown)
+        if found is None and len(self.cube.values) > 1:
+            still = zero_doppler(self._shown)
+            found = float(np.median((np.abs(still - still.mean(axis=0)) ** 2).mean(axis=(0, 2))))
+        return found
+
+    @cached_property
+    def scale(self) -> PowerScale:
+        """The decibels of every picture of this cube."""
+        return PowerScale.of(float(self.range_doppler.max(initial=0.0)), self._noise, self.cube.scale)
 
     @property
     def has_elevation(self) -> bool:
-        """Whether the array resolves elevation."""
+        """Whether the points have a height."""
         return has_elevation(self.cube.config)
+
+    @property
+    def resolves_elevation(self) -> bool:
+        """Whether the array's beam is narrow enough for a map over elevation."""
+        return resolves_elevation(self.cube.config)
+
+    @cached_property
+    def micro_doppler(self) -> MicroDoppler:
+        """Spectrogram over the chirps of each frame, clutter removed, of the strongest range bin at each time."""
+        return micro_doppler_of_cube(self._moving)
+
+    @cached_property
+    def slow_doppler(self) -> tuple[Float[Array, "range doppler"], Float[Array, " doppler"]]:
+        """Power over range and slow-time velocity of all frames, and the velocities in m/s."""
+        return slow_time_doppler(self.cube)
+
+    @cached_property
+    def slow_cells(self) -> list[SlowTimeCell]:
+        """The range bins that move most over the frames."""
+        return moving_cells(self.cube)
+
+    @property
+    def is_below_floor(self) -> Bool[Array, " point"]:
+        """Of the shown points: multipath over the floor, or noise, of a radar whose floor is known."""
+        if self.aligned is None or not self.has_elevation:
+            return np.zeros(len(self.shown_points.frame), bool)
+        return self.shown_points.z_m < self.aligned.floor_z_m - BELOW_FLOOR_M
 
     @cached_property
     def range_doppler(self) -> Power:
@@ -89,7 +158,7 @@ class FigureData:
 
     @cached_property
     def range_doppler_moving(self) -> Power:
-        """Power (frame, range, doppler) less the mean chirp of each frame."""
+        """Power (frame, range, doppler) of what moves."""
         return range_doppler_power(self._moving)
 
     @cached_property
@@ -107,12 +176,12 @@ class FigureData:
 
     @cached_property
     def range_azimuth_moving(self) -> Power:
-        """Power (frame, range, azimuth) less the mean chirp of each frame."""
+        """Power (frame, range, azimuth) of what moves."""
         return range_azimuth_power(self._moving, self.azimuth_rad)
 
     @cached_property
     def range_elevation_moving(self) -> Power:
-        """Power (frame, range, elevation) less the mean chirp of each frame."""
+        """Power (frame, range, elevation) of what moves."""
         return range_elevation_power(self._moving, self.elevation_rad)
 
     @cached_property
@@ -143,15 +212,6 @@ class FigureData:
     def time_edges_s(self) -> tuple[float, float]:
         """Start of the first and end of the last frame."""
         return float(self.time_s[0]), float(self.time_s[-1]) + self.frame_step_s
-
-
-def decibels(power: Array) -> Array:
-    """Power relative to its own peak, from -SPAN_DB to 0 dB; -SPAN_DB everywhere if there is no power."""
-    peak = float(np.max(power, initial=0.0))
-    if not peak > 0:
-        return np.full(power.shape, -SPAN_DB)
-    floor = 10 ** (-SPAN_DB / 10)
-    return 10 * np.log10(np.maximum(np.asarray(power, np.float64) / peak, floor))
 
 
 @dataclass(frozen=True, kw_only=True)

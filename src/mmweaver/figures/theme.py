@@ -8,12 +8,13 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Colormap
     from matplotlib.transforms import Transform
 
 POWER_MAP = "inferno"
 TIME_MAP = "viridis"
 VELOCITY_MAP = "coolwarm"
-SPAN_DB = 50.0  # dynamic range of power maps
+CLEARANCE = 0.045  # of a colour bar, that its mark keeps from ticks
 
 INK = "#22262b"
 PAPER = "#ffffff"
@@ -111,8 +112,8 @@ def _shifted(axes: "Axes", place: "Transform", right_pt: float, up_pt: float) ->
     return place + ScaledTranslation(right_pt / 72, up_pt / 72, figure.dpi_scale_trans)
 
 
-def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
-    """A thin colour bar at the right of the axes, without resizing them.
+def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str, *, mark: tuple[float, str] | None = None) -> None:
+    """A thin colour bar at the right of the axes, without resizing them; `mark`: a value with a name of its own.
 
     Drawn from primitives: matplotlib's own colour bar, with separate axes, takes five times as long.
     """
@@ -127,6 +128,10 @@ def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
     )  # fmt: skip
     axes.set(**limits)  # imshow changed them
     ticks = tick_labels(low, high)
+    if mark is not None:
+        value, name = mark
+        ticks = {tick: text for tick, text in ticks.items() if abs(tick - value) > CLEARANCE * (high - low)}
+        ticks[value] = name
     heights = [(tick - low) / (high - low) for tick in ticks]
     line: Any = {"color": INK, "transform": axes.transAxes, "clip_on": False, **_AS_IT_IS}
     axes.plot([left, left, right, right, left], [0, 1, 1, 0, 0], linewidth=0.5, **line)
@@ -134,8 +139,30 @@ def colour_bar(axes: "Axes", mappable: "ScalarMappable", label: str) -> None:
     for text, height in zip(ticks.values(), heights, strict=True):
         place = _shifted(axes, axes.transAxes, 4.0, 0.0)
         axes.text(right, height, text, transform=place, fontsize=7, va="center_baseline")
-    label_place = _shifted(axes, axes.transAxes, 25.0, 0.0)
+    label_place = _shifted(axes, axes.transAxes, 28.0, 0.0)
     axes.text(right, 0.5, label, transform=label_place, fontsize=8, rotation=90, va="center", ha="left")
+
+
+def time_bar(axes: "Axes", colours: "Colormap", low_s: float, high_s: float) -> None:
+    """A small bar at the lower left within the axes, from a first to a last time."""
+    left, right, bottom, top = 0.02, 0.22, 0.035, 0.055
+    limits = {"xlim": axes.get_xlim(), "ylim": axes.get_ylim(), "aspect": axes.get_aspect()}
+    ground: Any = {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.75, "pad": 2.0}
+    place: Any = {"transform": axes.transAxes, "fontsize": 8, "va": "bottom", "bbox": ground}
+    axes.text(left, top + 0.015, f"{low_s:.1f} s", ha="left", **place)
+    axes.text(right, top + 0.015, f"{high_s:.1f} s", ha="right", **place)
+    axes.imshow(
+        colours(np.linspace(0, 1, 128))[None], extent=(left, right, bottom, top), transform=axes.transAxes,
+        origin="lower", zorder=3,
+    )  # fmt: skip
+    axes.set(**limits)
+
+
+def legend(axes: "Axes", entries: list[tuple[str, str]]) -> None:
+    """Names in their colours at the upper right within the axes, one below the other."""
+    for line, (name, colour) in enumerate(entries):
+        place = _shifted(axes, axes.transAxes, -4.0, -4.0 - 10.0 * line)
+        axes.text(1.0, 1.0, name, color=colour, transform=place, fontsize=8, ha="right", va="top")
 
 
 def person_colour(index: int, count: int, *, on_white: bool = False) -> str:

@@ -11,7 +11,7 @@ from torch import Tensor
 
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.tensor_record import TensorRecord
-from mmweaver.core.virtual_array import azimuth_row, elevation_rows
+from mmweaver.core.virtual_array import azimuth_row, elevation_columns
 from mmweaver.dsp.point_response import Axes, PointResponse, Points
 from mmweaver.dsp.spectra import azimuth_axis_rad, elevation_axis_rad
 from mmweaver.dsp.windows import noise_share
@@ -38,17 +38,16 @@ class MeanPower:
         wave = 2 * math.pi / config.wavelength_m
         self._row_x = torch.tensor(wave * place[row, 0], dtype=torch.float32)
         self._sin_azimuth = torch.tensor(azimuth_axis_rad(), dtype=torch.float32).sin()
-        rows = elevation_rows(place, config.wavelength_m)
-        self._row_gap = None if rows is None else wave * float(place[rows.upper[0], 2] - place[rows.lower[0], 2])
+        columns = elevation_columns(place, config.wavelength_m)
+        self._column_z = torch.tensor(wave * place[columns[0], 2] if columns else [], dtype=torch.float32)
         self._sin_elevation = torch.tensor(elevation_axis_rad(), dtype=torch.float32).sin()
         self.noise = config.noise_power_mw * noise_share(config.num_samples, config.num_loops)
         self.noise *= float(config.tx_noise_gain.mean())
-        self._row_length = len(row)
 
     def to(self, device: torch.device) -> "MeanPower":
         """Itself, on a device."""
         self.axes = self.axes.to(device)
-        for name in ("_row_x", "_sin_azimuth", "_sin_elevation"):
+        for name in ("_row_x", "_column_z", "_sin_azimuth", "_sin_elevation"):
             setattr(self, name, getattr(self, name).to(device))
         return self
 
@@ -61,26 +60,27 @@ class MeanPower:
         along_doppler = at_doppler.sum(dim=-1, keepdim=True)
         return PowerMaps(
             range_doppler=weighted @ at_doppler,
-            range_azimuth=weighted @ (along_doppler * self._azimuth_beam(points.direction[..., 0])),
+            range_azimuth=weighted @ (along_doppler * _beam(points.direction[..., 0], self._row_x, self._sin_azimuth)),
             range_elevation=weighted @ (along_doppler * self._elevation_beam(points.direction[..., 1])),
         )
 
     def noise_maps(self) -> tuple[float, float, float]:
         """Mean power of the receiver's noise in a cell of each map."""
         beam = self.noise * len(self.axes.doppler_bin)
-        return self.noise, beam / self._row_length, beam / 2
-
-    def _azimuth_beam(self, cosine_x: Tensor) -> Tensor:
-        """Power pattern (..., point, azimuth) of the horizontal row steered to each azimuth."""
-        own = cosine_x[..., None] * self._row_x
-        steered = self._row_x[:, None] * self._sin_azimuth
-        # the row's sum of exp(j steered - j own), by two products of matrices
-        both = torch.cat([own.cos(), own.sin()], dim=-1)
-        real = both @ torch.cat([steered.cos(), steered.sin()])
-        imaginary = both @ torch.cat([steered.sin(), -steered.cos()])
-        return (real.square() + imaginary.square()) / self._row_length**2
+        return self.noise, beam / len(self._row_x), beam / max(len(self._column_z), 1)
 
     def _elevation_beam(self, cosine_z: Tensor) -> Tensor:
-        if self._row_gap is None:
+        if not len(self._column_z):
             return cosine_z.new_zeros((*cosine_z.shape, 0))
-        return 0.5 + 0.5 * ((self._sin_elevation - cosine_z[..., None]) * self._row_gap).cos()
+        return _beam(cosine_z, self._column_z, self._sin_elevation)
+
+
+def _beam(cosine: Tensor, place: Tensor, sine: Tensor) -> Tensor:
+    """Power pattern (..., point, angle) of a line of antennas at `place` (radians of phase) steered to each angle."""
+    own = cosine[..., None] * place
+    steered = place[:, None] * sine
+    # the line's sum of exp(j steered - j own), by two products of matrices
+    both = torch.cat([own.cos(), own.sin()], dim=-1)
+    real = both @ torch.cat([steered.cos(), steered.sin()])
+    imaginary = both @ torch.cat([steered.sin(), -steered.cos()])
+    return (real.square() + imaginary.square()) / len(place) ** 2

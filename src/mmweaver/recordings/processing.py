@@ -17,9 +17,6 @@ from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.detection import check_points, detect, needs_adc
-from mmweaver.dsp.points import point_cloud
-from mmweaver.dsp.slow_time import FEWEST_FRAMES, slow_time_cube
-from mmweaver.dsp.windows import SHORTEST_HANN
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.recording_pages import draw_micro_doppler, draw_people, draw_slow_time
 from mmweaver.formats.dca_packets import PacketCapture
@@ -54,7 +51,7 @@ class ProcessedRecording:
         view = FigureData(title=title, cube=self.cube, points=self.points)
         return save_results(
             out, view, self.meta, overwrite=overwrite, stages=self.stages, extra=extra, pictures=pictures,
-            page=_slow_page(view) if pictures else None, more=partial(self._write_analysis, title, pictures),
+            more=partial(self._write_analysis, title, pictures),
         )  # fmt: skip
 
     def _write_analysis(self, title: str, pictures: bool, folder: Path) -> None:
@@ -66,16 +63,15 @@ class ProcessedRecording:
             write_npz(folder / "analysis.npz", **arrays)
         if not pictures:
             return
-        time_s = self.cube.grid.frame_time_s
         if found.cells and found.slow_doppler is not None and found.slow_velocity_mps is not None:
             signs = found.vital_signs
             rates = {} if signs is None else {"breathing": signs.breathing, "heart": signs.heart}
             draw_slow_time(
-                folder / "slow_time.png", title, self.cube.grid.range_m, found.slow_doppler, found.slow_velocity_mps,
-                found.cells, time_s, rates,
+                folder / "slow_time.png", title, self.cube, found.slow_doppler, found.slow_velocity_mps, found.cells,
+                rates,
             )  # fmt: skip
         if found.micro_doppler is not None:
-            draw_micro_doppler(folder / "micro_doppler.png", title, found.micro_doppler)
+            draw_micro_doppler(folder / "micro_doppler.png", title, found.micro_doppler, self.cube.scale)
         if found.people:
             draw_people(folder / "people.png", title, found.people, float(self.cube.grid.range_m[-1]))
 
@@ -167,15 +163,6 @@ def _warnings(recording: Recording, strict: bool) -> list[str]:
     if found and strict:
         raise InputError(f"{recording.path}: {found[0]} (--strict)")
     return found
-
-
-def _slow_page(view: FigureData) -> FigureData | None:
-    """What the pictures show of radars with too few loops for a Doppler axis: slow time over runs of frames."""
-    if view.cube.config.num_loops >= SHORTEST_HANN or len(view.cube.values) < FEWEST_FRAMES:
-        return None
-    slow = slow_time_cube(view.cube)
-    points = point_cloud(slow, moving_only=True)
-    return FigureData(title=f"{view.title}   (Doppler over {slow.config.num_loops} frames)", cube=slow, points=points)
 
 
 def nearest_photos(frame_time_s: PerFrame, photo_time_s: Float[Array, " photo"]) -> tuple[PerIndex, PerFrame]:
