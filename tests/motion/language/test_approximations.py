@@ -36,6 +36,12 @@ def test_every_pattern_compiles_and_every_replacement_is_understood():
         ("a person dances the waltz", ["dance"], "approximated"),
         ("a jab and an uppercut", ["punch", "punch"], "approximated"),
         ("a person drinks coffee standing up", ["drink"], "done"),
+        ("walks over some rubble, mumbling", ["walk"], "approximated"),
+        ("dances to the left", ["dance"], "approximated"),
+        ("walks with both hands", ["walk"], "approximated"),
+        ("walks while jumping", ["walk", "jump"], "approximated"),
+        ("claps while waving", ["clap", "wave"], "approximated"),
+        ("sits on the floor", ["kneel_down"], "approximated"),
     ],
 )
 def test_what_is_shown_and_how_it_is_recorded(text: str, keys: list[str], status: str):
@@ -59,3 +65,18 @@ def test_known_sentences_are_left_alone_and_unknown_ones_refused():
     for unknown in ("a person does a handstand", "a person teleports", "a person does a cartwheel"):
         with pytest.raises(InputError, match="names no activity"):
             parse(unknown)
+
+
+def test_only_how_something_is_done_is_left_out():
+    record = parse("a person walks like a stork").clauses[0]
+    assert record.status == "approximated"
+    assert "resembles" in record.how or "'like a stork' is not shown" in record.how
+    for main in ("walks and does a handstand", "jumps over the chair", "two people walk", "waves without walking"):
+        with pytest.raises(InputError):
+            parse(main)
+
+
+def test_what_no_step_shows_is_said_of_its_clause():
+    records = parse("a person walks to the door, then dances to the left").clauses
+    assert [record.how for record in records] == ["", "the side is not shown"]
+    assert not parse("a person walks to the left with the right hand raised").clauses[0].how

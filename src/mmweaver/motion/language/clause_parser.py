@@ -53,6 +53,8 @@ class ParsedClause:
     approximations: list[str] = field(default_factory=list)  # what is not shown as it was said; also in `notes`
     unknown: list[str] = field(default_factory=list)
     number: int = 0  # of the clause in the sentence
+    words: list[Word] = field(default_factory=list)
+    lost: list[str] = field(default_factory=list)  # as `approximations`, found once all clauses are parsed
 
     def approximate(self, how: str) -> None:
         self.notes.append(how)
@@ -89,6 +91,19 @@ class ParsedClause:
             distance_m=last.distance_m or about.distance_m,
         )
 
+    def go_on(self, more: "ParsedClause") -> None:
+        """Adds a step like the last one in another direction."""
+        about = more.about
+        last = self.steps[-1]
+        count = about.count or next((NUMBERS[word.text] for word in more.words if word.text in NUMBERS), 0)
+        aside = count in (1, 2) or any(word.text == "sideways" for word in more.words)
+        lower = "sidestep" if aside else last.lower
+        self.steps.append(
+            replace(last, lower=lower, direction=about.direction, count=count, speed=about.speed or last.speed,
+                    distance_m=about.distance_m, clauses=(*last.clauses, more.number))
+        )  # fmt: skip
+        self.forms.append("s")
+
     def _leads_back(self, last: Step, about: Step) -> bool:
         """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
         if last.lower == "sidestep":
@@ -109,7 +124,7 @@ class ParsedClause:
 def parse_clause(clause: Clause) -> ParsedClause:
     """Parses verbs and modifiers; raises InputError for what would be acted out as something else."""
     words = clause.words
-    parsed = ParsedClause(clause.link, clause.text, number=clause.number)
+    parsed = ParsedClause(clause.link, clause.text, number=clause.number, words=words)
     marked = [word.text for word in words if word.text.startswith(MARK)]
     clause.words = words = [word for word in words if word.text not in marked]
     for token in dict.fromkeys(marked):
@@ -131,7 +146,7 @@ def parse_clause(clause: Clause) -> ParsedClause:
             raise InputError(not_known(clause.text, f"{words[one].text} {words[other].text}"))
     for at in verbs:  # "a chachacha basic step"
         noun = words[at].lemma in ("step", "turn", "jump") and words[at].form in ("base", "s") and at
-        if noun and not _is_known(words[at - 1]) and words[at - 1].text[:1].isalpha():
+        if noun and not is_known(words[at - 1]) and words[at - 1].text[:1].isalpha():
             subject = words[at].form == "s" and words[at].text not in ("steps", "turns", "jumps")
             if not subject and any(word.is_verb and not word.is_activity for word in words[:at]):
                 raise InputError(not_known(clause.text, words[at - 1].text))
@@ -210,6 +225,8 @@ def _harmless(word: Word, texts: set[str], lemmas: set[str]) -> bool:
         if word.text == "over":
             return not jumped and "chair" not in texts
         return not lifted and word.text not in ("leg", "foot", "knee") and "on" not in texts
+    if word.text == "eight":
+        return bool(texts & {"step", "steps", "times", "meters", "metres", "m"})
     if word.text in ("floor", "ground"):
         return bool(lemmas & FLOOR_VERBS) or not texts & {"sit", "sits", "sitting", "seated", "sit_down", "sat"}
     if word.text == "ball":
@@ -275,12 +292,12 @@ def _form(words: list[Word], at: int) -> str:
 
 def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, has_verb: bool) -> None:
     """Reports unknown words of a clause with a verb; one that looks like another activity is an error."""
-    unknown = [word.text for word in words if not _is_known(word)]
+    unknown = [word.text for word in words if not is_known(word)]
     if not has_verb:
         parsed.unknown = unknown + [word.text for word in words if word.is_verb]
         return
     moved = next((i for i, word in enumerate(words) if word.lemma == "move"), None)
-    if moved is not None and any(not _is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):
+    if moved is not None and any(not is_known(word) or word.text in THINGS for word in words[moved + 1 : moved + 3]):
         raise InputError(not_known(clause.text, "move"))
     if {word.text for word in words} & {"uppercut", "uppercuts", "hook", "hooks"}:
         parsed.approximate(f"the kind of punch in {clause.text!r} is not distinguished")
@@ -299,7 +316,7 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
 def _unknown_manner(words: list[Word]) -> str:
     """An unknown word for how or what is done: 'in a pentagon', 'performs capoeira'; "" if there is none."""
     for i, word in enumerate(words):
-        if _is_known(word) or not word.text[:1].isalpha():
+        if is_known(word) or not word.text[:1].isalpha():
             continue
         before = [other.text for other in words[max(i - 3, 0) : i]]
         if before[-2:] in (["in", "a"], ["in", "an"], ["of", "a"], ["of", "an"], ["like", "a"]):
@@ -314,7 +331,8 @@ def _unknown_manner(words: list[Word]) -> str:
     return ""
 
 
-def _is_known(word: Word) -> bool:
+def is_known(word: Word) -> bool:
+    """Whether a word has a meaning, or none that matters, in a sentence about a movement."""
     text = word.text
     return (
         word.is_verb

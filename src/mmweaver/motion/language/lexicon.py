@@ -2,6 +2,7 @@
 
 from mmweaver.motion.language.gesture_phrases import GESTURE_PHRASES
 from mmweaver.motion.language.phrases import ACTIVITY_PHRASES
+from mmweaver.motion.language.sided_phrases import SIDED_PHRASES
 from mmweaver.motion.language.verbs import words_in
 
 # These mean walking if the clause gives a destination.
@@ -33,6 +34,7 @@ IRREGULAR = {
 BASE_VERB_SPEED = {"stroll": -1, "amble": -1, "saunter": -1, "sprint": 1, "march": 0}
 
 PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anything is looked up
+    *SIDED_PHRASES,
     *GESTURE_PHRASES,
     *ACTIVITY_PHRASES,
     (r"\bjumping[- ]?jacks?\b|\bstar[- ]?jumps?\b|\bjump(?:s|ed)?[- ]jacks?\b", " jumping_jack "),
@@ -196,7 +198,8 @@ FILLERS = words_in(
     herself themselves itself myself person man woman human guy lady boy girl user subject child kid adult someone
     somebody he she it they i you who which figure individual participant patient gentleman male female actor
     player student tenant resident speaker character young old elderly tall short big small large long wide medium
-    normal normally regular average casual casually comfortably comfortable relaxed happily happy sad sadly
+    narrow humans normal
+    normally regular average casual casually comfortably comfortable relaxed happily happy sad sadly
     nervously angrily politely friendly confidently quietly silently steadily steady natural naturally simply
     repeatedly continuously constantly several few many multiple times time speed pace fashion manner way style
     motion movement movements moderate moderately usual usually side direction line room place position spot area
@@ -224,7 +227,7 @@ FILLERS = words_in(
 # Verbs with which "step" or "steps" is a noun.
 STEPPING = GOING | words_in(
     """
-    walk jog run jump hop turn advance march retreat sidestep stumble pushed dance tumble stagger limp
+    walk jog run jump hop turn advance march retreat sidestep stumble pushed dance tumble stagger limp crawl
     """
 )
 # Units of distance.

@@ -12,7 +12,17 @@ _MOTION = r"(?:motions?|movements?|gestures?|moves?|exercises?)"
 NORMAL_FORMS: tuple[tuple[str, str], ...] = (
     # misspelt and mistyped
     (r"\bper(?:so|o|os)ns? (?=walks|is|goes|turns|jumps|does|makes|runs)", "person "), (r"\bperons?\b", "person"),
-    (r"\bsomone\b", "someone"), (r"\b(?:athlete?|dancer|runner|walker|boxer|fighter)\b", "person"),
+    (r"\bsomone\b|\bsome ?one ?who\b", "someone"), (r"\brigth\b|\brihgt\b", "right"), (r"\beft\b", "left"), (r"\b(?:a|the) humans\b", "a human"),
+    (r"\bassumes? an upright (?:posture|stance|position)(?: after(?:wards?)?)?\b", "stands up"),
+    (r"(?:,? (?:and|before|then))* (?:returns?|goes back|gets? back|get back|recovers?) (?:in|into|to) (?:(?:the|his|her|its) )?(?:(?:previous|original|initial|old|former|starting) )?(?:position|place|spot)\b(?= *(?:$|[.,]))", ", then walks back"),
+    (r",? (?:in order |so as )?(?:not )?to (?:avoid|prevent|not|keep from|maintain|stay) [^,.;]*?(?=$|[,.;]| and\b| then\b)|,? so (?:that )?(?:it|he|she) (?:does|do|did) ?(?:not|n't) [^,.;]*", ""),
+    (r"\b\d+ (strokes?|tones?|notes?) on (?=(?:an? |the )?(?:guitar|violin))", r"\1 on "), (r"\b(guitar|violine?) (?:moves?|motions?)\b", r"\1 playing"),
+    (r"\bviolin[ae]\b", "violin"), (r"\binstuments?\b", "instrument"),
+    (r"\bcatch(?:es|ing) (?:his|her|its) steps?\b", "recovers"),
+    (r"\bcom(?:es|ing) (?:very |really |quite )?(?:close|near) to the (?=observer|camera|radar|viewer)", "walks towards the "),
+    (r"\bstreched\b", "stretched"), (r"\bzwo\b", "two"), (r"\bstreight\b", "straight"), (r"\bforwads?\b", "forwards"),
+    (r"(?:,? and|,| before|,? then) returning(?: to [a-z ]+?)?(?=$|[.,])", ", then walks back"), (r"\bcurv(?:es|ing) (?=to the)", "walks in a curve "),
+    (r"\b(?:moves?|goes) (?:laterally|lateral)\b|\blateral (?:moves?|steps?|movements?)\b", "sidesteps"), (r"\brais(?:es|ing) up(?=$|[.,])", "stands up"), (r"\b(?:athlete?|dancer|runner|walker|boxer|fighter)\b", "person"),
     (r"\bwa(?:k|kl|lki?)ing\b", "walking"), (r"\btunes (?=left|right)", "turns "), (r"\bboth feed\b", "both feet"),
     (r"\b(takes?|makes?|does|doing|performs?|another) to (?=(?:big |small |large )?steps?\b)", r"\1 two "),
     (r"\bcontinuous(?:ly)? to (?=walk|run|go)", "continues to "), (r"\bbaske?t? ?ball?\b", "basketball"),

@@ -9,6 +9,8 @@ from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
 from mmweaver.motion.language.clauses import split_clauses
 from mmweaver.motion.language.described_person import described_person
+from mmweaver.motion.language.left_out import parse_with_less
+from mmweaver.motion.language.lost_words import lost_words
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
@@ -46,32 +48,36 @@ def parse(text: str) -> MotionPlan:
     try:
         return _parsed(with_approximations(text, only_always=True), text)
     except InputError as error:
-        for other in (in_normal_form(text), with_approximations(in_normal_form(text))):
+        normal, similar = in_normal_form(text), with_approximations(in_normal_form(text))
+        for other, leave_out in ((normal, False), (similar, False), (normal, True), (similar, True)):
             try:
-                return _parsed(other, given_text)
+                return _parsed(other, given_text, leave_out=leave_out)
             except InputError:
                 continue
         raise error from None
 
 
-def _parsed(text: str, given_text: str) -> MotionPlan:
-    """The plan of one wording of a sentence."""
+def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPlan:
+    """The plan of one wording of a sentence; `leave_out`: without phrases that only say how, which is said."""
     text, notes = correct_spelling(text)
     words = words_of(text)
     _check_turning_jumps(text, words)
-    parsed_clauses, records = _parsed_clauses(words, notes)
+    parsed_clauses, records = _parsed_clauses(words, notes, leave_out=leave_out)
     if not parsed_clauses:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
-    sequence = _in_sequence(parsed_clauses)
+    sequence = _in_sequence(parsed_clauses, one_by_one=leave_out)
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
             sequence[number] = replace(step, lower="recline", seat=before.seat)
     steps = carried_over(with_postures(sequence))
+    _note_lost_words(parsed_clauses, steps, records, notes)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     room = room_of(given_text)
     if room:
         notes.append(f"the room of the photo is taken as the {room} of the sentence")
+    if leave_out and all(step.lower == "stand" and not step.upper for step in steps):
+        raise InputError(not_known(text.strip()))
     clauses = tuple(records[number] for number in sorted(records))
     return MotionPlan(
         text=given_text, steps=tuple(steps), notes=tuple(dict.fromkeys(notes)), clauses=clauses,
@@ -79,13 +85,15 @@ def _parsed(text: str, given_text: str) -> MotionPlan:
     )  # fmt: skip
 
 
-def _parsed_clauses(words: list[Word], notes: list[str]) -> tuple[list[ParsedClause], dict[int, ClauseRecord]]:
+def _parsed_clauses(
+    words: list[Word], notes: list[str], *, leave_out: bool
+) -> tuple[list[ParsedClause], dict[int, ClauseRecord]]:
     """The clauses that name an activity, and a record of every clause by its number."""
     found: list[ParsedClause] = []
     records: dict[int, ClauseRecord] = {}
     ahead: ParsedClause | None = None  # modifiers before the first verb: "is carefully and slowly walking"
     for clause in split_clauses(words):
-        parsed = parse_clause(clause)
+        parsed = parse_with_less(clause, is_first=not found) if leave_out else parse_clause(clause)
         if not parsed.steps and not parsed.unknown and parsed.approximations and not found:
             parsed.steps, parsed.forms = [Step(clause=clause.text, clauses=(clause.number,))], ["s"]
         notes += parsed.notes
@@ -101,17 +109,30 @@ def _parsed_clauses(words: list[Word], notes: list[str]) -> tuple[list[ParsedCla
     return found, records
 
 
+def _note_lost_words(
+    parsed_clauses: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord], notes: list[str]
+) -> None:
+    """Says of each clause which sides, arms, circles and counts its steps do not have."""
+    for parsed in parsed_clauses:
+        own = [step for step in steps if parsed.number in step.clauses]
+        for how in [*parsed.lost, *(lost_words(parsed.words, own) if own else ())]:
+            records[parsed.number] = records[parsed.number].lowered_to(APPROXIMATED, how)
+            notes.append(f"of {parsed.text!r}, {how}")
+
+
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
         other = _other_limb(found[-1].steps[-1], parsed)
-        if other is None:
+        if other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
+            found[-1].go_on(parsed)
+        elif other is None:
             found[-1].absorb(parsed)
         else:
             found[-1].steps[-1] = overlay(found[-1].steps[-1], other)
     elif parsed.steps and not _is_its_end(found, parsed):
         found.append(parsed)
-    elif parsed.steps or (found and _needs_no_step(found[-1].steps[-1], parsed)):
+    elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):
         last = found[-1].steps[-1]
         found[-1].steps[-1] = replace(last, clauses=(*last.clauses, parsed.number))
     elif not parsed.is_empty:
@@ -128,6 +149,20 @@ def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
     return None
 
 
+def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
+    """Whether a clause without a verb is the next part of a walk: 'walks two steps forwards, then two to the left'."""
+    direction = parsed.about.direction
+    ahead = ("forwards", "backwards", "back")
+    sideways = direction in ("left", "right") and last.direction in (*ahead, "left", "right")
+    return (
+        parsed.link in ("then", "comma")
+        and last.lower in ("walk", "jog", "sidestep")
+        and direction != last.direction
+        and not last.arc_deg
+        and sideways
+    )
+
+
 def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> bool:
     """Whether a clause only ends the movement before it: 'lifts a foot and puts it down', 'is pushed and stumbles'."""
     if not parsed_clauses:
@@ -135,6 +170,8 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
     before, now = parsed_clauses[-1].steps[-1], parsed.steps[0]
     if len(parsed.steps) > 1 or before.upper:
         return before.upper == "raise" and now.lower == "put_down" and len(parsed.steps) == 1
+    if (before.lower, now.lower) == ("stumble", "stumble") and (now.direction or now.style) and not before.direction:
+        parsed_clauses[-1].steps[-1] = replace(before, direction=now.direction, style=now.style)
     return (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
 
 
@@ -144,24 +181,33 @@ def _check_turning_jumps(text: str, words: list[Word]) -> None:
         raise InputError(f"{text.strip()!r}: jumping with a turn is not known; say 'jumps, then turns'")
 
 
-def _needs_no_step(before: Step, parsed: ParsedClause) -> bool:
-    """Whether the step before implies a clause: lowering a raised hand or leg, recovering from a push."""
-    words = set(parsed.unknown) | set(parsed.text.split())
+def _needs_no_step(steps: list[Step], parsed: ParsedClause) -> bool:
+    """Whether the steps before imply a clause: lowering a raised hand or leg, recovering from a push."""
+    before, words = steps[-1], set(parsed.unknown) | set(parsed.text.split())
     if before.upper in ("raise", "arms_out") or before.lower == "raise_leg":
         return bool(LOWERING & words)
-    return before.lower == "stumble" and bool(RECOVERING & words)
+    return any(step.lower == "stumble" for step in steps) and bool(RECOVERING & words)
 
 
 EXAMPLE = "a person walks towards the radar, then waves"
 
 
-def _in_sequence(parsed_clauses: list[ParsedClause]) -> list[Step]:
-    """Joins clauses that happen at the same time, and puts all others one after the other."""
+def _in_sequence(parsed_clauses: list[ParsedClause], *, one_by_one: bool = False) -> list[Step]:
+    """Joins clauses that happen at the same time, and puts all others one after the other.
+
+    `one_by_one`: two movements that cannot be shown at once follow each other, which is said.
+    """
     steps: list[Step] = []
     for i, parsed in enumerate(parsed_clauses):
         first, rest = parsed.steps[0], parsed.steps[1:]
         if steps and _goes_together(parsed_clauses[i - 1], parsed):
-            steps[-1:] = _joined(steps[-1], first)
+            try:
+                steps[-1:] = _joined(steps[-1], first)
+            except InputError:
+                if not one_by_one or steps[-1].posture != first.posture:
+                    raise
+                steps.append(first)
+                parsed.lost.append(f"{steps[-2].name} and {first.name} are shown one after the other")
         else:
             steps.append(first)
         for step, form in zip(rest, parsed.forms[1:], strict=True):
@@ -192,6 +238,9 @@ def _joined(one: Step, other: Step) -> list[Step]:
     if one.lower == other.lower and one.moves and not (one.upper and other.upper):
         return _merged_walk(one, other)
     pair = {one.lower, other.lower}
+    if pair in ({"walk", "limp"}, {"walk", "stagger"}) and not (one.upper and other.upper):
+        gait = next(step.lower for step in (one, other) if step.lower != "walk")
+        return _merged_walk(replace(one, lower=gait), replace(other, lower=gait))
     walk, more = (one, other) if one.moves and one.lower != "stumble" else (other, one)
     if "stumble" in pair and walk.moves and walk.lower != "stumble" and not (one.upper or other.upper):
         onward = replace(walk, direction="forwards" if walk.direction == "forwards" else walk.direction, count=0)

@@ -47,7 +47,7 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
         if texts & LEGS:
             return replace(step, lower="raise_leg", upper="", hand="")
         raise InputError(f"{step.clause!r}: only a hand, an arm or a leg can be raised; say which")
-    if step.upper in ("", "clap"):
+    if step.upper in ("", "clap") and step.lower not in ("pick_up", "put_down"):
         step = replace(step, hand="")
     if step.upper in ("drink", "eat", "phone") and step.hand == "both":
         step = replace(step, hand="")
@@ -140,8 +140,10 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     step = replace(step, count=0, arc_deg=0.0, turn_deg=0.0)
     if times > 1:  # "turns around twice"
         angle = times * (angle or (90.0 if side and "around" not in texts else 180.0))
+    about = "around" in texts or angle == 180.0 or not side
+    if angle in (0.0, 180.0) and about and side:
+        return replace(step, direction="", turn_deg=180.0 * side)
     if angle in (0.0, 180.0):
-        about = "around" in texts or angle == 180.0 or not side
         return replace(step, direction="around" if about else step.direction)
     if angle == 90.0 and side:
         return step
@@ -157,6 +159,8 @@ def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
         if step.direction not in ("", "spot"):
             raise InputError(f"{step.clause!r}: hopping on one leg is done on the spot only; leave the direction out")
         return replace(step, lower="hop_one_leg", direction="", facing=_facing(words))
+    if "sideways" in texts and step.direction in ("", "spot"):
+        return replace(step, lower="leap", direction="right")
     if step.direction in ("left", "right", "forwards", "backwards", "back", "towards", "away"):
         direction = "backwards" if step.direction == "back" else step.direction
         return replace(step, lower="leap", direction=direction)

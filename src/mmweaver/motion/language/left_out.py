@@ -1,0 +1,133 @@
+"""Phrases and clauses that are left out, and said: how something is done in ways that the library cannot show.
+
+Tried last, where a sentence is not understood otherwise. What the person does must remain; only how, with what, on what
+or looking like what may go ("walks over a beam", "stands up, using a hand as support").
+"""
+
+import re
+from collections.abc import Iterator
+from itertools import combinations, pairwise
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.approximations import MARK
+from mmweaver.motion.language.clause_parser import ParsedClause, is_known, parse_clause
+from mmweaver.motion.language.clauses import Clause
+from mmweaver.motion.language.lexicon import (
+    ARMS,
+    MANY,
+    NEGATIONS,
+    NOT_HUMAN,
+    NOUNS_LIKE_VERBS,
+    OTHER_MOVEMENT,
+    SEATS,
+    TARGETS,
+)
+from mmweaver.motion.language.places import MARK as PLACE
+from mmweaver.motion.language.verbs import words_in
+from mmweaver.motion.language.words import Word
+
+# Words that begin a phrase which says how.
+_OPENING = words_in(
+    """
+    like as with without using over through across along on onto against in into by of from at for during under
+    behind between near while having showing being holding looking due
+    """
+)
+_TO_THE_END = words_in("like as without using while having showing being holding looking due")
+_DIRECTIONS = words_in("left right forwards backwards forward backward in_circle towards away sideways")
+# Movements of the whole body that no other may stand for.
+_WHOLE_BODY = (
+    MANY
+    | NOT_HUMAN
+    | words_in(
+        """
+    handstand headstand cartwheel cartwheels flip side_flip backflip somersault allfours roll rolls rolling-over
+    breakdance breakdancing bike bicycle wheelchair leap-frog not never no cannot cant dont doesnt didnt nobody nor
+    neither sit sits sitting seated sit_down lying
+    """
+    )
+)
+_HOW = words_in("with without using by because since that which where like as if for in showing supported")
+_BEFORE_HOW = words_in("and then thereby always a bit little maybe perhaps possibly quite almost kind of")
+_MOST_PHRASES = 2
+
+
+def parse_with_less(clause: Clause, *, is_first: bool) -> ParsedClause:
+    """As `parse_clause`, but what only says how is left out where it is not known, which the clause's record says.
+
+    Raises InputError if no movement would remain; `is_first`: no clause before has one.
+    """
+    words = list(clause.words)  # parse_clause takes places and tokens away
+    try:
+        parsed = parse_clause(clause)
+    except InputError:
+        parsed = None
+    if parsed is not None and (parsed.steps or not parsed.unknown):
+        return parsed
+    for kept, cut in _cuts(words):
+        try:
+            shorter = parse_clause(Clause(clause.link, kept, clause.number))
+        except InputError:
+            continue
+        if any(step.upper or step.lower != "stand" for step in shorter.steps):
+            shorter.text = clause.text
+            for phrase in cut:
+                shorter.approximate(f"{_shown(phrase)!r} is not shown")
+            return shorter
+    if not is_first and _only_says_how(clause):
+        parsed = ParsedClause(clause.link, clause.text, number=clause.number)
+        parsed.approximate(f"{clause.text!r} is not shown")
+        return parsed
+    return parse_clause(Clause(clause.link, words, clause.number))
+
+
+def _only_says_how(clause: Clause) -> bool:
+    """Whether a clause without a known movement is about how the one before is done."""
+    first = next((word for word in clause.words if word.text not in _BEFORE_HOW), None)
+    if first is None or {word.text for word in clause.words} & _WHOLE_BODY:
+        return False
+    participle = not first.is_activity and first.text.endswith(("ing", "ed")) and first.text not in NOUNS_LIKE_VERBS
+    return participle or first.text in _HOW or (clause.link == "while" and not any(w.is_activity for w in clause.words))
+
+
+def _shown(words: list[Word]) -> str:
+    texts = [re.sub(r"^(?:arc|deg)(\d+)$", r"\1 degrees", word.text) for word in words]
+    return " ".join(text for text in texts if not text.startswith((MARK, PLACE))).replace("_", " ")
+
+
+def _is_odd(word: Word) -> bool:
+    return word.text in OTHER_MOVEMENT or word.text in NEGATIONS or (not is_known(word) and word.text[:1].isalpha())
+
+
+def _cuts(words: list[Word]) -> Iterator[tuple[list[Word], list[list[Word]]]]:
+    """(words kept, phrases cut) with one phrase cut, then two; each phrase has a word that is not known."""
+    verb = next((i for i, word in enumerate(words) if word.is_activity or word.is_going), None)
+    if verb is None:
+        return
+    phrases = [span for span in _phrases(words, verb) if _may_go(words[span[0] : span[1]])]
+    early = [(i, i + 1) for i in range(verb) if _is_odd(words[i]) and words[i].text not in _OPENING]
+    late = [(i, i + 1) for i in range(verb + 1, len(words)) if _is_odd(words[i]) and words[i].text.endswith("ly")]
+    for count in range(1, _MOST_PHRASES + 1):
+        for chosen in combinations((*phrases, *late, *early), count):
+            gone = {i for start, end in chosen for i in range(start, end)}
+            if any(words[i].text in _WHOLE_BODY for i in gone):
+                continue
+            kept = [word for i, word in enumerate(words) if i not in gone]
+            yield kept, [words[start:end] for start, end in sorted(chosen)]
+
+
+def _may_go(words: list[Word]) -> bool:
+    """Whether a phrase has a word that is not known, and no direction, movement or furniture."""
+    directed = any(
+        word.text in _DIRECTIONS and not ARMS & {w.text for w in words[i + 1 : i + 3]} for i, word in enumerate(words)
+    )
+    acted = words[0].text not in ("like", "as") and any(word.is_activity for word in words)
+    placed = any(word.text in TARGETS or word.text in SEATS for word in words)
+    return len(words) > 1 and not (directed or acted or placed) and any(_is_odd(word) for word in words)
+
+
+def _phrases(words: list[Word], verb: int) -> list[tuple[int, int]]:
+    """(start, end) of what each opening word after the verb begins: up to the clause's end, and up to the next one."""
+    starts = [i for i in range(verb + 1, len(words)) if words[i].text in _OPENING]
+    near = [(i, j) for i, j in pairwise([*starts, len(words)]) if words[i].text not in _TO_THE_END]
+    return list(dict.fromkeys([*((start, len(words)) for start in reversed(starts)), *reversed(near)]))

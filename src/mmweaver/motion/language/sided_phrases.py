@@ -1,0 +1,44 @@
+"""Phrases in which the side, the angle or the limb stands inside another phrase; put in order before all others."""
+
+_OWN = r"(?:(?:his|her|its|their|the|both|own) )*"
+_CLOCK = r"(?:(?:counter|anti)[- ]?)?clock[- ]?wise"
+_HELD = r"(?:raised|stretched|extended|spread(?:ed)?|held|outstretched)(?: out)?"
+_HAVING = r"(?:(?:has|have|having|with|holds?|holding|keeps?|keeping|puts?) )?"
+_TO_SIDES = r"(?:to (?:the|both|his|her|its|their) sides?|sideways|horizontal(?:ly)?)"
+_AHEAD = r"(?:forwards?|ahead|to the front|in front(?: of (?:him|her|it|them)(?:self)?)?)"
+
+# Replaced in this order, before `gesture_phrases.GESTURE_PHRASES`.
+SIDED_PHRASES: tuple[tuple[str, str], ...] = (
+    # circles and curves
+    (rf"\b(quarter|quater|half|full|complete|small|big|narrow|tight|wide|large|little)(?: of an?)?,? ({_CLOCK}) circles?\b",
+     r"\1 circle \2"),
+    (r"\b(?:an? )?(left|right)(?:wards?|[- ]sided) ((?:quarter |half |full )?circle)\b", r" \2 to the \1 "),
+    (r"\b(\d+)[- ]?deg(?:ree)?s? (left|right)(?:wards?|[- ]sided|[- ]hand(?:ed)?)? (curve|bend|circle|arc)\b",
+     r"\1 degree \3 to the \2"),
+    (r"\b(curve|bend|arc|circle) of (?:about |approximately |around )?(\d+)[- ]?deg(?:ree)?s?\b", r"\2 degree \1"),
+    (r"\bhalf (?:of )?an? round\b", "half circle"),
+    (r"\b(walks?|walking|runs?|running|moves?|moving) circular(?:ly)?\b", r"\1 in a circle"),
+    (r"\b(?:performs?|does|doing|makes) an? circular (walk|run)\b", r" \1 in a circle"),
+    (r"\b((?:full|whole|complete|half|quarter)(?: of an?)?)(?<!with a half)(?<!with a full) turn\b(?! (?:kick|jump))", r" \1 turn turn "),
+    # punches
+    (r"\b(?:throws?|throwing|performs?|performing|does|doing|makes|making|lands?) (?:an? )?(?:quick |fast |hard |short )?(left|right)"
+     r"(?: forwards?| straight| quick| hard)* (punch|jab|hook|uppercut)\b", r" punches with the \1 hand \2 "),
+    (r"\b(left|right) kick\b", r" kick with the \1 leg "),
+    (r"\b(with|using) (?:his|her|its|the) (left|right)(?= *(?:$|[.,]|and\b|then\b))", r"\1 the \2 hand"),
+    # arms
+    (rf"\bwith {_OWN}(left |right )?(?:arms?|hands?) (?:up )?in(?:to)? the air\b", r" while raising \1 hands "),
+    (rf"\b{_HAVING}{_OWN}((?:left |right )?)(?:arms?|hands?) (?:is |are |being )*{_HELD} {_TO_SIDES}(?! and)(?: like wings)?",
+     r" while arms_out \1 arms "),
+    (rf"\b{_HAVING}{_OWN}((?:left |right )?)(?:arms?|hands?) (?:is |are |being )*{_HELD} {_AHEAD}\b",
+     r" while arms_out \1 arms forwards "),
+    (rf"\bopen(?:s|ing) (?:wide )?{_OWN}arms\b(?: wide(?:ly)?)?", " arms_out both arms "),
+    (rf"\bstretch(?:es|ing) {_OWN}arms horizontal\b", " arms_out both arms "),
+    (rf"\b(?:holds?|holding|keeps?|keeping|has|having) {_OWN}(left |right )?(arms?|hands?) (?:up )?in(?:to)? the air\b",
+     r" raises \1 \2 "),
+    (rf"\b(?:holds?|holding|keeps?|keeping) (?:up )?{_OWN}(left |right )?arms? (?:up )?(?:at|on|to) (?:the )?(?:height|level) of "
+     rf"{_OWN}(?:shoulders?|chest)\b", r" arms_out \1 arms "),
+    # the floor
+    (r"\bup from the lying\b(?: (?:position|on the (?:ground|floor)))?", "up from lying"),
+    (rf"\brais(?:es|ing) (?:up )?(?:on|to) {_OWN}knees\b", " kneels "),
+    (r"\bstay(?:s|ing) (?:lying|laid)\b(?: there)?", " lies "),
+)  # fmt: skip
