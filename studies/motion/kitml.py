@@ -5,12 +5,13 @@ python -m studies run kitml --sentences <folder> --list        # the sentences t
 
 The sentences are split by motion into a half on which the lexicon was developed and a half for checking. Of this second
 half 300 drawn uniformly are never read, only counted. Of the others, those in no earlier sample, 1,100 were read to
-widen the grammar (the development draw). Then it was frozen, 300 of those left were drawn, and the understood ones
-annotated by hand: correct if every movement that the sentence names is shown in its order, with its side, direction,
-hand or foot where one is given. The verdicts are in results/kitml/judgements.json with the reading they were given for;
-a reading that has changed since makes its verdict void, and the result counts those. Five earlier samples
-(judgements_first.json and so on) are unchanged; they evaluate earlier grammars. docs/motion.md says what else limits
-the figures.
+widen the grammar (the development draw). Then it was frozen, 300 of those that nobody had read were drawn, and the
+understood ones annotated by hand. Right: every movement that the sentence names is shown in its order, with its side,
+direction, hand or foot where one is given. Said: some of it is shown otherwise or not, and the clause's record says so.
+Wrong: the same, without a word. The verdicts are in results/kitml/judgements.json with the reading they were given for;
+a reading that has changed since makes its verdict void, and the result counts those. Six earlier samples
+(judgements_first.json and so on; the sixth is the draw before this one) are unchanged; they evaluate earlier grammars.
+docs/motion.md says what else limits the figures.
 """
 
 import argparse
@@ -32,10 +33,11 @@ from studies.result_rows import complete_rows
 from studies.study import Reads
 
 DRAWN = 300  # sentences of the checking half that were never judged before
-Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | wrong), why
+Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | said | wrong), why
 DEVELOPED = 1100  # sentences of the checking half that were read to widen the grammar
-SEED, UNIFORM_SEED, DEVELOPMENT_SEED = 2029, 2028, 4242
-EARLIER = ("first", "second", "third", "fourth", "fifth")
+SEED, SIXTH_SEED, UNIFORM_SEED, DEVELOPMENT_SEED = 2030, 2029, 2028, 4242
+BEFORE_DEVELOPMENT = ("first", "second", "third", "fourth", "fifth")
+EARLIER = (*BEFORE_DEVELOPMENT, "sixth")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,12 +95,17 @@ def understood(sentences: list[Sentence]) -> dict[str, str]:
 
 
 def fresh_draw(checking: list[Sentence], before: Collection[str]) -> tuple[list[str], list[str]]:
-    """Names of the development draw and of the 300 to annotate, neither judged before nor drawn uniformly."""
+    """Names of the development draw and of the 300 to annotate, neither judged before nor drawn uniformly.
+
+    `before`: what was judged before the development draw. The sixth sample, of sentences left by that draw, is left out
+    of the 300, with those of its sentences that were refused.
+    """
     uniform = set(uniform_draw(checking))
     free = [sentence.name for sentence in checking if sentence.name not in before and sentence.name not in uniform]
     order = stream(DEVELOPMENT_SEED, "kitml", "development draw").permutation(len(free))
     developed, rest = ([free[k] for k in part] for part in (order[:DEVELOPED], order[DEVELOPED:]))
-    return developed, [rest[k] for k in stream(SEED, "kitml", "third fresh").permutation(len(rest))[:DRAWN]]
+    left = [rest[k] for k in stream(SIXTH_SEED, "kitml", "third fresh").permutation(len(rest))[DRAWN:]]
+    return developed, [left[k] for k in stream(SEED, "kitml", "seventh").permutation(len(left))[:DRAWN]]
 
 
 def uniform_draw(checking: list[Sentence]) -> list[str]:
@@ -113,10 +120,10 @@ def result_row(
     readings = understood(sentences)
     checking = [sentence for sentence in sentences if sentence.is_for_checking]
     developed = [sentence for sentence in sentences if not sentence.is_for_checking]
-    developed_on, drawn = fresh_draw(checking, {name for earlier in before.values() for name in earlier})
+    developed_on, drawn = fresh_draw(checking, _judged_before_development(before))
     names = [name for name in drawn if name in readings]
     valid = [name for name in names if judgements.get(name, {}).get("reading") == readings[name]]
-    wrong = sum(judgements[name]["verdict"] == "wrong" for name in valid)
+    verdicts = Counter(judgements[name]["verdict"] for name in valid)
     seen = {_plain(sentence.text) for sentence in developed}
     metrics = {
         "understood": _share(len(readings), len(sentences), "sentences that give a plan, of all"),
@@ -141,11 +148,12 @@ def result_row(
             f"wrong_{name}_sample": _share(
                 sum(verdict["verdict"] == "wrong" for verdict in earlier.values()),
                 len(earlier),
-                "an earlier 200 of the checking half, annotated before the faults found in them were fixed",
+                "an earlier sample of the checking half, annotated before the faults found in it were fixed",
             )
             for name, earlier in before.items()
         },
-        "wrong": _share(wrong, len(valid), "wrong by hand annotation, of understood sentences of the checking half"),
+        "wrong": _share(verdicts["wrong"], len(valid), "wrong by hand annotation without a word, of those understood"),
+        "said": _share(verdicts["said"], len(valid), "shown otherwise or in part, which the clause's record says"),
     }
     activities = Counter(part.split()[0] for reading in readings.values() for part in reading.split(" | "))
     return {
@@ -195,6 +203,10 @@ def _before(out: Path) -> dict[str, Judgements]:
     return {name: _judgements(out, f"judgements_{name}") for name in EARLIER}
 
 
+def _judged_before_development(before: dict[str, Judgements]) -> set[str]:
+    return {name for sample in BEFORE_DEVELOPMENT for name in before.get(sample, ())}
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sentences", type=Path, action=Reads, required=True, help="folder with kitml_annotations.json"
@@ -206,8 +218,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     if options.list:
         sentences = sentences_of(options.sentences / "kitml_annotations.json")
         readings, texts = understood(sentences), {s.name: s.text for s in sentences}
-        before = {name for earlier in _before(run.out).values() for name in earlier}
-        _, drawn = fresh_draw([s for s in sentences if s.is_for_checking], before)
+        _, drawn = fresh_draw([s for s in sentences if s.is_for_checking], _judged_before_development(_before(run.out)))
         names = [name for name in drawn if name in readings]
         json.dump([{"name": n, "text": texts[n], "reading": readings[n]} for n in names], sys.stdout, indent=1)
         return

@@ -236,7 +236,9 @@ KITML = MetricTable(
         ("wrong_third_sample", "wrong by hand, third sample (faults mended since)"),
         ("wrong_fourth_sample", "wrong by hand, fourth sample (grammar before the freeze)"),
         ("wrong_fifth_sample", "wrong by hand, fifth sample (grammar before the development draw)"),
-        ("wrong", "wrong by hand, understood ones of the 300 in no earlier sample (this grammar)"),
+        ("wrong_sixth_sample", "wrong by hand, sixth sample (faults mended since)"),
+        ("wrong", "wrong by hand without a word, understood ones of the 300 in no earlier sample (this grammar)"),
+        ("said", "shown otherwise or in part, which is said, of the same"),
     ),
 )  # fmt: skip
 STRANGERS = MetricTable(
