@@ -9,9 +9,11 @@ import torch
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.presets import AWR1843, BGT60
 from mmweaver.core.records import AdcCube
+from mmweaver.dsp.cube import cube_values
 from mmweaver.motion.micro_motion import STILL, MicroMotionSettings
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.antenna import scatterer_gain, specular_gain
+from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.image_method import specular_paths, specular_reflectors
 from mmweaver.paths.materials import MATERIALS, reflection
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
@@ -142,13 +144,42 @@ def test_one_wall_is_the_closed_form_image():
     assert np.allclose(path.corners_m, [[0, 2.5, 0]])
     material = MATERIALS["plasterboard"]
     gamma = reflection(material, np.ones(1), AWR1843.centre_frequency_hz)[0] * np.sqrt(1 - material.scattering**2)
-    assert path.coefficient == pytest.approx(gamma, rel=1e-3)
+    assert path.echoes.at(AWR1843.centre_frequency_hz) == pytest.approx(gamma.conj(), rel=1e-3)
     room = Simulator(scene_of((wall,)), AWR1843, IDEAL).room
-    start = room.counts[Interaction.DIFFUSE]
-    assert abs(room.paths.amplitude[start]) == pytest.approx(specular_gain(AWR1843) * abs(gamma) / 5.0, rel=1e-3)
+    echoes = room.paths.of_kind(Interaction.SPECULAR)
+    turned = np.exp(2j * np.pi * (echoes.length_m - echoes.length_m[0]).numpy()[:, 0, 0] / AWR1843.wavelength_m)
+    total = (echoes.amplitude.numpy() * turned).sum()
+    assert total == pytest.approx(specular_gain(AWR1843) * gamma.conj() / 5.0, rel=1e-3)
     tx, rx = np.asarray(AWR1843.tx_position_m), np.asarray(AWR1843.rx_position_m)
     image = tx * [1, -1, 1] + [0, 5.0, 0]
-    assert np.allclose(room.paths.length_m[start], np.linalg.norm(image[:, None] - rx, axis=-1), atol=1e-9)
+    assert np.allclose(echoes.length_m[0], np.linalg.norm(image[:, None] - rx, axis=-1), atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["plasterboard", "glass", "brick", "concrete"])
+def test_a_wall_reflects_as_the_exact_slab_at_every_frequency(name: str):
+    """Samples and cube of a wall straight ahead against the slab's own coefficient at each sample's frequency."""
+    wall = back_wall(y_m=2.0, material=name)
+    synthesis, material = AdcSynthesis(AWR1843), MATERIALS[name]
+    paths = Simulator(scene_of((wall,)), AWR1843, IDEAL).room.paths.of_kind(Interaction.SPECULAR)
+    got = synthesis.static(paths)
+    since_s = (np.arange(AWR1843.num_samples) - AWR1843.num_samples / 2) / AWR1843.sample_rate_hz
+    frequency_hz = AWR1843.centre_frequency_hz + AWR1843.chirp_slope_hz_per_s * since_s
+    gamma = np.array([reflection(material, np.ones(1), one)[0].conj() for one in frequency_hz])
+    gamma *= np.sqrt(1 - material.scattering**2)
+    front = replace(paths[:1], amplitude=paths.amplitude[:1] / paths.amplitude[0] * specular_gain(AWR1843) / 4.0)
+    wanted = synthesis.static(front) * torch.from_numpy(gamma.astype(np.complex64))
+    assert error_db(got.numpy(), wanted.numpy()) < -30
+    if name != "concrete":  # nothing comes back through it
+        assert error_db(synthesis.static(front).numpy() * gamma[len(gamma) // 2], wanted.numpy()) > -20
+    renderer = CubeRenderer(AWR1843)
+    cells = torch.zeros((1, AWR1843.num_range_bins, AWR1843.num_loops, AWR1843.num_antennas), dtype=torch.complex64)
+    renderer.add_static(cells, renderer.static(paths).layer())
+    loops = wanted.expand(1, AWR1843.num_loops, -1, -1, -1).contiguous()
+    assert error_db(cells.numpy(), cube_values(loops, AWR1843).numpy()) < -30
+
+
+def error_db(got: np.ndarray, wanted: np.ndarray) -> float:
+    return 10 * float(np.log10((np.abs(got - wanted) ** 2).sum() / (np.abs(wanted) ** 2).sum()))
 
 
 def test_a_corner_has_its_double_bounce_once():
@@ -164,7 +195,8 @@ def test_a_corner_has_its_double_bounce_once():
     expected = 1.0 + 0j
     for mirror in specular_reflectors((back_wall(y_m=2.5), floor(-1.2))):
         expected *= complex(mirror.coefficient(np.abs(way @ mirror.plane.normal), AWR1843.centre_frequency_hz))
-    assert corner.coefficient == pytest.approx(expected, rel=0.05)
+    expected = expected.conjugate()
+    assert corner.echoes.at(AWR1843.centre_frequency_hz) == pytest.approx(expected, rel=0.05)
 
 
 def test_ghost_appears_where_the_mirror_says():

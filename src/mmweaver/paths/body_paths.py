@@ -15,6 +15,7 @@ from mmweaver.paths.static_paths import PreparedRoom, RayTracedRoom
 from mmweaver.paths.visibility import Visibility
 
 GHOST_POINTS = 200
+GHOST_SLAB_ECHOES = 2  # of a face in body-wall paths: front, and back with all that goes to and fro within
 SKIN_MARGIN_M = 0.03  # a point on the skin is not occluded by its own capsule's hull
 ROOM_MARGIN_M = 0.05  # nor by the seat it touches
 WALL_MARGIN_M = 0.12  # the mesh of a wall and its fitted plane differ by so much at most
@@ -193,8 +194,9 @@ class BodyPaths:
         seen = (cos > 0.02) & (face.side(place) > 0.02) & (taper > 0.02) & (length_m < 2 * self.config.max_range_m)
         if not seen.any():
             return []
-        coefficient = taper * face.coefficient(cos_face, self.config.centre_frequency_hz)
-        over = self.gain * self._pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / length_m * coefficient
+        most = min(GHOST_SLAB_ECHOES, self.room.propagation.slab_echoes)
+        slab = face.echoes(cos_face, self.config.centre_frequency_hz, most)
+        over = self.gain * self._pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / length_m * taper
         micro = self.body.micro_phase[chosen]
         direct = self._pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]
         half = to_corner + self.towards[:, chosen]
@@ -202,9 +204,10 @@ class BodyPaths:
         skin = self.body.echo
         mixed = over * direct * np.sqrt(skin.over(self.cos[:, chosen], cos, cos_half) * area_m2) * micro
         double = over**2 / self.gain * np.sqrt(skin.back(cos) * area_m2) * micro
+        once = seen & self.visible[:, chosen]
         ghosts = [
-            SkinPaths(None, face, chosen, mixed, seen & self.visible[:, chosen]),
-            SkinPaths(face, face, chosen, double, seen),
+            *(SkinPaths(None, face, chosen, mixed * echo, once, longer_m) for echo, longer_m in slab),
+            *(SkinPaths(face, face, chosen, double * echo, seen, longer_m) for echo, longer_m in slab.twice),
         ]
         ghosts = [ghost for ghost in (ghost.strongest(direct_power) for ghost in ghosts) if ghost.present.any()]
         if not ghosts:
@@ -245,6 +248,7 @@ class SkinPaths:
     points: np.ndarray  # (path,)
     amplitude: np.ndarray  # (frame, path) complex
     present: np.ndarray  # (frame, path) bool
+    longer_m: np.ndarray | None = None  # (frame, path) of the path than over the face's front, if it is
 
     def power(self) -> np.ndarray:
         """(frame,) of all paths that are present, in mW."""
@@ -264,12 +268,14 @@ class SkinPaths:
         """The paths (path,) of one time segment of a frame; `motion` (point, 3, 3) is that of all skin points."""
         there = self.present[frame]
         skin = motion[self.points[there]]
-        ends = [ApparentPoint.of(skin if face is None else face.image_of_motion(skin)) for face in self.faces]
+        departure, arrival = (skin if face is None else face.image_of_motion(skin) for face in self.faces)
+        if self.longer_m is not None:
+            arrival[:, 0] *= 1 + (self.longer_m[frame, there] / np.linalg.norm(arrival[:, 0], axis=1))[:, None]
         count = len(skin)
         return Paths(
             amplitude=torch.from_numpy(self.amplitude[frame, there].astype(np.complex64)),
-            departure=ends[0],
-            arrival=ends[1],
+            departure=ApparentPoint.of(departure),
+            arrival=ApparentPoint.of(arrival),
             is_reciprocal=torch.full((count,), self.departure is not self.arrival),
             interaction=torch.full((count,), int(self.interaction), dtype=torch.uint8),
         )

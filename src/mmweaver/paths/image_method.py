@@ -13,9 +13,10 @@ from torch import Tensor
 
 from mmweaver.core.records import Plane
 from mmweaver.core.shapes import Values
-from mmweaver.paths.materials import MATERIALS, reflection
+from mmweaver.paths.materials import MATERIALS, Material, SlabEchoes, reflection, slab_echoes
 
 MAX_REFLECTORS = 10  # the largest faces; smaller ones count as diffuse surface only
+SLAB_ECHOES = 3  # of a face: front, back, and all that goes to and fro within
 
 
 Vectors = TypeVar("Vectors", np.ndarray, Tensor)
@@ -68,10 +69,23 @@ class SpecularReflector:
 
     def coefficient(self, cos_incidence: Values, frequency_hz: float) -> Values:
         """Specular reflection coefficient: the slab's, less what roughness scatters."""
-        material = MATERIALS[self.plane.material]
-        polarisation = "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
-        smooth = np.sqrt(1 - material.scattering**2)
-        return smooth * reflection(material, cos_incidence, frequency_hz, polarisation=polarisation)
+        smooth = np.sqrt(1 - self.material.scattering**2)
+        return smooth * reflection(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation)
+
+    def echoes(self, cos_incidence: Values, frequency_hz: float, most: int = SLAB_ECHOES) -> SlabEchoes:
+        """The same over a radar's band, in the phases of its beat: the echoes of the slab's two surfaces."""
+        smooth = np.sqrt(1 - self.material.scattering**2)
+        slab = slab_echoes(self.material, cos_incidence, frequency_hz, polarisation=self.polarisation, most=most)
+        return SlabEchoes(smooth * slab.coefficient, slab.longer_m)
+
+    @property
+    def material(self) -> Material:
+        return MATERIALS[self.plane.material]
+
+    @property
+    def polarisation(self) -> str:
+        """Of a vertically polarised radar's wave on this face."""
+        return "tm" if abs(self.plane.normal[2]) > 0.7 else "te"
 
 
 def specular_reflectors(planes: tuple[Plane, ...]) -> list[SpecularReflector]:
@@ -97,15 +111,21 @@ class SpecularPath:
     corners_m: np.ndarray  # (bounce, 3)
     rotation: np.ndarray  # (3, 3) and
     shift_m: np.ndarray  # (3,): image of a transmitter at x is rotation @ x + shift
-    coefficient: complex  # product of the reflections and tapers
+    echoes: SlabEchoes  # products of the slabs' echoes and the tapers, (echo,)
 
     @property
     def length_m(self) -> float:
+        """Over the fronts of the slabs."""
         return float(np.linalg.norm(self.shift_m))
 
 
-def specular_paths(reflectors: list[SpecularReflector], wavelength_m: float, frequency_hz: float) -> list[SpecularPath]:
-    """All paths of one, two and three bounces from the radar to itself, each image once."""
+def specular_paths(
+    reflectors: list[SpecularReflector], wavelength_m: float, frequency_hz: float, most_echoes: int = SLAB_ECHOES
+) -> list[SpecularPath]:
+    """All paths of one, two and three bounces from the radar to itself, each image once.
+
+    Each slab gives so many echoes at most; with one its reflection is that at the given frequency.
+    """
     paths: list[SpecularPath] = []
     seen: list[np.ndarray] = []
     chains: list[tuple[list[SpecularReflector], list[np.ndarray]]] = [([], [np.zeros(3)])]  # faces, and images in them
@@ -115,7 +135,7 @@ def specular_paths(reflectors: list[SpecularReflector], wavelength_m: float, fre
             if not (faces and face is faces[-1]) and face.side(images[-1]) > 0
         ]  # fmt: skip
         for faces, images in chains:
-            path = _path(faces, images, wavelength_m, frequency_hz)
+            path = _path(faces, images, wavelength_m, frequency_hz, most_echoes)
             if path and not any(np.linalg.norm(path.shift_m - other) < 1e-3 for other in seen):
                 seen.append(path.shift_m)
                 paths.append(path)
@@ -123,30 +143,30 @@ def specular_paths(reflectors: list[SpecularReflector], wavelength_m: float, fre
 
 
 def _path(
-    faces: list[SpecularReflector], images: list[np.ndarray], wavelength_m: float, frequency_hz: float
+    faces: list[SpecularReflector], images: list[np.ndarray], wavelength_m: float, frequency_hz: float, most: int
 ) -> SpecularPath | None:
     """The path over some faces with the radar's images in them (bounce + 1); None where it meets no face or is weak."""
     corners = _corners(faces, images)
     if corners is None:
         return None
     length = float(np.linalg.norm(images[-1]))
-    tapers, coefficient, end, gone = [], 1.0 + 0j, np.zeros(3), 0.0
+    tapers, end, gone = [], np.zeros(3), 0.0
+    echoes = SlabEchoes(np.ones(1, complex), np.zeros(1))
     for face, image, corner in zip(reversed(faces), reversed(images[1:]), corners, strict=True):
         gone += float(np.linalg.norm(corner - end))
         fresnel_m = fresnel_radius_m(np.array(gone), np.array(length - gone), wavelength_m)
         tapers.append(float(face.inside(corner, fresnel_m)))
         direction = (image - end) / np.linalg.norm(image - end)
-        coefficient *= complex(face.coefficient(np.abs(direction @ face.plane.normal), frequency_hz))
+        echoes = echoes.then(face.echoes(np.abs(direction @ face.plane.normal), frequency_hz, most), frequency_hz)
         end = corner
-    coefficient *= _share_of_wave(np.array(corners), min(tapers), length)
-    if abs(coefficient) < 1e-5:
+    share = _share_of_wave(np.array(corners), min(tapers), length)
+    echoes = SlabEchoes(share * echoes.coefficient, echoes.longer_m)
+    if abs(echoes.coefficient).max() < 1e-5:
         return None
     rotation = np.eye(3)
     for face in faces:
         rotation = (np.eye(3) - 2 * np.outer(face.plane.normal, face.plane.normal)) @ rotation
-    return SpecularPath(
-        corners_m=np.array(corners[::-1]), rotation=rotation, shift_m=images[-1], coefficient=coefficient
-    )
+    return SpecularPath(corners_m=np.array(corners[::-1]), rotation=rotation, shift_m=images[-1], echoes=echoes)
 
 
 def _corners(faces: list[SpecularReflector], images: list[np.ndarray]) -> list[np.ndarray] | None:

@@ -3,6 +3,7 @@
 Reference: ITU-R P.2040-3, table 3 (permittivity, equation 28) and equations 31, 37 (half space and slab).
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ import numpy as np
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.registry import Registry
 from mmweaver.core.shapes import Values
+
+FAINTEST_BACK = 0.01  # of the strongest echo's amplitude: a fainter one goes unnoticed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +72,101 @@ def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *
 
     Reference: ITU-R P.2040-3, equations 31a, 31b and 37a, 37c.
     """
+    face, through, _ = _slab(material, cos_incidence, frequency_hz, polarisation)
+    return face * (1 - through) / (1 - face**2 * through)
+
+
+def transmission(material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te") -> Values:
+    """Complex transmission coefficient of a slab, relative to free space in its place; the rest as in `reflection`.
+
+    Reference: ITU-R P.2040-3, equation 37b, 37d.
+    """
+    face, through, root = _slab(material, cos_incidence, frequency_hz, polarisation)
+    cos_i = np.clip(np.asarray(cos_incidence, float), 0.0, 1.0)
+    # through = exp(-2jq): the slab's own phase, less that of as much air
+    air = np.exp(2j * np.pi * material.thickness_m * frequency_hz / SPEED_OF_LIGHT_MPS * cos_i)
+    once = np.exp(-2j * np.pi * material.thickness_m * frequency_hz / SPEED_OF_LIGHT_MPS * root)
+    return (1 - face**2) * once * air / (1 - face**2 * through)
+
+
+@dataclass(frozen=True)
+class SlabEchoes:
+    """A slab's reflection as echoes of its front, its back and what goes to and fro within, the front first.
+
+    In the phases of a beat signal, which grow with the path's length: with coefficients c and lengths x the reflection
+    at frequency f is sum_k c_k exp(2 pi j f x_k / c0), the complex conjugate of `reflection`.
+    """
+
+    coefficient: np.ndarray  # (echo, ...) complex
+    longer_m: np.ndarray  # (echo, ...) how much longer each echo's path is than the front's
+
+    def __iter__(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Coefficient and length of each echo."""
+        return zip(self.coefficient, self.longer_m, strict=True)
+
+    @property
+    def twice(self) -> "SlabEchoes":
+        """Of a wave that meets the slab twice under the same angles; all echoes are one or more steps longer."""
+        count = len(self.coefficient)
+        coefficients = [
+            sum(
+                self.coefficient[one] * self.coefficient[order - one]
+                for one in range(order + 1)
+                if one < count > order - one
+            )
+            for order in range(2 * count - 1)
+        ]
+        step_m = self.longer_m[-1] / max(count - 1, 1)
+        return SlabEchoes(np.array(coefficients), np.multiply.outer(np.arange(2 * count - 1), step_m))
+
+    def at(self, frequency_hz: float) -> Values:
+        """The sum (...) at a frequency."""
+        return (self.coefficient * np.exp(2j * np.pi * frequency_hz * self.longer_m / SPEED_OF_LIGHT_MPS)).sum(axis=0)
+
+    def then(self, other: "SlabEchoes", frequency_hz: float) -> "SlabEchoes":
+        """Of one wave at two slabs, (echo,) each; echoes too faint to matter are counted with the strongest."""
+        coefficient = np.multiply.outer(self.coefficient, other.coefficient).ravel()
+        longer_m = np.add.outer(self.longer_m, other.longer_m).ravel()
+        strongest = np.abs(coefficient).argmax()
+        kept = np.abs(coefficient) >= FAINTEST_BACK * np.abs(coefficient[strongest])
+        turn = np.exp(2j * np.pi * frequency_hz * (longer_m - longer_m[strongest]) / SPEED_OF_LIGHT_MPS)
+        coefficient[strongest] += (coefficient * turn)[~kept].sum()
+        return SlabEchoes(coefficient[kept], longer_m[kept])
+
+
+def slab_echoes(
+    material: Material, cos_incidence: Values, frequency_hz: float, *, polarisation: str = "te", most: int = 4
+) -> SlabEchoes:
+    """At most so many echoes; the last stands for all later ones, so that the sum is exact at this frequency.
+
+    Each echo is nearly flat over a radar's band, their sum is not: 12.5 mm of plasterboard reflect 0.19 to 0.28 of the
+    amplitude within 3.4 GHz. Of slabs that nothing comes back through there is the front alone.
+    """
+    face, through, root = (np.conj(part) for part in _slab(material, cos_incidence, frequency_hz, polarisation))
+    longer_m = 2 * material.thickness_m * root.real
+    carrier = np.exp(2j * np.pi * frequency_hz * longer_m / SPEED_OF_LIGHT_MPS)
+    again = through / carrier  # what is lost on the way to the back and to the front again
+    coefficients = [face]
+    for order in range(1, most):
+        coefficients.append(-face * (1 - face**2) * face ** (2 * order - 2) * again**order)
+    coefficients[-1] = coefficients[-1] / (1 - face**2 * through)
+    if most == 1 or np.all(np.abs(coefficients[1]) < FAINTEST_BACK * np.abs(face)):
+        return SlabEchoes((face * (1 - through) / (1 - face**2 * through))[None], np.zeros_like(longer_m)[None])
+    return SlabEchoes(np.array(coefficients), np.arange(most).reshape(-1, *[1] * longer_m.ndim) * longer_m)
+
+
+def mean_reflectivity(
+    material: Material, cos_incidence: Values, frequencies_hz: np.ndarray, polarisation: str
+) -> Values:
+    """|reflection|^2, mean of some frequencies: what a rough face scatters into one range cell."""
+    each = [reflection(material, cos_incidence, one, polarisation=polarisation) for one in frequencies_hz]
+    return np.mean(np.abs(each) ** 2, axis=0)
+
+
+def _slab(
+    material: Material, cos_incidence: Values, frequency_hz: float, polarisation: str
+) -> tuple[Values, Values, Values]:
+    """Reflection of one face; what is left of a wave after its way through and back; sqrt(eps - sin^2)."""
     eps = relative_permittivity(material, frequency_hz)
     cos_i = np.clip(np.asarray(cos_incidence, float), 0.0, 1.0)
     root = np.sqrt(eps - (1 - cos_i**2) + 0j)
@@ -79,5 +177,4 @@ def reflection(material: Material, cos_incidence: Values, frequency_hz: float, *
     else:
         raise ValueError(f"polarisation {polarisation!r}: te or tm")
     q = 2 * np.pi * material.thickness_m * frequency_hz / SPEED_OF_LIGHT_MPS * root
-    through = np.exp(-2j * q)
-    return face * (1 - through) / (1 - face**2 * through)
+    return face, np.exp(-2j * q), root

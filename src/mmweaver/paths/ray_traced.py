@@ -28,7 +28,7 @@ from mmweaver.paths.multi_person_paths import PeoplePaths
 from mmweaver.paths.paths import Interaction, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
 from mmweaver.paths.skin_scattering import SkinEcho
-from mmweaver.paths.static_paths import RayTracedRoom
+from mmweaver.paths.static_paths import Propagation, RayTracedRoom
 from mmweaver.paths.visibility import Visibility
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -64,10 +64,10 @@ class Simulator:
 
     def __init__(
         self, scene: Scene, config: RadarConfig, impairments: Impairments | None = None, *, micro_seed: int = 0,
-        background: RadarCube | None = None, board: Board | None = None,
+        background: RadarCube | None = None, board: Board | None = None, propagation: Propagation | None = None,
     ):  # fmt: skip
-        """`board`: whose errors all signals have (default: those of `impairments` alone). `background`: a recording by
-        this radar with nobody present, whose static clutter and noise are then used.
+        """`board`: whose errors all signals have (default: those of `impairments` alone). `propagation`: which paths
+        there are. `background`: a recording by this radar with nobody present, whose static clutter and noise are used.
 
         Raises InputError for the recording of another radar.
         """
@@ -77,9 +77,7 @@ class Simulator:
         built = config if self.board is None else self.board.radar
         self.synthesis = AdcSynthesis(built, board=self.board)
         self.clock = self.synthesis.clock
-        self.room = RayTracedRoom(scene, built, micro_seed)
-        if self.board is not None:
-            self.room.paths = self.board.on_static(self.room.paths)
+        self.room = RayTracedRoom(scene, built, micro_seed, propagation)
         self.background: BackgroundRecording | None = None
         with one_thread():
             if background is not None:

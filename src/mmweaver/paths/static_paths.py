@@ -1,5 +1,6 @@
 """The static paths of a room: diffuse surfaces, specular reflections and edges."""
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -10,8 +11,8 @@ from mmweaver.core.seeding import stream
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.paths.antenna import pattern, scatterer_gain, specular_gain
 from mmweaver.paths.edge_scattering import find_edges
-from mmweaver.paths.image_method import SpecularReflector, specular_paths, specular_reflectors
-from mmweaver.paths.materials import MATERIALS, reflection
+from mmweaver.paths.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
+from mmweaver.paths.materials import MATERIALS, mean_reflectivity
 from mmweaver.paths.paths import STATIC_KINDS, Interaction, StaticPaths
 
 AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
@@ -21,14 +22,29 @@ EDGE_LOBE = 0.08  # cosine between an edge and the line of sight at which its sp
 NEAREST_M = 0.15
 
 
+@dataclass(frozen=True, kw_only=True)
+class Propagation:
+    """Which paths a room has."""
+
+    slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
+
+
+# What the networks have learned from and are given: rooms as they were before slabs had two surfaces.
+OF_NETWORKS = Propagation(slab_echoes=1)
+
+
 class PreparedRoom:
     """What of a room needs no more rays: its specular reflectors and its static paths, for one radar.
 
     The paths are in the order of STATIC_KINDS. `static_paths_store` keeps such rooms as arrays.
     """
 
-    def __init__(self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths):
+    def __init__(
+        self, config: RadarConfig, reflectors: list[SpecularReflector], paths: StaticPaths,
+        propagation: Propagation | None = None,
+    ):  # fmt: skip
         self.config, self.reflectors, self.paths = config, reflectors, paths
+        self.propagation = propagation or OF_NETWORKS
 
     @cached_property
     def counts(self) -> dict[Interaction, int]:
@@ -49,12 +65,14 @@ class RayTracedRoom(PreparedRoom):
     `micro_seed` samples the phases of its surfaces: another seed is another realization of the same room.
     """
 
-    def __init__(self, scene: Scene, config: RadarConfig, micro_seed: int = 0):
-        self.micro_seed = micro_seed
+    def __init__(
+        self, scene: Scene, config: RadarConfig, micro_seed: int = 0, propagation: Propagation | None = None
+    ):  # fmt: skip
+        self.micro_seed, self.propagation = micro_seed, propagation or Propagation()
         self.caster = RayCaster(scene.vertices_m, scene.faces)
         self.config, self.reflectors = config, specular_reflectors(scene.planes)
         paths = StaticPaths.cat([self._diffuse(scene), self._specular(), self._edges(scene)])
-        super().__init__(config, self.reflectors, paths)
+        super().__init__(config, self.reflectors, paths, self.propagation)
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
         """Bool (...): nothing of the room lies between start and end (..., 3), but for a margin at either end."""
@@ -86,6 +104,16 @@ class RayTracedRoom(PreparedRoom):
         cross_section *= self._diffuse_share(scene, scene.face_material[face], cos, np.abs(normal[:, 2]) > 0.7)
         return self._scattered(direction * distance[:, None], cross_section, cycles[hit], Interaction.DIFFUSE)
 
+    @property
+    def _frequencies_hz(self) -> np.ndarray:
+        """Those at which rough faces and edges are taken."""
+        centre_hz, reach_hz = self.config.centre_frequency_hz, 0.4 * self.config.bandwidth_hz  # the window's weight
+        return (
+            np.linspace(centre_hz - reach_hz, centre_hz + reach_hz, 9)
+            if self.propagation.slab_echoes > 1
+            else (np.array([centre_hz]))
+        )
+
     def _diffuse_share(self, scene: Scene, kind: np.ndarray, cos: np.ndarray, flat: np.ndarray) -> np.ndarray:
         """|S Gamma|^2 of each patch (effective roughness)."""
         share = np.zeros(len(cos))
@@ -93,25 +121,32 @@ class RayTracedRoom(PreparedRoom):
             material = MATERIALS[name]
             for is_flat, polarisation in ((True, "tm"), (False, "te")):
                 of = (kind == index) & (flat == is_flat)
-                gamma = reflection(material, cos[of], self.config.centre_frequency_hz, polarisation=polarisation)
-                share[of] = material.scattering**2 * np.abs(gamma) ** 2
+                share[of] = material.scattering**2 * mean_reflectivity(
+                    material, cos[of], self._frequencies_hz, polarisation
+                )
         return share
 
     def _specular(self) -> StaticPaths:
+        """One path for each echo of each specular reflection that nothing blocks."""
         tx, rx = np.asarray(self.config.tx_position_m), np.asarray(self.config.rx_position_m)
-        """One path for each specular reflection that nothing blocks."""
         lengths, amplitudes, first, last = [], [], [], []
-        for path in specular_paths(self.reflectors, self.config.wavelength_m, self.config.centre_frequency_hz):
+        found = specular_paths(
+            self.reflectors, self.config.wavelength_m, self.config.centre_frequency_hz, self.propagation.slab_echoes
+        )
+        for path in found:
             stops = np.concatenate([np.zeros((1, 3)), path.corners_m, np.zeros((1, 3))])
             if path.length_m / 2 > self.config.max_range_m or not self.is_clear(stops[:-1], stops[1:], 0.12).all():
                 continue
             image = tx @ path.rotation.T + path.shift_m
-            lengths.append(np.linalg.norm(image[:, None] - rx[None], axis=-1))
+            length_m = np.linalg.norm(image[:, None] - rx[None], axis=-1)
             ends = np.stack([stops[1], stops[-2]])
             gains = pattern(ends / np.linalg.norm(ends, axis=1, keepdims=True), self.config)
-            amplitudes.append(specular_gain(self.config) * gains.prod() * path.coefficient / path.length_m)
-            first.append(stops[1])
-            last.append(stops[-2])
+            level = specular_gain(self.config) * gains.prod() / path.length_m
+            for coefficient, longer_m in path.echoes:
+                amplitudes.append(level * coefficient)
+                lengths.append(length_m + longer_m)
+                first.append(stops[1])
+                last.append(stops[-2])
         return StaticPaths.of(
             np.array(amplitudes, complex), np.array(lengths).reshape(-1, len(tx), len(rx)),
             np.array(first).reshape(-1, 3), np.array(last).reshape(-1, 3), Interaction.SPECULAR,
@@ -123,14 +158,14 @@ class RayTracedRoom(PreparedRoom):
         rng = stream(self.micro_seed, "room", "edges")
         distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
         cos = np.abs((edges.direction * edges.place_m).sum(axis=1)) / distance
-        gamma = np.array(
+        reflectivity = np.array(
             [
-                np.abs(reflection(MATERIALS[n], np.float64(1.0), self.config.centre_frequency_hz))
-                for n in scene.material_names
+                mean_reflectivity(MATERIALS[name], np.float64(1.0), self._frequencies_hz, "te")
+                for name in scene.material_names
             ]
         )
         wave_number = 2 * np.pi / self.config.wavelength_m
-        cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * gamma[edges.material] ** 2
+        cross_section = wave_number * EDGE_RADIUS_M * edges.length_m**2 * reflectivity[edges.material]
         cross_section *= np.exp(-2 * (cos / EDGE_LOBE) ** 2)
         cycles = rng.random(len(cos))
         keep = (cross_section > 1e-7) & (distance > NEAREST_M) & (distance < self.config.max_range_m)

@@ -66,4 +66,4 @@ def with_new_phases(room: PreparedRoom, seed: int) -> PreparedRoom:
     cycles = stream(seed, "room", "other phases").random(len(room.paths))
     cycles[room.paths.interaction.numpy() == int(Interaction.SPECULAR)] = 0.0
     amplitude = room.paths.amplitude * torch.from_numpy(np.exp(2j * np.pi * cycles))
-    return PreparedRoom(room.config, room.reflectors, replace(room.paths, amplitude=amplitude))
+    return PreparedRoom(room.config, room.reflectors, replace(room.paths, amplitude=amplitude), room.propagation)
