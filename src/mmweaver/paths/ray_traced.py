@@ -78,6 +78,8 @@ class Simulator:
         self.synthesis = AdcSynthesis(built, board=self.board)
         self.clock = self.synthesis.clock
         self.room = RayTracedRoom(scene, built, micro_seed, propagation)
+        if self.board is not None:
+            self.room.paths = self.board.on_static(self.room.paths)
         self.background: BackgroundRecording | None = None
         with one_thread():
             if background is not None:
