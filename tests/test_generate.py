@@ -27,6 +27,7 @@ from mmweaver.generate import Weaver
 from mmweaver.generation import Room
 from mmweaver.methods import METHODS, Signal
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.verification import verify
 
 README = Path(__file__).resolve().parents[1] / "README.md"
 TEXT = "a person walks towards the radar"
@@ -244,7 +245,7 @@ def test_unknown_names_list_the_known():
 
 
 def test_public_names_are_few_and_all_there():
-    assert len(set(mmweaver.__all__) - {"__version__"}) <= 17
+    assert len(set(mmweaver.__all__) - {"__version__"}) <= 18
     for name in mmweaver.__all__:
         assert getattr(mmweaver, name) is not None
     assert set(mmweaver.__all__) <= set(dir(mmweaver))
@@ -267,3 +268,35 @@ def test_a_recorded_motion_instead_of_a_sentence(tmp_path: Path):
     tall = weaver.generate(room, motion=clip, height_m=1.9, frames=3, keep_adc=False)
     assert tall.pose.height_m == pytest.approx(1.9)
     assert weaver.generate(room, "a person waves", height_m=1.5, frames=2, keep_adc=False).pose.height_m == 1.5
+
+
+def test_several_radars_record_the_same_scene(weaver: Weaver, room: Room, walk: Path, tmp_path: Path):
+    there = mmweaver.RadarPose(x_m=1.4, y_m=1.6, yaw_deg=-70.0)
+    made = weaver.generate(room, TEXT, frames=6, seed=3, radar_poses=[mmweaver.RadarPose(), there])
+    here, elsewhere = made.radars
+    assert here.cube.values.tobytes() == read_radar_npz(walk / "radar.npz").values.tobytes()
+    np.testing.assert_allclose(there.in_level_frame(elsewhere.pose.joints_m), here.pose.joints_m, atol=1e-9)
+    meta = made.save(tmp_path / "both", extra={"request.toml": "# none\n"})
+    assert {"radar_1/radar.npz", "radar_2/preview.png"} <= set(meta["files"])
+    assert json.loads((tmp_path / "both/radar_2/meta.json").read_text())["radar_pose"]["yaw_deg"] == -70
+    assert verify(tmp_path / "both").is_sound
+    with pytest.raises(InputError, match="not empty"):
+        made.save(tmp_path / "both")
+    with pytest.raises(InputError, match="at the camera"):
+        elsewhere.save_html(tmp_path / "page.html")
+
+
+def test_the_network_knows_radars_at_the_camera_only(room: Room):
+    there = mmweaver.RadarPose(x_m=0.3)
+    made = Weaver().generate(room, TEXT, frames=2, radar_poses=[there])
+    assert made.meta["method"] == "physics"
+    assert any("network" in sentence for sentence in made.meta["assumed"])
+    with pytest.raises(InputError, match="choose physics"):
+        Weaver("weaver").request(TEXT, radar_poses=[there])
+
+
+def test_a_background_recording_is_of_one_radar(weaver: Weaver, room: Room, walk: Path):
+    known = room.with_background(walk)
+    poses = [mmweaver.RadarPose(), mmweaver.RadarPose(x_m=1.0)]
+    with pytest.raises(InputError, match="one radar pose"):
+        weaver.generate(known, TEXT, frames=2, radar_poses=poses)

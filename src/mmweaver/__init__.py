@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from mmweaver.core.errors import InputError
     from mmweaver.core.presets import PRESETS
     from mmweaver.core.radar_config import RadarConfig
+    from mmweaver.core.radar_pose import RadarPose
     from mmweaver.core.records import AdcCube, PointCloud, PoseSequence, RadarCube, Scene
     from mmweaver.formats.npz_files import read_radar_npz
     from mmweaver.formats.radar_file import load_radar
@@ -32,6 +33,7 @@ _HOME = {
     "PoseSequence": "core.records",
     "RadarConfig": "core.radar_config",
     "RadarCube": "core.records",
+    "RadarPose": "core.radar_pose",
     "Recording": "recordings.read_recording",
     "Scene": "core.records",
     "Weaver": "generate",
@@ -54,6 +56,7 @@ __all__ = [
     "PoseSequence",
     "RadarConfig",
     "RadarCube",
+    "RadarPose",
     "Recording",
     "Scene",
     "Weaver",

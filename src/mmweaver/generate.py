@@ -22,6 +22,7 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
 from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
@@ -41,6 +42,7 @@ from mmweaver.motion.multi_person import Place, compose_people
 from mmweaver.motion.people import subject_of
 from mmweaver.request import Request, parse_request
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
+from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
 from mmweaver.scene.read_photo import classes_of, read_photo
@@ -56,6 +58,8 @@ from mmweaver.streaming import (
     point_detector,
     takes_argument,
 )
+
+BY_PHYSICS = "the network has only seen radars at the camera; the signals of radars elsewhere are those of physics"
 
 
 class Weaver:
@@ -193,7 +197,23 @@ class Weaver:
 
         Raises InputError for a request that cannot be met.
         """
-        return parse_request(self.radar, text, **asked, needs_adc=needs_adc(self.points))
+        request = parse_request(self.radar, text, **asked, needs_adc=needs_adc(self.points))
+        self._method_for(request)
+        return request
+
+    def _method_for(self, request: Request) -> Method:
+        """The method that makes the signals: the ray tracer's where a radar stands elsewhere, if none was chosen.
+
+        Raises InputError where the network was.
+        """
+        if all(pose.is_at_camera for pose in request.radar_poses) or not isinstance(self.method, Learned):
+            return self.method
+        if self.method_name != DEFAULT_METHOD:
+            raise InputError(
+                "the network has only seen radars that stand at the camera, level; leave out the method and weights,"
+                " or choose physics, for radars elsewhere"
+            )
+        return METHODS["physics"]()
 
     def generate(
         self,
@@ -213,6 +233,7 @@ class Weaver:
         as_recorded: bool = False,
         keep_adc: bool = False,
         board: str | Path | Board | None = None,
+        radar_poses: Sequence[RadarPose] = (),
     ) -> Generation:
         """The signal of people doing in the room what the text says (one text a person), or what a `motion` shows.
 
@@ -231,11 +252,15 @@ class Weaver:
         seed; the default without a background), "typical:N", "ideal", a board.json or a `Board` (docs/board.md); for
         another board the room is prepared anew. The same seed gives the same bits. Raises InputError for a request that
         cannot be met.
+
+        `radar_poses`: radars that do not stand at the camera, or several that record the same room and motion at the
+        same time. The result is that of the first, and its `radars` are all of them; every position in a result is in
+        the frame of its own radar. Places asked for stay the camera's. Only physics makes such signals.
         """
         request = self.request(
             text, motion=motion, frames=frames, seconds=seconds, fps=fps, seed=seed, at=at,
             heading_rad=heading_rad, path_m=path_m, height_m=height_m, subject=subject,
-            as_recorded=as_recorded, keep_adc=keep_adc, board=board,
+            as_recorded=as_recorded, keep_adc=keep_adc, board=board, radar_poses=radar_poses,
         )  # fmt: skip
         return self.carry_out(request, room)
 
@@ -289,13 +314,26 @@ class Weaver:
     @single_precision()
     def carry_out(self, request: Request, room: Room) -> Generation:
         """What `generate` does with a request that is already parsed. Raises InputError where the room has no place."""
+        poses = request.radar_poses or (AT_CAMERA,)
+        if room.background is not None and len(poses) > 1:
+            raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
+        scenes = [scene_seen_from(room.scene, pose) for pose in poses]
+        method = self._method_for(request)
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
             people = compose_request(request, room.scene)
-        motions = tuple(person.pose for person in people)
-        board, given = self.board_of(request, room)
-        signal = self.method(
+        results = [self._recorded(request, replace(room, scene=scene), people, method, stages) for scene in scenes]
+        return replace(results[0], further=tuple(results[1:]))
+
+    def _recorded(
+        self, request: Request, room: Room, people: tuple[Motion, ...], method: Method, stages: Stages
+    ) -> Generation:
+        """What one radar records; `room` is in its frame, the people in the camera's."""
+        pose = room.scene.radar_pose
+        motions = people_seen_from(tuple(person.pose for person in people), pose)
+        board, given = self.board_of(replace(request, seed=pose.noise_seed(request.seed)), room)
+        signal = method(
             room.scene, motions, request.config, num_frames=request.frames, seed=request.seed,
             keep_adc=request.keep_adc or needs_adc(self.points), stages=stages, background=room.background,
             **given,
@@ -306,10 +344,16 @@ class Weaver:
         adc = signal.adc if request.keep_adc else None
         if adc is not None and self.calibration is not None and not request.config.is_coded:
             adc = self.calibration.recorded(adc)
+        if method is not self.method:
+            signal = replace(signal, method="physics", assumptions=(*signal.assumptions, BY_PHYSICS))
+        if not pose.is_at_camera:
+            signal = replace(signal, assumptions=(*signal.assumptions, *unseen_notes(poses, request.range_window_m)))
+        meta = self._meta(request, room, people, poses, signal, board)
+        if request.radar_poses:
+            meta["radar_pose"] = pose
         return Generation(
             cube=signal.cube, points=points, adc=adc, poses=poses,
-            motions=motions, scene=room.scene, meta=self._meta(request, room, people, poses, signal, board),
-            stages=stages, board=board,
+            motions=motions, scene=room.scene, meta=meta, stages=stages, board=board,
         )  # fmt: skip
 
     def board_of(self, request: Request, room: Room) -> tuple[Board, dict[str, Any]]:

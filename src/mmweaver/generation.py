@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.board import Board
 from mmweaver.core.boards import IDEAL_BOARD
 from mmweaver.core.errors import InputError
@@ -15,7 +16,7 @@ from mmweaver.core.stages import Stages
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.figures.preview import preview_figure
 from mmweaver.geometry.aligned_photo import AlignedPhoto
-from mmweaver.result_folder import BOARD_FILE, file_digest, plain, save_results
+from mmweaver.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
 
 if TYPE_CHECKING:
@@ -80,6 +81,12 @@ class Generation(ShownByFacts):
     meta: dict[str, Any]
     stages: Stages
     board: Board = IDEAL_BOARD
+    further: tuple["Generation", ...] = ()  # what other radars recorded at the same time
+
+    @property
+    def radars(self) -> tuple["Generation", ...]:
+        """What each radar recorded, this one first."""
+        return (replace(self, further=()), *self.further)
 
     def facts(self) -> dict[str, str]:
         """What was asked for and what came of it."""
@@ -91,7 +98,7 @@ class Generation(ShownByFacts):
             "people": str(len(self.poses)),
             "ADC samples": "none" if self.adc is None else " x ".join(map(str, self.adc.samples.shape)),
             "method": str(self.meta["method"]),
-            "radar": self.cube.config.name,
+            "radar": self.cube.config.name + (f", one of {len(self.radars)}" if self.further else ""),
             "board": self.board.name,
             "seed": str(self.meta["seed"]),
         }
@@ -128,6 +135,8 @@ class Generation(ShownByFacts):
         from mmweaver.playback.room import room_playback
         from mmweaver.playback.sequence import make_playback
 
+        if not self.scene.radar_pose.is_at_camera:
+            raise InputError("the page shows radars at the camera only; look at preview.png of a radar elsewhere")
         range_m = self.cube.grid.range_m
         window_m = float(range_m[0]), float(range_m[-1])
         sequence = make_playback(self.cube, self.points, self.poses, plain(self.meta))
@@ -173,8 +182,10 @@ class Generation(ShownByFacts):
         """What the figures are drawn from."""
         text = self.meta["text"]
         title = text if isinstance(text, str) else " | ".join(text)
+        pose = self.scene.radar_pose
+        elsewhere = "" if pose.is_at_camera else f" at {pose.words}"
         return FigureData(
-            title=f"{title}   ({self.cube.config.name}, seed {self.meta['seed']})",
+            title=f"{title}   ({self.cube.config.name}{elsewhere}, seed {self.meta['seed']})",
             cube=self.cube, points=self.points, aligned=AlignedPhoto.of(self.scene),
             poses=self.poses, motions=self.motions,
         )  # fmt: skip
@@ -188,7 +199,14 @@ class Generation(ShownByFacts):
         Without `pictures` it is much quicker. `adc_data_bin` also writes the raw samples, as a DCA1000 does, with I or
         Q first (`iq_order`: "iq" or "qi"). `extra`: text files to add, by name. Raises InputError where the folder
         cannot be written, or holds other files and `overwrite` is not set.
+
+        Several radars have a folder each in it, radar_1, radar_2 and so on, with all files but `extra`.
         """
+        if self.further:
+            return self._save_each(
+                Path(out), overwrite=overwrite, adc_data_bin=adc_data_bin, iq_order=iq_order, pictures=pictures,
+                extra=extra,
+            )  # fmt: skip
         if adc_data_bin and self.adc is None:
             raise InputError(
                 "there are no ADC samples to write; generate with keep_adc=True and a method that has them"
@@ -199,6 +217,20 @@ class Generation(ShownByFacts):
             out, self.figure_data, self.meta, adc=self.adc if adc_data_bin else None, iq_order=iq_order,
             overwrite=overwrite, stages=self.stages, pictures=pictures, extra=extra,
         )  # fmt: skip
+
+    def _save_each(
+        self, out: Path, *, overwrite: bool, extra: dict[str, str] | None, **options: Any
+    ) -> dict[str, Any]:  # fmt: skip
+        """Writes the folder of each radar, or none; returns the first one's meta.json with all files."""
+        with staged_folder(out, overwrite=overwrite) as stage:
+            for name, text in (extra or {}).items():
+                (stage / name).write_text(text, encoding="utf-8")
+            metas = [one.save(stage / radar_folder(number), **options) for number, one in enumerate(self.radars, 1)]
+        files = {
+            f"{radar_folder(number)}/{name}": text
+            for number, meta in enumerate(metas, 1) for name, text in meta["files"].items()
+        }  # fmt: skip
+        return {**metas[0], "files": files}
 
 
 def _recording_digest(place: Path) -> dict[str, str]:

@@ -11,6 +11,7 @@ from mmweaver.core.board import Board
 from mmweaver.core.boards import IDEAL_BOARD, find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.radar_pose import RadarPose, check_poses
 from mmweaver.motion.language.plan import MotionPlan
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import natural_s, repeated, schedule
@@ -53,6 +54,7 @@ class Request:
     as_recorded: bool = False  # the recorded positions are kept
     keep_adc: bool = False
     board: Board | None = None  # None: a typical one of this seed, or with a background recording an ideal one
+    radar_poses: tuple[RadarPose, ...] = ()  # none: one radar at the camera
 
     @property
     def duration_s(self) -> float:
@@ -107,6 +109,7 @@ def parse_request(
     subject: int | Sequence[int | None] | None = None,
     as_recorded: bool = False,
     keep_adc: bool = False,
+    radar_poses: Sequence[RadarPose] = (),
     needs_adc: bool = False,
     board: str | Path | Board | None = None,
 ) -> Request:
@@ -125,6 +128,7 @@ def parse_request(
     if not 1 <= len(texts) <= MOST_PEOPLE:
         raise InputError(f"give 1 to {MOST_PEOPLE} texts, one for each person, not {len(texts)}")
     starts = _starts(at, len(texts))
+    check_poses(tuple(radar_poses))
     config = radar if fps is None else replace(radar, frame_period_s=1 / fps)
     has_adc = keep_adc or needs_adc
     asked = _frames_asked_for(frames, seconds, config)
@@ -152,6 +156,7 @@ def parse_request(
     return Request(
         people=people, config=config, frames=count, seed=seed, motion=motion, heading_rad=heading_rad,
         as_recorded=as_recorded, keep_adc=keep_adc, board=None if board is None else find_board(board, config, seed),
+        radar_poses=tuple(radar_poses),
     )  # fmt: skip
 
 

@@ -96,6 +96,11 @@ def save_results(
     return plain(meta)
 
 
+def radar_folder(number: int) -> str:
+    """The folder of one of several radars in a folder of results; the first is number 1."""
+    return f"radar_{number}"
+
+
 def radar_meta(config: RadarConfig) -> dict[str, Any]:
     """The radar and its resolutions, for meta.json."""
     return {

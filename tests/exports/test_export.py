@@ -1,6 +1,8 @@
 """Every format is written by its name, read back by its own library, or refused in one line."""
 
 import importlib.util
+import json
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -143,3 +145,23 @@ def test_what_is_missing_is_said(
 def test_a_folder_without_a_result_is_refused(tmp_path: Path):
     with pytest.raises(InputError, match="holds no radar"):
         export_result(tmp_path, "mat", tmp_path / "out")
+
+
+def test_two_radars_at_a_right_angle_as_hupr_has_them(result_folder: Path, tmp_path: Path):
+    def two_radars(name: str, roll_deg: float) -> Path:
+        for number, roll in ((1, 0.0), (2, roll_deg)):
+            folder = shutil.copytree(result_folder, tmp_path / name / f"radar_{number}")
+            (folder / "SHA256SUMS").unlink()
+            meta = json.loads((folder / "meta.json").read_text())
+            (folder / "meta.json").write_text(json.dumps({**meta, "radar_pose": {"roll_deg": roll}}))
+        return tmp_path / name
+
+    both = two_radars("both", 90.0)
+    assert main(["export", str(both), "--to", "hupr", "--out", str(tmp_path / "hupr")]) == 0
+    for name in ("hori", "vert"):
+        assert np.load(tmp_path / "hupr" / name / "000000001.npy").shape == (16, 64, 64, 8)
+    assert np.load(tmp_path / "hupr" / "joints_m.npy").shape == (4, 1, 14, 3)
+    assert main(["export", str(both), "--to", "mmmesh", "--out", str(tmp_path / "mmmesh")]) == 0
+    assert (tmp_path / "mmmesh" / "radar_2" / "points").is_dir()
+    with pytest.raises(InputError, match="rolled by 90"):
+        export_result(two_radars("level", 0.0), "hupr", tmp_path / "none")

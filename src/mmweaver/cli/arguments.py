@@ -3,11 +3,14 @@
 import argparse
 import math
 from collections.abc import Callable
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from mmweaver.core.errors import InputError
 
-SIGNED = ("--at", "--path", "--heading", "--motion-up")  # options whose values may begin with a minus
+if TYPE_CHECKING:
+    from mmweaver.core.radar_pose import RadarPose
+
+SIGNED = ("--at", "--path", "--heading", "--motion-up", "--radar-pose")  # options whose values may begin with a minus
 LOG_LEVELS = ("debug", "info", "warning", "error")
 Options = argparse.ArgumentParser | argparse._ArgumentGroup
 
@@ -93,6 +96,13 @@ def landmark(word: str) -> tuple[str, tuple[float, float]]:
     if not equals:
         raise argparse.ArgumentTypeError(f"{word!r} is no landmark; write KIND=X,Y in metres, for example door=0.9,2.8")
     return kind.strip().lower(), place(where)
+
+
+def radar_pose(word: str) -> "RadarPose":
+    """'0.5,0,0.2,-30,10' -> a radar's place in metres, its yaw and pitch in degrees."""
+    from mmweaver.core.radar_pose import RadarPose
+
+    return RadarPose.of_words(word)
 
 
 def transmitters(word: str) -> tuple[int, ...]:

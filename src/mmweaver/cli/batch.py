@@ -120,7 +120,8 @@ class Batch:
             "frames": request.frames, "points": weaver.points, "weights": weaver.weights, "inputs": self.room.inputs,
             "board": board.meta(),
         }  # fmt: skip
-        method = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
+        method: dict[str, Any] = {} if weaver.method_name == DEFAULT_METHOD else {"method": weaver.method_name}
+        method |= {"radar_pose": request.radar_poses[0]} if request.radar_poses else {}
         return plain({**same, **method, **radar_meta(request.config)})
 
     def _expected_files(self) -> set[str]:
@@ -146,6 +147,10 @@ def sequences_of(arguments: argparse.Namespace, out: Path) -> list[BatchSequence
     for name in FOR_ONE_SEQUENCE:
         if getattr(arguments, name) is not None:
             raise InputError(f"--texts makes many sequences; leave out --{name.replace('_', '-')}, or --texts")
+    if len(arguments.radar_pose or ()) > 1:
+        raise InputError(
+            "--texts takes one --radar-pose; run it once for each radar: the same seeds give the same motions"
+        )
     texts = read_texts(arguments.texts)
     if not 1 <= arguments.repeat <= MOST // len(texts):
         raise InputError(f"--repeat must be 1 to {MOST // len(texts)} for {len(texts)} sentences")

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.arguments import Parser, landmark, points, source
+from mmweaver.cli.arguments import Parser, landmark, points, radar_pose, source
 from mmweaver.core.errors import InputError
 from mmweaver.core.version import __version__
 
@@ -148,6 +148,8 @@ def _toml_single(action: argparse.Action, value: Any) -> Any:
     if action.type is landmark:
         kind, (x, y) = value
         return f"{kind}={x},{y}"
+    if action.type is radar_pose:
+        return value.words
     if action.type is points:
         return " ".join(f"{x},{y}" for x, y in value)
     if isinstance(value, tuple):

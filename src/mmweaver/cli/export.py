@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     import json
 
     from mmweaver.core.errors import InputError
-    from mmweaver.exports.export import FORMATS, export_result
+    from mmweaver.exports.export import FORMATS, export_result, is_of_two_radars
 
     if arguments.list:
         for name, one in FORMATS.items():
@@ -44,7 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("give a result folder, --to FORMAT and --out DIR; mmweaver export --list names the formats")
     if arguments.to not in FORMATS:
         raise InputError(f"unknown format {arguments.to!r}; known: {', '.join(FORMATS)}")
-    results = _results(arguments.folder)
+    together = is_of_two_radars(arguments.folder, arguments.to)
+    results = {arguments.folder: ""} if together else _results(arguments.folder)
     written = {}
     for folder, place in results.items():
         out = arguments.out / place

@@ -40,6 +40,7 @@ EXAMPLES = """examples:
       --seconds 8 --radar mmmesh --out drink/ --bin
   mmweaver generate --demo --method physics --out traced/
   mmweaver generate --demo --board ideal --out ideal/               # no errors of a board; --board board.json: of yours
+  mmweaver generate --demo --radar-pose 0,0,0,0,0 --radar-pose 1.5,1.5,0,-60,0 --out both/   # two radars at a time
   mmweaver generate --demo --texts sentences.txt --repeat 20 --no-pictures --out set/       # one sentence a line
   mmweaver generate --demo --stream --texts - --out live/                   # sentences from standard input, no end
   mmweaver process empty.bin --radar profile.cfg --out empty/       # your room with nobody in it, a few seconds
@@ -75,8 +76,12 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.core.output_checks import check_output_file, check_output_folder
     from mmweaver.result_folder import FILES
 
-    check_output_folder(out, overwrite=arguments.overwrite, files=FILES, inputs=_inputs(arguments))
+    many = len(arguments.radar_pose or ()) > 1
+    files = [REQUEST_FILE] if many else FILES
+    check_output_folder(out, overwrite=arguments.overwrite, files=files, inputs=_inputs(arguments))
     if arguments.html is not None:
+        if arguments.radar_pose:
+            raise InputError("--html shows a radar at the camera; leave out --radar-pose, or --html")
         check_output_file(arguments.html, overwrite=arguments.overwrite, inputs=_inputs(arguments))
     with StageBar(NUM_STAGES, quiet=arguments.quiet or arguments.verbose) as bar:
         background = _background(arguments)
@@ -190,7 +195,7 @@ def _settings(arguments: argparse.Namespace) -> dict[str, Any]:
     """The arguments of `Weaver.request` that every sequence shares."""
     return {
         "frames": arguments.frames, "seconds": arguments.seconds, "fps": arguments.fps, "seed": arguments.seed,
-        "keep_adc": arguments.bin, "board": _board(arguments),
+        "keep_adc": arguments.bin, "board": _board(arguments), "radar_poses": arguments.radar_pose or (),
     }  # fmt: skip
 
 

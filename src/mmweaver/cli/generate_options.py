@@ -15,6 +15,7 @@ from mmweaver.cli.arguments import (
     landmark,
     number,
     place,
+    radar_pose,
     source,
     whole,
 )
@@ -126,6 +127,12 @@ def _add_radar_options(radar: Options) -> None:
     radar.add_argument(
         "--radar", type=source, metavar="NAME|FILE",
         help="preset, TI .cfg or radar.json (default awr1843, or what --background was recorded with)",
+    )  # fmt: skip
+    radar.add_argument(
+        "--radar-pose", type=radar_pose, action="append", metavar="X,Y,Z,YAW,PITCH[,ROLL]",
+        help="where the radar stands, in metres right of, ahead of and above the camera, and degrees to which it is"
+        " turned to the right, up, and about its boresight (default: at the camera, level); once more for each further"
+        " radar, which records the same scene at the same time (docs/several_radars.md)",
     )  # fmt: skip
     add_range_options(radar)
     add_board_option(radar)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 PART_FRAMES = 20  # what a kill may lose
 STANDARD_INPUT = "-"
-NOT_OF_STREAMS = ("motion", "motion_model", "path", "html", "seconds")
+NOT_OF_STREAMS = ("motion", "motion_model", "path", "html", "seconds", "radar_pose")
 
 
 def check_stream_options(arguments: argparse.Namespace) -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
 from mmweaver.core.record_display import ShownByFacts, span
 from mmweaver.core.shapes import (
     AdcValues,
@@ -242,7 +243,7 @@ class Scene(ShownByFacts):
     """A room, reconstructed from a photo or procedural, for ray casting and motion planning; in the radar's frame."""
 
     photo: RgbdPhoto
-    radar_from_camera: Rotation  # camera x right, y down, z forward -> radar frame (same origin)
+    radar_from_camera: Rotation  # camera x right, y down, z forward -> radar frame
     vertices_m: Vertices
     faces: Faces
     face_material: PerFace  # index into material_names
@@ -253,6 +254,7 @@ class Scene(ShownByFacts):
     seats: tuple[Seat, ...]
     assumptions: tuple[str, ...]  # sentences for meta.json
     landmarks: tuple[Landmark, ...] = ()
+    radar_pose: RadarPose = AT_CAMERA  # of the radar whose frame this is; the photo is always the camera's
 
     def facts(self) -> dict[str, str]:
         """Sizes, planes, seats and landmarks."""

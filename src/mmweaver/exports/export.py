@@ -7,6 +7,7 @@ from pathlib import Path
 
 from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.errors import InputError
+from mmweaver.result_folder import radar_folder
 from mmweaver.stored_result import read_result
 
 
@@ -18,15 +19,24 @@ class Format:
     module: str
     function: str
     needs_samples: bool = False
+    of_two_radars: str | None = None  # the function that writes two radars of one scene together
 
     def writer(self) -> Callable:
         """The function, imported at its first use: most formats need a package of their own."""
         return getattr(import_module(f"mmweaver.exports.{self.module}"), self.function)
 
+    def writer_of_two(self) -> Callable:
+        """The function for two radars of one scene."""
+        return getattr(import_module(f"mmweaver.exports.{self.module}"), self.of_two_radars or "")
+
 
 FORMATS = {
     "hupr": Format(
-        what="HuPR's range-Doppler-angle arrays", module="tensor_layouts", function="write_hupr", needs_samples=True
+        what="HuPR's range-Doppler-angle arrays",
+        module="tensor_layouts",
+        function="write_hupr",
+        needs_samples=True,
+        of_two_radars="write_hupr_pair",
     ),
     "mmmesh": Format(what="mmMesh's point frames", module="tensor_layouts", function="write_mmmesh"),
     "rf_genesis": Format(
@@ -49,11 +59,21 @@ FORMATS = {
 def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False) -> str:
     """Writes a result folder in another format into the folder `out`, or nothing; says what was written.
 
-    `kind` is a name in FORMATS. Raises InputError for another name, for a folder that is no result, and for a result
-    that the format cannot hold.
+    `kind` is a name in FORMATS; for some of them `folder` may hold two radars of one scene. Raises InputError for
+    another name, for a folder that is no result, and for a result that the format cannot hold.
     """
     if kind not in FORMATS:
         raise InputError(f"unknown format {kind!r}; known: {', '.join(FORMATS)}")
+    if is_of_two_radars(Path(folder), kind):
+        both = [read_result(Path(folder) / radar_folder(number)) for number in (1, 2)]
+        with staged_folder(Path(out), overwrite=overwrite) as stage:
+            return FORMATS[kind].writer_of_two()(*both, stage)
     result = read_result(Path(folder))
     with staged_folder(Path(out), overwrite=overwrite) as stage:
         return FORMATS[kind].writer()(result, stage)
+
+
+def is_of_two_radars(folder: Path, kind: str) -> bool:
+    """Whether a folder holds the results of several radars of one scene, and the format takes two together."""
+    two = [folder / radar_folder(number) / "radar.npz" for number in (1, 2)]
+    return FORMATS[kind].of_two_radars is not None and all(file.is_file() for file in two)

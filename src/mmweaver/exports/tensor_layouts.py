@@ -23,6 +23,22 @@ HUPR_JOINTS = (
 )  # fmt: skip
 
 
+def write_hupr_pair(horizontal: StoredResult, vertical: StoredResult, out: Path) -> str:
+    """`hori/` and `vert/` of two radars of one scene, the second rolled by 90 degrees; both as in `write_hupr`.
+
+    The joints are in the horizontal radar's frame. Raises InputError where the radars are not so, too.
+    """
+    rolls_deg = [float((one.meta.get("radar_pose") or {}).get("roll_deg", 0.0)) for one in (horizontal, vertical)]
+    if abs(abs(rolls_deg[1] - rolls_deg[0]) - 90) > 20:
+        raise InputError(
+            f"HuPR's second radar is rolled by 90 degrees, this one by {rolls_deg[1] - rolls_deg[0]:g}; generate with"
+            " --radar-pose 0,0,0,0,0 --radar-pose 0.1,0,0,0,0,90"
+        )
+    written = write_hupr(horizontal, out)
+    _write_hupr_frames(vertical, out / "vert")
+    return f"{written} by two radars"
+
+
 def write_hupr(result: StoredResult, out: Path) -> str:
     """`hori/%09d.npy`, complex128 (16 Doppler, 64 range from far to near, 64 azimuth, 8 elevation), and the joints.
 
@@ -33,12 +49,7 @@ def write_hupr(result: StoredResult, out: Path) -> str:
 
     Reference: Lee et al., HuPR: A Benchmark for Human Pose Estimation Using Millimeter Wave Radar (WACV 2023).
     """
-    adc = result.adc
-    _check_hupr(adc.config)
-    folder = out / "hori"
-    folder.mkdir(parents=True)
-    for index, frame in enumerate(adc.samples):
-        np.save(folder / f"{index:09d}.npy", hupr_frame(frame, adc.config))
+    count = _write_hupr_frames(result, out / "hori")
     if result.poses:
         chosen = [joint(name) for name in HUPR_JOINTS]
         joints_m = np.stack([pose.joints_m[:, chosen] for pose in result.poses], axis=1)
@@ -46,7 +57,17 @@ def write_hupr(result: StoredResult, out: Path) -> str:
         _write_json(
             out / "joints.json", {"joints": list(HUPR_JOINTS), "unit": "m", "axes": "frame, person, joint, xyz"}
         )
-    return f"{len(adc.samples)} frames of HuPR"
+    return f"{count} frames of HuPR"
+
+
+def _write_hupr_frames(result: StoredResult, folder: Path) -> int:
+    """Writes one radar's frames and returns how many there are."""
+    adc = result.adc
+    _check_hupr(adc.config)
+    folder.mkdir(parents=True)
+    for index, frame in enumerate(adc.samples):
+        np.save(folder / f"{index:09d}.npy", hupr_frame(frame, adc.config))
+    return len(adc.samples)
 
 
 def hupr_frame(

@@ -75,7 +75,7 @@ class BodyPainter:
         depth_m = photo.depth_m[row[:, None], column]
         self._depth_m = np.where(np.isfinite(depth_m), depth_m, np.inf).astype(np.float32)
         coarse = (row[::SHADOW_STEP_PX, None], column[::SHADOW_STEP_PX])
-        surface_m = pixels.aligned.rays[coarse] * photo.depth_m[coarse][:, :, None]
+        surface_m = pixels.aligned.rays[coarse] * photo.depth_m[coarse][:, :, None] + pixels.aligned.camera_m
         self._surface_m = np.where(np.isfinite(surface_m), surface_m, 1e3).astype(np.float32)
 
     def paint(self, picture: Array, bodies: Sequence[tuple[Body, Colour]]) -> None:

@@ -1,13 +1,13 @@
 """An RGB-D photo whose gravity direction and floor are known: its pixels as points of the radar's frame, and back."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.records import RgbdPhoto, Scene
-from mmweaver.core.shapes import Array, Rotation
+from mmweaver.core.shapes import Array, Rotation, Vec3
 from mmweaver.geometry.pinhole import project, unproject, viewing_rays
 
 
@@ -23,21 +23,25 @@ class ProjectedPoints:
 
 @dataclass(frozen=True, kw_only=True)
 class AlignedPhoto:
-    """A photo aligned with gravity. The radar stands at the camera, so a rotation relates their frames."""
+    """A photo aligned with gravity. A radar at the camera differs from it by a rotation alone."""
 
     photo: RgbdPhoto
     radar_from_camera: Rotation  # camera x right, y down, z forward -> radar x right, y away, z up
     floor_z_m: float  # below the radar, so negative
+    camera_m: Vec3 = field(default_factory=lambda: np.zeros(3))  # where the camera stands, in the radar's frame
 
     @classmethod
     def of(cls, scene: Scene) -> "AlignedPhoto":
         """The photo that a scene was reconstructed from."""
-        return cls(photo=scene.photo, radar_from_camera=scene.radar_from_camera, floor_z_m=scene.floor_z_m)
+        return cls(
+            photo=scene.photo, radar_from_camera=scene.radar_from_camera, floor_z_m=scene.floor_z_m,
+            camera_m=scene.radar_pose.seen(np.zeros(3)),
+        )  # fmt: skip
 
     @cached_property
     def points_m(self) -> Float[Array, "height width 3"]:
         """The measured point of every pixel, metres, radar's frame; nan where nothing was measured."""
-        return unproject(self.photo.depth_m, self.photo.intrinsics) @ self.radar_from_camera.T
+        return unproject(self.photo.depth_m, self.photo.intrinsics) @ self.radar_from_camera.T + self.camera_m
 
     @cached_property
     def rays(self) -> Float[Array, "height width 3"]:
@@ -46,7 +50,7 @@ class AlignedPhoto:
 
     def project(self, points_m: Float[Array, "*points 3"]) -> tuple[Float[Array, "*points 2"], Float[Array, "*points"]]:
         """Pixels (column, row) and depth in metres of points of the radar's frame; nan pixels behind the camera."""
-        return project(points_m @ self.radar_from_camera, self.photo.intrinsics)
+        return project((points_m - self.camera_m) @ self.radar_from_camera, self.photo.intrinsics)
 
     def look_up(self, points_m: Float[Array, "*points 3"]) -> ProjectedPoints:
         """The pixel nearest to each point of the radar's frame."""

@@ -71,7 +71,7 @@ class Simulator:
 
         Raises InputError for the recording of another radar.
         """
-        self.config = config
+        self.config, self.radar_pose = config, scene.radar_pose
         self.impairments = impairments or Impairments()
         self.board = None if board is None or board.is_ideal else BoardEffects(board, config)
         built = config if self.board is None else self.board.radar
@@ -93,7 +93,7 @@ class Simulator:
 
     def _receiver(self, seed: int) -> Receiver:
         """The radar's own, or that of the background recording."""
-        receiver = Receiver(self.room.config, self.impairments, seed, self.board)
+        receiver = Receiver(self.room.config, self.impairments, self.radar_pose.noise_seed(seed), self.board)
         if self.background is None:
             return receiver
         return receiver.with_noise(self.background.sample_noise_mw, self.background.count_sqrt_mw)
@@ -185,10 +185,9 @@ class Simulator:
     ) -> PeoplePaths:
         joints_m, chests_m = [], []
         for pose, own in zip(poses, micro_motions, strict=True):
-            joints, chest = with_micro_motion(
-                own, self._joints_at_nodes(pose, frames), frames, self.clock, pose.height_m
-            )
-            joints_m.append(joints)
+            level_m = self.radar_pose.in_level_frame(self._joints_at_nodes(pose, frames))
+            joints, chest = with_micro_motion(own, level_m, frames, self.clock, pose.height_m)
+            joints_m.append(self.radar_pose.seen(joints))
             chests_m.append(chest)
         return PeoplePaths(self.room, bodies, self.clock, joints_m, chests_m, mutual=mutual)
 
