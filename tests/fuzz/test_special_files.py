@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import _parser_and_commands, main
+from mmweaver.recognition.recogniser import save_recogniser
 from tests.fuzz.set_readers import GOLDEN
+from tests.recognition.small_recogniser import small_recogniser
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no FIFO here")
 SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
@@ -25,6 +27,7 @@ NEEDED: dict[str, dict[str, str]] = {
     "compare": {"a": "CAPTURE", "b": "CAPTURE"},
     "points": {"-o": "OUT"}, "radar": {"radar": "awr1843"}, "decompress": {"-o": "OUT"}, "rooms": {"out": "OUT"},
     "compress": {"file": "BIN", "--radar": "awr1843", "-o": "OUT", "--bytes": "9999"},
+    "recognise": {"action": "train", "place": "A", "--out": "OUT"},
     "evaluate": {"task": "zero-shot-activity"}, "motion": {"text": "a person waves"},
     "dataset": {"out": "OUT", "--rooms": "office"}, "train": {"recipe": "weaver", "--data": "DATA", "--out": "OUT"},
 }  # fmt: skip
@@ -37,6 +40,8 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("dataset", "--room"): {"--rooms": None, "--activities": "A"},
     ("generate", "--motion-model"): {"--motion-model-for": "all"},
     ("generate", "--sam"): {"--segmenter": "builtin"},
+    ("recognise", "--recordings"): {"action": "score", "--out": None, "place": "MODEL"},
+    ("recognise", "--points"): {"action": "run", "--out": None, "place": "MODEL"},
     ("compare", "--radar"): {"a": "BIN"}, ("compare", "--radar-b"): {"b": "BIN"},
     ("train", "--captures"): {"--data": None, "--from": WEIGHTS},
     ("train", "--from"): {"--data": None, "--captures": "CAPTURE"},
@@ -61,13 +66,15 @@ def _options() -> list[tuple[str, str]]:
 def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     folder = tmp_path_factory.mktemp("files")
     (folder / "a.bin").write_bytes(bytes(4096))
-    (folder / "a.toml").write_text('[activities]\na = "a person waves"\nb = "a person walks"\n')
+    (folder / "a.toml").write_text('radar = "iwr1443_mars"\n[activities]\na = "a person waves"\nb = "a person walks"\n')
     np.savez(folder / "m.npz", poses=np.zeros((4, 66)), trans=np.zeros((4, 3)), mocap_framerate=60.0)
+    save_recogniser(folder / "model", small_recogniser(folder / "a.toml"))
     with zipfile.ZipFile(GOLDEN) as archive:
         archive.extractall(folder)
     os.mkfifo(folder / "fifo")
     return {"BIN": str(folder / "a.bin"), "A": str(folder / "a.toml"), "MOTION": str(folder / "m.npz"),
-            "CAPTURE": str(folder / "results"), "DATA": str(folder), "FIFO": str(folder / "fifo")}  # fmt: skip
+            "CAPTURE": str(folder / "results"), "DATA": str(folder),
+            "MODEL": str(folder / "model"), "FIFO": str(folder / "fifo")}  # fmt: skip
 
 
 @pytest.mark.parametrize("special", ["FIFO", "/dev/zero"])

@@ -1,18 +1,10 @@
-"""The activities of a set, as a TOML file names them.
-
-[activities]
-waving = ["a person waves with the left hand", "a person waves with the right hand"]
-walking = ["a person walks around"]
-"""
+"""The activities of a set, as a TOML file names them (`motion.worded_activities`)."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
-from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import read_toml
-from mmweaver.motion.language.sentence import parse
-
-MAX_LABELS, MAX_SENTENCES = 1000, 1000
+from mmweaver.motion.worded_activities import activities_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,22 +24,4 @@ def read_activities(file: Path) -> ActivityList:
 
     Raises InputError for a file that is none, or a sentence that is not understood.
     """
-    content = read_toml(file)
-    table = content.get("activities")
-    if not isinstance(table, dict) or len(table) < 2:
-        raise InputError(f'{file} needs a table [activities] of two or more lines such as: waving = ["a person waves"]')
-    sentences: dict[str, tuple[str, ...]] = {}
-    if len(table) > MAX_LABELS:
-        raise InputError(f"{file} has {len(table)} labels; at most {MAX_LABELS} are possible")
-    for label, given in table.items():
-        said = [given] if isinstance(given, str) else given
-        is_list = isinstance(said, list) and said and all(isinstance(one, str) for one in said)
-        if not is_list or len(said) > MAX_SENTENCES:
-            raise InputError(f"{file}, {label}: give a sentence or a list of 1 to {MAX_SENTENCES}")
-        for one in said:
-            try:
-                parse(one)
-            except InputError as error:
-                raise InputError(f"{file}, {label}: {error}") from None
-        sentences[label] = tuple(said)
-    return ActivityList(sentences=sentences)
+    return ActivityList(sentences=activities_of(read_toml(file), file))

@@ -21,6 +21,7 @@ from mmweaver.cli import (
     points,
     process,
     radar,
+    recognise,
     rooms,
     studio,
     train,
@@ -91,7 +92,7 @@ def _parser_and_commands() -> tuple[Parser, dict[str, Parser]]:
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands")
     modules_in_order = (
         generate, studio, view, export, process, compare, points, radar, compress, decompress, info, rooms, motions,
-        motion, evaluate,
+        motion, recognise, evaluate,
         dataset, train, verify, completion,
     )  # fmt: skip
     for module in modules_in_order:

@@ -15,15 +15,11 @@ from mmweaver.core.records import PointCloud, PoseSequence
 from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
-from mmweaver.dsp.firmware import firmware_points
-from mmweaver.dsp.firmware_cfar import counts_per_db
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import schedule
 from mmweaver.motion.people import Person
-from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
-from mmweaver.recognition.diffuse_clutter import diffuse_clutter
+from mmweaver.recognition.observed_points import Board, observed_cloud
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
@@ -165,19 +161,19 @@ def _pose(
         schedule(plan, whole_s), scene, seed=person, range_window_m=now.reach_m if moves else WITHIN_M,
         start_m=start_m, person=Person(height_m=now.height_m), is_varied=False,
     ).pose  # fmt: skip
-    joints_m = _scaled_excursion(pose.joints_m, now.vigour)
-    if moves and tempo * _speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
+    joints_m = scaled_excursion(pose.joints_m, now.vigour)
+    if moves and tempo * pelvis_speed_mps(pose, lead_s, lead_s + lasts_s) < SLOWEST_MPS:
         raise InputError("the path ends before the window does")
     if not moves:
         joints_m = _rotated(joints_m, np.radians(now.turn_deg))
-    joints_m = joints_m + _sway(pose.time_s, now.roam_mps, rng)
-    time_s = _time_warped(pose.time_s - lead_s, tempo, now.hurry if moves else 0.0, rng)
+    joints_m = joints_m + sway_m(pose.time_s, now.roam_mps, rng)
+    time_s = time_warped(pose.time_s - lead_s, tempo, now.hurry if moves else 0.0, rng)
     if time_s[-1] < recipe.frames * recipe.radar.frame_period_s:
         raise InputError("the path ends before the window does")
     return replace(pose, time_s=time_s, joints_m=joints_m, subject=person % 1000)
 
 
-def _time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
+def time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.Generator) -> np.ndarray:
     """Times (time,) warped by a tempo whose logarithm varies by `hurry` rms; 0 stays 0."""
     omega, phase = 2 * np.pi * rng.uniform(*HURRY_HZ, (2, 1)), rng.uniform(0, 2 * np.pi, (2, 1))
     slower = np.exp(-hurry * np.sin(omega * time_s + phase).sum(axis=0)) / tempo
@@ -185,14 +181,14 @@ def _time_warped(time_s: np.ndarray, tempo: float, hurry: float, rng: np.random.
     return reached - np.interp(0.0, time_s, reached)
 
 
-def _speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
+def pelvis_speed_mps(pose: PoseSequence, start_s: float, end_s: float) -> float:
     """Mean horizontal speed of the pelvis in m/s."""
     inside = (pose.time_s >= start_s) & (pose.time_s <= end_s)
     path_m = np.linalg.norm(np.diff(pose.joints_m[inside, joint("pelvis"), :2], axis=0), axis=1).sum()
     return float(path_m / (end_s - start_s))
 
 
-def _scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
+def scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
     """Joints (time, 22, 3) with their excursion from the mean, relative to the pelvis, scaled by `vigour`."""
     root = joints_m[:, :1].copy()
     root[..., 2] = 0.0
@@ -201,7 +197,7 @@ def _scaled_excursion(joints_m: np.ndarray, vigour: float) -> np.ndarray:
     return root + mean + vigour * (local - mean)
 
 
-def _sway(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
+def sway_m(time_s: np.ndarray, speed_mps: float, rng: np.random.Generator) -> np.ndarray:
     """Slow displacement (time, 1, 3) in metres of a stationary person, at this rms speed."""
     frequency_hz, phase = rng.uniform(*ROAM_HZ, (2, 3, 1)), rng.uniform(0, 2 * np.pi, (2, 3, 1))
     omega = 2 * np.pi * frequency_hz
@@ -221,44 +217,11 @@ def _observed(
     recipe: GenerationRecipe, now: VariationSample, pose: PoseSequence, label: str, name: str, person: int
 ) -> PointRecording:
     """The points that the firmware reports of the person in the sampled room."""
-    radar = replace(
-        recipe.radar,
-        noise_figure_db=recipe.radar.noise_figure_db + now.noise_db,
-        rx_gain_db=recipe.radar.rx_gain_db + now.gain_db,
-        elevation_beamwidth_deg=now.elevation_beamwidth_deg,
-    )
-    nearest_wall_m = float(pose.joints_m[..., 1].max()) + 0.3
-    wall_m = None if now.wall_m is None else max(now.wall_m, nearest_wall_m)
-    scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
-    echo = _skin(now)
-    points = recipe.variation.skin_points
-    adc = Simulator(scene, radar).run(
-        pose, num_frames=recipe.frames, seed=person, num_points=points, echo=echo
-    ).adc  # fmt: skip
-    clutter = diffuse_clutter(radar, now.clutter_db, stream(person, "diffuse clutter"))
-    adc = replace(adc, samples=adc.samples + clutter)
-    cloud = firmware_points(adc, _less_sensitive(recipe.firmware, now.threshold_db, recipe.radar.num_antennas))
+    board = Board(radar=recipe.radar, firmware=recipe.firmware, skin_points=recipe.variation.skin_points)
     return PointRecording(
-        name=name, cloud=_tilted(cloud, np.radians(now.tilt_deg)), num_frames=recipe.frames,
+        name=name, cloud=observed_cloud(board, now, pose, recipe.frames, person), num_frames=recipe.frames,
         frame_rate_hz=1 / recipe.radar.frame_period_s, label=label,
     )  # fmt: skip
-
-
-def _tilted(cloud: PointCloud, angle_rad: float) -> PointCloud:
-    """Points as reported by a radar pitched down by this angle: they appear higher."""
-    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
-    return PointCloud(
-        frame=cloud.frame, x_m=cloud.x_m, y_m=cos * cloud.y_m - sin * cloud.z_m,
-        z_m=sin * cloud.y_m + cos * cloud.z_m, radial_velocity_mps=cloud.radial_velocity_mps, snr_db=cloud.snr_db,
-    )  # fmt: skip
-
-
-def _less_sensitive(settings: FirmwareSettings, by_db: float, num_antennas: int) -> FirmwareSettings:
-    """Settings with CFAR thresholds raised by `by_db`, in the device's counts."""
-    counts = round(by_db * counts_per_db(settings.device, num_antennas))
-    cfars = (settings.range_cfar, settings.doppler_cfar)
-    high, low = (None if cfar is None else replace(cfar, threshold=cfar.threshold + counts) for cfar in cfars)
-    return replace(settings, range_cfar=high, doppler_cfar=low)
 
 
 # the cache ----------------------------------------------------------------------------------------------------------
@@ -281,12 +244,3 @@ def read_window(path: Path, label: str, recipe: GenerationRecipe) -> PointRecord
         name=path.stem, cloud=cloud, num_frames=recipe.frames, frame_rate_hz=1 / recipe.radar.frame_period_s,
         label=label,
     )  # fmt: skip
-
-
-def _skin(now: VariationSample) -> SkinEcho:
-    """A lobe of cos^exponent with the total reflected power of Lambertian skin of the sampled albedo."""
-    exponent = now.skin_exponent
-    reflectivity = 8 / 3 * (exponent + 1) / exponent * LAMBERT.albedo * 10 ** (now.albedo_db / 10)
-    return SkinEcho(
-        reflectivity=reflectivity, slope=exponent**-0.5, albedo=0.0, arms_db=now.arms_db, legs_db=now.legs_db
-    )

@@ -14,6 +14,7 @@ class PointRecording:
     num_frames: int
     frame_rate_hz: float
     label: str = ""  # the activity, if known
+    first_frame: int = 0  # in the recording that this is a part of
 
     @property
     def duration_s(self) -> float:
@@ -29,4 +30,7 @@ class PointRecording:
         """`num_frames` frames starting at `first`, renumbered from 0."""
         inside = (self.cloud.frame >= first) & (self.cloud.frame < first + num_frames)
         cloud = self.cloud.select(inside)
-        return replace(self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames)
+        return replace(
+            self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames,
+            first_frame=self.first_frame + first,
+        )  # fmt: skip

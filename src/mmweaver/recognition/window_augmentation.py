@@ -20,7 +20,8 @@ class WindowAugmentation:
     Moving and static points are kept with a probability between the given minimum and 1, whole frames are dropped, and
     some points of the slowest velocity are reported as static. Up to `most_objects` static objects add up to three
     neighbouring range cells each, detected always or intermittently; `false_points` is the largest mean number of
-    moving false alarms. Half of the copies are reversed in time (with the sign of velocity), half are reflected.
+    moving false alarms. `reversed_share` of the copies are reversed in time (with the sign of velocity),
+    `reflected_share` are reflected left-right: by default half, 0 where order or sides matter.
     """
 
     least_moving: float = 0.35
@@ -30,7 +31,10 @@ class WindowAugmentation:
     most_objects: int = 4
     false_points: float = 1.0
     tilt_rad: float = 0.05
-    cell_m: float = 0.0436
+    cell_m: float = 0.0436  # range and velocity steps of the radar
+    velocity_step_mps: float = 0.615
+    reversed_share: float = 0.5
+    reflected_share: float = 0.5
 
 
 Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
@@ -44,7 +48,7 @@ def augmented(
     cloud, frames = window.cloud, window.num_frames
     columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
     body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
-    body = _reversed(body, frames, rng)
+    body = _reversed(body, frames, how, rng)
     parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng)]
     frame, columns = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     order = np.argsort(frame, kind="stable")
@@ -74,10 +78,10 @@ def _thinned(
     return frame[kept], columns[kept]
 
 
-def _reversed(points: Points, frames: int, rng: np.random.Generator) -> Points:
-    """Reverses time and reflects left-right, each with probability 1/2."""
+def _reversed(points: Points, frames: int, how: WindowAugmentation, rng: np.random.Generator) -> Points:
+    """Reverses time and reflects left-right, each in its share of copies."""
     frame, columns = points
-    backwards, reflected = rng.random(2) < 0.5
+    backwards, reflected = rng.random(2) < (how.reversed_share, how.reflected_share)
     columns = columns * np.array([-1.0 if reflected else 1.0, 1.0, 1.0, -1.0 if backwards else 1.0])
     return (frames - 1 - frame if backwards else frame), columns
 
@@ -100,6 +104,6 @@ def _false_points(frames: int, how: WindowAugmentation, rng: np.random.Generator
     """Moving false alarms."""
     number = int(rng.poisson(float(rng.choice([0.0, 0.0, how.false_points / 4, how.false_points]))))
     range_m, aside = rng.uniform(1, 5, number), rng.normal(0, 0.4, number)
-    velocity = rng.choice([-1.0, 1.0], number) * rng.choice([0.615, 1.23], number)
+    velocity = rng.choice([-1.0, 1.0], number) * how.velocity_step_mps * rng.choice([1.0, 2.0], number)
     columns = np.stack([range_m * np.sin(aside), range_m * np.cos(aside), rng.normal(0, 0.4, number), velocity], axis=1)
     return rng.integers(frames, size=number), columns

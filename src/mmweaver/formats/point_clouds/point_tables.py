@@ -34,10 +34,7 @@ def read_csv_points(path: Path) -> LoggedCloud:
     text = read_text(path, max_bytes=MAX_BYTES)
     with foreign_errors(path, "no CSV ({reason}); export it again"):
         rows = list(csv.reader(StringIO(text)))
-    names = [COLUMNS.get(re.sub(r"[^a-z0-9]", "", name.lower())) for name in rows[0]] if rows else []
-    at = {name: index for index, name in enumerate(names) if name is not None}
-    if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
-        raise InputError(f"{path}: its first line must name Frame, X, Y, Z and Doppler; {missing[0]} is missing")
+    at = csv_columns(rows[0] if rows else [], str(path))
     try:
         table = np.array([[float(row[index]) for index in at.values()] for row in rows[1:] if row])
     except (ValueError, IndexError):
@@ -47,6 +44,15 @@ def read_csv_points(path: Path) -> LoggedCloud:
         _renumbered(path, column["frame"]), np.column_stack([column[axis] for axis in "xyz"]), column["velocity"],
         snr_db=column.get("snr"), intensity=column.get("intensity"),
     )  # fmt: skip
+
+
+def csv_columns(header: list[str], place: str) -> dict[str, int]:
+    """Where the header of a CSV has frame, x, y, z, velocity, snr and intensity. Raises InputError for missing ones."""
+    names = [COLUMNS.get(re.sub(r"[^a-z0-9]", "", name.lower())) for name in header]
+    at = {name: index for index, name in enumerate(names) if name is not None}
+    if missing := [name for name in ("frame", "x", "y", "z", "velocity") if name not in at]:
+        raise InputError(f"{place}: its first line must name Frame, X, Y, Z and Doppler; {missing[0]} is missing")
+    return at
 
 
 def read_mmfi(path: Path) -> LoggedCloud:

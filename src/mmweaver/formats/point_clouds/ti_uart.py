@@ -9,9 +9,10 @@ Reference: mmWave SDK User Guide, "Output data sent out of the demo"; TI, 3D Peo
 """
 
 import struct
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -27,6 +28,15 @@ MAX_PACKET, MAX_TLVS = 1 << 17, 30
 POINTS, SIDE_INFO, TARGETS, SPHERICAL = 1, 7, 1010, 1020
 SDK1_POINT_BYTES = 12
 TARGET_BYTES = 112
+
+
+@runtime_checkable
+class ByteSource(Protocol):
+    """A pipe, a port or a file that is open for reading bytes."""
+
+    def read(self, size: int, /) -> bytes:
+        """At most so many bytes; none at the end."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +75,30 @@ def read_ti_uart(path: Path | str) -> UartLog:
     return UartLog(
         points=cloud, frame_number=np.array(numbers), targets=np.concatenate(targets), skipped=skipped
     )  # fmt: skip
+
+
+def packets_of(source: ByteSource, head: bytes = b"") -> Iterator[np.ndarray]:
+    """The points (point, 6) of each packet of a stream as it arrives, `head` being what was already read of it.
+
+    Columns: x, y, z in m, velocity in m/s, SNR in dB, intensity. Raises InputError where no packet begins for long.
+    """
+    data, any_found = head, False
+    read: Callable[[int], bytes] = getattr(source, "read1", source.read)  # what is there, without waiting for more
+    while more := read(MAX_PACKET):
+        data += more
+        while (at := data.find(MAGIC)) >= 0 and len(data) - at >= HEADER.size:
+            length = HEADER.unpack_from(data, at)[2]
+            if HEADER.size <= length <= MAX_PACKET and len(data) - at < length:
+                break  # the packet is still on its way
+            packet = _packet(data, at)
+            any_found |= packet is not None
+            data = data[at + 1 :] if packet is None else data[packet[3] :]
+            if packet is not None:
+                yield packet[1]
+        if not any_found and len(data) > MAX_PACKET:
+            raise InputError("the stream holds no packet of a TI demo's data port, nor CSV with a header")
+        if len(data) > 2 * MAX_PACKET:
+            data = data[-MAX_PACKET:]
 
 
 def is_ti_uart(head: bytes) -> bool:

@@ -1,0 +1,50 @@
+"""What mmweaver recognise says to people: what was trained, and how well it does."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mmweaver.recognition.recogniser import Recogniser
+
+
+def training_lines(model: "Recogniser", out: Path) -> list[str]:
+    """What was trained and what to expect of it."""
+    meta, expected = model.meta, model.meta["generated_on_generated"]
+    text = [
+        f"wrote {out}: {len(model.labels)} activities, {meta['generated_windows']} generated windows,"
+        f" {meta['cpu_seconds']:.0f} CPU-s",
+        f"generated people held out: balanced accuracy {expected['balanced_accuracy']:.2f} (chance"
+        f" {expected['chance']:.2f}); recordings of people are harder: mmweaver recognise score tells",
+    ]
+    if "unlabelled_windows" in meta:
+        used = meta.get("self_training", {}).get("used")
+        text.append(
+            f"adapted to {meta['unlabelled_windows']} unlabelled windows{'' if used else ', without self-training'}"
+        )
+    return text
+
+
+def score_lines(scores: dict[str, Any]) -> list[str]:
+    """Scores with baseline, confusion matrix, and how far the recordings lie from what was generated."""
+    text = [f"{scores['recordings']} recordings"]
+    for name, words in (("window", "windows"), ("three_windows", "three windows"), ("recording", "recordings")):
+        row = scores[name]
+        low, high = row["interval_95"]
+        text.append(
+            f"  {words:14s} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
+            f" {row['baseline']['chance']:.3f}, n {row['n']}"
+        )
+    expected = scores["generated_on_generated"]
+    if expected:
+        text.append(f"  on generated people who were held out: {expected['balanced_accuracy']:.3f}")
+    width = max(len(name) for name in scores["classes"]) + 2
+    text.append("  windows, true in rows, recognised in columns")
+    text.append(" " * (width + 2) + "".join(f"{name:>{width}}" for name in scores["classes"]))
+    for name, row in zip(scores["classes"], scores["window"]["confusion"], strict=True):
+        text.append(f"  {name:{width}}" + "".join(f"{count:>{width}}" for count in row))
+    far = scores["distance"]
+    text.append(
+        f"  from generated windows: {far['features_far']:.0%} of {far['features']} features are far off,"
+        f" {far['windows_outside']:.0%} of windows are unlike any"
+    )
+    return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])

@@ -1,0 +1,44 @@
+"""The activities of a TOML file: labels, and sentences that say how each is done.
+
+[activities]
+waving = ["a person waves with the left hand", "a person waves with the right hand"]
+walking = "a person walks around"
+"""
+
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.motion.language.sentence import parse
+
+MAX_LABELS, MAX_SENTENCES = 1000, 1000
+NOBODY = "nobody"  # the sentence of an empty place, where it may be given
+
+
+def activities_of(content: dict[str, Any], file: Path, *, with_nobody: bool = False) -> dict[str, tuple[str, ...]]:
+    """The sentences of each label in the order of the file, all of them parsed.
+
+    Raises InputError where fewer than two labels are given, or a sentence is not understood.
+    """
+    table = content.get("activities")
+    if not isinstance(table, dict) or len(table) < 2:
+        raise InputError(f'{file} needs a table [activities] of two or more lines such as: waving = ["a person waves"]')
+    if len(table) > MAX_LABELS:
+        raise InputError(f"{file} has {len(table)} labels; at most {MAX_LABELS} are possible")
+    sentences: dict[str, tuple[str, ...]] = {}
+    for label, given in table.items():
+        said = [given] if isinstance(given, str) else given
+        is_list = isinstance(said, list) and said and all(isinstance(one, str) for one in said)
+        if not is_list or len(said) > MAX_SENTENCES:
+            raise InputError(f"{file}, {label}: give a sentence or a list of 1 to {MAX_SENTENCES}")
+        if with_nobody and NOBODY in said and len(said) > 1:
+            raise InputError(f"{file}, {label}: {NOBODY!r} is an empty place; give it a label of its own")
+        for one in said:
+            if with_nobody and one == NOBODY:
+                continue
+            try:
+                parse(one)
+            except InputError as error:
+                raise InputError(f"{file}, {label}: {error}") from None
+        sentences[label] = tuple(said)
+    return sentences

@@ -1,0 +1,183 @@
+"""Recordings of a task that nobody made: people of a population perform its sentences before its radar.
+
+Sequences are kept in a folder as they are made, so an interrupted run resumes with the same bits.
+"""
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.atomic_files import atomic_file, create_once
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud, PoseSequence
+from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.core.safe_files.safe_text import parse_json
+from mmweaver.core.seeding import stream
+from mmweaver.motion.worded_activities import NOBODY
+from mmweaver.recognition.observed_points import Board, observed_cloud
+from mmweaver.recognition.performance import (
+    PerformancePrior,
+    Performer,
+    pelvis_distance_m,
+    perform,
+    performer,
+    task_variation,
+)
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.task_file import RecognitionTask
+from mmweaver.recognition.variation import Variation
+
+WINDOWS_A_SEQUENCE, SHORTEST_S, LONGEST_S = 4, 6.0, 20.0
+TRIES, UNSEEN_TRIES = 12, 2
+REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body about the pelvis; of frames in which it is detected
+SKIN_POINTS = 1000
+VERSION = 1  # of how sequences are made; part of what a folder of them must agree in
+COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SequenceRecipe:
+    """Everything that determines generated sequences of a task, but their number."""
+
+    task: RecognitionTask
+    prior: PerformancePrior
+    variation: Variation
+    seed: int = 0
+
+    @staticmethod
+    def of(task: RecognitionTask, prior: PerformancePrior | None = None, seed: int = 0) -> "SequenceRecipe":
+        """The recipe that follows from a task."""
+        return SequenceRecipe(
+            task=task, prior=prior or PerformancePrior(), variation=task_variation(task.mount), seed=seed
+        )
+
+    @property
+    def board(self) -> Board:
+        """The task's radar and firmware."""
+        return Board(radar=self.task.radar, firmware=self.task.firmware, skin_points=SKIN_POINTS)
+
+    @property
+    def seconds(self) -> float:
+        """How long a sequence of something that goes on lasts."""
+        return float(np.clip(WINDOWS_A_SEQUENCE * self.task.recordings.window_s, SHORTEST_S, LONGEST_S))
+
+    def as_json(self) -> str:
+        """All that decides the bits of a sequence; equal recipes give equal text."""
+        task = self.task
+        values: dict[str, Any] = {
+            "version": VERSION, "seed": self.seed, "skin_points": SKIN_POINTS, "prior": asdict(self.prior),
+            "variation": asdict(self.variation), "activities": task.activities, "window_s": task.recordings.window_s,
+            "frame_rate_hz": task.recordings.frame_rate_hz, "once": task.recordings.has_single_performances,
+            "radar": parse_json(task.radar.to_json(), "the radar"), "firmware": asdict(task.firmware),
+        }  # fmt: skip
+        return json.dumps(values, sort_keys=True) + "\n"
+
+
+def generate_sequence(recipe: SequenceRecipe, label: str, index: int) -> PointRecording:
+    """The index-th person performing an activity. Raises InputError where its sentences cannot be carried out."""
+    rng = stream(recipe.seed, "performance", label, index)
+    sentences = recipe.task.activities[label]
+    unseen: list[PointRecording] = []
+    refused: InputError | None = None
+    for attempt in range(TRIES):
+        who = performer(recipe.prior, recipe.variation, index + attempt * 100_003, recipe.seed)
+        if sentences == (NOBODY,):
+            return _empty_place(recipe, who, label, index)
+        sentence = sentences[(index + attempt) % len(sentences)]
+        try:
+            sequence, is_seen = _sequence(recipe, who, sentence, label, index, rng)
+        except InputError as error:
+            refused = error
+            continue
+        if is_seen or len(unseen) == UNSEEN_TRIES:
+            return sequence
+        unseen.append(sequence)
+    if unseen:
+        return unseen[-1]
+    raise refused or InputError(f"no sequence of {label!r} could be generated")
+
+
+def _sequence(
+    recipe: SequenceRecipe, who: Performer, sentence: str, label: str, index: int, rng: np.random.Generator
+) -> tuple[PointRecording, bool]:
+    once, rate_hz = recipe.task.recordings.has_single_performances, recipe.task.recordings.frame_rate_hz
+    did = perform(who, recipe.prior, sentence, seconds=recipe.seconds, once=once, rng=rng)
+    frames = max(int(did.lasts_s * rate_hz), 1)
+    cloud = observed_cloud(recipe.board, did.surroundings, did.pose, frames, int(rng.integers(2**31)))
+    recording = PointRecording(
+        name=f"{label}_{index}", cloud=cloud, num_frames=frames, frame_rate_hz=rate_hz, label=label
+    )
+    return recording, _is_seen(recording, did.pose)
+
+
+def _empty_place(recipe: SequenceRecipe, who: Performer, label: str, index: int) -> PointRecording:
+    frames = max(int(recipe.seconds * recipe.task.recordings.frame_rate_hz), 1)
+    cloud = observed_cloud(recipe.board, who.surroundings, (), frames, who.subject + index)
+    return PointRecording(
+        name=f"{label}_{index}",
+        cloud=cloud,
+        num_frames=frames,
+        frame_rate_hz=recipe.task.recordings.frame_rate_hz,
+        label=label,
+    )
+
+
+def _is_seen(recording: PointRecording, pose: PoseSequence) -> bool:
+    """Whether the body is detected often enough: a radar that misses the person would be placed elsewhere."""
+    cloud = recording.cloud
+    body_m = np.interp(cloud.frame / recording.frame_rate_hz, pose.time_s, pelvis_distance_m(pose))
+    range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
+    there = cloud.frame[np.abs(range_m - body_m) < REACH_M]
+    return len(np.unique(there)) >= SEEN_SHARE * recording.num_frames
+
+
+def generate_sequences(
+    recipe: SequenceRecipe, each: int, folder: Path | None = None, listener: Callable[[int, int], object] | None = None
+) -> list[PointRecording]:
+    """`each` people perform every activity; those of `folder` are read instead of made, and new ones kept there.
+
+    `listener` is called with the number of sequences done and of all. Raises InputError for a folder of another recipe.
+    """
+    if folder is not None and create_once(folder / "recipe.json", recipe.as_json()) != recipe.as_json():
+        raise InputError(f"{folder} holds sequences of another task or seed; choose another folder or remove it")
+    asked = list(_asked(recipe.task, each))
+    sequences: list[PointRecording] = []
+    for label, index in asked:
+        place = None if folder is None else folder / f"{recipe.task.recordings.labels.index(label):03d}_{index:05d}.npz"
+        if place is not None and place.is_file():
+            sequences.append(_read(place, recipe.task, label, index))
+        else:
+            sequences.append(generate_sequence(recipe, label, index))
+            if place is not None:
+                _write(place, sequences[-1])
+        if listener is not None:
+            listener(len(sequences), len(asked))
+    return sequences
+
+
+def _asked(task: RecognitionTask, each: int) -> Iterator[tuple[str, int]]:
+    return ((label, index) for index in range(each) for label in task.recordings.labels)
+
+
+def _write(place: Path, sequence: PointRecording) -> None:
+    cloud = sequence.cloud
+    columns = np.stack([getattr(cloud, name) for name in COLUMNS], axis=1).astype(np.float32)
+    with atomic_file(place) as temporary, temporary.open("wb") as file:
+        np.savez_compressed(
+            file, frame=cloud.frame.astype(np.int32), columns=columns, num_frames=np.int64(sequence.num_frames)
+        )
+
+
+def _read(place: Path, task: RecognitionTask, label: str, index: int) -> PointRecording:
+    held = read_npz(place)
+    frames = int(held.numbers("num_frames", (), low=1, high=1e6))
+    frame = held.numbers("frame", ("point",), kinds="iu", low=0, high=frames - 1).astype(int)
+    columns = held.numbers("columns", ("point", len(COLUMNS)), nan=True).astype(float)
+    return PointRecording(
+        name=f"{label}_{index}", cloud=PointCloud(frame=frame, **dict(zip(COLUMNS, columns.T, strict=True))),
+        num_frames=frames, frame_rate_hz=task.recordings.frame_rate_hz, label=label,
+    )  # fmt: skip

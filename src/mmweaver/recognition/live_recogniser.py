@@ -1,0 +1,128 @@
+"""Labels of frames as they come: from a pipe, a serial port, or a signal that is being generated."""
+
+import csv
+from collections import deque
+from collections.abc import Iterator
+from io import TextIOWrapper
+from itertools import chain
+from typing import Any, cast
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud
+from mmweaver.formats.point_clouds.point_tables import csv_columns
+from mmweaver.formats.point_clouds.ti_uart import MAGIC, ByteSource, packets_of
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recogniser import Recogniser, Recognition
+
+FramePoints = Float[np.ndarray, "point 5"]  # x right, y ahead, z up in m, radial velocity (away +) in m/s, SNR in dB
+MOST_EMPTY = 100_000  # frames that may be missing between two
+
+
+class LiveRecogniser:
+    """Takes one frame after the other and gives the windows that are complete, those of `Recogniser.recognise`."""
+
+    def __init__(self, model: Recogniser):
+        self.model = model
+        self._frame = 0  # number of the next one
+        self._start: int | None = 0 if model.settings.gap_frames is None else None  # of the sample
+        self._last = -1  # frame with points
+        self._given = 0  # windows of the sample
+        self._points: deque[tuple[int, FramePoints]] = deque()
+
+    def push(self, points: FramePoints) -> list[Recognition]:
+        """One more frame, (point, 5), perhaps without points; the windows that it completes."""
+        now, gap = self._frame, self.model.settings.gap_frames
+        self._frame += 1
+        if len(points):
+            self._points.append((now, np.asarray(points, float)))
+            self._start = now if self._start is None else self._start
+            self._last = now
+        elif gap is not None and self._start is not None and now - self._last > gap:
+            return self.finish()
+        return self._complete(now + 1 if gap is None else self._last + 1)
+
+    def finish(self) -> list[Recognition]:
+        """Ends the sample: a single performance that is shorter than a window is one, too."""
+        settings = self.model.settings
+        found: list[Recognition] = []
+        if settings.has_single_performances and self._start is not None and not self._given:
+            found = [self._window(self._start)]
+        self._start, self._given = None if settings.gap_frames is not None else self._frame, 0
+        self._points.clear()
+        return found
+
+    def _complete(self, end: int) -> list[Recognition]:
+        found: list[Recognition] = []
+        length = self.model.settings.window_frames
+        while self._start is not None and end - self._start >= (self._given + 1) * length:
+            found.append(self._window(self._start + self._given * length))
+            self._given += 1
+        return found
+
+    def _window(self, first: int) -> Recognition:
+        """Labels the window that begins at a frame, and forgets its points."""
+        length = self.model.settings.window_frames
+        rows = [np.column_stack([np.full(len(points), frame - first), points])
+                for frame, points in self._points if first <= frame < first + length]  # fmt: skip
+        while self._points and self._points[0][0] < first + length:
+            self._points.popleft()
+        table = np.concatenate(rows) if rows else np.zeros((0, 6))
+        cloud = PointCloud(
+            frame=table[:, 0].astype(int), x_m=table[:, 1], y_m=table[:, 2], z_m=table[:, 3],
+            radial_velocity_mps=table[:, 4], snr_db=table[:, 5],
+        )  # fmt: skip
+        window = PointRecording(
+            name="live", cloud=cloud, num_frames=length, frame_rate_hz=self.model.settings.frame_rate_hz,
+            first_frame=first,
+        )  # fmt: skip
+        return self.model.recognise_windows([window])[0]
+
+
+def recognise_stream(model: Recogniser, source: ByteSource) -> Iterator[Recognition]:
+    """Labels of what comes through a pipe: bytes of a TI demo's data port, or CSV lines with a header.
+
+    Raises InputError where it is neither.
+    """
+    live = LiveRecogniser(model)
+    for points in frames_of(source):
+        yield from live.push(points)
+    yield from live.finish()
+
+
+def frames_of(source: ByteSource) -> Iterator[FramePoints]:
+    """The points of each frame of a stream, also of frames without any. Raises InputError."""
+    head = source.read(len(MAGIC))
+    if head.isascii() and head[:1].isalpha():
+        rest = TextIOWrapper(cast("Any", source), encoding="utf-8", errors="replace")
+        yield from _frames_of_csv(chain((head.decode() + rest.readline()).splitlines(), rest))
+    elif head:
+        yield from (packet[:, :5] for packet in packets_of(source, head))
+
+
+def _frames_of_csv(lines: Iterator[str]) -> Iterator[FramePoints]:
+    """Frame, X, Y, Z, Doppler, perhaps SNR; frames that are missing are empty."""
+    rows = csv.reader(lines)
+    at = csv_columns(next(rows, []), "the stream")
+    order = [at[name] for name in ("frame", "x", "y", "z", "velocity")]
+    number: int | None = None
+    points: list[list[float]] = []
+    for row in rows:
+        try:
+            frame, *values = (float(row[column]) for column in order)
+            snr_db = float(row[at["snr"]]) if "snr" in at else float("nan")
+        except (ValueError, IndexError):
+            raise InputError(f"the stream holds a line that is no point: {','.join(row)[:60]!r}") from None
+        if not np.isfinite([frame, *values]).all() or (number is not None and not 0 <= frame - number < MOST_EMPTY):
+            raise InputError(f"the stream holds values that cannot be, or frames out of order: {','.join(row)[:60]!r}")
+        if number is not None and int(frame) > number:
+            yield np.array(points)
+            for _ in range(int(frame) - number - 1):
+                yield np.zeros((0, 5))
+            points = []
+        number = int(frame)
+        points.append([*values, snr_db])
+    if points:
+        yield np.array(points)

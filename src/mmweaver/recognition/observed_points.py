@@ -1,0 +1,78 @@
+"""What a board reports of a person in a sampled room: ray-traced samples, diffuse clutter, the firmware, its tilt."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mmweaver.core.firmware_settings import FirmwareSettings
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import PointCloud, PoseSequence
+from mmweaver.core.seeding import stream
+from mmweaver.dsp.firmware import firmware_points
+from mmweaver.dsp.firmware_cfar import counts_per_db
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
+from mmweaver.recognition.diffuse_clutter import diffuse_clutter
+from mmweaver.recognition.open_room import open_room
+from mmweaver.recognition.variation import VariationSample
+
+BEHIND_M = 0.3  # least distance of a wall from the body
+
+
+@dataclass(frozen=True, kw_only=True)
+class Board:
+    """A radar, the firmware that makes its points, and how finely skin is sampled."""
+
+    radar: RadarConfig
+    firmware: FirmwareSettings
+    skin_points: int
+
+
+def observed_cloud(
+    board: Board, now: VariationSample, pose: PoseSequence | Sequence[PoseSequence], frames: int, seed: int
+) -> PointCloud:
+    """Points of `frames` frames of one person, or of nobody (an empty tuple), under the sampled conditions."""
+    radar = replace(
+        board.radar,
+        noise_figure_db=board.radar.noise_figure_db + now.noise_db,
+        rx_gain_db=board.radar.rx_gain_db + now.gain_db,
+        elevation_beamwidth_deg=now.elevation_beamwidth_deg,
+    )
+    wall_m = now.wall_m
+    if wall_m is not None and isinstance(pose, PoseSequence):
+        wall_m = max(wall_m, float(pose.joints_m[..., 1].max()) + BEHIND_M)
+    scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=wall_m, panels=now.panels)
+    clutter = diffuse_clutter(radar, now.clutter_db, stream(seed, "diffuse clutter"))
+    firmware = _less_sensitive(board.firmware, now.threshold_db, board.radar.num_antennas)
+    adc = (
+        Simulator(scene, radar).run(pose, num_frames=frames, seed=seed, num_points=board.skin_points, echo=_skin(now))
+    ).adc
+    cloud = firmware_points(replace(adc, samples=adc.samples + clutter), firmware)
+    return _tilted(cloud, np.radians(now.tilt_deg))
+
+
+def _tilted(cloud: PointCloud, angle_rad: float) -> PointCloud:
+    """Points as reported by a radar pitched down by this angle: they appear higher."""
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
+    return PointCloud(
+        frame=cloud.frame, x_m=cloud.x_m, y_m=cos * cloud.y_m - sin * cloud.z_m,
+        z_m=sin * cloud.y_m + cos * cloud.z_m, radial_velocity_mps=cloud.radial_velocity_mps, snr_db=cloud.snr_db,
+    )  # fmt: skip
+
+
+def _less_sensitive(settings: FirmwareSettings, by_db: float, num_antennas: int) -> FirmwareSettings:
+    """Settings with CFAR thresholds raised by `by_db`, in the device's counts."""
+    counts = round(by_db * counts_per_db(settings.device, num_antennas))
+    cfars = (settings.range_cfar, settings.doppler_cfar)
+    high, low = (None if cfar is None else replace(cfar, threshold=cfar.threshold + counts) for cfar in cfars)
+    return replace(settings, range_cfar=high, doppler_cfar=low)
+
+
+def _skin(now: VariationSample) -> SkinEcho:
+    """A lobe of cos^exponent with the total reflected power of Lambertian skin of the sampled albedo."""
+    exponent = now.skin_exponent
+    reflectivity = 8 / 3 * (exponent + 1) / exponent * LAMBERT.albedo * 10 ** (now.albedo_db / 10)
+    return SkinEcho(
+        reflectivity=reflectivity, slope=exponent**-0.5, albedo=0.0, arms_db=now.arms_db, legs_db=now.legs_db
+    )

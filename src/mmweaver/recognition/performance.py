@@ -1,0 +1,172 @@
+"""How a person performs an activity for a while: where, how fast, how widely, swaying, pausing, in which room.
+
+Tempo, amplitude and sway belong to the person, and vary less between what one person does than between people. The
+same person stands in the same place before the same radar for every activity, so that none of these tells the label.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import joint
+from mmweaver.motion.compose import compose
+from mmweaver.motion.language.sentence import parse
+from mmweaver.motion.language.timing import natural_s, repeated, schedule
+from mmweaver.motion.people import MOST_SUBJECTS, person_of
+from mmweaver.recognition.generated_windows import (
+    SLOWEST_MPS,
+    pelvis_speed_mps,
+    scaled_excursion,
+    sway_m,
+    time_warped,
+)
+from mmweaver.recognition.open_room import open_room
+from mmweaver.recognition.task_file import Mount
+from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
+
+LEAD_S = 0.75  # a recording does not begin at rest
+AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
+HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
+REST_S = (0.2, 0.8)  # before and after a single performance
+
+
+@dataclass(frozen=True, kw_only=True)
+class PerformancePrior:
+    """How people differ, and how one person differs between performances; spreads are of logarithms where relative.
+
+    `on_spot` and `on_way`: the usual tempo of what is done in place, and of walks and runs in a room, relative to the
+    motion library. `sway_mps`: speed of slow shifts of the whole body, log-uniform. `heading_deg`: standard deviation
+    from facing the radar.
+    """
+
+    tempo_of_person: float = 0.2
+    tempo_of_performance: float = 0.1
+    amplitude_of_person: float = 0.2
+    amplitude_of_performance: float = 0.1
+    on_spot: float = 1.05
+    on_way: float = 0.85
+    usual_amplitude: float = 0.9
+    sway_mps: Span = (0.01, 0.25)
+    heading_deg: float = 15.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Performer:
+    """One person with the radar and the room before them."""
+
+    subject: int
+    surroundings: VariationSample
+    tempo: float
+    amplitude: float
+    heading_rad: float
+
+
+def task_variation(mount: Mount) -> Variation:
+    """The ranges of places, rooms and radars: wide, but for what is known of the mount."""
+    near, far = mount.distance_m or (1.0, 3.2)
+    known = Variation(
+        distance_m=(near, far), near_m=(max(near - 0.4, 0.5), near + 0.3),
+        far_m=(max(far - 0.5, near + 0.6), far + 0.8), radar_height_m=(0.7, 1.6), wall_m=(far + 0.6, far + 3.0),
+    )  # fmt: skip
+    if mount.height_m is not None:
+        known = replace(known, radar_height_m=_around(mount.height_m, HEIGHT_SPREAD_M))
+    if mount.tilt_deg is not None:
+        # clouds are reported in the board's axes: a board that looks down sees people higher
+        known = replace(known, tilt_deg=_around(mount.tilt_deg, TILT_SPREAD_DEG))
+    return known
+
+
+def _around(value: float, spread: float) -> Span:
+    return value - spread, value + spread
+
+
+def performer(prior: PerformancePrior, variation: Variation, index: int, seed: int) -> Performer:
+    """The index-th person; the same for all activities."""
+    rng = stream(seed, "performer", index)
+    tempo, amplitude, heading = rng.normal(size=3).clip(-2, 2)
+    return Performer(
+        subject=int(rng.integers(MOST_SUBJECTS)),
+        surroundings=sample_variation(variation, rng),
+        tempo=float(np.exp(prior.tempo_of_person * tempo)),
+        amplitude=float(prior.usual_amplitude * np.exp(prior.amplitude_of_person * amplitude)),
+        heading_rad=float(np.radians(prior.heading_deg) * heading),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Performance:
+    """A motion from its first frame on, and the surroundings it is seen in."""
+
+    pose: PoseSequence
+    lasts_s: float
+    surroundings: VariationSample
+
+
+def perform(
+    who: Performer, prior: PerformancePrior, sentence: str, *, seconds: float, once: bool, rng: np.random.Generator
+) -> Performance:
+    """The person carries out a sentence: `once`, with a short rest before and after, or for this many seconds.
+
+    Raises InputError where the sentence cannot be carried out there.
+    """
+    plan = parse(sentence)
+    moves = any(step.moves for step in plan.steps)
+    now, person = who.surroundings, person_of(who.subject, plan.person)
+    tempo_own, amplitude_own = rng.normal(size=2).clip(-2, 2)
+    tempo = who.tempo * (prior.on_way if moves else prior.on_spot) * np.exp(prior.tempo_of_performance * tempo_own)
+    amplitude = who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
+    lead_s = 0.0 if once else LEAD_S + float(rng.uniform(0.0, 2.0))
+    needed_s = natural_s(plan) if once else lead_s + (seconds + 0.3) * tempo * 1.1
+    scheduled = schedule(plan if once else repeated(plan, needed_s), needed_s)
+    scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)
+    x, y = now.start_m
+    distance = float(np.hypot(x, y))
+    window = now.reach_m if moves else (max(distance - AROUND_M[0], 0.3), distance + AROUND_M[1])
+    pose = compose(
+        scheduled, scene, seed=int(rng.integers(2**31)), range_window_m=window,
+        start_m=None if moves and rng.random() < 0.5 else now.start_m, person=person,
+        heading_rad=None if moves else float(np.arctan2(-y, -x) + who.heading_rad + 0.1 * rng.normal()),
+    ).pose  # fmt: skip
+    if moves and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
+        raise InputError("the path ends before the recording does")
+    joints_m = scaled_excursion(pose.joints_m, float(amplitude))
+    sway = float(np.exp(rng.uniform(*np.log(prior.sway_mps))))
+    joints_m = joints_m + sway_m(pose.time_s, sway, rng)
+    time_s = time_warped(pose.time_s - lead_s, float(tempo), now.hurry if moves else 0.0, rng)
+    pose = replace(pose, time_s=time_s, joints_m=joints_m)
+    if not once:
+        return Performance(pose=pose, lasts_s=seconds, surroundings=now)
+    before_s, after_s = rng.uniform(*REST_S, size=2)
+    return Performance(
+        pose=_rested(pose, float(before_s), float(after_s)),
+        lasts_s=float(before_s + time_s[-1] + after_s), surroundings=now,
+    )  # fmt: skip
+
+
+def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence:
+    """The motion with a rest before and after: time 0 is the rest's beginning."""
+    step_s = 0.05
+    before = np.arange(-step_s, before_s - 0.02, step_s)
+    started = pose.time_s >= 0.0
+    time_s, joints_m = pose.time_s[started] + before_s, pose.joints_m[started]
+    after = time_s[-1] + step_s * np.arange(1, int(after_s / step_s) + 4)
+    return replace(
+        pose,
+        time_s=np.concatenate([before, time_s, after]),
+        joints_m=np.concatenate(
+            [np.repeat(joints_m[:1], len(before), axis=0), joints_m, np.repeat(joints_m[-1:], len(after), axis=0)]
+        ),
+    )
+
+
+def prior_values(prior: PerformancePrior) -> dict[str, object]:
+    """The prior as JSON."""
+    return {one.name: getattr(prior, one.name) for one in fields(prior)}
+
+
+def pelvis_distance_m(pose: PoseSequence) -> np.ndarray:
+    """Slant range of the pelvis (time,)."""
+    return np.linalg.norm(pose.joints_m[:, joint("pelvis")], axis=1)

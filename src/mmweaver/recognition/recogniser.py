@@ -1,0 +1,192 @@
+"""A trained recogniser: a folder of safe files that labels windows of point clouds.
+
+Reference: docs/recognise.md. `load_recogniser(folder)` reads one; `Recogniser.recognise` labels a recording,
+`LiveRecogniser` frames as they come.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud
+from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.recognition.body_features import body_features
+from mmweaver.recognition.feature_matching import QUANTILES, FeatureMatching, outside_share
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recorded_columns import RecordedColumns
+from mmweaver.recognition.task_file import RecordingSettings
+from mmweaver.recognition.task_recordings import windows_of
+from mmweaver.recognition.timeline_features import timeline_features
+from mmweaver.recognition.tree_ensemble import TreeEnsemble, read_trees, write_trees
+from mmweaver.recognition.window_features import STILL_MPS, UNPREDICTABLE, window_features
+
+META_FILE, TREES_FILE, FEATURES_FILE = "meta.json", "trees.npz", "features.npz"
+MODEL_FILES = (META_FILE, TREES_FILE, FEATURES_FILE)
+KIND, VERSION = "mmweaver recogniser", 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Recognition:
+    """The label of one window."""
+
+    first_frame: int
+    num_frames: int
+    label: str
+    votes: dict[str, float]  # of each label, together 1
+    is_outside: bool  # the window is unlike everything that was generated: do not trust the label
+
+    def as_json(self) -> str:
+        """One line."""
+        votes = {name: round(value, 3) for name, value in self.votes.items()}
+        return json.dumps({**asdict(self), "votes": votes}, ensure_ascii=False)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Recogniser:
+    """Trees over window features, and what was generated to train them."""
+
+    settings: RecordingSettings
+    names: tuple[str, ...]  # of the features
+    trees: TreeEnsemble
+    generated: Float[np.ndarray, "quantile feature"]  # quantiles (feature_matching.QUANTILES) of generated windows
+    outside_above: float  # a window is outside where this share of its features is exceeded
+    matching: FeatureMatching | None  # learned from unlabelled recordings
+    meta: dict[str, Any]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """In the order of the votes."""
+        return self.settings.labels
+
+    def features(self, windows: Sequence[PointRecording]) -> Float[np.ndarray, "window feature"]:
+        """Features of windows, not matched."""
+        return recognition_features(windows, self.names)
+
+    def votes(self, features: Float[np.ndarray, "window feature"]) -> Float[np.ndarray, "window label"]:
+        """Votes of features as `features` gives them, matched to the generated ones where that was learned."""
+        matched = features if self.matching is None else self.matching.apply(features)
+        return self.trees.probabilities(matched)
+
+    def is_outside(self, features: Float[np.ndarray, "window feature"]) -> Bool[np.ndarray, " window"]:
+        """Whether windows are unlike everything that was generated."""
+        matched = features if self.matching is None else self.matching.apply(features)
+        return outside_share(matched, self.generated) > self.outside_above
+
+    def recognise(self, recording: PointRecording) -> list[Recognition]:
+        """The label of each window of a recording; windows are those of `task_recordings.windows_of`."""
+        return self.recognise_windows(windows_of(recording, self.settings))
+
+    def recognise_windows(self, windows: Sequence[PointRecording]) -> list[Recognition]:
+        """The label of each window."""
+        if not windows:
+            return []
+        features = self.features(windows)
+        votes, outside = self.votes(features), self.is_outside(features)
+        return [
+            Recognition(
+                first_frame=window.first_frame, num_frames=window.num_frames,
+                label=self.labels[int(np.argmax(vote))],
+                votes=dict(zip(self.labels, map(float, vote), strict=True)), is_outside=bool(out),
+            )
+            for window, vote, out in zip(windows, votes, outside, strict=True)
+        ]  # fmt: skip
+
+    def recognise_cloud(self, cloud: PointCloud, num_frames: int) -> list[Recognition]:
+        """The label of each window of a point cloud (a generated one, say) of so many frames."""
+        return self.recognise(
+            PointRecording(name="", cloud=cloud, num_frames=num_frames, frame_rate_hz=self.settings.frame_rate_hz)
+        )
+
+
+def recognition_features(
+    windows: Sequence[PointRecording], names: tuple[str, ...] | None = None
+) -> Float[np.ndarray, "window feature"]:
+    """Features (window, feature) of windows, float32, nan = unknown; by default those of `feature_names`."""
+    rows = [window_row(window) for window in windows]
+    chosen = names or feature_names(rows[0])
+    return np.array([[row[name] for name in chosen] for row in rows], np.float32).reshape(len(rows), len(chosen))
+
+
+def feature_names(row: dict[str, float]) -> tuple[str, ...]:
+    """The features that a simulation can predict: heights count from the body, unevenness depends on the beam."""
+    old = [name for name in row if not name.startswith(("order_", "reach_", "fast_", "turns"))]
+    kept = {name for name in old if not UNPREDICTABLE & set(name.split("_"))} | (set(row) - set(old))
+    return tuple(name for name in row if name in kept)
+
+
+def window_row(window: PointRecording) -> dict[str, float]:
+    """All features of a window by name."""
+    return {**window_features(window), **body_features(window, STILL_MPS), **timeline_features(window)}
+
+
+# files --------------------------------------------------------------------------------------------------------------
+def save_recogniser(folder: Path, model: Recogniser) -> None:
+    """Writes the folder's files; meta.json is the last, so a folder with it is complete."""
+    write_trees(folder / TREES_FILE, model.trees)
+    arrays: dict[str, Any] = {"names": np.array(model.names), "generated": model.generated}
+    if model.matching is not None:
+        arrays["recorded"] = model.matching.recorded
+    with atomic_file(folder / FEATURES_FILE) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(stream, **arrays)
+    settings = asdict(model.settings) | {
+        "columns": None if model.settings.columns is None else list(model.settings.columns.names)
+    }
+    values = {
+        "kind": KIND, "version": VERSION, "recordings": settings, "outside_above": model.outside_above, **model.meta
+    }  # fmt: skip
+    with atomic_file(folder / META_FILE) as temporary:
+        temporary.write_text(json.dumps(values, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def load_recogniser(folder: Path | str) -> Recogniser:
+    """Reads a folder of `mmweaver recognise train`. Raises InputError where it is none, or is damaged."""
+    folder = Path(folder)
+    if not (folder / META_FILE).is_file():
+        raise InputError(f"{folder} holds no recogniser; mmweaver recognise train TASK.toml --out {folder} makes one")
+    meta = read_json(folder / META_FILE)
+    if not isinstance(meta, dict) or meta.get("kind") != KIND or meta.get("version") != VERSION:
+        raise InputError(f"{folder / META_FILE} describes no recogniser of this version; train it again")
+    settings = _settings(meta, folder / META_FILE)
+    held = read_npz(folder / FEATURES_FILE)
+    names = held.texts("names")
+    generated = held.numbers("generated", (len(QUANTILES), len(names)), nan=True)
+    matching = None
+    if "recorded" in held:
+        recorded = held.numbers("recorded", (len(QUANTILES), len(names)), nan=True)
+        matching = FeatureMatching(recorded=recorded, generated=generated)
+    outside_above = meta.get("outside_above")
+    if not isinstance(outside_above, float):
+        raise InputError(f"{folder / META_FILE} lacks outside_above; train the recogniser again")
+    known = {"kind", "version", "recordings", "outside_above"}
+    return Recogniser(
+        settings=settings, names=names, trees=read_trees(folder / TREES_FILE, len(names), len(settings.labels)),
+        generated=generated, outside_above=outside_above, matching=matching,
+        meta={name: value for name, value in meta.items() if name not in known},
+    )  # fmt: skip
+
+
+def _settings(meta: dict[str, Any], file: Path) -> RecordingSettings:
+    found = meta.get("recordings")
+    try:
+        if not isinstance(found, dict):
+            raise TypeError
+        labels, gap, columns = found["labels"], found["gap_frames"], found["columns"]
+        if not labels or not all(isinstance(label, str) for label in labels):
+            raise TypeError
+        return RecordingSettings(
+            labels=tuple(labels), window_s=float(found["window_s"]), frame_rate_hz=float(found["frame_rate_hz"]),
+            gap_frames=None if gap is None else int(gap),
+            columns=None if columns is None else RecordedColumns.of(columns, str(file)),
+        )  # fmt: skip
+    except (TypeError, KeyError, ValueError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{file} does not say how recordings are read; train the recogniser again") from None

@@ -1,0 +1,73 @@
+"""Scores of a recogniser on labelled recordings, and how far these lie from what was generated."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.recognition.feature_matching import FAR, MOST_FAR, MOST_OUTSIDE, feature_distances
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recogniser import Recogniser
+from mmweaver.recognition.scoring import Evaluation, report
+from mmweaver.recognition.task_recordings import read_task_recordings, windows_of
+
+LISTED = 10  # features that differ most
+
+
+def score_recogniser(model: Recogniser, recordings: Path | str) -> dict[str, Any]:
+    """Scores on a folder of labelled recordings: `window`, `three_windows`, `recording`, as `evaluate --json` has them.
+
+    With them `generated_on_generated` (people who were generated and held out) and `distance` (recorded windows
+    against generated ones, without labels), and `warning` where the recordings lie outside. Raises InputError where
+    the recordings give no window.
+    """
+    found = read_task_recordings(recordings, model.settings)
+    return score_recordings(model, found)
+
+
+def score_recordings(model: Recogniser, recordings: list[PointRecording]) -> dict[str, Any]:
+    """As `score_recogniser`, of recordings that are read."""
+    cut = [windows_of(recording, model.settings) for recording in recordings]
+    windows = [window for own in cut for window in own]
+    if not windows:
+        raise InputError(f"no recording lasts {model.settings.window_s:g} s, which is one window; give longer ones")
+    features = model.features(windows)
+    votes, outside = model.votes(features), model.is_outside(features)
+    evaluation = Evaluation(
+        classes=model.labels, votes=votes, truth=np.array([model.labels.index(window.label) for window in windows]),
+        recording=np.repeat(np.arange(len(cut)), [len(own) for own in cut]),
+        names=tuple(recording.name for recording in recordings),
+    )  # fmt: skip
+    far = distance(model, features) | {"windows_outside": round(float(outside.mean()), 4)}
+    return {
+        **report(evaluation), "chance": round(1 / len(model.labels), 4),
+        "generated_on_generated": model.meta.get("generated_on_generated"), "distance": far, "warning": warning(far),
+    }  # fmt: skip
+
+
+def distance(model: Recogniser, features: np.ndarray) -> dict[str, Any]:
+    """How far features of recorded windows (window, feature), before matching, lie from those of generated ones."""
+    far = feature_distances(features, model.generated, model.names)
+    values = np.array(list(far.values()) or [0.0])
+    order = sorted(far, key=lambda name: -far[name])
+    return {
+        "features": len(far), "mean": round(float(values.mean()), 4),
+        "features_far": round(float((values > FAR).mean()), 4),
+        "is_matched": model.matching is not None,
+        "per_feature": {name: round(far[name], 4) for name in order},
+        "largest": order[:LISTED],
+    }  # fmt: skip
+
+
+def warning(found: dict[str, Any]) -> str | None:
+    """What to say where recordings lie outside what was generated; None where they do not."""
+    if found["features_far"] > MOST_FAR or found["windows_outside"] > MOST_OUTSIDE:
+        named = ", ".join(found["largest"][:3])
+        return (
+            f"the recordings lie outside what was generated: {found['features_far']:.0%} of the features are far off"
+            f" (most of all {named}) and {found['windows_outside']:.0%} of the windows are unlike any; check radar,"
+            " mount and sentences, or name the recordings as `unlabelled`; expect less than the score on generated"
+            " people says"
+        )
+    return None

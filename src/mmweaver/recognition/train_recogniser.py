@@ -1,0 +1,234 @@
+"""From a task file to a recogniser: sequences, windows, disturbed copies, features, trees, and what to expect of it."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.output_checks import check_output_folder
+from mmweaver.core.records import PointCloud
+from mmweaver.core.seeding import stream
+from mmweaver.core.version import __version__
+from mmweaver.recognition.feature_matching import FeatureMatching, outside_share, quantiles_of
+from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
+from mmweaver.recognition.performance import PerformancePrior
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recogniser import (
+    MODEL_FILES,
+    Recogniser,
+    feature_names,
+    recognition_features,
+    save_recogniser,
+    window_row,
+)
+from mmweaver.recognition.scoring import balanced_accuracy
+from mmweaver.recognition.task_file import RecognitionTask, read_task
+from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, windows_of
+from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
+from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
+
+SEQUENCES, QUICK_SEQUENCES = 40, 8  # people an activity
+SEQUENCE_FOLDER = "sequences"
+HELD_OUT = 4  # one person in so many is held out to test on generated people
+INSIDE_SHARE = 0.99  # of generated windows
+Listener = Callable[[str, int, int], object]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrainingOptions:
+    """How a recogniser is trained; the same for every task."""
+
+    sequences: int = SEQUENCES
+    seed: int = 0
+    prior: PerformancePrior = PerformancePrior()  # noqa: RUF009 (frozen)
+    copies: int = 3  # disturbed ones of each window
+    trees: int = 300
+    leaf_size: int = 3
+    feature_share: float = 0.25
+    matching: bool = True  # of features, where there are unlabelled recordings
+    self_training: bool = True
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.sequences <= 100_000:
+            raise InputError(f"sequences must be 2 to 100000 of each activity, not {self.sequences}")
+        if self.seed < 0:
+            raise InputError(f"the seed must be 0 or above, not {self.seed}")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GeneratedWindows:
+    """Features of generated windows and of their disturbed copies."""
+
+    features: Float[np.ndarray, "window feature"]
+    label: Int[np.ndarray, " window"]
+    person: Int[np.ndarray, " window"]
+    is_copy: np.ndarray  # (window,) bool
+    names: tuple[str, ...]
+
+    @property
+    def weights(self) -> Float[np.ndarray, " window"]:
+        """Every label weighs the same."""
+        return 1.0 / np.bincount(self.label)[self.label] * len(self.label)
+
+
+def train_recogniser(
+    task_file: Path | str, out: Path | str, options: TrainingOptions | None = None, listener: Listener | None = None
+) -> Recogniser:
+    """Trains a recogniser of a task and writes its folder; sequences stay in OUT/sequences, so it may be interrupted.
+
+    `listener` is called with a stage, what is done of it and how much there is. Raises InputError.
+    """
+    options, out = options or TrainingOptions(), Path(out)
+    task = read_task(task_file)
+    check_output_folder(out, overwrite=True, files=MODEL_FILES)
+    recipe = SequenceRecipe.of(task, options.prior, options.seed)
+    began_s = time.process_time()
+    tell = listener or (lambda *_: None)
+    background = [] if task.background is None else [read_task_recording(task.background, task.recordings)]
+    unlabelled = unlabelled_windows(task)
+    sequences = generate_sequences(
+        recipe, options.sequences, out / SEQUENCE_FOLDER, lambda done, of: tell("sequences", done, of)
+    )
+    made = generated_windows(sequences, task, options, background)
+    tell("trees", 0, 1)
+    model = fitted(made, unlabelled, task, options)
+    note = {
+        "mmweaver": __version__, "options": asdict(options), "task": task_values(task),
+        "cpu_seconds": round(time.process_time() - began_s, 1),
+    }  # fmt: skip
+    model = replace(model, meta={**note, **model.meta})
+    save_recogniser(out, model)
+    tell("trees", 1, 1)
+    return model
+
+
+def task_values(task: RecognitionTask) -> dict[str, Any]:
+    """What a task says, for meta.json."""
+    return {
+        "radar": task.radar.name, "activities": {label: list(said) for label, said in task.activities.items()},
+        "mount": asdict(task.mount), "background": None if task.background is None else task.background.name,
+        "unlabelled": None if task.unlabelled is None else task.unlabelled.name,
+    }  # fmt: skip
+
+
+def unlabelled_windows(task: RecognitionTask) -> list[PointRecording]:
+    """The windows of the task's unlabelled recordings; none where it names none."""
+    if task.unlabelled is None:
+        return []
+    recordings = read_task_recordings(task.unlabelled, task.recordings, labelled=False)
+    return [window for recording in recordings for window in windows_of(recording, task.recordings)]
+
+
+def generated_windows(
+    sequences: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
+    background: Sequence[PointRecording] = (),
+) -> GeneratedWindows:  # fmt: skip
+    """Windows of sequences with their disturbed copies, each in front of the recorded background where there is one.
+
+    Raises InputError where an activity gave no window.
+    """
+    how = WindowAugmentation(
+        cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
+        most_objects=0 if task.firmware.static_removal or background else WindowAugmentation().most_objects,
+        reversed_share=0.0, reflected_share=0.0,
+    )  # fmt: skip
+    windows = [window for sequence in sequences for window in windows_of(sequence, task.recordings)]
+    found = {window.label for window in windows}
+    if missing := [label for label in task.recordings.labels if label not in found]:
+        raise InputError(
+            f"the radar sees nothing of {missing[0]!r}: no window of it was generated; check radar, mount and sentences"
+        )
+    copies: list[PointRecording] = []
+    for copy in range(options.copies):
+        for number, window in enumerate(windows):
+            rng = stream(options.seed, "disturbed", window.name, number, copy)
+            copies.append(_before(augmented(window, rng, how), background, rng))
+    everything = [
+        _before(window, background, stream(options.seed, "behind", number)) for number, window in enumerate(windows)
+    ]
+    everything += copies
+    names = feature_names_of(everything[0])
+    return GeneratedWindows(
+        features=recognition_features(everything, names),
+        label=np.array([task.recordings.labels.index(window.label) for window in everything]),
+        person=np.array([int(window.name.rpartition("_")[2]) for window in everything]),
+        is_copy=np.arange(len(everything)) >= len(windows), names=names,
+    )  # fmt: skip
+
+
+def feature_names_of(window: PointRecording) -> tuple[str, ...]:
+    """The names of the features that a recogniser uses."""
+    return feature_names(window_row(window))
+
+
+def _before(window: PointRecording, background: Sequence[PointRecording], rng: np.random.Generator) -> PointRecording:
+    """The window with the points of a stretch of the recorded empty place."""
+    if not background:
+        return window
+    place = background[int(rng.integers(len(background)))]
+    first = int(rng.integers(max(place.num_frames - window.num_frames, 0) + 1))
+    behind = place.part(first, window.num_frames).cloud
+    names = ("frame", "x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
+    columns = {name: np.concatenate([getattr(window.cloud, name), getattr(behind, name)]) for name in names}
+    order = np.argsort(columns["frame"], kind="stable")
+    return replace(window, cloud=PointCloud(**{name: column[order] for name, column in columns.items()}))
+
+
+# fitting ------------------------------------------------------------------------------------------------------------
+def fitted(
+    made: GeneratedWindows, unlabelled: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions
+) -> Recogniser:
+    """Trees on all generated windows, adapted to unlabelled ones, with the accuracy on generated people held out."""
+    own = ~made.is_copy
+    generated = quantiles_of(made.features[own])
+    shares = outside_share(made.features[own], generated)
+    meta: dict[str, Any] = {
+        "generated_windows": int(own.sum()), "with_disturbed_copies": len(made.label),
+        "generated_on_generated": generated_accuracy(made, options),
+    }  # fmt: skip
+    trees = trees_of(made, options)
+    matching = None
+    if unlabelled:
+        features = recognition_features(unlabelled, made.names)
+        meta["unlabelled_windows"] = len(unlabelled)
+        if options.matching:
+            matching = FeatureMatching(recorded=quantiles_of(features), generated=generated)
+            features = matching.apply(features)
+        if options.self_training:
+            from mmweaver.recognition.self_training import self_trained
+
+            trees, meta["self_training"] = self_trained(made, features, trees, options)
+    return Recogniser(
+        settings=task.recordings, names=made.names, trees=trees, generated=generated,
+        outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, meta=meta,
+    )  # fmt: skip
+
+
+def trees_of(
+    made: GeneratedWindows, options: TrainingOptions, *, which: np.ndarray | None = None, num_trees: int | None = None
+) -> TreeEnsemble:
+    """Trees on generated windows, or on those of a mask (window,)."""
+    which = np.ones(len(made.label), bool) if which is None else which
+    return grow_trees(
+        made.features[which], made.label[which], made.weights[which], int(made.label.max()) + 1,
+        trees=num_trees or options.trees, leaf_size=options.leaf_size, feature_share=options.feature_share,
+        seed=options.seed,
+    )  # fmt: skip
+
+
+def generated_accuracy(made: GeneratedWindows, options: TrainingOptions) -> dict[str, float]:
+    """Balanced accuracy on generated windows of people who were held out: what the radar can tell apart at best."""
+    held = made.person % HELD_OUT == HELD_OUT - 1
+    if held.all() or not held.any():
+        held = made.person == made.person.max()
+    votes = trees_of(made, options, which=~held, num_trees=100).probabilities(made.features[held & ~made.is_copy])
+    truth = made.label[held & ~made.is_copy]
+    return {
+        "balanced_accuracy": round(balanced_accuracy(truth, votes.argmax(axis=1)), 4),
+        "windows": len(truth), "chance": round(1 / (int(made.label.max()) + 1), 4),
+    }  # fmt: skip

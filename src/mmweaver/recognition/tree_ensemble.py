@@ -1,0 +1,114 @@
+"""Extremely randomised trees as plain arrays: trained by scikit-learn, stored without pickles, evaluated by NumPy.
+
+Reference: Geurts, Ernst and Wehenkel, "Extremely randomized trees", Machine Learning 63, 2006.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from mmweaver.core.atomic_files import atomic_file
+from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_arrays import read_npz
+from mmweaver.recognition.activity_classifier import Features
+
+MOST_NODES = 50_000_000
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TreeEnsemble:
+    """All nodes of all trees in one row; leaves lead to themselves. Votes are shares of the training windows."""
+
+    root: Int[np.ndarray, " tree"]
+    left: Int[np.ndarray, " node"]
+    right: Int[np.ndarray, " node"]
+    feature: Int[np.ndarray, " node"]
+    threshold: Float[np.ndarray, " node"]
+    unknown_left: Int[np.ndarray, " node"]  # 1 where an unknown value (nan) goes left
+    votes: Float[np.ndarray, "node activity"]
+
+    def probabilities(self, features: Features) -> Float[np.ndarray, "window activity"]:
+        """Mean vote of all trees, (window, activity)."""
+        features = np.asarray(features, np.float32)
+        rows = np.arange(len(features))[:, None]
+        node = np.broadcast_to(self.root, (len(features), len(self.root))).copy()
+        while True:
+            value = features[rows, self.feature[node]]
+            goes_left = np.where(np.isnan(value), self.unknown_left[node] == 1, value <= self.threshold[node])
+            following = np.where(goes_left, self.left[node], self.right[node])
+            if np.array_equal(following, node):
+                break
+            node = following
+        return self.votes[node].mean(axis=1, dtype=np.float64)
+
+
+def grow_trees(
+    features: Features, labels: Int[np.ndarray, " window"], weights: Float[np.ndarray, " window"], classes: int, *,
+    trees: int, leaf_size: int, feature_share: float, seed: int,
+) -> TreeEnsemble:  # fmt: skip
+    """Trains on features (window, feature), nan = unknown. Raises InputError where scikit-learn is missing."""
+    try:
+        from sklearn.ensemble import ExtraTreesClassifier
+    except ImportError:
+        raise InputError("training a recogniser needs scikit-learn; pip install 'mmweaver[evaluate]'") from None
+    grown = ExtraTreesClassifier(
+        trees, min_samples_leaf=leaf_size, max_features=feature_share, n_jobs=1, random_state=seed
+    ).fit(features, labels, sample_weight=weights)
+    parts = [tree.tree_ for tree in grown.estimators_]
+    root = np.cumsum([0, *(part.node_count for part in parts)])[:-1]
+    own = [np.arange(part.node_count) for part in parts]
+
+    def joined(name: str) -> np.ndarray:
+        """A column of nodes; children that a leaf lacks are the leaf itself."""
+        values = [getattr(part, name) for part in parts]
+        if name.startswith("children"):
+            values = [
+                np.where(value < 0, self, value) + start for value, self, start in zip(values, own, root, strict=True)
+            ]
+        return np.concatenate(values)
+
+    votes = np.concatenate([part.value[:, 0] for part in parts])
+    whole = np.zeros((len(votes), classes), np.float32)
+    whole[:, grown.classes_] = votes / votes.sum(axis=1, keepdims=True)
+    is_leaf = joined("children_left") == np.arange(len(votes))
+    return TreeEnsemble(
+        root=root, left=joined("children_left").astype(np.int32), right=joined("children_right").astype(np.int32),
+        feature=np.where(is_leaf, 0, joined("feature")).astype(np.int16),
+        threshold=np.where(is_leaf, 0.0, joined("threshold")),
+        unknown_left=joined("missing_go_to_left").astype(np.int8),
+        votes=np.where(is_leaf[:, None], whole, 0.0).astype(np.float16),
+    )  # fmt: skip
+
+
+def write_trees(file: Path, ensemble: TreeEnsemble) -> None:
+    """One .npz of the arrays."""
+    with atomic_file(file) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(stream, **vars(ensemble))
+
+
+def read_trees(file: Path, features: int, classes: int) -> TreeEnsemble:
+    """Reads `write_trees`. Raises InputError where the arrays are no trees over so many features and classes."""
+    held = read_npz(file)
+    nodes = len(held.take("left"))
+    if not 0 < nodes <= MOST_NODES:
+        raise InputError(f"{file} holds {nodes} nodes; train the recogniser again")
+
+    def numbers(name: str, most: int) -> np.ndarray:
+        return held.numbers(name, ("node",), kinds="iu", low=0, high=most)
+
+    found = TreeEnsemble(
+        root=held.numbers("root", ("tree",), kinds="iu", low=0, high=nodes - 1),
+        left=numbers("left", nodes - 1), right=numbers("right", nodes - 1), feature=numbers("feature", features - 1),
+        threshold=held.numbers("threshold", ("node",)), unknown_left=numbers("unknown_left", 1),
+        votes=held.numbers("votes", ("node", classes), low=0, high=1),
+    )  # fmt: skip
+    # children stand behind their parents, so that every way down ends
+    here = np.arange(nodes)
+    if (found.left < here).any() or (found.right < here).any():
+        raise InputError(f"{file} holds trees that lead back to themselves; train the recogniser again")
+    is_leaf = (found.left == here) & (found.right == here)
+    if (((found.left == here) | (found.right == here)) & ~is_leaf).any():
+        raise InputError(f"{file} holds nodes with one child; train the recogniser again")
+    return found

@@ -1,0 +1,55 @@
+"""A recogniser trained within a second on clouds that are drawn, not simulated: label 0 stays, the others move."""
+
+from pathlib import Path
+
+import numpy as np
+
+from mmweaver.core.records import PointCloud
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recogniser import Recogniser
+from mmweaver.recognition.task_file import RecordingSettings, read_task
+from mmweaver.recognition.train_recogniser import TrainingOptions, fitted, generated_windows
+
+OPTIONS = TrainingOptions(sequences=6, copies=1, trees=15)
+SECONDS = 8.0
+
+
+def drawn_recording(settings: RecordingSettings, label: str, person: int, seconds: float = SECONDS) -> PointRecording:
+    """A person at rest, or one who goes to and fro, the faster the later the label."""
+    rng = np.random.default_rng([person, settings.labels.index(label)])
+    frames = max(int(seconds * settings.frame_rate_hz), 1)
+    frame = np.repeat(np.arange(frames), 6)
+    speed = 0.7 * settings.labels.index(label)
+    phase = 2 * np.pi * (frame / settings.frame_rate_hz / 2 + rng.random())
+    cloud = PointCloud(
+        frame=frame, x_m=rng.normal(0, 0.2, len(frame)), z_m=rng.normal(0, 0.3, len(frame)),
+        y_m=2 + 0.3 * speed * np.sin(phase) + rng.normal(0, 0.05, len(frame)),
+        radial_velocity_mps=np.round((speed * np.cos(phase) + rng.normal(0, 0.15, len(frame))) / 0.356) * 0.356,
+        snr_db=np.full(len(frame), np.nan),
+    )  # fmt: skip
+    return PointRecording(
+        name=f"{label}_{person}", cloud=cloud, num_frames=frames, frame_rate_hz=settings.frame_rate_hz, label=label
+    )
+
+
+def drawn_sequences(settings: RecordingSettings, people: int = 6, first: int = 0) -> list[PointRecording]:
+    """One recording of each person and label."""
+    return [
+        drawn_recording(settings, label, person) for person in range(first, first + people) for label in settings.labels
+    ]
+
+
+def small_recogniser(task_file: Path, options: TrainingOptions = OPTIONS) -> Recogniser:
+    """Trained on `drawn_sequences`."""
+    task = read_task(task_file)
+    made = generated_windows(drawn_sequences(task.recordings), task, options)
+    return fitted(made, [], task, options)
+
+
+def write_recordings(folder: Path, recordings: list[PointRecording]) -> None:
+    """As .npz in folders named by label, columns x right, y ahead, z up, velocity."""
+    for one in recordings:
+        (folder / one.label).mkdir(parents=True, exist_ok=True)
+        cloud = one.cloud
+        pts = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1).astype(np.float32)
+        np.savez(folder / one.label / f"{one.name}.npz", frame=cloud.frame, pts=pts)

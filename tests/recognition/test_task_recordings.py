@@ -1,0 +1,83 @@
+"""Recordings of a task: columns by name, labels by folder, samples between gaps, short performances as windows."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recorded_columns import RecordedColumns
+from mmweaver.recognition.task_file import RecordingSettings
+from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, samples_of, windows_of
+
+COLUMNS = RecordedColumns.of(["x_ahead", "y_left", "z_up", "range", "velocity_towards", "snr"], "here")
+SETTINGS = RecordingSettings(labels=("up", "walk"), window_s=1.0, frame_rate_hz=10.0, columns=COLUMNS)
+
+
+def recording(*frames: int, num_frames: int = 40) -> PointRecording:
+    zeros = np.zeros(len(frames))
+    cloud = PointCloud(
+        frame=np.array(frames, int), x_m=zeros, y_m=zeros, z_m=zeros, radial_velocity_mps=zeros, snr_db=zeros
+    )
+    return PointRecording(name="a", cloud=cloud, num_frames=num_frames, frame_rate_hz=10.0)
+
+
+def test_columns_are_what_their_names_say(tmp_path: Path):
+    (tmp_path / "up").mkdir()
+    np.savez(tmp_path / "up" / "a.npz", frame=[7, 7, 9], pts=[[1, 2, 3, 9, 0.5, 20], [4, 5, 6, 9, -1, 30], [0] * 6])
+    (one,) = read_task_recordings(tmp_path, SETTINGS)
+    assert one.label == "up"
+    assert one.num_frames == 3  # an empty one among them
+    assert one.cloud.x_m[:2].tolist() == [-2, -5]
+    assert one.cloud.y_m[:2].tolist() == [1, 4]
+    assert one.cloud.z_m[:2].tolist() == [3, 6]
+    assert one.cloud.radial_velocity_mps[:2].tolist() == [-0.5, 1.0]
+    assert one.cloud.snr_db[:2].tolist() == [20, 30]
+
+
+def test_an_empty_room_may_have_no_points(tmp_path: Path):
+    np.savez(tmp_path / "a.npz", frame=np.zeros(0, int), pts=np.zeros((0, 6)), num_frames=30)
+    one = read_task_recording(tmp_path / "a.npz", SETTINGS)
+    assert (one.num_frames, len(windows_of(one, SETTINGS))) == (30, 3)
+
+
+def test_a_longer_gap_begins_a_new_sample():
+    found = samples_of(recording(3, 4, 10, 11, 30), gap_frames=5)
+    assert [(one.first_frame, one.num_frames) for one in found] == [(3, 9), (30, 1)]  # 5 frames without points are none
+    assert [one.num_frames for one in samples_of(recording(3, 4), gap_frames=None)] == [40]
+    assert samples_of(recording(), gap_frames=5) == []
+
+
+def test_a_short_performance_is_a_window_with_empty_frames():
+    single = replace(SETTINGS, gap_frames=5)
+    found = windows_of(recording(3, 4, *range(20, 40), num_frames=45), single)
+    assert [(one.first_frame, one.num_frames) for one in found] == [(3, 10), (20, 10), (30, 10)]
+    seldom = replace(SETTINGS, gap_frames=50)  # takes that lie far apart: nothing is filled up
+    assert [one.num_frames for one in windows_of(recording(*range(15), num_frames=15), seldom)] == [10]
+
+
+@pytest.mark.parametrize(
+    ("arrays", "message"),
+    [
+        ({"frame": [0], "pts": np.zeros((1, 4))}, "6 columns are named"),
+        ({"frame": [1, 0], "pts": np.zeros((2, 6))}, "out of order"),
+        ({"frame": [0], "pts": np.full((1, 6), np.nan)}, "not finite"),
+        ({"frame": [5], "pts": np.zeros((1, 6)), "num_frames": 3}, "num_frames"),
+    ],
+)
+def test_damaged_files_are_one_line(arrays: dict, message: str, tmp_path: Path):
+    np.savez(tmp_path / "walk.npz", **arrays)
+    with pytest.raises(InputError, match=message):
+        read_task_recordings(tmp_path, SETTINGS)
+
+
+def test_a_file_must_name_its_activity(tmp_path: Path):
+    np.savez(tmp_path / "nothing.npz", frame=[0], pts=np.zeros((1, 6)))
+    with pytest.raises(InputError, match="does not name its activity"):
+        read_task_recordings(tmp_path, SETTINGS)
+    assert read_task_recordings(tmp_path, SETTINGS, labelled=False)[0].label == ""
+    with pytest.raises(InputError, match="does not exist"):
+        read_task_recordings(tmp_path / "none", SETTINGS)

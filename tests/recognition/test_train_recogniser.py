@@ -1,0 +1,139 @@
+"""A recogniser from a task to labels: files, live labels, scores, unlabelled recordings, a recorded background."""
+
+import io
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sklearn")
+
+from mmweaver.core.errors import InputError
+from mmweaver.recognition import train_recogniser as training
+from mmweaver.recognition.live_recogniser import LiveRecogniser, recognise_stream
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.recogniser import Recogniser, load_recogniser, save_recogniser
+from mmweaver.recognition.score_recogniser import score_recordings
+from mmweaver.recognition.task_file import read_task
+from mmweaver.recognition.train_recogniser import train_recogniser
+from tests.recognition.small_recogniser import OPTIONS, drawn_sequences, small_recogniser, write_recordings
+
+TASK = """radar = "iwr1443_mars"
+window_s = 2.0
+{more}
+[activities]
+rest = "a person stands"
+to_and_fro = "a person walks"
+[recordings]
+columns = ["x_right", "y_ahead", "z_up", "velocity"]
+"""
+
+
+@pytest.fixture
+def task_file(tmp_path: Path) -> Path:
+    file = tmp_path / "task.toml"
+    file.write_text(TASK.format(more=""))
+    return file
+
+
+@pytest.fixture
+def drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sequences are drawn instead of simulated."""
+    monkeypatch.setattr(
+        training, "generate_sequences", lambda recipe, each, *_: drawn_sequences(recipe.task.recordings, each)
+    )
+
+
+def shifted(recording: PointRecording, metres: float) -> PointRecording:
+    return replace(recording, cloud=replace(recording.cloud, y_m=recording.cloud.y_m + metres))
+
+
+@pytest.mark.usefixtures("drawn")
+def test_a_folder_is_written_and_read_again(task_file: Path, tmp_path: Path):
+    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    again = load_recogniser(tmp_path / "model")
+    people = drawn_sequences(model.settings, 2, first=50)
+    assert [model.recognise(one) for one in people] == [again.recognise(one) for one in people]
+    assert again.meta["generated_on_generated"]["balanced_accuracy"] > 0.9
+    assert again.meta["task"]["radar"] == "iwr1443_mars"
+    scores = score_recordings(again, people)
+    assert scores["window"]["balanced_accuracy"] == 1.0
+    assert np.sum(scores["window"]["confusion"]) == scores["window"]["n"] == 16
+    assert scores["warning"] is None
+    assert set(scores["distance"]["per_feature"]) <= set(again.names)
+    json.dumps(scores)
+
+
+@pytest.mark.usefixtures("drawn")
+def test_recordings_that_lie_outside_are_warned_of(task_file: Path):
+    model = small_recogniser(task_file)
+    people = drawn_sequences(model.settings, 3, first=50)
+    noisy = [
+        replace(one, cloud=replace(one.cloud, radial_velocity_mps=one.cloud.radial_velocity_mps * 8)) for one in people
+    ]
+    assert "outside what was generated" in score_recordings(model, noisy)["warning"]
+    assert any(found.is_outside for found in model.recognise(noisy[1]))
+
+
+@pytest.mark.usefixtures("drawn")
+def test_unlabelled_recordings_and_a_background_are_used(task_file: Path, tmp_path: Path):
+    settings = read_task(task_file).recordings
+    write_recordings(tmp_path / "some", drawn_sequences(settings, 4, first=20))
+    (tmp_path / "some").rename(tmp_path / "unlabelled")
+    write_recordings(tmp_path, [replace(drawn_sequences(settings, 1)[0], label="place", name="empty")])
+    task_file.write_text(TASK.format(more='unlabelled = "unlabelled"\nbackground = "place/empty.npz"'))
+    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    assert model.matching is not None
+    assert model.meta["unlabelled_windows"] == 32
+    assert model.meta["self_training"]["used"]
+    assert load_recogniser(tmp_path / "model").matching is not None
+
+
+@pytest.mark.parametrize("gap_frames", [None, 3])
+def test_live_labels_are_those_of_the_recording(gap_frames: int | None, task_file: Path):
+    model = small_recogniser(task_file)
+    model = replace(model, settings=replace(model.settings, gap_frames=gap_frames))
+    recording = drawn_sequences(model.settings, 1, first=9)[1].part(0, 71)
+    kept = ~np.isin(recording.cloud.frame, [0, 1, 30, 31, 32, 33, 34, 60])  # gaps, and a sample shorter than a window
+    recording = replace(recording, cloud=recording.cloud.select(kept))
+    live, found = LiveRecogniser(model), []
+    for points in frames(recording):
+        found += live.push(points)
+    assert found + live.finish() == model.recognise(recording)
+    assert len(found) >= 2
+
+
+def frames(recording: PointRecording) -> list[np.ndarray]:
+    cloud = recording.cloud
+    table = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps, cloud.snr_db], axis=1)
+    return [table[cloud.frame == number] for number in range(recording.num_frames)]
+
+
+def test_a_pipe_of_csv_lines(task_file: Path):
+    model = small_recogniser(task_file)
+    recording = drawn_sequences(model.settings, 1, first=9)[1]
+    rows = ["Frame,X,Y,Z,Doppler"] + [
+        f"{number},{x:.9f},{y:.9f},{z:.9f},{v:.9f}"
+        for number, points in enumerate(frames(recording)) for x, y, z, v, _ in points
+    ]  # fmt: skip
+    found = list(recognise_stream(model, io.BytesIO("\n".join(rows).encode())))
+    assert [one.label for one in found] == [one.label for one in model.recognise(recording)]
+    for text, message in ((b"a,b\n1,2\n", "must name Frame"), (b"Frame,X,Y,Z,Doppler\n1,x,0,0,0\n", "no point")):
+        with pytest.raises(InputError, match=message):
+            list(recognise_stream(model, io.BytesIO(text)))
+    assert list(recognise_stream(model, io.BytesIO(b""))) == []
+
+
+@pytest.mark.parametrize(
+    ("file", "content"), [("meta.json", b"{}"), ("meta.json", b"no"), ("trees.npz", b"x"), ("features.npz", b"x")]
+)
+def test_damaged_folders_are_one_line(file: str, content: bytes, task_file: Path, tmp_path: Path):
+    model: Recogniser = small_recogniser(task_file)
+    save_recogniser(tmp_path / "model", model)
+    (tmp_path / "model" / file).write_bytes(content)
+    with pytest.raises(InputError):
+        load_recogniser(tmp_path / "model")
+    with pytest.raises(InputError, match="holds no recogniser"):
+        load_recogniser(tmp_path)
