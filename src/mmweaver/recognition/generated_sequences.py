@@ -18,7 +18,7 @@ from mmweaver.core.safe_files.safe_arrays import read_npz
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.seeding import stream
 from mmweaver.motion.worded_activities import NOBODY
-from mmweaver.recognition.observed_points import Board, observed_cloud
+from mmweaver.recognition.observed_points import PointRadar, observed_cloud
 from mmweaver.recognition.performance import (
     PerformancePrior,
     Performer,
@@ -56,9 +56,9 @@ class SequenceRecipe:
         )
 
     @property
-    def board(self) -> Board:
+    def board(self) -> PointRadar:
         """The task's radar and firmware."""
-        return Board(radar=self.task.radar, firmware=self.task.firmware, skin_points=SKIN_POINTS)
+        return PointRadar(radar=self.task.radar, firmware=self.task.firmware, skin_points=SKIN_POINTS)
 
     @property
     def seconds(self) -> float:

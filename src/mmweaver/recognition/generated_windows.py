@@ -19,7 +19,7 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.language.sentence import parse
 from mmweaver.motion.language.timing import schedule
 from mmweaver.motion.people import Person
-from mmweaver.recognition.observed_points import Board, observed_cloud
+from mmweaver.recognition.observed_points import PointRadar, observed_cloud
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
@@ -217,7 +217,7 @@ def _observed(
     recipe: GenerationRecipe, now: VariationSample, pose: PoseSequence, label: str, name: str, person: int
 ) -> PointRecording:
     """The points that the firmware reports of the person in the sampled room."""
-    board = Board(radar=recipe.radar, firmware=recipe.firmware, skin_points=recipe.variation.skin_points)
+    board = PointRadar(radar=recipe.radar, firmware=recipe.firmware, skin_points=recipe.variation.skin_points)
     return PointRecording(
         name=name, cloud=observed_cloud(board, now, pose, recipe.frames, person), num_frames=recipe.frames,
         frame_rate_hz=1 / recipe.radar.frame_period_s, label=label,

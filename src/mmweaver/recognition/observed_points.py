@@ -21,7 +21,7 @@ BEHIND_M = 0.3  # least distance of a wall from the body
 
 
 @dataclass(frozen=True, kw_only=True)
-class Board:
+class PointRadar:
     """A radar, the firmware that makes its points, and how finely skin is sampled."""
 
     radar: RadarConfig
@@ -30,7 +30,7 @@ class Board:
 
 
 def observed_cloud(
-    board: Board, now: VariationSample, pose: PoseSequence | Sequence[PoseSequence], frames: int, seed: int
+    board: PointRadar, now: VariationSample, pose: PoseSequence | Sequence[PoseSequence], frames: int, seed: int
 ) -> PointCloud:
     """Points of `frames` frames of one person, or of nobody (an empty tuple), under the sampled conditions."""
     radar = replace(
