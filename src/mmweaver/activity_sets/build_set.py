@@ -16,6 +16,7 @@ import numpy as np
 from mmweaver.activity_sets.activity_list import ActivityList
 from mmweaver.activity_sets.leak_report import leak_report
 from mmweaver.activity_sets.matched_draws import Draw, PlannedSequence, matched_draws, places_of, shuffled
+from mmweaver.activity_sets.sentence_draws import GivenPlacing
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
 from mmweaver.core.board import Board
 from mmweaver.core.boards import find_board
@@ -75,10 +76,10 @@ class SetBuilder:
 
     def __init__(
         self, out: Path, activities: ActivityList, rooms: Sequence[Room], weaver: Weaver, options: SetOptions, *,
-        command: str, activities_text: str,
+        command: str, activities_text: str, given: GivenPlacing | None = None,
     ):  # fmt: skip
         self.out, self.activities, self.rooms, self.weaver, self.options = out, activities, list(rooms), weaver, options
-        self.command, self.activities_text = command, activities_text
+        self.command, self.activities_text, self.given = command, activities_text, given
 
     @cached_property
     def plan(self) -> list[PlannedSequence]:
@@ -87,7 +88,7 @@ class SetBuilder:
         places = [places_of(room.scene, window_m, options.places, options.seed) for room in self.rooms]
         sequences: list[PlannedSequence] = []
         for draw in matched_draws(places, options.each, options.subjects, options.seed, self._can_do):
-            sequences += self._of_draw(draw)
+            sequences += self._of_draw(self._placed(draw))
         return shuffled(sequences, options.seed)
 
     def _of_draw(self, draw: Draw) -> list[PlannedSequence]:
@@ -101,18 +102,22 @@ class SetBuilder:
 
     def _can_do(self, draw: Draw) -> str:
         """Why a draw does not serve all labels; "" where it does."""
-        for one in self._of_draw(draw):
+        for one in self._of_draw(self._placed(draw)):
             try:
                 compose_request(self._request(one), self.rooms[draw.room].scene)
             except InputError as error:
                 return f"{one.text!r}: {error}"
         return ""
 
+    def _placed(self, draw: Draw) -> Draw:
+        return draw if self.given is None else self.given.applied(draw)
+
     def _request(self, one: PlannedSequence) -> Any:
         draw = one.draw
+        height_m = None if self.given is None else self.given.height_m
         return self.weaver.request(
             one.text, seconds=self.options.seconds, seed=draw.seed, at=draw.start_m, heading_rad=draw.heading_rad,
-            subject=draw.subject, board=self._board,
+            subject=draw.subject, height_m=height_m, board=self._board,
         )  # fmt: skip
 
     @cached_property
@@ -155,6 +160,7 @@ class SetBuilder:
             "schema_version": SCHEMA_VERSION, "command": self.command, "options": asdict(self.options),
             "activities": {label: list(texts) for label, texts in self.activities.sentences.items()},
             "rooms": [room.inputs for room in self.rooms],
+            **({} if self.given is None else {"given": asdict(self.given)}),
             "method": self.weaver.method_name, "radar": parse_json(self.weaver.radar.to_json(), "the radar"),
         }  # fmt: skip
 

@@ -5,10 +5,13 @@ import json
 import shlex
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mmweaver.cli.arguments import Options, number, radar_of, whole
 from mmweaver.core.errors import InputError
+
+if TYPE_CHECKING:
+    from mmweaver.activity_sets.build_set import SetBuilder
 
 NEEDS_ACTIVITIES = ("room", "rgb", "depth", "camera", "each", "seconds", "subjects", "split_by", "method")
 
@@ -52,8 +55,6 @@ def is_activity_set_asked(arguments: argparse.Namespace) -> bool:
 
 def run_activity_set(arguments: argparse.Namespace) -> int:
     """Makes what is missing of the set and prints the verdict of its leak report. Raises InputError."""
-    from tqdm import tqdm
-
     from mmweaver.activity_sets.activity_list import read_activities
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
     from mmweaver.core.range_window import chosen_range
@@ -73,22 +74,29 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
         arguments.out, activities, _rooms(arguments, weaver), weaver, options, command=_command(),
         activities_text=read_text(arguments.activities),
     )  # fmt: skip
-    with tqdm(unit="sequence", disable=arguments.quiet or None) as bar:
+    report = make_with_bar(builder, quiet=arguments.quiet)
+    if arguments.json:
+        print(json.dumps({"out": str(arguments.out), "leaks": report}))
+    elif not arguments.quiet:
+        print(f"{len(activities.labels)} labels x {options.each} sequences in {arguments.out}; {report['verdict']}")
+    return 0
+
+
+def make_with_bar(builder: "SetBuilder", *, quiet: bool) -> dict[str, Any]:
+    """The leak report of the set, once what was missing of it is made; a bar shows how far it is."""
+    from tqdm import tqdm
+
+    with tqdm(unit="sequence", disable=quiet or None) as bar:
 
         def show(done: int, total: int) -> None:
             bar.total = total
             bar.update(done - bar.n)
 
         try:
-            report = builder.make(show)
+            return builder.make(show)
         except KeyboardInterrupt:
-            kept = f"{builder.finished} sequences are finished in {arguments.out}; the same command makes the rest"
+            kept = f"{builder.finished} sequences are finished in {builder.out}; the same command makes the rest"
             raise KeyboardInterrupt(kept if builder.finished else "") from None
-    if arguments.json:
-        print(json.dumps({"out": str(arguments.out), "leaks": report}))
-    elif not arguments.quiet:
-        print(f"{len(activities.labels)} labels x {options.each} sequences in {arguments.out}; {report['verdict']}")
-    return 0
 
 
 def _command() -> str:

@@ -1,4 +1,7 @@
-"""mmweaver generate --texts: many sequences in one room, which is read once; a folder for each."""
+"""mmweaver generate --texts: many sequences in one room, which is read once; a folder for each.
+
+Unless --draws free is given, all sentences have the same places, headings, people and lengths (matched draws).
+"""
 
 import argparse
 import json
@@ -12,14 +15,16 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import read_json, read_text
 
 if TYPE_CHECKING:
+    from mmweaver.activity_sets.matched_draws import Draw
+    from mmweaver.activity_sets.sentence_draws import GivenPlacing
     from mmweaver.generate import Weaver
     from mmweaver.generation import Room
     from mmweaver.request import Request
 
-LIST = "sequences.json"
+LIST, LEAKS = "sequences.json", "leaks.json"
 MAX_TEXTS_BYTES = 16 * 2**20
 MOST = 100_000  # sequences
-FOR_ONE_SEQUENCE = ("text", "motion", "motion_model", "at", "height", "subject", "path")
+FOR_ONE_SEQUENCE = ("text", "motion", "motion_model", "path")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +34,34 @@ class BatchSequence:
     folder: Path
     text: str
     seed: int
+    draw: "Draw | None" = None  # place, heading and person, where they are not chosen by the planner
+    height_m: float | None = None
+
+    def entry(self) -> dict[str, Any]:
+        """What the list of all sequences says of it."""
+        entry: dict[str, Any] = {"folder": self.folder.name, "text": self.text, "seed": self.seed}
+        if self.draw is None:
+            return entry
+        return entry | {
+            "draw": self.draw.index, "at": list(self.draw.start_m), "heading_deg": self.heading_deg,
+            "subject": self.draw.subject,
+        }  # fmt: skip
+
+    @property
+    def heading_deg(self) -> float | None:
+        """The heading as --heading takes it."""
+        from mmweaver.activity_sets.sentence_draws import heading_deg
+
+        return None if self.draw is None else heading_deg(self.draw)
+
+    def placing(self) -> dict[str, Any]:
+        """The options of `mmweaver generate` that give it its place and person."""
+        if self.draw is None:
+            return {}
+        return {
+            "at": [self.draw.start_m], "heading": self.heading_deg, "subject": [self.draw.subject],
+            "height": None if self.height_m is None else [self.height_m],
+        }  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,8 +76,8 @@ class Batch:
     overwrite: bool
     quiet: bool
 
-    def run(self, sequences: list[BatchSequence]) -> dict[str, Any]:
-        """Generates the missing sequences and returns a summary of all of them.
+    def run(self, sequences: list[BatchSequence], refused: list[dict[str, Any]] | None = None) -> dict[str, Any]:
+        """Generates the missing sequences and returns a summary of all of them; `refused` begins the list of those.
 
         A sentence for which the room has no place is skipped and listed as such. Raises InputError where nothing could
         be generated, or, before anything is, where a folder holds something else.
@@ -54,7 +87,7 @@ class Batch:
         out = sequences[0].folder.parent
         finished = set() if self.overwrite else {one.folder for one in sequences if self._is_finished(one)}
         made: list[dict[str, Any]] = []
-        refused: list[dict[str, Any]] = []
+        refused = list(refused or [])
         try:
             self._run_each(sequences, finished, made, refused)
         except KeyboardInterrupt:
@@ -62,10 +95,34 @@ class Batch:
             raise KeyboardInterrupt(f"{kept}; the same command makes the rest" if made else "") from None
         if not made:
             raise InputError(f"none of {len(sequences)} sequences could be made; the first: {refused[0]['why']}")
-        summary = {"out": str(out), "sequences": made, "refused": refused}
+        summary: dict[str, Any] = {"out": str(out), "sequences": made, "refused": refused}
+        leaks = self._leaks(sequences)
+        if leaks is not None:
+            summary["leaks"] = leaks["verdict"]
+            with atomic_file(out / LEAKS) as partial:
+                partial.write_text(json.dumps(leaks, indent=1) + "\n", encoding="utf-8")
         with atomic_file(out / LIST) as partial:
             partial.write_text(json.dumps(summary, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
         return summary
+
+    def _leaks(self, sequences: list[BatchSequence]) -> dict[str, Any] | None:
+        """The leak report of matched draws of several sentences."""
+        draws = [one.draw for one in sequences if one.draw is not None]
+        texts = sorted({one.text for one in sequences})
+        if len(draws) < len(sequences) or len(texts) < 2 or len({draw.index for draw in draws}) < 2:
+            return None
+        from mmweaver.activity_sets.sentence_draws import folder_leaks
+
+        return folder_leaks([one.folder for one in sequences], [texts.index(one.text) for one in sequences], draws)
+
+    def request(self, one: BatchSequence) -> "Request":
+        """The request of one sequence."""
+        own = self.requests[one.text]
+        if one.draw is None:
+            return replace(own, seed=one.seed)
+        from mmweaver.activity_sets.sentence_draws import placed
+
+        return placed(own, one.draw, one.height_m)
 
     def _run_each(
         self, sequences: list[BatchSequence], finished: set[Path], made: list[Any], refused: list[Any]
@@ -73,7 +130,7 @@ class Batch:
         from tqdm import tqdm
 
         for one in tqdm(sequences, unit="sequence", delay=2, disable=self.quiet or None):
-            entry: dict[str, Any] = {"folder": one.folder.name, "text": one.text, "seed": one.seed}
+            entry = one.entry()
             try:
                 if one.folder not in finished:
                     self._generate(one)
@@ -84,7 +141,7 @@ class Batch:
 
     def _generate(self, one: BatchSequence) -> None:
         try:
-            result = self.weaver.carry_out(replace(self.requests[one.text], seed=one.seed), self.room)
+            result = self.weaver.carry_out(self.request(one), self.room)
         except InputError as error:
             raise _NoPlaceError(str(error)) from None
         # only a damaged folder of the same sequence is there without --overwrite
@@ -101,9 +158,13 @@ class Batch:
             return False
         try:
             found = read_json(one.folder / "meta.json")
-            expected = {**self._expected_meta(self.requests[one.text]), "text": one.text, "seed": one.seed}
+            request = self.request(one)
+            expected = {**self._expected_meta(request), "text": one.text, "seed": one.seed}
+            expected["at"] = None if request.at is None else list(request.at)
             is_same = self._expected_files() <= set(found["files"])
             is_same = is_same and all(found[name] == value for name, value in expected.items())
+            placing = {"heading_rad": request.heading_rad, "height_m": request.height_m, "subject": request.subject}
+            is_same = is_same and all(found["placed"][name] == value for name, value in placing.items())
         except (InputError, KeyError, TypeError):
             is_same = False
         if not is_same:
@@ -142,8 +203,8 @@ def read_texts(file: Path) -> list[str]:
     return texts
 
 
-def sequences_of(arguments: argparse.Namespace, out: Path) -> list[BatchSequence]:
-    """All sentences --repeat times, each with its own seed. Raises InputError for options of a single sequence."""
+def checked_texts(arguments: argparse.Namespace) -> list[str]:
+    """The sentences of --texts. Raises InputError for a bad file, and for options of a single sequence."""
     for name in FOR_ONE_SEQUENCE:
         if getattr(arguments, name) is not None:
             raise InputError(f"--texts makes many sequences; leave out --{name.replace('_', '-')}, or --texts")
@@ -151,33 +212,94 @@ def sequences_of(arguments: argparse.Namespace, out: Path) -> list[BatchSequence
         raise InputError(
             "--texts takes one --radar-pose; run it once for each radar: the same seeds give the same motions"
         )
+    for name in ("at", "height", "subject"):
+        if len(getattr(arguments, name) or ()) > 1:
+            raise InputError(f"--texts makes sequences of one person each; give --{name} once")
     texts = read_texts(arguments.texts)
     if not 1 <= arguments.repeat <= MOST // len(texts):
         raise InputError(f"--repeat must be 1 to {MOST // len(texts)} for {len(texts)} sentences")
-    every = texts * arguments.repeat  # in this order, so that a larger --repeat continues a smaller one
-    digits = max(4, len(str(len(every) - 1)))
-    return [
-        BatchSequence(folder=out / f"{number:0{digits}d}", text=text, seed=arguments.seed + number)
-        for number, text in enumerate(every)
-    ]
+    return texts
+
+
+def given_placing(arguments: argparse.Namespace) -> "GivenPlacing":
+    """What the user fixes for all sequences."""
+    from mmweaver.activity_sets.sentence_draws import GivenPlacing
+
+    at, height, subject = ((getattr(arguments, name) or [None])[0] for name in ("at", "height", "subject"))
+    return GivenPlacing(start_m=at, heading_deg=arguments.heading, height_m=height, subject=subject)
 
 
 def parse_texts(
-    weaver: "Weaver", sequences: list[BatchSequence], settings: dict[str, Any], file: Path
+    weaver: "Weaver", texts: list[str], settings: dict[str, Any], file: Path, *, equally_long: bool
 ) -> "dict[str, Request]":
-    """The parsed request of each distinct sentence. Raises InputError for one that cannot be acted out in the time."""
+    """The parsed request of each distinct sentence; `equally_long`: all as long as the longest, if no length is given.
+
+    Raises InputError for a sentence that cannot be acted out in the time.
+    """
     requests = {}
-    for text in dict.fromkeys(one.text for one in sequences):
+    for text in dict.fromkeys(texts):
         try:
             requests[text] = weaver.request(text, **settings)
         except InputError as error:
             raise InputError(f"{file}, {text[:60]!r}: {error}") from None
+    longest = max(one.frames for one in requests.values())
+    if equally_long and any(one.frames < longest for one in requests.values()):
+        given = settings | {"frames": longest, "seconds": None}
+        return parse_texts(weaver, texts, given, file, equally_long=False)
     return requests
+
+
+def free_sequences(texts: list[str], arguments: argparse.Namespace, out: Path) -> list[BatchSequence]:
+    """All sentences --repeat times, each with its own seed; a larger --repeat continues a smaller one."""
+    every = texts * arguments.repeat
+    return [
+        BatchSequence(folder=out / _name(number, len(every)), text=text, seed=arguments.seed + number)
+        for number, text in enumerate(every)
+    ]
+
+
+def matched_sequences(
+    texts: list[str], requests: "dict[str, Request]", room: "Room", arguments: argparse.Namespace, out: Path
+) -> tuple[list[BatchSequence], list[dict[str, Any]]]:
+    """All sentences at --repeat draws, and those that the room has no place for; a larger --repeat continues a smaller.
+
+    Raises InputError where no place serves all sentences.
+    """
+    from mmweaver.activity_sets.sentence_draws import order_of, sentence_draws
+
+    given = given_placing(arguments)
+    try:
+        draws, why = sentence_draws(requests, room.scene, arguments.repeat, arguments.seed, given)
+    except InputError as error:
+        raise InputError(f"{error}; or give --draws free, which places each sentence by itself") from None
+    made: list[BatchSequence] = []
+    refused: list[dict[str, Any]] = []
+    count = len(texts) * arguments.repeat
+    for number in range(count):
+        round_of, within = divmod(number, len(texts))
+        text = order_of(texts, round_of, arguments.seed)[within]
+        if text in why:
+            folder = out / _name(number, count)
+            refused.append({"folder": folder.name, "text": text, "seed": arguments.seed + round_of, "why": why[text]})
+        else:
+            draw = draws[round_of]
+            folder = out / _name(number, count)
+            made.append(
+                BatchSequence(folder=folder, text=text, seed=draw.seed, draw=draw, height_m=given.height_m)
+            )  # fmt: skip
+    if not made:
+        raise InputError(f"none of {count} sequences could be made; the first: {refused[0]['why']}")
+    return made, refused
+
+
+def _name(number: int, count: int) -> str:
+    return f"{number:0{max(4, len(str(count - 1)))}d}"
 
 
 def summary_text(summary: dict[str, Any]) -> str:
     """The summary for people."""
     count = len(summary["sequences"])
     lines = [f"{count} sequence{'s' if count > 1 else ''} in {summary['out']}, listed in {LIST}"]
+    lines += [summary["leaks"]] if "leaks" in summary else []
     lines += [f"skipped {one['folder']}, {one['text']!r}: {one['why']}" for one in summary["refused"]]
     return "\n".join(lines)

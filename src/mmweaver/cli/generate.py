@@ -66,6 +66,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Checks all that is cheap, then generates the signal and writes it. Raises InputError."""
     texts, out = _check_inputs(arguments)
     check_motion_options(arguments)
+    if arguments.store:
+        from mmweaver.cli.batch_store import check_store
+
+        check_store(arguments)
     if arguments.stream:
         return _run_stream(arguments, out)
     if arguments.texts is not None:
@@ -126,28 +130,39 @@ def _run_stream(arguments: argparse.Namespace, out: Path) -> int:
 
 def _run_batch(arguments: argparse.Namespace, out: Path) -> int:
     """Many sequences in one room."""
-    from mmweaver.cli.batch import LIST, Batch, parse_texts, sequences_of, summary_text
+    from mmweaver.cli import batch as many
+    from mmweaver.cli.batch_store import run_store
     from mmweaver.core.output_checks import check_output_folder
 
-    check_output_folder(out, overwrite=True, files=[LIST], inputs=_inputs(arguments))
-
-    sequences, settings = sequences_of(arguments, out), _settings(arguments)
+    check_output_folder(out, overwrite=True, files=[many.LIST, many.LEAKS], inputs=_inputs(arguments))
+    texts, matched = many.checked_texts(arguments), arguments.draws == "matched"
     background = _background(arguments)
     weaver = _weaver(arguments, background)
-    requests = parse_texts(weaver, sequences, settings, arguments.texts)
-    batch = Batch(
-        weaver=weaver, room=_read_room(weaver, arguments, background), requests=requests, output=_output(arguments),
-        overwrite=arguments.overwrite, quiet=arguments.quiet,
+    settings = _settings(arguments)
+    if not matched:
+        given = many.given_placing(arguments)
+        placing = placing_options(arguments) | {"at": given.start_m, "height_m": given.height_m}
+        settings |= placing | {"subject": given.subject}
+    requests = many.parse_texts(weaver, texts, settings, arguments.texts, equally_long=matched)
+    room = _read_room(weaver, arguments, background)
+    if arguments.store:
+        return run_store(arguments, weaver, room, requests, out)
+    sequences, refused = many.free_sequences(texts, arguments, out), []
+    if matched:
+        sequences, refused = many.matched_sequences(texts, requests, room, arguments, out)
+    batch = many.Batch(
+        weaver=weaver, room=room, requests=requests, output=_output(arguments), overwrite=arguments.overwrite,
+        quiet=arguments.quiet,
         request_toml=lambda one: _request_toml(
             arguments, text=[one.text], seed=one.seed, texts=None, repeat=None, frames=requests[one.text].frames,
-            seconds=None,
+            seconds=None, **one.placing(),
         ),
     )  # fmt: skip
-    summary = batch.run(sequences)
+    summary = batch.run(sequences, refused)
     if arguments.json:
         print(json.dumps(summary, indent=2, ensure_ascii=False))
     elif not arguments.quiet:
-        print(summary_text(summary))
+        print(many.summary_text(summary))
     return 0
 
 

@@ -117,6 +117,16 @@ def _add_sentence_options(person: Options) -> None:
         "--repeat", type=whole, default=1, metavar="N", help=Rare("with --texts: N of each, each with its own seed")
     )
     person.add_argument(
+        "--draws", choices=("matched", "free"), default="matched",
+        help=Rare("with --texts: the same places, headings, people and lengths for all sentences (matched, default), or"
+        " each sentence by itself (free)"),
+    )  # fmt: skip
+    person.add_argument(
+        "--store", action="store_true",
+        help=Rare("with --texts: one labelled set (the store of mmweaver dataset --activities) instead of folders; a"
+        " sentence is a label"),
+    )  # fmt: skip
+    person.add_argument(
         "--at", type=place, action="append", metavar="X,Y",
         help="where the person starts: metres right of and ahead of the radar (default: chosen); of several people"
         " the first --at is the first one's",

@@ -1,0 +1,138 @@
+"""Matched draws of a list of sentences in one room: each place, heading, person and seed serves every sentence once."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.activity_sets.leak_report import leak_report
+from mmweaver.activity_sets.matched_draws import Draw, matched_draws, places_of
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.core.skeleton import joint
+from mmweaver.formats.npz_files import read_poses_npz
+from mmweaver.generate import compose_request
+from mmweaver.request import Request
+
+PLACES, SUBJECTS = 12, 10
+TRIES = 3  # seeds with which a sentence is tried wherever the planner likes
+
+
+@dataclass(frozen=True, kw_only=True)
+class GivenPlacing:
+    """What every sequence shares because the user says so; None is drawn."""
+
+    start_m: tuple[float, float] | None = None
+    heading_deg: float | None = None  # 0 towards the radar, 90 to the picture's right
+    height_m: float | None = None
+    subject: int | None = None
+
+    def applied(self, draw: Draw, seed: int | None = None) -> Draw:
+        """The draw with what is given; its heading is a multiple of 0.1 degrees, its seed its own or from `seed` on."""
+        degrees = round(math.degrees(draw.heading_rad) + 90, 1) if self.heading_deg is None else self.heading_deg
+        subject = draw.subject if self.subject is None else self.subject
+        return replace(
+            draw, start_m=self.start_m or draw.start_m, heading_rad=heading_rad(degrees), subject=subject,
+            seed=draw.seed if seed is None else seed + draw.index,
+        )  # fmt: skip
+
+
+def heading_rad(degrees: float) -> float:
+    """The direction, from +x towards +y, of a heading on the command line.
+
+    >>> heading_rad(90.0)
+    0.0
+    """
+    return math.radians(degrees) - math.pi / 2
+
+
+def heading_deg(draw: Draw) -> float:
+    """The heading of a draw as the command line takes it.
+
+    >>> heading_deg(Draw(index=0, room=0, place=0, start_m=(0, 2), heading_rad=heading_rad(33.3), subject=0, seed=0))
+    33.3
+    """
+    return round(math.degrees(draw.heading_rad) + 90, 1)
+
+
+def placed(request: Request, draw: Draw, height_m: float | None = None) -> Request:
+    """The request of one person with the place, heading, person and seed of a draw."""
+    person = replace(request.people[0], start_m=draw.start_m, subject=draw.subject, height_m=height_m)
+    return replace(request, people=(person,), heading_rad=draw.heading_rad, seed=draw.seed)
+
+
+def sentence_draws(
+    requests: dict[str, Request], scene: Scene, number: int, seed: int, given: GivenPlacing
+) -> tuple[list[Draw], dict[str, str]]:
+    """`number` draws that serve all sentences, and why each sentence that the room has no place for at all is left out.
+
+    Raises InputError where no place serves the rest.
+    """
+    refused = without_place(requests, scene, seed)
+    possible = [request for text, request in requests.items() if text not in refused]
+    if not possible:
+        return [], refused
+
+    def can_do(draw: Draw) -> str:
+        chosen = given.applied(draw, seed)
+        for request in possible:
+            try:
+                compose_request(placed(request, chosen, given.height_m), scene)
+            except InputError as error:
+                return f"{request.text!r}: {error}"
+        return ""
+
+    places = [places_of(scene, possible[0].range_window_m, PLACES, seed)]
+    draws = matched_draws(places, number, SUBJECTS, seed, can_do)
+    return [given.applied(draw, seed) for draw in draws], refused
+
+
+def without_place(requests: dict[str, Request], scene: Scene, seed: int) -> dict[str, str]:
+    """Why each sentence that the room has no place for wherever the planner tries cannot be made, by sentence."""
+    return {text: why for text, request in requests.items() if (why := _impossible(request, scene, seed))}
+
+
+def _impossible(request: Request, scene: Scene, seed: int) -> str:
+    """Why a sentence has no place wherever the planner tries; "" where it has one."""
+    why = ""
+    for number in range(TRIES):
+        try:
+            compose_request(replace(request, seed=seed + number), scene)
+            return ""
+        except InputError as error:
+            why = str(error)
+    return why
+
+
+def order_of(texts: Sequence[str], draw: int, seed: int) -> list[str]:
+    """The sentences of a draw in random order, so that a sequence's number says nothing of its sentence."""
+    return [texts[int(place)] for place in stream(seed, "sentence draws", "order", draw).permutation(len(texts))]
+
+
+def folder_leaks(folders: Sequence[Path], labels: Sequence[int], draws: Sequence[Draw]) -> dict[str, Any]:
+    """The leak report of result folders: what tells the sentence (`labels`) without a look at the radar signal."""
+    poses = [read_poses_npz(folder / "pose.npz")[0] for folder in folders]
+    per_draw = len(set(labels))
+    circumstances = {
+        "start_place": [pose.joints_m[0, joint("pelvis"), :2] for pose in poses],
+        "heading": [_facing(pose) for pose in poses],
+        "person": [(draw.subject,) for draw in draws],
+        "height": [(pose.height_m,) for pose in poses],
+        "duration": [(len(pose.time_s),) for pose in poses],
+        "file_size": [((folder / "radar.npz").stat().st_size,) for folder in folders],
+        "order": [(number,) for number in range(len(folders))],
+        "order_in_cycle": [(number % per_draw,) for number in range(len(folders))],
+        "end_place": [pose.joints_m[-1, joint("pelvis"), :2] for pose in poses],
+    }
+    values = {name: np.asarray(rows, np.float64) for name, rows in circumstances.items()}
+    return leak_report(values, np.asarray(labels), np.asarray([draw.index for draw in draws]))
+
+
+def _facing(pose: PoseSequence) -> np.ndarray:
+    """The direction from the left to the right hip at first."""
+    across = pose.joints_m[0, joint("right_hip"), :2] - pose.joints_m[0, joint("left_hip"), :2]
+    return across / max(float(np.linalg.norm(across)), 1e-9)
