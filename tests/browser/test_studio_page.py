@@ -8,6 +8,8 @@ from typing import Any
 
 import pytest
 
+from mmweaver.formats.dca1000 import write_bin
+from tests import captures
 from tests.browser.chromium import FLAGS, needs_browser, running_studio
 
 SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
@@ -58,6 +60,17 @@ def ask(page: Any, text: str) -> str:
     page.wait_for_selector("main[data-busy=true], main[data-busy=false]")
     page.wait_for_selector(IDLE, timeout=60_000)
     return page.inner_text(".status")
+
+
+def drop(page: Any, files: list[Path]) -> None:
+    """Drops files on the page, and waits until they are read."""
+    dropped = """files => { const transfer = new DataTransfer();
+        for (const f of files) transfer.items.add(new File([new Uint8Array(f.data)], f.name));
+        const event = new DragEvent('drop', {dataTransfer: transfer, bubbles: true, cancelable: true});
+        studio.root.dispatchEvent(event); }"""
+    page.evaluate(dropped, [{"name": file.name, "data": list(file.read_bytes())} for file in files])
+    page.wait_for_selector("main[data-busy=true]")
+    page.wait_for_selector(IDLE, timeout=60_000)
 
 
 def test_no_request_leaves_this_machine(visited: tuple[Any, list[str], list[str]], address: str):
@@ -163,14 +176,7 @@ def test_the_keyboard_plays_and_steps(page: Any):
 
 
 def test_files_that_are_dropped_become_a_room(page: Any):
-    files = [
-        {"name": file.name, "data": list(file.read_bytes())}
-        for file in sorted(SAMPLE.iterdir())
-        if file.suffix != ".md"
-    ]
-    dropped = "files => studio.upload(files.map(f => new File([new Uint8Array(f.data)], f.name)))"
-    page.evaluate(dropped, files)
-    page.wait_for_selector(IDLE, timeout=60_000)
+    drop(page, [file for file in sorted(SAMPLE.iterdir()) if file.suffix != ".md"])
     assert "s of radar in" in page.inner_text(".status")
     assert page.evaluate("studio.player.room.header.name") == "your room 1"
 
@@ -184,12 +190,39 @@ def test_hostile_files_leave_one_line(page: Any):
 
 def test_compare_shows_both_and_their_difference(page: Any):
     page.get_by_role("button", name="Compare").click()
-    ask(page, "a person walks to the right")
-    assert page.locator(".maps canvas").count() == 10
-    titles = page.evaluate("[...document.querySelectorAll('.maps canvas')].map(c => c.getAttribute('aria-label'))")
-    assert sum("B less A" in title for title in titles) == 3
+    ask(page, "a person walks to the right for 4 seconds")
+    assert page.locator(".maps canvas").count() == 12
+    titles = page.evaluate("[...document.querySelectorAll('.player figure canvas')].map(c => c.ariaLabel)")
+    assert sum("B less A" in title for title in titles) == 5
+    page.evaluate("studio.player.seek(Infinity)")  # the longer one sets the time line
+    assert page.evaluate("studio.player.frame") == page.evaluate("studio.result.frames") - 1 > 30
+    assert len(set(page.evaluate("studio.player.shownFrames()").values())) == 1
+
+
+def test_the_numbers_are_those_of_compare(page: Any):
+    page.get_by_role("button", name="Numbers").click()
+    page.wait_for_selector("dialog[open]", timeout=60_000)
+    said = page.inner_text("dialog")
+    assert "effect size" in said
+    assert "Chamfer distance of the point clouds" in said
+    page.get_by_role("button", name="Close").click()
+
+
+def test_a_recording_is_compared_with_a_simulation(page: Any, tmp_path: Path):
+    """Of another board, with other ranges, velocities and decibels."""
+    config = captures.radar_of_cfg(tmp_path)
+    write_bin(tmp_path / "adc_data.bin", captures.counts(config), counts_per_unit=1.0)
+    drop(page, [tmp_path / "made.cfg", tmp_path / "adc_data.bin"])
+    assert "adc_data.bin" in page.inner_text(".status")
+    assert "over noise" in page.inner_text(".slider-text")
+    canvas = page.locator("canvas[aria-label^='Range-Doppler, B less A']")
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    assert page.locator("figure:has(canvas[aria-label^='Range-Doppler, B less A']) output").inner_text().endswith("dB")
     page.get_by_role("button", name="Compare").click()
     assert page.locator(".maps canvas").count() == 4
+    assert "s of radar in" in ask(page, "a person walks to the right")
+    assert page.evaluate("studio.player.room !== null")
 
 
 def test_the_link_restores_the_state(page: Any, browser: Any):

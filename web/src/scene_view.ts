@@ -28,8 +28,8 @@ class Body {
   readonly group = new THREE.Group();
   private parts: { start: THREE.Mesh; end: THREE.Mesh; shaft: THREE.Mesh }[] = [];
   private shadow: THREE.Mesh;
-  constructor(private sequence: Sequence, private person: number, colour: string, private floorZ: number) {
-    const material = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.75 });
+  constructor(private sequence: Sequence, private person: number, colour: string, private floorZ: number, isPale: boolean) {
+    const material = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.75, transparent: isPale, opacity: isPale ? 0.45 : 1 });
     const radii = sequence.arrays.radii, count = radii.shape[1];
     for (let k = 0; k < count; k++) {
       const [r0, r1] = [radii.data[(person * count + k) * 2], radii.data[(person * count + k) * 2 + 1]];
@@ -64,6 +64,8 @@ export class SceneView {
   onFloor: (place: [number, number]) => void = () => {};
   onPath: (path: [number, number][]) => void = () => {};
   onBody: (inside: boolean) => void = () => {};
+  onNudge: (right: number, ahead: number) => void = () => {};
+  onCorner: () => void = () => {};
   drawing = false;
   private renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
   private scene = new THREE.Scene();
@@ -71,7 +73,9 @@ export class SceneView {
   private orbit: OrbitControls;
   private layers: Record<string, THREE.Object3D> = {};
   private bodies: Body[] = [];
+  private otherBodies: Body[] = []; // of B, pale
   private sequence: Sequence | null = null;
+  private other: Sequence | null = null;
   private floorZ = -1;
   private ghost: THREE.Mesh;
   private drawn: [number, number][] = [];
@@ -81,7 +85,7 @@ export class SceneView {
   constructor() {
     const canvas = this.renderer.domElement;
     canvas.setAttribute("role", "img"); canvas.setAttribute("tabindex", "0");
-    canvas.setAttribute("aria-label", "The room in 3D with people and radar points. Click the floor to choose where the person starts; drag to turn, scroll to zoom.");
+    canvas.setAttribute("aria-label", "The room in 3D with people and radar points. Click the floor, or press Shift and an arrow key, to choose where the person starts; drag to turn, scroll to zoom.");
     this.root.append(canvas);
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
@@ -91,25 +95,36 @@ export class SceneView {
     this.ghost = new THREE.Mesh(new THREE.RingGeometry(0.16, 0.21, 40), new THREE.MeshBasicMaterial({ color: "#00a7d6", side: THREE.DoubleSide }));
     this.ghost.visible = false; this.scene.add(this.ghost);
     this.home();
-    let down: [number, number] | null = null;
+    let down: [number, number] | null = null, dragged = false;
     canvas.addEventListener("pointerdown", (event) => {
       down = [event.clientX, event.clientY];
-      if (this.drawing) { this.orbit.enabled = false; this.drawn = []; }
+      dragged = !this.drawing && (this.hitsBody(event) || this.hitsRing(event));
+      if (this.drawing || dragged) this.orbit.enabled = false;
+      if (this.drawing) this.drawn = [];
     });
     canvas.addEventListener("pointermove", (event) => {
+      const place = down && dragged ? this.floorAt(event) : null;
       if (this.drawing && down) this.drawTo(event);
-      else if (!event.buttons) this.onBody(this.hitsBody(event));
+      else if (place) this.showStart(place);
+      else if (!event.buttons) { const inside = this.hitsBody(event); canvas.style.cursor = inside || this.hitsRing(event) ? "grab" : ""; this.onBody(inside); }
     });
     canvas.addEventListener("pointerup", (event) => {
       const start = down; down = null; this.orbit.enabled = true;
       if (!start) return;
       if (this.drawing && this.drawn.length > 1) { this.onPath(this.drawn); return; }
-      if (Math.hypot(event.clientX - start[0], event.clientY - start[1]) > CLICK_PX) return;
+      if (!dragged && Math.hypot(event.clientX - start[0], event.clientY - start[1]) > CLICK_PX) return;
       const place = this.floorAt(event);
       if (place) this.onFloor(place);
     });
     canvas.addEventListener("pointerleave", () => this.onBody(false));
-    canvas.addEventListener("keydown", (event) => { if (event.key === "Home") this.home(); });
+    canvas.addEventListener("keydown", (event) => {
+      const by = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      if (event.key === "Home") this.home();
+      else if (event.key === "Enter") this.onCorner();
+      else if (by && event.shiftKey) this.onNudge(by[0], by[1]);
+      else return;
+      event.preventDefault(); event.stopPropagation();
+    });
     new ResizeObserver(() => this.resize()).observe(this.root);
   }
 
@@ -149,17 +164,20 @@ export class SceneView {
     this.render();
   }
 
-  setSequence(sequence: Sequence): void {
-    this.sequence = sequence;
-    for (const body of this.bodies) { this.scene.remove(body.group); body.dispose(); }
-    this.bodies = Array.from({ length: sequence.people }, (_, p) => new Body(sequence, p, PEOPLE[p % PEOPLE.length], this.floorZ));
-    for (const body of this.bodies) this.scene.add(body.group);
+  /** The people and the radar's view of a sequence; those of `other` are pale. */
+  setSequence(sequence: Sequence, other: Sequence | null = null): void {
+    this.sequence = sequence; this.other = other;
+    for (const body of [...this.bodies, ...this.otherBodies]) { this.scene.remove(body.group); body.dispose(); }
+    const bodiesOf = (one: Sequence, isPale: boolean) => Array.from({ length: one.people }, (_, p) => new Body(one, p, PEOPLE[(p + (isPale ? 3 : 0)) % PEOPLE.length], this.floorZ, isPale));
+    this.bodies = bodiesOf(sequence, false); this.otherBodies = other ? bodiesOf(other, true) : [];
+    for (const body of [...this.bodies, ...this.otherBodies]) this.scene.add(body.group);
     const trail = new THREE.Group();
-    for (let p = 0; p < sequence.people; p++) {
-      const path = new Float32Array(sequence.frames * 3);
-      for (let f = 0; f < sequence.frames; f++) { const [x, y] = sequence.joint(p, f, 0); path.set([x, y, this.floorZ + 0.03], 3 * f); }
-      trail.add(line(path, PEOPLE[p % PEOPLE.length]));
-    }
+    for (const [one, shift] of other ? ([[sequence, 0], [other, 3]] as const) : ([[sequence, 0]] as const))
+      for (let p = 0; p < one.people; p++) {
+        const path = new Float32Array(one.frames * 3);
+        for (let f = 0; f < one.frames; f++) { const [x, y] = one.joint(p, f, 0); path.set([x, y, this.floorZ + 0.03], 3 * f); }
+        trail.add(line(path, PEOPLE[(p + shift) % PEOPLE.length]));
+      }
     this.put("trail", trail);
     const [near, far] = sequence.header.range_m, [left, right] = sequence.header.azimuth_rad, view = new THREE.Group();
     const arcOf = (r: number) => arcPoints(r, left, right, this.floorZ + 0.02);
@@ -169,16 +187,14 @@ export class SceneView {
     this.put("view", view);
   }
 
-  /** Frame `frame`, `share` of the way to the next. */
-  showFrame(frame: number, share: number): void {
-    const sequence = this.sequence;
-    if (!sequence) return;
+  /** Frame `frame`, `share` of the way to the next, and the same of B, whose points are squares. */
+  showFrame(frame: number, share: number, frameB = 0, shareB = 0): void {
+    if (!this.sequence) return;
     for (const body of this.bodies) body.show(frame, share);
-    const { data } = sequence.arrays.points, frames = sequence.arrays.point_frame.data, place: number[] = [], colour: number[] = [];
-    for (let k = 0; k < frames.length; k++)
-      if (frames[k] === frame) { place.push(data[5 * k], data[5 * k + 1], data[5 * k + 2]); colour.push(...velocityColour(data[5 * k + 3], 1.5)); }
-    const points = cloud(new Float32Array(place), new Float32Array(colour), 0.09);
-    (points.material as THREE.PointsMaterial).map = DOT; (points.material as THREE.PointsMaterial).alphaTest = 0.5;
+    for (const body of this.otherBodies) body.show(frameB, shareB);
+    const points = new THREE.Group();
+    points.add(detections(this.sequence, frame, true));
+    if (this.other) points.add(detections(this.other, frameB, false));
     this.put("points", points);
     this.render();
   }
@@ -243,11 +259,19 @@ export class SceneView {
   private hitsBody(event: PointerEvent): boolean {
     return this.bodies.length > 0 && this.ray(event).intersectObjects(this.bodies.map((body) => body.group), true).length > 0;
   }
+  private hitsRing(event: PointerEvent): boolean {
+    const place = this.ghost.visible ? this.floorAt(event) : null;
+    return place !== null && Math.hypot(place[0] - this.ghost.position.x, place[1] - this.ghost.position.y) < 0.25;
+  }
   private drawTo(event: PointerEvent): void {
     const place = this.floorAt(event), last = this.drawn.at(-1);
     if (!place || (last && Math.hypot(place[0] - last[0], place[1] - last[1]) < 0.15)) return;
     this.drawn.push(place);
-    this.put("path", line(new Float32Array(this.drawn.flatMap(([x, y]) => [x, y, this.floorZ + 0.05])), "#00a7d6"));
+    this.showPath(this.drawn);
+  }
+  /** A line over the floor. */
+  showPath(path: [number, number][]): void {
+    this.put("path", line(new Float32Array(path.flatMap(([x, y]) => [x, y, this.floorZ + 0.05])), "#00a7d6"));
     this.render();
   }
   clearPath(): void { this.drop("path"); this.render(); }
@@ -288,6 +312,16 @@ function cloud(place: Float32Array, colour: Float32Array | null, size: number): 
   if (colour) shape.setAttribute("color", new THREE.BufferAttribute(colour, 3));
   const points = new THREE.Points(shape, new THREE.PointsMaterial({ size, vertexColors: colour !== null }));
   points.frustumCulled = false;
+  return points;
+}
+
+/** The detections of a frame, coloured by radial velocity. */
+function detections(sequence: Sequence, frame: number, isRound: boolean): THREE.Points {
+  const { data } = sequence.arrays.points, frames = sequence.arrays.point_frame.data, place: number[] = [], colour: number[] = [];
+  for (let k = 0; k < frames.length; k++)
+    if (frames[k] === frame) { place.push(data[5 * k], data[5 * k + 1], data[5 * k + 2]); colour.push(...velocityColour(data[5 * k + 3], 1.5)); }
+  const points = cloud(new Float32Array(place), new Float32Array(colour), isRound ? 0.09 : 0.07), material = points.material as THREE.PointsMaterial;
+  if (isRound) { material.map = DOT; material.alphaTest = 0.5; }
   return points;
 }
 

@@ -20,17 +20,36 @@ export class Sequence {
     return [data[i], data[i + 1], data[i + 2]];
   }
 
-  /** Distances of the nearest and the farthest joint of all people at a frame; null without people. */
-  bodyRange(frame: number): [number, number] | null {
-    if (!this.people) return null;
-    let near = Infinity, far = 0;
-    for (let p = 0; p < this.people; p++)
-      for (let j = 0; j < this.arrays.joints.shape[2]; j++) {
-        const r = Math.hypot(...this.joint(p, frame, j));
-        near = Math.min(near, r); far = Math.max(far, r);
-      }
-    return [near, far];
+  get durationS(): number { return this.frames * this.periodS; }
+
+  /** The frame nearest to a time, the first or last where it lies outside. */
+  frameAt(timeS: number): number {
+    const guess = Math.round(timeS / this.periodS);
+    return Math.max(0, Math.min(this.frames - 1, guess));
   }
+
+  /** What each person's joints span at a frame: ranges in metres, radial velocities in m/s, azimuths in radians. */
+  bodyCells(frame: number): { range: [number, number]; velocity: [number, number]; azimuth: [number, number] }[] {
+    const before = Math.max(frame - 1, 0), after = Math.min(frame + 1, this.frames - 1), apartS = Math.max(this.timeS(after) - this.timeS(before), 1e-6);
+    return Array.from({ length: this.people }, (_, person) => {
+      const range: number[] = [], velocity: number[] = [], azimuth: number[] = [];
+      for (let j = 0; j < this.arrays.joints.shape[2]; j++) {
+        const place = this.joint(person, frame, j);
+        range.push(Math.hypot(...place));
+        azimuth.push(Math.atan2(place[0], place[1]));
+        velocity.push((Math.hypot(...this.joint(person, after, j)) - Math.hypot(...this.joint(person, before, j))) / apartS);
+      }
+      const span = (values: number[]): [number, number] => [Math.min(...values), Math.max(...values)];
+      return { range: span(range), velocity: span(velocity), azimuth: span(azimuth) };
+    });
+  }
+}
+
+/** One power scale for two sequences, and what to add to each one's decibels. Without a common unit both count from their noise. */
+export function commonScale(a: Sequence, b: Sequence | null): { low: number; high: number; unit: string; addA: number; addB: number } {
+  if (!b) return { ...a.db, addA: 0, addB: 0 };
+  const same = a.db.unit === b.db.unit && a.db.unit === "dBm", addA = same ? 0 : -a.db.noise, addB = same ? 0 : -b.db.noise;
+  return { low: Math.min(a.db.low + addA, b.db.low + addB), high: Math.max(a.db.high + addA, b.db.high + addB), unit: same ? "dBm" : "dB over noise", addA, addB };
 }
 
 /** Several chunks of a stream as one sequence; frames and points count on, and the latest header holds. */

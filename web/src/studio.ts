@@ -1,6 +1,8 @@
 // The studio: a sentence, a room and a radar in; the player shows what comes out.
 import { Api, Refused } from "./api";
+import { details, numbers } from "./drawer";
 import { download, element } from "./dom";
+import { filesOfDrop, filesOfInput, uploadForm, type Dropped } from "./drops";
 import { Player } from "./player";
 import { joined, RoomView, Sequence } from "./sequence";
 import { unpack } from "./wire";
@@ -23,12 +25,14 @@ export class Studio {
   private roomChoice = element("select", { "aria-label": "Room" });
   private radarChoice = element("select", { "aria-label": "Radar" });
   private boardChoice = element("select", { "aria-label": "Board" });
+  private recordingChoice = element("select", { "aria-label": "Recording" });
   private motionChoice = element("select", { "aria-label": "Motion" });
   private methodChoice = element("select", { "aria-label": "Method" });
   private seed = element("input", { class: "seed", type: "number", min: 0, value: 0, "aria-label": "Seed" });
   private generateButton = element("button", { class: "main" }, "Generate");
   private liveButton = element("button", { "aria-pressed": "false" }, "Live");
   private compareButton = element("button", { "aria-pressed": "false", title: "Keep this result as A and compare the next with it" }, "Compare");
+  private numbersButton = element("button", { title: "The numbers of mmweaver compare", hidden: true }, "Numbers");
   private pathButton = element("button", { "aria-pressed": "false", title: "Then drag over the floor" }, "Draw path");
   private exportChoice = element("select", { "aria-label": "Export" });
   private status = element("div", { class: "status", role: "status", "aria-live": "polite" });
@@ -41,13 +45,15 @@ export class Studio {
   private waiting: Sequence[] = [];
   private chunks: Sequence[] = [];
   private note = "";
+  private corners: [number, number][] = []; // of a path by the keyboard
+  private settling = 0;
 
   constructor() {
     const named = (label: string, control: HTMLElement) => element("label", {}, label, control);
     this.root.append(
       element("div", { class: "top" },
-        element("div", { class: "line" }, element("h1", { class: "brand" }, "mmWeaver"), this.text, this.generateButton, this.liveButton, this.compareButton),
-        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("motion", this.motionChoice), named("method", this.methodChoice), named("seed", this.seed),
+        element("div", { class: "line" }, element("h1", { class: "brand" }, "mmWeaver"), this.text, this.generateButton, this.liveButton, this.compareButton, this.numbersButton),
+        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("motion", this.motionChoice), named("recording", this.recordingChoice), named("method", this.methodChoice), named("seed", this.seed),
           this.pathButton, element("button", { click: () => this.openDrawer() }, "Details"), this.exportChoice, this.fileButton(), this.themeButton())),
       this.status, element("div", { class: "body" }, this.player.root), this.known, this.drawer);
     this.generateButton.addEventListener("click", () => this.generate());
@@ -57,10 +63,14 @@ export class Studio {
     this.roomChoice.addEventListener("change", () => this.changeRoom());
     this.liveButton.addEventListener("click", () => (this.socket ? this.stopLive() : this.startLive()));
     this.compareButton.addEventListener("click", () => this.toggleCompare());
-    this.pathButton.addEventListener("click", () => this.setDrawing(!this.player.scene.drawing));
+    this.numbersButton.addEventListener("click", () => this.openNumbers());
+    this.recordingChoice.addEventListener("change", () => this.openRecording());
+    this.pathButton.addEventListener("click", () => { if (this.corners.length > 1) this.walkAlong(this.corners); else this.setDrawing(!this.player.scene.drawing); });
     this.exportChoice.addEventListener("change", () => this.exportAs());
     this.player.scene.onFloor = (place) => this.startAt(place);
-    this.player.scene.onPath = (path) => { this.path = corners(path).map(([x, y]) => [round(x), round(y)]); this.at = null; this.player.scene.showStart(null); this.setDrawing(false); this.generate(); };
+    this.player.scene.onPath = (path) => this.walkAlong(corners(path));
+    this.player.scene.onNudge = (right, ahead) => this.nudge(right, ahead);
+    this.player.scene.onCorner = () => this.addCorner();
     this.takeDrops();
     addEventListener("hashchange", () => { if (this.ready && location.hash.slice(1) !== this.state()) this.restore().then(() => this.generate()); });
   }
@@ -70,6 +80,7 @@ export class Studio {
       const offered = await this.api.open();
       fill(this.radarChoice, offered.radars); fill(this.methodChoice, offered.methods); fill(this.boardChoice, offered.boards);
       (this.boardChoice.parentElement as HTMLElement).hidden = offered.boards.length < 2;
+      fill(this.recordingChoice, [["", "none"], ...offered.recordings.map((name: string): [string, string] => [name, name])]); (this.recordingChoice.parentElement as HTMLElement).hidden = !offered.recordings.length;
       fill(this.motionChoice, [["", "of the sentence"]]); (this.motionChoice.parentElement as HTMLElement).hidden = true; // until one is brought
       this.pathButton.hidden = !offered.paths; this.liveButton.hidden = !offered.live;
       fill(this.roomChoice, offered.rooms);
@@ -91,6 +102,8 @@ export class Studio {
     const asked = (this.running = new AbortController()), begun = performance.now();
     this.tell("generating…");
     try {
+      if (this.ready && !this.player.room) await this.loadRoom(); // a recording hid it
+      this.recordingChoice.value = "";
       const sequence = new Sequence(await this.api.packed("api/generate", this.api.post(this.asked(), asked.signal)));
       if (asked.signal.aborted) return false;
       this.lastSeconds = (performance.now() - begun) / 1000;
@@ -162,15 +175,37 @@ export class Studio {
     this.generate();
   }
   private setDrawing(on: boolean): void {
-    this.player.scene.drawing = on;
-    this.pathButton.setAttribute("aria-pressed", String(on));
-    if (on) this.tell("drag over the floor: the person will walk along this path");
+    this.player.scene.drawing = on; this.corners = [];
+    this.pathButton.setAttribute("aria-pressed", String(on)); this.pathButton.textContent = "Draw path";
+    if (on) this.tell("drag over the floor: the person will walk along this path; or move the ring with Shift and the arrow keys, and press Enter at each corner");
+  }
+  private walkAlong(path: [number, number][]): void {
+    this.path = path.map(([x, y]) => [round(x), round(y)]); this.at = null;
+    this.player.scene.showStart(null); this.setDrawing(false);
+    this.generate();
+  }
+  /** By the keyboard: a tenth of a metre at a time; the sequence follows when the keys rest. */
+  private nudge(right: number, ahead: number): void {
+    const meta = this.result?.header.meta, start = this.at ?? meta?.person?.starts_at_m ?? meta?.people?.[0]?.person?.starts_at_m ?? [0, 2];
+    this.at = [round(start[0] + 0.1 * right), round(start[1] + 0.1 * ahead)];
+    this.player.scene.showStart(this.at);
+    clearTimeout(this.settling);
+    if (!this.player.scene.drawing) this.settling = window.setTimeout(() => this.startAt(this.at!), 400);
+  }
+  private addCorner(): void {
+    if (!this.player.scene.drawing || !this.at) return;
+    this.corners.push(this.at);
+    this.player.scene.showPath(this.corners);
+    this.pathButton.textContent = "Walk path";
+    this.tell(`${this.corners.length} corner${this.corners.length > 1 ? "s" : ""}; “Walk path” takes it`);
   }
 
   private toggleCompare(): void {
     if (this.kept) { this.kept = null; if (this.result) this.player.show(this.result); this.tell("one result"); }
-    else if (this.result) { this.kept = this.result; this.tell("kept as A; change the sentence, seed, method, board or room to make B"); }
-    this.compareButton.setAttribute("aria-pressed", String(this.kept !== null));
+    else if (this.result) { this.kept = this.result; this.tell("kept as A; change the sentence, seed, method, board or room, or open a recording, to make B"); }
+    this.compareButton.setAttribute("aria-pressed", String(this.kept !== null)); this.numbersButton.hidden = this.kept === null;
+    const id = this.kept?.header.result ?? "none"; // the server keeps it as long
+    this.api.json(`api/keep/${encodeURIComponent(id)}`, { method: "POST" }).catch((error) => this.fail(error));
   }
 
   // live ------------------------------------------------------------------------------------------------------------
@@ -227,30 +262,30 @@ export class Studio {
     } catch (error) { this.fail(error); }
   }
 
-  private async openDrawer(): Promise<void> {
-    const header = this.result?.header;
-    if (!header) return;
-    const code = (title: string, text: string) => {
-      const block = element("pre", { tabindex: 0 }, text);
-      return element("section", {}, element("h2", {}, title), block, element("button", { click: () => navigator.clipboard?.writeText(text) }, "Copy"));
-    };
-    const list = (title: string, rows: string[]) => element("section", {}, element("h2", {}, title), element("ul", {}, ...rows.map((row) => element("li", {}, row))));
-    this.drawer.replaceChildren(element("button", { click: () => this.drawer.close() }, "Close"));
-    if (header.command) this.drawer.append(code("Command line", header.command), code("Python", header.python));
-    this.drawer.append(list("Assumed", header.meta.assumed ?? []));
-    if (this.kept && header.result && this.kept.header.result) {
-      try { this.drawer.append(code("A compared with B", await this.compareText(this.kept.header.result, header.result))); } catch (error) { this.drawer.append(list("A compared with B", [(error as Error).message])); }
-    }
-    this.drawer.append(list("Time", Object.entries(header.seconds ?? {}).map(([name, seconds]) => `${name}: ${Number(seconds).toFixed(3)} s`)), code("meta.json", JSON.stringify(header.meta, null, 2)));
+  private openDrawer(): void { if (this.result) this.show(details(this.result.header)); }
+  private async openNumbers(): Promise<void> {
+    const a = this.kept?.header.result, b = this.result?.header.result;
+    if (!a || !b || a === b) { this.tell("make B first: change the sentence, seed, method, board or room, or open a recording"); return; }
+    try {
+      this.tell("comparing…");
+      const found = await this.api.json(`api/compare/${encodeURIComponent(a)}/${encodeURIComponent(b)}`);
+      this.tell("compared");
+      this.show(numbers(found));
+    } catch (error) { this.fail(error); }
+  }
+  private show(content: Node[]): void {
+    this.drawer.replaceChildren(element("button", { click: () => this.drawer.close() }, "Close"), ...content);
     this.drawer.showModal();
   }
-  private async compareText(a: string, b: string): Promise<string> { return (await this.api.json(`api/compare/${a}/${b}`)).text; }
 
   // in --------------------------------------------------------------------------------------------------------------
   private fileButton(): HTMLElement {
-    const input = element("input", { type: "file", multiple: true, class: "hidden", tabindex: -1, "aria-hidden": "true" });
-    input.addEventListener("change", () => { this.upload([...(input.files ?? [])]); input.value = ""; });
-    return element("span", {}, input, element("button", { click: () => input.click() }, "Open files"));
+    const opener = (label: string, more: Record<string, boolean>) => {
+      const input = element("input", { type: "file", multiple: true, class: "hidden", tabindex: -1, "aria-hidden": "true", ...more });
+      input.addEventListener("change", () => { this.upload(filesOfInput(input)); input.value = ""; });
+      return [input, element("button", { click: () => input.click() }, label)];
+    };
+    return element("span", { class: "line" }, ...opener("Open files", {}), ...opener("Open folder", { webkitdirectory: true }));
   }
   private themeButton(): HTMLElement {
     return element("button", { "aria-label": "Light or dark", click: () => {
@@ -263,37 +298,34 @@ export class Studio {
     this.root.addEventListener("dragleave", (event) => { if (event.relatedTarget === null) this.root.classList.remove("drop"); });
     this.root.addEventListener("drop", async (event) => {
       event.preventDefault(); this.root.classList.remove("drop");
-      const entries = [...(event.dataTransfer?.items ?? [])].map((item) => item.webkitGetAsEntry?.()).filter((one): one is FileSystemEntry => !!one);
-      this.upload(entries.length ? (await Promise.all(entries.map(filesOf))).flat() : [...(event.dataTransfer?.files ?? [])]);
+      this.upload(await filesOfDrop(event.dataTransfer));
     });
   }
   /** Sends files; the server says what they are together: a room, a recording, a motion, or a result. */
-  async upload(files: File[]): Promise<void> {
-    if (!files.length) return;
-    const form = new FormData();
-    for (const file of files) form.append("files", file, file.name);
-    form.append("radar", this.radarChoice.value);
-    this.tell(`reading ${files.length} file${files.length > 1 ? "s" : ""}…`);
-    try {
-      const found = await this.api.json("api/upload", { method: "POST", body: form });
-      if (found.kind === "room") {
-        this.roomChoice.append(element("option", { value: found.id }, found.label)); this.roomChoice.value = found.id;
-        await this.changeRoom();
-      } else if (found.kind === "radar") {
-        this.radarChoice.append(element("option", { value: found.id }, found.label)); this.radarChoice.value = found.id;
-        await this.changeRadar();
-      } else if (found.kind === "motion") {
-        this.motionChoice.append(element("option", { value: found.id }, found.label)); this.motionChoice.value = found.id;
-        (this.motionChoice.parentElement as HTMLElement).hidden = false;
-        this.path = null; this.player.scene.clearPath();
-        await this.generate();
-      } else {
-        const sequence = new Sequence(await this.api.packed(`api/result/${found.id}`));
-        if (!sequence.people && !found.has_room) this.player.setRoom(null);
-        this.take(sequence);
-        this.tell(`${found.label}: ${sequence.frames} frames`);
-      }
-    } catch (error) { this.fail(error); }
+  async upload(files: (File | Dropped)[]): Promise<void> {
+    const dropped = files.map((one) => (one instanceof File ? { file: one, path: one.name } : one));
+    if (!dropped.length) return;
+    this.tell(`reading ${dropped.length} file${dropped.length > 1 ? "s" : ""}…`);
+    try { await this.takeFound(await this.api.json("api/upload", { method: "POST", body: uploadForm(dropped, this.radarChoice.value) })); } catch (error) { this.fail(error); }
+  }
+  private async takeFound(found: any): Promise<void> {
+    const choose = (control: HTMLSelectElement) => { control.append(element("option", { value: found.id }, found.label)); control.value = found.id; (control.parentElement as HTMLElement).hidden = false; };
+    if (found.kind === "room") { choose(this.roomChoice); await this.changeRoom(); }
+    else if (found.kind === "radar") { choose(this.radarChoice); await this.changeRadar(); }
+    else if (found.kind === "motion") { choose(this.motionChoice); this.path = null; this.player.scene.clearPath(); await this.generate(); }
+    else this.takeRecorded(new Sequence(await this.api.packed(`api/result/${found.id}`)), found.label);
+  }
+  private async openRecording(): Promise<void> {
+    const name = this.recordingChoice.value;
+    if (!name) return;
+    this.tell(`reading ${name}…`);
+    try { this.takeRecorded(new Sequence(await this.api.packed(`api/recording/${encodeURIComponent(name)}`, { method: "POST" })), name); } catch (error) { this.fail(error); }
+  }
+  /** A recording shows no room, unless it is compared with what was made in one. */
+  private takeRecorded(sequence: Sequence, label: string): void {
+    if (!sequence.people && !this.kept) this.player.setRoom(null);
+    this.take(sequence);
+    this.tell(`${label}: ${sequence.frames} frames`);
   }
 
   // said ------------------------------------------------------------------------------------------------------------
@@ -306,6 +338,7 @@ export class Studio {
     for (const way of error.waysOn) this.status.append(element("button", { click: () => this.follow(way.change) }, way.label));
   }
   private follow(change: Record<string, unknown>): void {
+    if (typeof change.estimate === "string") { this.estimateDepth(change.estimate); return; }
     if (Array.isArray(change.at)) { this.at = change.at as [number, number]; this.player.scene.showStart(this.at); }
     if (change.at === null) { this.at = null; this.player.scene.showStart(null); }
     if (change.path === null) { this.path = null; this.player.scene.clearPath(); }
@@ -313,6 +346,10 @@ export class Studio {
     if (typeof change.room === "string") { this.roomChoice.value = change.room; this.changeRoom(); return; }
     if (typeof change.text === "string") this.text.value = change.text;
     this.generate();
+  }
+  private async estimateDepth(photo: string): Promise<void> {
+    this.tell("estimating the depth…");
+    try { await this.takeFound(await this.api.json(`api/depth/${encodeURIComponent(photo)}`, { method: "POST" })); } catch (error) { this.fail(error); }
   }
   private offer(sentences: string[]): void {
     const said = read(HISTORY);
@@ -337,9 +374,3 @@ function corners(line: [number, number][]): [number, number][] {
 const round = (value: number) => Math.round(value * 100) / 100;
 const read = (key: string): string[] => { try { return JSON.parse(localStorage.getItem(key) ?? "[]"); } catch { return []; } };
 function fill(control: HTMLSelectElement, options: [string, string][]): void { control.replaceChildren(...options.map(([value, label]) => element("option", { value }, label))); }
-async function filesOf(entry: FileSystemEntry): Promise<File[]> {
-  if (entry.isFile) return [await new Promise<File>((resolve, reject) => (entry as FileSystemFileEntry).file(resolve, reject))];
-  const reader = (entry as FileSystemDirectoryEntry).createReader(), inside: FileSystemEntry[] = [];
-  for (;;) { const some = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject)); if (!some.length) break; inside.push(...some); }
-  return (await Promise.all(inside.map(filesOf))).flat();
-}

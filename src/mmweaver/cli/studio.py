@@ -10,6 +10,7 @@ from mmweaver.core.errors import InputError
 EXAMPLES = """examples:
   mmweaver studio                                   # the bundled room, at http://127.0.0.1:8765
   mmweaver studio --room living_room/ --room lab/   # folders with rgb.png, depth.png and camera.json
+  mmweaver studio --recording capture/ --recording walk/   # recordings and results to watch and compare with
   mmweaver studio --host 0.0.0.0                    # for others, who need the token that it prints
 """
 DEFAULT_PORT = 8765
@@ -27,6 +28,10 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument(
         "--room", type=Path, action="append", default=[], metavar="DIR",
         help="a folder with rgb.png, depth.png and camera.json; once more for each further room",
+    )  # fmt: skip
+    parser.add_argument(
+        "--recording", type=Path, action="append", default=[], metavar="PATH",
+        help="a result folder, a capture, a .dat, or a folder with a .bin and its .cfg; once more for each further one",
     )  # fmt: skip
     parser.add_argument(
         "--host", default=LOOPBACK, help=f"address to listen on (default {LOOPBACK}: this machine only)"
@@ -54,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"the studio needs the package {error.name}; pip install 'mmweaver[studio]'") from None
 
     serve(
-        arguments.room, host=arguments.host, port=arguments.port, workers=arguments.workers,
+        arguments.room, arguments.recording, host=arguments.host, port=arguments.port, workers=arguments.workers,
         announce=partial(print, flush=True), open_browser=not arguments.no_browser,
     )  # fmt: skip
     return 0

@@ -9,10 +9,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.records import RadarCube
 from mmweaver.core.safe_files.regular_files import read_bytes
 from mmweaver.exports.export import FORMATS, export_result
 from mmweaver.figures.figure_data import FigureData
-from mmweaver.formats.npz_files import write_radar_npz
+from mmweaver.formats.npz_files import write_points_npz, write_radar_npz
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.playback.html_page import write_page
 from mmweaver.result_folder import save_results
@@ -33,8 +34,13 @@ _OTHERS = {
 
 
 def _radar_npz(result: Result, folder: Path) -> Path:
-    write_radar_npz(folder / "radar.npz", result.cube)
+    write_radar_npz(folder / "radar.npz", _cube(result))
     return folder / "radar.npz"
+
+
+def _points_npz(result: Result, folder: Path) -> Path:
+    write_points_npz(folder / "points.npz", result.points)
+    return folder / "points.npz"
 
 
 def _folder(result: Result, folder: Path) -> Path:
@@ -55,7 +61,7 @@ def _html(result: Result, folder: Path) -> Path:
     if result.generation is not None:
         result.generation.save_html(page)
     else:
-        write_page(page, result.playback(), None, _title(result))
+        write_page(page, result.playback(), None, result.title)
     return page
 
 
@@ -68,6 +74,7 @@ def _other(kind: str, result: Result, folder: Path) -> Path:
 
 EXPORTS: dict[str, tuple[str, Export]] = {
     "npz": ("radar.npz", _radar_npz),
+    "points": ("points.npz", _points_npz),
     "folder": ("result folder (zip)", _folder),
     "bin": ("with adc_data.bin (zip)", _samples),
     "html": ("page that plays offline (html)", _html),
@@ -86,7 +93,7 @@ def export(result: Result, kind: str) -> tuple[str, bytes]:
 
 def _save(result: Result, folder: Path, *, pictures: bool = True) -> None:
     aligned = None if result.scene is None else AlignedPhoto.of(result.scene)
-    view = FigureData(title=_title(result), cube=result.cube, points=result.points, aligned=aligned, poses=result.poses)
+    view = FigureData(title=result.title, cube=_cube(result), points=result.points, aligned=aligned, poses=result.poses)
     if result.generation is not None:
         view = replace(view, motions=result.generation.motions)
     save_results(folder, view, result.meta, pictures=pictures)
@@ -96,6 +103,7 @@ def _zipped(folder: Path) -> Path:
     return Path(shutil.make_archive(str(folder), "zip", folder.parent, folder.name))
 
 
-def _title(result: Result) -> str:
-    text = result.meta.get("text") or ""
-    return f"{text if isinstance(text, str) else ' | '.join(text)}   ({result.cube.config.name})"
+def _cube(result: Result) -> RadarCube:
+    if result.cube is None:
+        raise InputError("the log holds points and no signal; export points.npz or the page")
+    return result.cube

@@ -3,7 +3,7 @@
 import asyncio
 import os
 from collections.abc import Awaitable, Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import TypeVar
 
 MAX_WAITING = 200
@@ -33,7 +33,7 @@ class Jobs:
             raise BusyError
         self.waiting += 1
         try:
-            submitted = self._pool.submit(work)
+            submitted = self.submit(work)
             job = asyncio.wrap_future(submitted)
             while True:
                 done, _ = await asyncio.wait([job], timeout=0.25)
@@ -44,6 +44,10 @@ class Jobs:
                     raise asyncio.CancelledError
         finally:
             self.waiting -= 1
+
+    def submit(self, work: Callable[[], T]) -> "Future[T]":
+        """Queues `work` for the next free worker."""
+        return self._pool.submit(work)
 
     def stop(self) -> None:
         """Drops what waits; a job under way ends by itself."""

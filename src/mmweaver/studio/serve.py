@@ -29,6 +29,7 @@ class _Announcing(uvicorn.Server):
 
 def serve(
     rooms: list[Path],
+    recordings: list[Path],
     *,
     host: str,
     port: int,
@@ -38,7 +39,7 @@ def serve(
 ) -> None:
     """Serves until interrupted; `announce` is given the lines for the user.
 
-    Raises InputError where the address cannot be had, or a folder holds no room.
+    Raises InputError where the address cannot be had, a folder holds no room, or a recording does not exist.
     """
     bound = _bind(host, port)
     port = bound.getsockname()[1]
@@ -47,7 +48,7 @@ def serve(
     shown = "localhost" if host in ("0.0.0.0", "::") else host
     address = f"http://{shown}:{port}/" + ("" if token is None else f"?token={token}")
     try:
-        studio = StudioServer(Workshop(rooms), workers=workers)
+        studio = StudioServer(Workshop(rooms, recordings), workers=workers)
         config = uvicorn.Config(
             studio.app(hosts=set(names), token=token), log_level="warning", ws_max_size=1 << 20,
             timeout_graceful_shutdown=2, limit_concurrency=400,

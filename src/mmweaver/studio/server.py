@@ -4,6 +4,8 @@ import asyncio
 import contextlib
 import hmac
 from collections.abc import AsyncIterator, Callable
+from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
@@ -94,7 +96,11 @@ class StudioServer:
             Route("/api/room/{name}", self._room),
             Route("/api/generate", self._generate, methods=["POST"]),
             Route("/api/upload", self._upload, methods=["POST"]),
+            Route("/api/depth/{name}", self._depth, methods=["POST"]),
+            Route("/api/recording/{name}", self._recording, methods=["POST"]),
             Route("/api/result/{name}", self._result),
+            Route("/api/keep/{name}", self._keep, methods=["POST"]),
+            Route("/api/compare/{a}/{b}", self._compare),
             Route("/api/export/{name}/{kind}", self._export),
             WebSocketRoute("/api/presence", self._presence),
             WebSocketRoute("/api/live", self._live),
@@ -141,6 +147,25 @@ class StudioServer:
         name = request.path_params["name"]
         return _packed(await self._do(request, lambda: self.workshop.result_bytes(session, name)))
 
+    async def _recording(self, request: Request) -> Response:
+        session, name = self._session(request), request.path_params["name"]
+        return _packed(await self._do(request, lambda: self.workshop.recording(session, name)))
+
+    async def _keep(self, request: Request) -> Response:
+        """Holds a result as long as others are compared with it; "none" lets go."""
+        session, name = self._session(request), request.path_params["name"]
+        session.pinned = None if name == "none" or not session.result(name) else name
+        return JSONResponse({})
+
+    async def _compare(self, request: Request) -> Response:
+        session, asked = self._session(request), request.path_params
+        return JSONResponse(await self._do(request, lambda: self.workshop.compare(session, asked["a"], asked["b"])))
+
+    async def _depth(self, request: Request) -> Response:
+        """A room of a photo that came without depth, which a depth model estimates."""
+        session, name = self._session(request), request.path_params["name"]
+        return JSONResponse(await self._do(request, lambda: uploads.room_with_estimated_depth(session, name)))
+
     async def _export(self, request: Request) -> Response:
         session = self._session(request)
         result = session.result(request.path_params["name"])
@@ -153,16 +178,15 @@ class StudioServer:
         length = request.headers.get("content-length", "")
         if not length.isdecimal() or int(length) > uploads.MAX_BYTES:
             raise InputError(f"an upload has at most {uploads.MAX_BYTES // 1_000_000} MB")
-        folder = session.folder / f"upload-{len(list(session.folder.iterdir()))}"
-        folder.mkdir()
+        folder = Path(mkdtemp(prefix="upload-", dir=session.folder))
         async with request.form(max_files=uploads.MAX_FILES, max_fields=4) as form:
             radar = form.get("radar")
-            for sent in form.getlist("files"):
-                if isinstance(sent, UploadFile):
-                    taken = {file.name for file in folder.iterdir()}
-                    with (folder / uploads.safe_name(sent.filename or "file", taken)).open("wb") as file:
-                        while part := await sent.read(1 << 20):
-                            file.write(part)
+            files = [sent for sent in form.getlist("files") if isinstance(sent, UploadFile)]
+            names = uploads.said_names(form.get("paths"), [one.filename for one in files])
+            for sent, said in zip(files, names, strict=True):
+                with uploads.place_of(folder, said).open("wb") as file:
+                    while part := await sent.read(1 << 20):
+                        file.write(part)
         chosen = self.workshop.radar_of(session, radar if isinstance(radar, str) else "awr1843")
         return JSONResponse(await self._do(request, lambda: uploads.take(session, folder, chosen)))
 

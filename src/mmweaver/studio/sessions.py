@@ -15,6 +15,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, Scene
 from mmweaver.generation import Generation, Room
 from mmweaver.motion.mocap.clip import MotionClip
+from mmweaver.playback.point_log import point_log_playback
 from mmweaver.playback.sequence import Playback, make_playback
 
 MAX_SESSIONS = 100
@@ -27,10 +28,12 @@ UNUSED_S = 1800.0  # a session that never said goodbye
 class Result:
     """What a session made or brought: a sequence and, for a generated one, all that made it."""
 
-    cube: RadarCube
+    cube: RadarCube | None  # None of a log of points, which brings `frame_period_s` and the name of its `radar`
     points: PointCloud
     poses: tuple[PoseSequence, ...]
     meta: dict
+    frame_period_s: float = 0.1
+    radar: str = ""
     scene: Scene | None = None
     generation: Generation | None = None
     with_samples: Callable[[], Generation] | None = None  # generates the same again, keeping its ADC samples
@@ -39,10 +42,20 @@ class Result:
     @property
     def num_bytes(self) -> int:
         adc = None if self.generation is None else self.generation.adc
-        return self.cube.values.nbytes + (0 if adc is None else adc.samples.nbytes)
+        cube_bytes = 0 if self.cube is None else self.cube.values.nbytes
+        return cube_bytes + 48 * len(self.points.frame) + (0 if adc is None else adc.samples.nbytes)
+
+    @property
+    def title(self) -> str:
+        """The sentences, or the recording's name, and the radar."""
+        text = self.meta.get("text") or ""
+        radar = self.radar if self.cube is None else self.cube.config.name
+        return f"{text if isinstance(text, str) else ' | '.join(text)}   ({radar})"
 
     def playback(self) -> Playback:
         """The sequence for the page."""
+        if self.cube is None:
+            return point_log_playback(self.points, self.frame_period_s, self.radar, self.meta)
         return make_playback(self.cube, self.points, self.poses, self.meta)
 
 
@@ -56,6 +69,8 @@ class Session:
         self.radars: dict[str, tuple[str, RadarConfig]] = {}  # by id: file name and radar
         self.motions: dict[str, tuple[str, MotionClip]] = {}  # by id: file name and motion
         self.results: OrderedDict[str, Result] = OrderedDict()
+        self.pinned: str | None = None  # the result that the next ones are compared with
+        self.photos: dict[str, Path] = {}  # by id: pictures that came without depth
         self.used_s = monotonic()
         self.is_open = True
 
@@ -64,8 +79,12 @@ class Session:
         name = secrets.token_urlsafe(9)
         self.results[name] = result
         while len(self.results) > MAX_RESULTS:
-            self.results.popitem(last=False)
+            self.forget_oldest()
         return name
+
+    def forget_oldest(self) -> None:
+        """Drops the oldest result, the one that is compared with last of all."""
+        self.results.pop(next((name for name in self.results if name != self.pinned), next(iter(self.results))))
 
     def result(self, name: str) -> Result:
         """A result by its id. Raises InputError where it is not this session's, or gone."""
@@ -76,7 +95,7 @@ class Session:
     def end(self) -> None:
         """Removes the session's folder; its rooms and results go with it."""
         self.is_open = False
-        for brought in (self.rooms, self.radars, self.motions):
+        for brought in (self.rooms, self.radars, self.motions, self.photos):
             brought.clear()
         self.results.clear()
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -108,6 +127,11 @@ class Sessions:
         session.used_s = monotonic()
         return session
 
+    def all(self) -> list[Session]:
+        """Those that are open."""
+        with self._lock:
+            return list(self._open.values())
+
     def end(self, session: Session) -> None:
         """Ends a session."""
         with self._lock:
@@ -127,7 +151,7 @@ class Sessions:
                 if sum(sizes.values()) <= MAX_RESULT_BYTES or not sizes:
                     return
                 largest = max(sizes, key=lambda one: sizes[one])
-                largest.results.popitem(last=False)
+                largest.forget_oldest()
 
     def _end(self, session: Session) -> None:
         self._open.pop(session.id, None)

@@ -1,48 +1,75 @@
-"""Files that a visitor brings: a photo with depth, a recording, a radar, a motion or a result folder."""
+"""Files that a visitor brings: a room as photo, scan or mesh, a recording, a radar, a motion or a result folder."""
 
 import secrets
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.formats.radar_file import load_radar
+from mmweaver.generate import Weaver
+from mmweaver.generation import Room
 from mmweaver.motion.mocap.read_motion import read_motion
-from mmweaver.recordings.processing import process_recording
+from mmweaver.scene.photo.estimated_depth import AUTO
 from mmweaver.scene.photo_files import COLOUR, DEPTH, RoomFiles
-from mmweaver.stored_result import read_result
+from mmweaver.scene.scan_folders import scan_kind
+from mmweaver.studio.recorded import SETTINGS, read_recorded
 from mmweaver.studio.rooms import read_room
-from mmweaver.studio.sessions import Result, Session
+from mmweaver.studio.sessions import Session
+from mmweaver.studio.ways_on import NoWayError
 
 MAX_BYTES = 300_000_000  # of one upload
-MAX_FILES = 40
-PICTURES = (".png", ".jpg", ".jpeg", ".webp")
+MAX_FILES = 200
+MAX_DEPTH = 4  # folders within one another
+PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".heic")
+DEPTHS = (".npy", ".tif", ".tiff")
+MOTIONS = (".npz", ".npy")
 
 
 def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     """Reads the files of `folder` as what they are together; says what was found. Raises InputError.
 
-    Names were chosen by the server (`safe_name`), so nothing outside the folder is ever opened.
+    Names were chosen by the server (`place_of`), so nothing outside the folder is ever opened.
     """
-    files = {file.name.lower(): file for file in sorted(folder.iterdir())}
-    if "radar.npz" in files and "radar.json" in files:
-        return _result(session, folder)
-    recording = next((file for name, file in files.items() if name.endswith(".bin")), None)
-    if recording is not None:
-        settings = next((file for name, file in files.items() if name.endswith((".cfg", ".json"))), None)
-        return _recording(session, recording, radar if settings is None else str(settings))
+    folder = _without_wrappers(folder)
+    files = {file.name.lower(): file for file in sorted(folder.iterdir()) if file.is_file()}
+    if scan_kind(folder) is not None:
+        return _room(session, Weaver(method="physics").read_capture(folder))
+    recorded = read_recorded(folder, radar)
+    if recorded is not None:
+        has_room = bool(recorded.poses)
+        return {"kind": "result", "id": session.add(recorded), "label": recorded.title, "has_room": has_room}
     motion = next((file for name, file in files.items() if name.endswith(".bvh")), None)
-    if motion is not None or (len(files) == 1 and next(iter(files)).endswith((".npz", ".npy"))):
+    if motion is not None or (len(files) == 1 and next(iter(files)).endswith(MOTIONS)):
         return _motion(session, motion or next(iter(files.values())))
-    if any(name.endswith((*PICTURES, ".npy", ".tif", ".tiff")) for name in files):
-        return _room(session, _named_as_room(files, folder))
-    settings = next((file for name, file in files.items() if name.endswith((".cfg", ".json"))), None)
+    if any(name.endswith((*PICTURES, *DEPTHS)) for name in files):
+        return _photo(session, files, folder)
+    settings = next((file for name, file in files.items() if name.endswith(SETTINGS)), None)
     if settings is not None:
         return _radar(session, settings)
     raise InputError(
-        f"nothing here is known: {', '.join(sorted(files)[:5])}; bring rgb.png with depth.png (and camera.json), a .bin"
-        " with its .cfg, a .cfg or radar.json alone, a motion (.bvh, .npz, .npy), or the files of a result folder"
+        f"nothing here is known: {', '.join(sorted(files)[:5])}; bring rgb.png with depth.png (and camera.json), a"
+        " scan, a .bin with its .cfg, a .dat, a .cfg or radar.json, a motion (.bvh, .npz, .npy), or a result folder"
     )
+
+
+def said_names(listed: Any, names: list[str | None]) -> list[str]:
+    """The names of files as the page said them: JSON with a path of each within what was dropped, else plain names."""
+    paths = parse_json(listed, "the paths") if isinstance(listed, str) else None
+    if isinstance(paths, list) and len(paths) == len(names) and all(isinstance(one, str) for one in paths):
+        return paths
+    return [name or "file" for name in names]
+
+
+def place_of(folder: Path, said: str) -> Path:
+    """Where a file is kept: inside `folder` whatever was said, in folders that are made."""
+    parts = [part for part in said.replace("\\", "/").split("/") if part.strip(".")]
+    for part in parts[-1 - MAX_DEPTH : -1]:
+        folder = folder / safe_name(part, set())
+        folder.mkdir(exist_ok=True)
+    return folder / safe_name(parts[-1] if parts else "file", {file.name for file in folder.iterdir()})
 
 
 def safe_name(name: str, taken: set[str]) -> str:
@@ -54,27 +81,45 @@ def safe_name(name: str, taken: set[str]) -> str:
     return plain
 
 
-def _named_as_room(files: dict[str, Path], folder: Path) -> RoomFiles:
+def room_with_estimated_depth(session: Session, name: str) -> dict[str, Any]:
+    """The room of a photo that was brought without depth. Raises InputError where no model can be had."""
+    if name not in session.photos:
+        raise InputError("this photo is no longer kept; open its file again")
+    return _room(session, Weaver(method="physics").read_room(session.photos[name], depth_model=AUTO))
+
+
+def _without_wrappers(folder: Path) -> Path:
+    """The folder that was dropped, where it is all that was."""
+    inside = list(folder.iterdir())
+    is_wrapper = len(inside) == 1 and inside[0].is_dir() and scan_kind(folder) is None
+    return _without_wrappers(inside[0]) if is_wrapper else folder
+
+
+def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, Any]:
     """Files of a room by their names; a depth map is one that says depth, or is .npy or .tif."""
-    if not any(name in files for name in COLOUR) or not any(name in files for name in DEPTH):
-        depth = [
-            one for name, one in files.items() if "depth" in name or one.suffix.lower() in (".npy", ".tif", ".tiff")
-        ]
-        colour = [one for one in files.values() if one not in depth and one.suffix.lower() in PICTURES]
-        if not depth:
-            raise InputError(
-                "a photo alone is not enough: bring its depth too (depth.png in millimetres, or .npy in metres); a"
-                " metric depth model can estimate it: mmweaver generate --depth-model"
-            )
-        if not colour:
-            raise InputError("the depth has no picture: bring rgb.png of the same view, too")
-        camera = next((one for one in files.values() if one.suffix.lower() == ".json"), None)
-        return RoomFiles(rgb=colour[0], depth=depth[0], camera=camera)
-    return RoomFiles.in_folder(folder)
+    if any(name in files for name in COLOUR) and any(name in files for name in DEPTH):
+        return _room(session, read_room(RoomFiles.in_folder(folder)))
+    depth = [one for name, one in files.items() if "depth" in name or one.suffix.lower() in DEPTHS]
+    colour = [one for one in files.values() if one not in depth and one.suffix.lower() in PICTURES]
+    if not colour:
+        raise InputError("the depth has no picture: bring rgb.png of the same view, too")
+    if not depth:
+        raise _without_depth(session, colour[0])
+    camera = next((one for one in files.values() if one.suffix.lower() == ".json"), None)
+    return _room(session, read_room(RoomFiles(rgb=colour[0], depth=depth[0], camera=camera)))
 
 
-def _room(session: Session, files: RoomFiles) -> dict[str, Any]:
-    room = read_room(files)
+def _without_depth(session: Session, photo: Path) -> NoWayError:
+    """Offers to estimate the depth where the package for it is installed, else says what to install."""
+    name = secrets.token_urlsafe(6)
+    session.photos[name] = photo
+    said = "a photo alone is not enough: bring its depth too (depth.png in millimetres, or .npy in metres)"
+    if find_spec("transformers") is None:
+        return NoWayError(f"{said}; or pip install 'mmweaver[depth]', and a model will estimate it", [])
+    return NoWayError(said, [{"label": "estimate the depth (model downloaded once)", "change": {"estimate": name}}])
+
+
+def _room(session: Session, room: Room) -> dict[str, Any]:
     name = secrets.token_urlsafe(6)
     label = f"your room {len(session.rooms) + 1}"
     session.rooms[name] = (label, room)
@@ -91,15 +136,3 @@ def _motion(session: Session, file: Path) -> dict[str, Any]:
     clip, name = read_motion(file), secrets.token_urlsafe(6)
     session.motions[name] = (file.name, clip)
     return {"kind": "motion", "id": name, "label": file.name}
-
-
-def _recording(session: Session, file: Path, radar: RadarConfig | str) -> dict[str, Any]:
-    done = process_recording(file, radar)
-    result = Result(cube=done.cube, points=done.points, poses=(), meta={**done.meta, "text": file.name})
-    return {"kind": "result", "id": session.add(result), "label": file.name, "has_room": False}
-
-
-def _result(session: Session, folder: Path) -> dict[str, Any]:
-    stored = read_result(folder)
-    result = Result(cube=stored.cube, points=stored.points, poses=stored.poses, meta=stored.meta)
-    return {"kind": "result", "id": session.add(result), "label": stored.title, "has_room": bool(stored.poses)}

@@ -1,13 +1,11 @@
 """What the studio does for a session: rooms, sequences, comparisons and exports. Blocking; the server queues it."""
 
 from collections import OrderedDict
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from mmweaver.core.errors import InputError, NoRoomError
+from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.generate import Weaver
@@ -19,9 +17,12 @@ from mmweaver.motion.register_activity import load_activity_plugins
 from mmweaver.playback.room import room_playback
 from mmweaver.playback.wire import pack
 from mmweaver.studio.asked import Asked
+from mmweaver.studio.compared import compared
 from mmweaver.studio.live import Live
+from mmweaver.studio.recorded import OfferedRecordings
 from mmweaver.studio.rooms import DEMO, OfferedRooms
 from mmweaver.studio.sessions import Result, Session, Sessions
+from mmweaver.studio.ways_on import ways_on_for_the_page
 
 FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
 _MOST_WEAVERS = 12  # each keeps the room that it worked in last
@@ -30,8 +31,9 @@ _MOST_WEAVERS = 12  # each keeps the room that it worked in last
 class Workshop:
     """Rooms and weights shared by all sessions."""
 
-    def __init__(self, rooms: list[Path] | None = None):
+    def __init__(self, rooms: list[Path] | None = None, recordings: list[Path] | None = None):
         self.rooms = OfferedRooms(rooms or [])
+        self.recordings = OfferedRecordings(recordings or [])
         self.sessions = Sessions()
         self._weavers: OrderedDict[tuple[str, str, str], Weaver] = OrderedDict()
         self._lock = Lock()
@@ -51,6 +53,7 @@ class Workshop:
             "radars": [(name, name) for name in PRESETS],
             "methods": [("auto", "network"), ("physics", "physics (ray-traced)")],
             "boards": [],
+            "recordings": self.recordings.names,
             "sentences": [activity.example for activity in BY_KEY.values()],
             "text": FIRST_TEXT,
         }
@@ -105,6 +108,15 @@ class Workshop:
         )  # fmt: skip
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
+    def recording(self, session: Session, name: str) -> bytes:
+        """An offered recording, kept in the session and packed for the page. Raises InputError."""
+        return self._kept(session, self.recordings.get(name), {})
+
+    @staticmethod
+    def compare(session: Session, a: str, b: str) -> dict[str, Any]:
+        """The numbers of two kept results. Raises InputError."""
+        return compared(session.result(a), session.result(b))
+
     def result_bytes(self, session: Session, name: str) -> bytes:
         """A kept result, packed for the page."""
         return self._packed(session.result(name), name, {})
@@ -136,27 +148,3 @@ class Workshop:
                     self._weavers.popitem(last=False)
             self._weavers.move_to_end(key)
             return self._weavers[key]
-
-
-class NoWayError(InputError):
-    """A request that this room does not allow; `ways_on` are buttons of the page: a label, and what they change."""
-
-    def __init__(self, message: str, ways_on: list[dict[str, Any]]):
-        super().__init__(message)
-        self.ways_on = ways_on
-
-
-@contextmanager
-def ways_on_for_the_page(asked: Asked) -> Iterator[None]:
-    """Turns what would help a motion that finds no room, or does not fit its path, into what the page can change."""
-    try:
-        yield
-    except NoRoomError as error:
-        ways = [{"label": f"with {radar}", "change": {"radar": radar}} for radar in error.ways_on.get("radars", ())]
-        if asked.room != DEMO:
-            ways.append({"label": "in the bundled room", "change": {"room": DEMO}})
-        raise NoWayError(str(error), ways) from None
-    except InputError as error:
-        if asked.path is None:
-            raise
-        raise NoWayError(str(error), [{"label": "without the path", "change": {"path": None}}]) from None

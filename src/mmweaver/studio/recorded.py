@@ -1,0 +1,91 @@
+"""Recordings and results in folders: those offered on the command line, and those that a session brought."""
+
+from pathlib import Path
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
+from mmweaver.formats.radar_file import load_radar
+from mmweaver.recordings.processing import process_recording
+from mmweaver.stored_result import read_result
+from mmweaver.studio.sessions import Result
+
+PORT_LOG_PERIOD_S = 0.1  # of a data port's log without its .cfg
+SETTINGS = (".cfg", ".json")
+
+
+class OfferedRecordings:
+    """Folders and files that every session may watch and compare with, by name."""
+
+    def __init__(self, paths: list[Path]):
+        self._paths: dict[str, Path] = {}
+        for path in paths:
+            if not path.exists():
+                raise InputError(f"--recording {path} does not exist")
+            name = path.resolve().name
+            while name in self._paths:
+                name += "-2"
+            self._paths[name] = path
+
+    @property
+    def names(self) -> list[str]:
+        """All names in the order of the command line."""
+        return list(self._paths)
+
+    def get(self, name: str) -> Result:
+        """A recording, read anew. Raises InputError where there is none of that name, or it cannot be read."""
+        if name not in self._paths:
+            raise InputError("this recording is not known here; choose another one")
+        found = read_recorded(self._paths[name])
+        if found is None:
+            raise InputError(f"{name} holds no recording: no radar.npz, .bin with its .cfg, capture or .dat")
+        return found
+
+
+def read_recorded(path: Path, radar: RadarConfig | None = None) -> Result | None:
+    """What a file or folder recorded or made: a result folder, raw samples, a capture, or a data port's log.
+
+    `radar` is for raw samples that bring no .cfg. None where the folder holds none of these; raises InputError where
+    what it holds cannot be read.
+    """
+    if path.is_file():
+        return _of_file(path, None, radar)
+    if (path / "radar.npz").is_file() and (path / "points.npz").is_file():
+        stored = read_result(path)
+        return Result(cube=stored.cube, points=stored.points, poses=stored.poses, meta=_named(stored.meta, path.name))
+    if (path / "radar.npz").is_file() or (path / "dca.pcap").is_file():
+        return _processed(path, None)
+    inside = sorted(path.iterdir())
+    settings = next((file for file in inside if file.suffix.lower() in SETTINGS), None)
+    for suffix in (".bin", ".dat"):
+        if (file := next((one for one in inside if one.suffix.lower() == suffix), None)) is not None:
+            return _of_file(file, settings, radar)
+    return None
+
+
+def _of_file(file: Path, settings: Path | None, radar: RadarConfig | None) -> Result:
+    if file.suffix.lower() == ".dat":
+        return _port_log(file, settings)
+    return _processed(file, radar if settings is None else settings)
+
+
+def _processed(path: Path, radar: RadarConfig | Path | None) -> Result:
+    done = process_recording(path, str(radar) if isinstance(radar, Path) else radar)
+    return Result(cube=done.cube, points=done.points, poses=(), meta=_named(done.meta, path.name))
+
+
+def _port_log(file: Path, settings: Path | None) -> Result:
+    """The point cloud that a TI board sent over its data port; its .cfg says how often."""
+    log = read_ti_uart(file)
+    config = None if settings is None else load_radar(str(settings))
+    period_s = PORT_LOG_PERIOD_S if config is None else config.frame_period_s
+    assumed = [f"The log brings no .cfg: {1 / period_s:g} frames a second were taken."] if config is None else []
+    if log.skipped:
+        assumed.append(f"{log.skipped} damaged packets were left out.")
+    meta = {"text": file.name, "points": "firmware", "frames": len(log.frame_number), "assumed": assumed}
+    radar = "data port of a TI board" if config is None else config.name
+    return Result(cube=None, points=log.points, poses=(), meta=meta, frame_period_s=period_s, radar=radar)
+
+
+def _named(meta: dict, name: str) -> dict:
+    return {**meta, "text": meta.get("text") or name}

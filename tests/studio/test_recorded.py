@@ -1,0 +1,38 @@
+"""Recordings that are offered on the command line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.errors import InputError
+from mmweaver.formats.dca1000 import write_bin
+from mmweaver.studio.recorded import OfferedRecordings, read_recorded
+from tests import captures
+from tests.formats.point_clouds.test_read_points import XYZV, out_of_box
+
+
+def test_folders_and_files_by_name(tmp_path: Path):
+    folder = tmp_path / "hall"
+    folder.mkdir()
+    config = captures.radar_of_cfg(folder)
+    write_bin(folder / "adc_data.bin", captures.counts(config), counts_per_unit=1.0)
+    (tmp_path / "log.dat").write_bytes(out_of_box(1, XYZV))
+    offered = OfferedRecordings([folder, tmp_path / "log.dat", folder])
+    assert offered.names == ["hall", "log.dat", "hall-2"]
+    hall, log = offered.get("hall"), offered.get("log.dat")
+    assert hall.cube is not None
+    assert hall.cube.config.num_loops == config.num_loops
+    assert hall.title.startswith("adc_data.bin")
+    assert log.cube is None
+    assert np.isclose(log.points.snr_db, 12.3).all()
+
+
+def test_what_is_none_is_said(tmp_path: Path):
+    with pytest.raises(InputError, match="does not exist"):
+        OfferedRecordings([tmp_path / "none"])
+    assert read_recorded(tmp_path) is None
+    with pytest.raises(InputError, match="holds no recording"):
+        OfferedRecordings([tmp_path]).get(tmp_path.name)
+    with pytest.raises(InputError, match="not known"):
+        OfferedRecordings([]).get("/etc/passwd")
