@@ -166,6 +166,24 @@ class Weaver:
             whole = replace(found.photo, classes=classes_of(found.photo, **seen))
         return self._reconstruct(whole, found.assumptions, inputs, stages)
 
+    def read_mesh(self, mesh: str | Path, **how: Any) -> Room:
+        """The room of a scan or model: a GLB, PLY or OBJ with triangles. Needs the extra 'mesh'.
+
+        `how`: `eye` and `look_deg`, the radar's place and direction in the mesh, chosen where they are not given;
+        `unit` and `up`, where the file does not say them; `materials`, a JSON of names and classes. See
+        `scene.scanned_mesh.mesh_photo.read_mesh_photo`.
+        """
+        from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo
+
+        stages = Stages(self._listener)
+        with stages("read the mesh"):
+            found = read_mesh_photo(Path(mesh), **how)
+            files = {"mesh": mesh, "materials": how.get("materials")}
+            inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
+            settings = ("eye", "look_deg", "unit", "up")
+            inputs |= {name: how[name] for name in settings if how.get(name) is not None}
+        return self._reconstruct(found.photo, found.assumptions, inputs, stages)
+
     def sample_room(self) -> Room:
         """The bundled sample room."""
         stages = Stages(self._listener)

@@ -56,7 +56,7 @@ def test_the_folder_of_a_scan_becomes_a_room(write: Callable[[Path], None], sess
     write(tmp_path / "dropped" / "scan")
     found = take(session, tmp_path / "dropped", AWR)
     assert found["kind"] == "room"
-    assert session.rooms[found["id"]][1].scene.free_space.is_free.any()
+    assert session.rooms[found["id"]].room.scene.free_space.is_free.any()
 
 
 def test_paths_are_kept_within_the_folder(tmp_path: Path):

@@ -10,7 +10,8 @@ from mmweaver.core.errors import InputError
 if TYPE_CHECKING:
     from mmweaver.core.radar_pose import RadarPose
 
-SIGNED = ("--at", "--path", "--heading", "--motion-up", "--radar-pose")  # options whose values may begin with a minus
+# options whose values may begin with a minus
+SIGNED = ("--at", "--path", "--heading", "--motion-up", "--radar-pose", "--mesh-eye", "--mesh-look")
 LOG_LEVELS = ("debug", "info", "warning", "error")
 Options = argparse.ArgumentParser | argparse._ArgumentGroup
 
@@ -83,6 +84,15 @@ def place(word: str) -> tuple[float, float]:
     except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(f"{word!r} is no place; write x,y in metres, for example 0.5,2") from None
     return x, y
+
+
+def triple(word: str) -> tuple[float, float, float]:
+    """'0.5,2,1' -> (0.5, 2.0, 1.0)."""
+    try:
+        x, y, z = (number(part) for part in word.split(","))
+    except (ValueError, argparse.ArgumentTypeError):
+        raise argparse.ArgumentTypeError(f"{word!r} is no place; write x,y,z, for example 0.5,2,1.2") from None
+    return x, y, z
 
 
 def points(words: str) -> tuple[tuple[float, float], ...]:

@@ -243,7 +243,7 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
     """The texts (None: those of the demo, or a recorded motion alone) and the output folder, if the room is clear."""
     pictures = (
         arguments.rgb, arguments.depth, arguments.camera, arguments.capture, arguments.depth_model, arguments.classes,
-        arguments.segmenter, arguments.sam,
+        arguments.segmenter, arguments.sam, arguments.mesh,
     )  # fmt: skip
     if arguments.demo:
         if any(picture is not None for picture in pictures):
@@ -252,6 +252,12 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
                 " or leave out --demo"
             )
         return arguments.text, arguments.out or Path(DEMO_OUT)
+    if arguments.mesh is not None:
+        if any(picture is not None for picture in pictures[:-1]):
+            raise InputError("--mesh brings the whole room; leave out --rgb, --depth, --camera and all else that does")
+        return _text_and_out(arguments)
+    if any(getattr(arguments, f"mesh_{name}") is not None for name in ("eye", "look", "unit", "up", "materials")):
+        raise InputError("options of a mesh need --mesh FILE")
     if arguments.capture is not None:
         if any(given is not None for given in (arguments.depth, arguments.camera, arguments.depth_model)):
             raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")
@@ -296,6 +302,11 @@ def _background(arguments: argparse.Namespace) -> "RadarCube | None":
 def _photographed_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     if arguments.demo:
         return weaver.sample_room()
+    if arguments.mesh is not None:
+        return weaver.read_mesh(
+            arguments.mesh, eye=arguments.mesh_eye, look_deg=arguments.mesh_look, unit=arguments.mesh_unit,
+            up=arguments.mesh_up, materials=arguments.mesh_materials,
+        )  # fmt: skip
     labels = {"classes": arguments.classes, "segmenter": arguments.segmenter, "sam": arguments.sam}
     if arguments.capture is not None:
         return weaver.read_capture(arguments.capture, photo=arguments.photo, rgb=arguments.rgb, **labels)

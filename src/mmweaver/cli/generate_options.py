@@ -17,6 +17,7 @@ from mmweaver.cli.arguments import (
     place,
     radar_pose,
     source,
+    triple,
     whole,
 )
 from mmweaver.cli.motion_options import add_motion_options
@@ -96,6 +97,25 @@ def _add_input_options(room: Options) -> None:
     room.add_argument(
         "--photo", type=whole, default=0, metavar="N", help=Rare("which photo of the capture (default 0)")
     )
+
+    room.add_argument(
+        "--mesh", type=Path, metavar="FILE",
+        help=Rare("instead of --rgb: the room as a scan or model (.glb, .ply, .obj), with more than a photo shows"),
+    )  # fmt: skip
+    room.add_argument(
+        "--mesh-eye", type=triple, metavar="X,Y,Z",
+        help=Rare("the radar's place in the mesh's own axes and unit (default: near a wall, with the room ahead)"),
+    )  # fmt: skip
+    room.add_argument(
+        "--mesh-look", type=number, metavar="DEG",
+        help=Rare("where it looks: degrees from the mesh's x axis, counterclockwise from above (default: most room)"),
+    )  # fmt: skip
+    room.add_argument("--mesh-unit", metavar="NAME", help=Rare("m, cm, mm, inch or foot (default: what fits a room)"))
+    room.add_argument("--mesh-up", metavar="AXIS", help=Rare("y or z (default: y for .glb, else by the floor)"))
+    room.add_argument(
+        "--mesh-materials", type=Path, metavar="JSON",
+        help=Rare('what the mesh\'s names are: {"Material.003": "couch", "pane": "glass"}'),
+    )  # fmt: skip
 
 
 def _add_sentence_options(person: Options) -> None:

@@ -15,7 +15,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, Scene
 from mmweaver.generation import Generation, Room
 from mmweaver.motion.mocap.clip import MotionClip
-from mmweaver.playback.point_log import point_log_playback
+from mmweaver.playback.points_playback import point_log_playback
 from mmweaver.playback.sequence import Playback, make_playback
 
 MAX_SESSIONS = 100
@@ -59,13 +59,23 @@ class Result:
         return make_playback(self.cube, self.points, self.poses, self.meta)
 
 
+@dataclass(frozen=True, kw_only=True)
+class BroughtRoom:
+    """A room that a session brought: its options of `mmweaver generate`, and the call of `Weaver` that reads it."""
+
+    label: str
+    room: Room
+    options: tuple[str, ...]
+    call: str
+
+
 class Session:
     """One tab of a browser."""
 
     def __init__(self) -> None:
         self.id = secrets.token_urlsafe(16)
         self.folder = Path(tempfile.mkdtemp(prefix="mmweaver-studio-"))  # readable by this user alone
-        self.rooms: dict[str, tuple[str, Room]] = {}  # by id: label and room
+        self.rooms: dict[str, BroughtRoom] = {}  # by id
         self.radars: dict[str, tuple[str, RadarConfig]] = {}  # by id: file name and radar
         self.motions: dict[str, tuple[str, MotionClip]] = {}  # by id: file name and motion
         self.results: OrderedDict[str, Result] = OrderedDict()

@@ -17,7 +17,7 @@ from mmweaver.scene.photo_files import COLOUR, DEPTH, RoomFiles
 from mmweaver.scene.scan_folders import scan_kind
 from mmweaver.studio.recorded import SETTINGS, read_recorded
 from mmweaver.studio.rooms import read_room
-from mmweaver.studio.sessions import Session
+from mmweaver.studio.sessions import BroughtRoom, Session
 from mmweaver.studio.ways_on import NoWayError
 
 MAX_BYTES = 300_000_000  # of one upload
@@ -26,6 +26,7 @@ MAX_DEPTH = 4  # folders within one another
 PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".heic")
 DEPTHS = (".npy", ".tif", ".tiff")
 MOTIONS = (".npz", ".npy")
+MESHES = (".glb", ".ply", ".obj")
 
 
 def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
@@ -36,7 +37,7 @@ def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     folder = _without_wrappers(folder)
     files = {file.name.lower(): file for file in sorted(folder.iterdir()) if file.is_file()}
     if scan_kind(folder) is not None:
-        return _room(session, Weaver(method="physics").read_capture(folder))
+        return _room(session, Weaver(method="physics").read_capture(folder), capture=folder)
     recorded = read_recorded(folder, radar)
     if recorded is not None:
         has_room = bool(recorded.poses)
@@ -44,14 +45,18 @@ def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
     motion = next((file for name, file in files.items() if name.endswith(".bvh")), None)
     if motion is not None or (len(files) == 1 and next(iter(files)).endswith(MOTIONS)):
         return _motion(session, motion or next(iter(files.values())))
+    mesh = next((file for name, file in files.items() if name.endswith(MESHES)), None)
+    if mesh is not None:
+        return _mesh(session, mesh, files)
     if any(name.endswith((*PICTURES, *DEPTHS)) for name in files):
         return _photo(session, files, folder)
     settings = next((file for name, file in files.items() if name.endswith(SETTINGS)), None)
     if settings is not None:
         return _radar(session, settings)
     raise InputError(
-        f"nothing here is known: {', '.join(sorted(files)[:5])}; bring rgb.png with depth.png (and camera.json), a"
-        " scan, a .bin with its .cfg, a .dat, a .cfg or radar.json, a motion (.bvh, .npz, .npy), or a result folder"
+        f"nothing here is known: {', '.join(sorted(files)[:5])}; bring rgb.png with depth.png (and camera.json), a scan"
+        " or a mesh (.glb, .ply, .obj), a .bin with its .cfg, a .dat, a .cfg or radar.json, a motion (.bvh, .npz,"
+        " .npy), or a result folder"
     )
 
 
@@ -85,7 +90,8 @@ def room_with_estimated_depth(session: Session, name: str) -> dict[str, Any]:
     """The room of a photo that was brought without depth. Raises InputError where no model can be had."""
     if name not in session.photos:
         raise InputError("this photo is no longer kept; open its file again")
-    return _room(session, Weaver(method="physics").read_room(session.photos[name], depth_model=AUTO))
+    photo = session.photos[name]
+    return _room(session, Weaver(method="physics").read_room(photo, depth_model=AUTO), rgb=photo, depth_model=AUTO)
 
 
 def _without_wrappers(folder: Path) -> Path:
@@ -98,7 +104,7 @@ def _without_wrappers(folder: Path) -> Path:
 def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, Any]:
     """Files of a room by their names; a depth map is one that says depth, or is .npy or .tif."""
     if any(name in files for name in COLOUR) and any(name in files for name in DEPTH):
-        return _room(session, read_room(RoomFiles.in_folder(folder)))
+        return _photographed(session, RoomFiles.in_folder(folder))
     depth = [one for name, one in files.items() if "depth" in name or one.suffix.lower() in DEPTHS]
     colour = [one for one in files.values() if one not in depth and one.suffix.lower() in PICTURES]
     if not colour:
@@ -106,7 +112,7 @@ def _photo(session: Session, files: dict[str, Path], folder: Path) -> dict[str, 
     if not depth:
         raise _without_depth(session, colour[0])
     camera = next((one for one in files.values() if one.suffix.lower() == ".json"), None)
-    return _room(session, read_room(RoomFiles(rgb=colour[0], depth=depth[0], camera=camera)))
+    return _photographed(session, RoomFiles(rgb=colour[0], depth=depth[0], camera=camera))
 
 
 def _without_depth(session: Session, photo: Path) -> NoWayError:
@@ -119,10 +125,28 @@ def _without_depth(session: Session, photo: Path) -> NoWayError:
     return NoWayError(said, [{"label": "estimate the depth (model downloaded once)", "change": {"estimate": name}}])
 
 
-def _room(session: Session, room: Room) -> dict[str, Any]:
+def _photographed(session: Session, files: RoomFiles) -> dict[str, Any]:
+    return _room(session, read_room(files), rgb=files.rgb, depth=files.depth, camera=files.camera)
+
+
+def _mesh(session: Session, mesh: Path, files: dict[str, Path]) -> dict[str, Any]:
+    """A scan or model, with the JSON of its materials where one came along."""
+    materials = next((file for name, file in files.items() if name.endswith(".json")), None)
+    room = Weaver(method="physics").read_mesh(mesh, materials=materials)
+    return _room(session, room, mesh=mesh, mesh_materials=materials)
+
+
+def _room(session: Session, room: Room, **given: Path | str | None) -> dict[str, Any]:
+    """Keeps a room; `given` are the options of `mmweaver generate` that read it, with names for files."""
+    words = {name: Path(value).name for name, value in given.items() if value is not None}
+    options = [word for name, value in words.items() for word in (f"--{name.replace('_', '-')}", value)]
+    first, *more = words.items()
+    read = {"mesh": "read_mesh", "capture": "read_capture"}.get(first[0], "read_room")
+    arguments = [repr(first[1]), *(f"{name.removeprefix('mesh_')}={value!r}" for name, value in more)]
     name = secrets.token_urlsafe(6)
     label = f"your room {len(session.rooms) + 1}"
-    session.rooms[name] = (label, room)
+    call = f"{read}({', '.join(arguments)})"
+    session.rooms[name] = BroughtRoom(label=label, room=room, options=tuple(options), call=call)
     return {"kind": "room", "id": name, "label": label}
 
 

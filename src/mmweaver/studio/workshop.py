@@ -60,7 +60,7 @@ class Workshop:
 
     def room_of(self, session: Session, name: str) -> Room:
         """A room by its id: the session's own or an offered one. Raises InputError."""
-        return session.rooms[name][1] if name in session.rooms else self.rooms.get(name)
+        return session.rooms[name].room if name in session.rooms else self.rooms.get(name)
 
     @staticmethod
     def radar_of(session: Session, name: str) -> RadarConfig:
@@ -80,7 +80,7 @@ class Workshop:
 
     def room_bytes(self, session: Session, name: str, radar: str) -> bytes:
         """A room, packed for the page, with the places where this radar sees a person."""
-        label = session.rooms[name][0] if name in session.rooms else name
+        label = session.rooms[name].label if name in session.rooms else name
         range_m = self.radar_of(session, radar).range_m
         shown = room_playback(self.room_of(session, name).scene, label, (float(range_m[0]), float(range_m[-1])))
         return pack(shown.header, shown.arrays)
@@ -93,7 +93,7 @@ class Workshop:
         with ways_on_for_the_page(asked):
             generation = weaver.generate(room, motion=motion, **asked.request)
         if asked.room in session.rooms:
-            options, call = ["--rgb", "rgb.png", "--depth", "depth.png"], 'read_room("rgb.png", "depth.png")'
+            options, call = list(session.rooms[asked.room].options), session.rooms[asked.room].call
         else:
             options, call = self.rooms.options(asked.room), self.rooms.call(asked.room)
         names = {

@@ -1,0 +1,123 @@
+"""A wide photo with depth and classes of a mesh, taken where the radar stands; from it the room is reconstructed.
+
+The picture spans 100 degrees, so what a phone's photo leaves out beside it is in it: nearly all that the radar sees.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import CameraIntrinsics, ClassMask, RgbdPhoto
+from mmweaver.core.safe_files.safe_text import read_json
+from mmweaver.geometry.pinhole import viewing_rays
+from mmweaver.geometry.ray_caster import RayCaster
+from mmweaver.scene.coco_stuff import MATERIAL, NAMES, UNLABELED, coco_class
+from mmweaver.scene.photo.capture_photo import CapturedPhoto
+from mmweaver.scene.scanned_mesh.read_mesh import ColouredMesh, read_mesh
+from mmweaver.scene.scanned_mesh.upright import upright
+from mmweaver.scene.scanned_mesh.viewpoint import Viewpoint, find_viewpoint
+
+WIDTH, HEIGHT, VIEW_DEG = 640, 480, 100.0
+TILT_RAD = np.deg2rad(-8.0)  # a little down, so that the floor is seen from nearer
+# of the classes that imply a material, the one that says least else
+CLASS_OF_MATERIAL = {
+    "concrete": "wall-concrete", "brick": "wall-brick", "wood": "wood", "glass": "window-other", "metal": "metal",
+    "fabric": "cloth", "marble": "floor-marble", "floorboard": "floor-wood", "ceiling_board": "ceiling-tile",
+    "chipboard": "cabinet", "plasterboard": "wall-other",
+}  # fmt: skip
+
+
+def read_mesh_photo(
+    path: Path,
+    *,
+    eye: Sequence[float] | None = None,
+    look_deg: float | None = None,
+    unit: str | None = None,
+    up: str | None = None,
+    materials: Path | None = None,
+) -> CapturedPhoto:
+    """The photo of a mesh (GLB, PLY, OBJ).
+
+    `eye` is the radar's place in the mesh's own axes and unit, `look_deg` the direction it looks in, in degrees from
+    the mesh's x axis, counterclockwise as seen from above; both are chosen where they are not given. `unit` (m, cm,
+    mm, inch, foot) and `up` (y or z) say what the file does not. `materials`: a JSON object of names in the mesh and
+    classes of COCO-Stuff, or materials, such as {"Material.003": "couch", "pane": "glass"}; names that are classes
+    need no entry. Raises InputError.
+    """
+    found = upright(path, read_mesh(path), unit=unit, up=up)
+    mesh = found.mesh
+    caster = RayCaster(mesh.vertices, mesh.faces)
+    view = find_viewpoint(caster, mesh.vertices, None if eye is None else found.of_file(np.asarray(eye, float)))
+    if look_deg is not None:
+        view = Viewpoint(eye_m=view.eye_m, azimuth_rad=float(np.deg2rad(look_deg)))
+    classes = _classes(mesh, materials)
+    photo = _photo(path, mesh, caster, view, classes)
+    place = ", ".join(f"{value:.2f}" for value in view.eye_m)
+    chosen = "given" if eye is not None else "chosen"
+    notes = (
+        f"The radar's place in the mesh, {place} m (z above its floor), was {chosen}; it looks at"
+        f" {np.rad2deg(view.azimuth_rad):.0f} degrees from the mesh's x axis.",
+        *found.assumptions,
+        *(() if mesh.has_colours else ("The mesh has no colours: materials follow from names and geometry alone.",)),
+    )
+    return CapturedPhoto(photo=photo, folder=path.parent, files={"mesh": path}, assumptions=notes)
+
+
+def _photo(path: Path, mesh: ColouredMesh, caster: RayCaster, view: Viewpoint, classes: np.ndarray | None) -> RgbdPhoto:
+    focal = WIDTH / 2 / np.tan(np.deg2rad(VIEW_DEG) / 2)
+    camera = CameraIntrinsics(
+        fx=focal, fy=focal, cx=(WIDTH - 1) / 2, cy=(HEIGHT - 1) / 2, width=WIDTH, height=HEIGHT
+    )  # fmt: skip
+    rays = viewing_rays(camera).reshape(-1, 3) @ _camera_axes(view.azimuth_rad)
+    length = np.linalg.norm(rays, axis=1)
+    distance_m, face = caster.first_hit(np.broadcast_to(view.eye_m, rays.shape), rays / length[:, None])
+    is_hit = face >= 0
+    if is_hit.mean() < 0.2:
+        raise InputError(f"{path}: from the radar's place hardly anything of the mesh is seen; give another place")
+    rgb = np.where(is_hit[:, None], mesh.rgb[np.maximum(face, 0)], 0).astype(np.uint8)
+    depth_m = np.where(is_hit, distance_m / length, np.nan)
+    mask = None
+    if classes is not None:
+        index = np.where(is_hit, classes[mesh.name[np.maximum(face, 0)]], 0)
+        mask = ClassMask(index=index.reshape(HEIGHT, WIDTH).astype(np.uint8), names=NAMES)
+    shape = (HEIGHT, WIDTH)
+    return RgbdPhoto(rgb=rgb.reshape(*shape, 3), depth_m=depth_m.reshape(shape), intrinsics=camera, classes=mask)
+
+
+def _camera_axes(azimuth_rad: float) -> np.ndarray:
+    """Rows: the camera's x (right), y (down) and z (ahead) in the mesh's upright frame."""
+    ahead = np.array([np.cos(azimuth_rad), np.sin(azimuth_rad), 0.0])
+    right = np.array([ahead[1], -ahead[0], 0.0])
+    looking = np.cos(TILT_RAD) * ahead + np.sin(TILT_RAD) * np.array([0.0, 0.0, 1.0])
+    return np.stack([right, np.cross(looking, right), looking])
+
+
+def _classes(mesh: ColouredMesh, materials: Path | None) -> np.ndarray | None:
+    """The class of each name of the mesh, as an index into NAMES; None where no name says anything."""
+    said = {} if materials is None else _table(materials)
+    index = np.array([NAMES.index(said.get(name) or _class_in(name)) for name in mesh.names])
+    return index if index.any() else None
+
+
+def _class_in(name: str) -> str:
+    """The class that a name of a mesh mentions, such as "Sofa.001" or "wall_north"."""
+    words = "".join(one if one.isalpha() else " " for one in name.lower()).split()
+    pairs = [" ".join(words[at : at + 2]) for at in range(len(words) - 1)]
+    return next((found for word in (*pairs, *words) if (found := coco_class(word)) is not None), UNLABELED)
+
+
+def _table(path: Path) -> dict[str, str]:
+    content: Any = read_json(path)
+    if not isinstance(content, dict):
+        raise InputError(f'{path} is no JSON object of names and classes, such as {{"Material.003": "couch"}}')
+    table = {}
+    for name, label in content.items():
+        known = CLASS_OF_MATERIAL.get(str(label)) or coco_class(str(label))
+        if known is None:
+            materials = ", ".join(sorted({*MATERIAL.values()} & {*CLASS_OF_MATERIAL}))
+            raise InputError(f"{path}: {name!r} is {str(label)[:40]!r}, no class of COCO-Stuff and none of {materials}")
+        table[name] = known
+    return table
