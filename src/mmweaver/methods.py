@@ -171,17 +171,16 @@ class _Latest(Generic[RoomT]):
 
     def __init__(self, prepare: Callable[[Scene, RadarConfig, RadarCube | None, Board | None], RoomT]):
         self._prepare = prepare
-        self._kept: tuple[Scene, RadarCube | None] | None = None  # compared by identity, so they must live on
-        self._key: tuple[RadarConfig, str | None] | None = None
-        self._room: RoomT | None = None
+        # compared by identity, so scene and background must live on; one tuple, for threads may share a method
+        self._kept: tuple[Scene, RadarCube | None, tuple[RadarConfig, str | None], RoomT] | None = None
 
     def get(self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None) -> RoomT:
         key = config, None if board is None else board.digest
         kept = self._kept
-        if self._room is None or kept is None or kept[0] is not scene or kept[1] is not background or key != self._key:
-            self._room = self._prepare(scene, config, background, board)
-            self._kept, self._key = (scene, background), key
-        return self._room
+        if kept is None or kept[0] is not scene or kept[1] is not background or kept[2] != key:
+            kept = scene, background, key, self._prepare(scene, config, background, board)
+            self._kept = kept
+        return kept[3]
 
 
 def _of_background(background: "BackgroundRecording | None") -> tuple[str, ...]:

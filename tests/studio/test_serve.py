@@ -46,12 +46,13 @@ def test_all_are_answered_right(served: tuple[StudioServer, str], count: int, mo
     """The same arrays as alone, whichever of the two workers made them while others asked."""
     monkeypatch.setattr(sessions, "MAX_RESULT_BYTES", ROOM_FOR)
     studio, address = served
-    asked = [(TEXTS[number % len(TEXTS)], number % 2) for number in range(count)]
+    boards = ("typical:0", "ideal")
+    asked = [(TEXTS[number % len(TEXTS)], number % 2, boards[number % 3 == 0]) for number in range(count)]
 
-    async def client(text: str, seed: int) -> dict[str, Any]:
+    async def client(text: str, seed: int, board: str) -> dict[str, Any]:
         async with httpx.AsyncClient(base_url=address, timeout=300) as page:
             own = {"x-session": (await page.post("/api/session")).json()["session"]}
-            body = {"room": "demo", "text": [text], "seed": seed}
+            body = {"room": "demo", "text": [text], "seed": seed, "board": board}
             return unpack((await page.post("/api/generate", json=body, headers=own)).content)[1]
 
     async def all_at_once() -> list[dict[str, Any]]:
@@ -60,13 +61,13 @@ def test_all_are_answered_right(served: tuple[StudioServer, str], count: int, mo
     answers = asyncio.run(all_at_once())
     weaver = Weaver()
     room = weaver.sample_room()
-    for text, seed in sorted(set(asked)):
-        alone = weaver.generate(room, text, seed=seed)
+    for text, seed, board in sorted(set(asked)):
+        alone = weaver.generate(room, text, seed=seed, board=board)
         expected = make_playback(alone.cube, alone.points, alone.poses).arrays
-        for one in (answer for answer, own in zip(answers, asked, strict=True) if own == (text, seed)):
+        for one in (answer for answer, own in zip(answers, asked, strict=True) if own == (text, seed, board)):
             assert set(one) == set(expected)
             for name, values in expected.items():
-                np.testing.assert_array_equal(one[name], values, err_msg=f"{text}, {seed}: {name}")
+                np.testing.assert_array_equal(one[name], values, err_msg=f"{text}, {seed}, {board}: {name}")
     kept = [result.num_bytes for session in studio.workshop.sessions.all() for result in session.results.values()]
     assert 0 < sum(kept) <= ROOM_FOR
     assert studio.jobs.waiting == 0

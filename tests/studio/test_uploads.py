@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.scene.photo.estimated_depth import EstimatedDepth
@@ -102,6 +103,13 @@ def test_a_radar_alone_is_a_radar(session: Session, tmp_path: Path):
     (tmp_path / "mine.json").write_text(replace(AWR, num_loops=16).to_json())
     found = take(session, tmp_path, AWR)
     assert session.radars[found["id"]][1].num_loops == 16
+
+
+def test_a_board_alone_is_a_board(session: Session, tmp_path: Path):
+    find_board("typical:3", AWR).save(tmp_path / "mine.json")
+    found = take(session, tmp_path, AWR)
+    assert found["kind"] == "board"
+    assert session.boards[found["id"]][1].digest == find_board("typical:3", AWR).digest
 
 
 def test_the_fuzz_corpus_leaves_one_line(session: Session, tmp_path: Path):

@@ -311,6 +311,7 @@ export class Studio {
   private async takeFound(found: any): Promise<void> {
     const choose = (control: HTMLSelectElement) => { control.append(element("option", { value: found.id }, found.label)); control.value = found.id; (control.parentElement as HTMLElement).hidden = false; };
     if (found.kind === "room") { choose(this.roomChoice); await this.changeRoom(); }
+    else if (found.kind === "board") { choose(this.boardChoice); await this.generate(); }
     else if (found.kind === "radar") { choose(this.radarChoice); await this.changeRadar(); }
     else if (found.kind === "motion") { choose(this.motionChoice); this.path = null; this.player.scene.clearPath(); await this.generate(); }
     else this.takeRecorded(new Sequence(await this.api.packed(`api/result/${found.id}`)), found.label);

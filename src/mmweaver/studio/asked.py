@@ -9,6 +9,7 @@ from mmweaver.core.errors import InputError
 
 MAX_TEXT = 500
 MAX_PATH = 200
+DEFAULT_BOARD = "typical:0"  # one board for all seeds, so that what is prepared for the room stays valid
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,6 +19,7 @@ class Asked:
     room: str
     text: tuple[str, ...]
     radar: str = "awr1843"
+    board: str = DEFAULT_BOARD
     method: str = "auto"
     seed: int = 0
     at: tuple[float, float] | None = None
@@ -41,19 +43,22 @@ class Asked:
         at, path = body.get("at"), body.get("path")
         return cls(
             room=_word(body, "room", ""), text=tuple(texts), radar=_word(body, "radar", "awr1843"),
+            board=_word(body, "board", DEFAULT_BOARD),
             method=_word(body, "method", "auto"), seed=seed, at=None if at is None else _place(at),
             path=None if path is None else _path(path), motion=_word(body, "motion", "") or None,
         )  # fmt: skip
 
     @property
     def request(self) -> dict[str, Any]:
-        """The arguments of `Weaver.generate` besides room and motion."""
+        """The arguments of `Weaver.generate` besides room, motion and board."""
         at = self.at if self.at is None or len(self.text) == 1 else [self.at] + [None] * (len(self.text) - 1)
         text = self.text[0] if len(self.text) == 1 else list(self.text)
         return {"text": text, "seed": self.seed, "at": at} | ({"path_m": self.path} if self.path else {})
 
-    def command(self, room_options: list[str], *, radar: str | None = None, motion: str | None = None) -> str:
-        """The same as a command line; `radar` and `motion` name the files that the session brought."""
+    def command(
+        self, room_options: list[str], *, radar: str | None = None, board: str | None = None, motion: str | None = None
+    ) -> str:
+        """The same as a command line; `radar`, `board` and `motion` name the files that the session brought."""
         words = ["mmweaver", "generate", *room_options]
         for text in self.text:
             words += ["--text", text]
@@ -63,12 +68,15 @@ class Asked:
             words.append("--path=" + " ".join(f"{x:g},{y:g}" for x, y in self.path))
         if motion is not None:
             words += ["--motion", motion]
-        words += ["--radar", radar or self.radar, "--method", self.method, "--seed", str(self.seed), "--out", "result"]
+        words += ["--radar", radar or self.radar, "--board", board or self.board]
+        words += ["--method", self.method, "--seed", str(self.seed), "--out", "result"]
         return shlex.join(words)
 
-    def python(self, room_call: str, *, radar: str | None = None, motion: str | None = None) -> str:
-        """The same as Python; `radar` and `motion` name the files that the session brought."""
-        arguments = "".join(
+    def python(
+        self, room_call: str, *, radar: str | None = None, board: str | None = None, motion: str | None = None
+    ) -> str:
+        """The same as Python; `radar`, `board` and `motion` name the files that the session brought."""
+        arguments = f", board={board or self.board!r}" + "".join(
             f", {name}={value!r}" for name, value in self.request.items() if name != "text" and value is not None
         )
         if motion is not None:

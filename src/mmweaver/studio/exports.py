@@ -2,7 +2,6 @@
 
 import shutil
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,7 +13,6 @@ from mmweaver.core.safe_files.regular_files import read_bytes
 from mmweaver.exports.export import FORMATS, export_result
 from mmweaver.figures.figure_data import FigureData
 from mmweaver.formats.npz_files import write_points_npz, write_radar_npz
-from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.playback.html_page import write_page
 from mmweaver.result_folder import save_results
 from mmweaver.studio.sessions import Result
@@ -92,10 +90,10 @@ def export(result: Result, kind: str) -> tuple[str, bytes]:
 
 
 def _save(result: Result, folder: Path, *, pictures: bool = True) -> None:
-    aligned = None if result.scene is None else AlignedPhoto.of(result.scene)
-    view = FigureData(title=result.title, cube=_cube(result), points=result.points, aligned=aligned, poses=result.poses)
     if result.generation is not None:
-        view = replace(view, motions=result.generation.motions)
+        result.generation.save(folder, pictures=pictures)
+        return
+    view = FigureData(title=result.title, cube=_cube(result), points=result.points, poses=result.poses)
     save_results(folder, view, result.meta, pictures=pictures)
 
 

@@ -5,13 +5,14 @@ from collections.abc import Iterator
 from time import perf_counter
 from typing import Any
 
+from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.generate import Weaver
 from mmweaver.generation import Room
 from mmweaver.playback.sequence import make_playback
 from mmweaver.playback.wire import pack
 from mmweaver.streaming import StreamChunk
-from mmweaver.studio.asked import Asked
+from mmweaver.studio.asked import DEFAULT_BOARD, Asked
 
 CHUNK_FRAMES = 10
 
@@ -19,12 +20,17 @@ CHUNK_FRAMES = 10
 class Live:
     """One stream of one session. `next_chunk` is called for each chunk; `say` hands in the next sentence."""
 
-    def __init__(self, weaver: Weaver, room: Room, asked: Asked):
+    def __init__(self, weaver: Weaver, room: Room, asked: Asked, board: Board | str = DEFAULT_BOARD):
         if len(asked.text) > 1:
             raise InputError("Live has one person; leave the second sentence empty")
         self._sentences: deque[str] = deque(asked.text)
         self._chunks: Iterator[StreamChunk] = weaver.stream(
-            room, self._next_sentence(), seed=asked.seed, at=asked.at, chunk_frames=CHUNK_FRAMES
+            room,
+            self._next_sentence(),
+            seed=asked.seed,
+            at=asked.at,
+            chunk_frames=CHUNK_FRAMES,
+            board=board,
         )
         self._scale_db: tuple[float, float] | None = None
         self._frames = 0

@@ -10,6 +10,7 @@ from pathlib import Path
 from threading import Lock
 from time import monotonic
 
+from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import PointCloud, PoseSequence, RadarCube, Scene
@@ -77,6 +78,7 @@ class Session:
         self.folder = Path(tempfile.mkdtemp(prefix="mmweaver-studio-"))  # readable by this user alone
         self.rooms: dict[str, BroughtRoom] = {}  # by id
         self.radars: dict[str, tuple[str, RadarConfig]] = {}  # by id: file name and radar
+        self.boards: dict[str, tuple[str, Board]] = {}  # by id: file name and board
         self.motions: dict[str, tuple[str, MotionClip]] = {}  # by id: file name and motion
         self.results: OrderedDict[str, Result] = OrderedDict()
         self.pinned: str | None = None  # the result that the next ones are compared with
@@ -105,7 +107,7 @@ class Session:
     def end(self) -> None:
         """Removes the session's folder; its rooms and results go with it."""
         self.is_open = False
-        for brought in (self.rooms, self.radars, self.motions, self.photos):
+        for brought in (self.rooms, self.radars, self.boards, self.motions, self.photos):
             brought.clear()
         self.results.clear()
         shutil.rmtree(self.folder, ignore_errors=True)

@@ -5,9 +5,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from mmweaver.core.board import read_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.safe_files.safe_text import parse_json
+from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.generate import Weaver
 from mmweaver.generation import Room
@@ -52,11 +53,11 @@ def take(session: Session, folder: Path, radar: RadarConfig) -> dict[str, Any]:
         return _photo(session, files, folder)
     settings = next((file for name, file in files.items() if name.endswith(SETTINGS)), None)
     if settings is not None:
-        return _radar(session, settings)
+        return _radar_or_board(session, settings)
     raise InputError(
         f"nothing here is known: {', '.join(sorted(files)[:5])}; bring rgb.png with depth.png (and camera.json), a scan"
-        " or a mesh (.glb, .ply, .obj), a .bin with its .cfg, a .dat, a .cfg or radar.json, a motion (.bvh, .npz,"
-        " .npy), or a result folder"
+        " or a mesh (.glb, .ply, .obj), a .bin with its .cfg, a .dat, a .cfg, radar.json or board.json, a motion (.bvh,"
+        " .npz, .npy), or a result folder"
     )
 
 
@@ -150,10 +151,19 @@ def _room(session: Session, room: Room, **given: Path | str | None) -> dict[str,
     return {"kind": "room", "id": name, "label": label}
 
 
-def _radar(session: Session, file: Path) -> dict[str, Any]:
-    config, name = load_radar(str(file)), secrets.token_urlsafe(6)
+def _radar_or_board(session: Session, file: Path) -> dict[str, Any]:
+    name = secrets.token_urlsafe(6)
+    if file.suffix.lower() == ".json" and "board_version" in _keys(file):
+        session.boards[name] = (file.name, read_board(file))
+        return {"kind": "board", "id": name, "label": file.name}
+    config = load_radar(str(file))
     session.radars[name] = (file.name, config)
     return {"kind": "radar", "id": name, "label": file.name}
+
+
+def _keys(file: Path) -> set[str]:
+    content = read_json(file)
+    return set(content) if isinstance(content, dict) else set()
 
 
 def _motion(session: Session, file: Path) -> dict[str, Any]:

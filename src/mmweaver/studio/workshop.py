@@ -5,6 +5,8 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
+from mmweaver.core.board import Board
+from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
@@ -25,6 +27,7 @@ from mmweaver.studio.sessions import Result, Session, Sessions
 from mmweaver.studio.ways_on import ways_on_for_the_page
 
 FIRST_TEXT = "a person walks towards the radar, then waves with the left hand"
+BOARDS = ("typical:0", "typical:1", "typical:2", "ideal")
 _MOST_WEAVERS = 12  # each keeps the room that it worked in last
 
 
@@ -35,14 +38,14 @@ class Workshop:
         self.rooms = OfferedRooms(rooms or [])
         self.recordings = OfferedRecordings(recordings or [])
         self.sessions = Sessions()
-        self._weavers: OrderedDict[tuple[str, str, str], Weaver] = OrderedDict()
+        self._weavers: OrderedDict[tuple[str, str, str, str], Weaver] = OrderedDict()
         self._lock = Lock()
 
     def warm_up(self) -> None:
         """Reads the first room and makes one sequence in it, so that the first visitor does not wait."""
         name = self.rooms.names[0]
         asked = Asked(room=name, text=(FIRST_TEXT,))
-        self._weaver(asked, PRESETS[asked.radar]).generate(self.rooms.get(name), FIRST_TEXT)
+        self._weaver(asked, PRESETS[asked.radar]).generate(self.rooms.get(name), FIRST_TEXT, board=asked.board)
 
     def offer(self) -> dict[str, Any]:
         """What the page's controls hold."""
@@ -52,7 +55,7 @@ class Workshop:
             "rooms": [(name, names.get(name, name)) for name in self.rooms.names],
             "radars": [(name, name) for name in PRESETS],
             "methods": [("auto", "network"), ("physics", "physics (ray-traced)")],
-            "boards": [],
+            "boards": [(name, name.replace(":", " ")) for name in BOARDS],
             "recordings": self.recordings.names,
             "sentences": [activity.example for activity in BY_KEY.values()],
             "text": FIRST_TEXT,
@@ -72,6 +75,15 @@ class Workshop:
         return PRESETS[name]
 
     @staticmethod
+    def board_of(session: Session, name: str, radar: RadarConfig) -> Board:
+        """A board by its id: the session's own, "ideal" or "typical:N". Raises InputError."""
+        if name in session.boards:
+            return find_board(session.boards[name][1], radar)
+        if name != "ideal" and not name.startswith("typical:"):
+            raise InputError(f"unknown board {name!r}; choose one of the list")
+        return find_board(name, radar)
+
+    @staticmethod
     def motion_of(session: Session, name: str | None) -> MotionClip | None:
         """A motion that the session brought; None for None. Raises InputError."""
         if name is not None and name not in session.motions:
@@ -89,22 +101,24 @@ class Workshop:
         """A sequence, kept in the session and packed for the page. Raises InputError."""
         asked = Asked.of(body)
         room = self.room_of(session, asked.room)
-        weaver, motion = self._weaver(asked, self.radar_of(session, asked.radar)), self.motion_of(session, asked.motion)
+        radar, motion = self.radar_of(session, asked.radar), self.motion_of(session, asked.motion)
+        weaver, board = self._weaver(asked, radar), self.board_of(session, asked.board, radar)
         with ways_on_for_the_page(asked):
-            generation = weaver.generate(room, motion=motion, **asked.request)
+            generation = weaver.generate(room, motion=motion, board=board, **asked.request)
         if asked.room in session.rooms:
             options, call = list(session.rooms[asked.room].options), session.rooms[asked.room].call
         else:
             options, call = self.rooms.options(asked.room), self.rooms.call(asked.room)
         names = {
             "radar": session.radars[asked.radar][0] if asked.radar in session.radars else asked.radar,
+            "board": session.boards[asked.board][0] if asked.board in session.boards else asked.board,
             "motion": None if asked.motion is None else session.motions[asked.motion][0],
         }
         repeated = {"command": asked.command(options, **names), "python": asked.python(call, **names)}
         result = Result(
             cube=generation.cube, points=generation.points, poses=generation.poses, meta=generation.meta,
             scene=generation.scene, generation=generation, asked=repeated,
-            with_samples=lambda: weaver.generate(room, motion=motion, keep_adc=True, **asked.request),
+            with_samples=lambda: weaver.generate(room, motion=motion, board=board, keep_adc=True, **asked.request),
         )  # fmt: skip
         return self._kept(session, result, {"seconds": generation.stages.seconds, **repeated})
 
@@ -124,7 +138,9 @@ class Workshop:
     def live(self, session: Session, body: Any) -> Live:
         """A stream in one of the session's rooms. Raises InputError."""
         asked = Asked.of(body)
-        return Live(self._weaver(asked, self.radar_of(session, asked.radar)), self.room_of(session, asked.room), asked)
+        radar = self.radar_of(session, asked.radar)
+        board = self.board_of(session, asked.board, radar)
+        return Live(self._weaver(asked, radar), self.room_of(session, asked.room), asked, board)
 
     def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
         name = session.add(result)
@@ -137,10 +153,10 @@ class Workshop:
         return pack({**shown.header, **more, "result": name}, shown.arrays)
 
     def _weaver(self, asked: Asked, radar: RadarConfig) -> Weaver:
-        """A generator for this room, radar and method; kept, because it holds what it prepared for the room."""
+        """A generator for this room, radar, board and method; kept, because it holds what it prepared for the room."""
         if asked.method not in METHODS:
             raise InputError(f"unknown method {asked.method!r}; choose one of the list")
-        key = (asked.room, asked.radar, asked.method)
+        key = (asked.room, asked.radar, asked.board, asked.method)
         with self._lock:
             if key not in self._weavers:
                 self._weavers[key] = Weaver(method=asked.method, radar=radar)
