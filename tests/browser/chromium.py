@@ -23,9 +23,21 @@ FLAGS = [
 ]
 
 
-@contextmanager
-def running_studio(*options: str, log: Path) -> Iterator[str]:
+class Running(str):
     """The address of a studio in a process of its own."""
+
+    pid = 0
+
+    @property
+    def memory_mb(self) -> float:
+        """Resident memory of its process."""
+        said = Path(f"/proc/{self.pid}/status").read_text()
+        return int(re.findall(r"VmRSS:\s+(\d+)", said)[0]) / 1024
+
+
+@contextmanager
+def running_studio(*options: str, log: Path) -> Iterator[Running]:
+    """A studio, until the block ends."""
     command = [sys.executable, "-m", "mmweaver", "studio", "--no-browser", "--port", "0", *options]
     with log.open("w") as out:
         process = subprocess.Popen(
@@ -36,7 +48,9 @@ def running_studio(*options: str, log: Path) -> Iterator[str]:
             said = log.read_text()
             found = re.search(r"is ready: (\S+)", said)
             if found:
-                yield found[1]
+                address = Running(found[1])
+                address.pid = process.pid
+                yield address
                 return
             if process.poll() is not None:
                 pytest.fail(f"the studio ended: {said}")

@@ -6,11 +6,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from PIL import Image
 
 from mmweaver.formats.dca1000 import write_bin
 from tests import captures
-from tests.browser.chromium import FLAGS, needs_browser, running_studio
+from tests.browser.chromium import FLAGS, Running, needs_browser, running_studio
+from tests.scene.scanned_mesh.test_mesh_photo import Y_UP, furnished
 
 SAMPLE = Path(__file__).resolve().parents[2] / "src" / "mmweaver" / "sample"
 READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"
@@ -28,7 +31,7 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
     needs_browser()
     with running_studio("--workers", "1", log=tmp_path_factory.mktemp("studio") / "log") as found:
         yield found
@@ -290,6 +293,89 @@ def test_live_runs_on_and_takes_sentences(page: Any):
     assert page.evaluate("studio.result.frames") <= 200
     page.get_by_role("button", name="Stop").click()
     assert "s of radar in" in ask(page, "a person waves")
+
+
+@pytest.mark.slow  # test_live_runs_on_and_takes_sentences and tests/studio/test_live.py hold the parts
+def test_twenty_seconds_live(page: Any, address: Running):
+    """Five times faster than real time, without jumps, in memory that does not grow."""
+    ask(page, "a person walks to the left")
+    page.get_by_role("button", name="Live").click()
+    heap, resident = [], []
+    for seconds, text in ((8, "a person claps"), (14, "a person walks to the right"), (20, "a person sits down")):
+        page.wait_for_function(f"() => studio.live && studio.live.frames > {10 * seconds}", timeout=120_000)
+        page.evaluate("window.gc && gc()")
+        heap.append(page.evaluate("performance.memory.usedJSHeapSize") / 1e6)
+        resident.append(address.memory_mb)
+        page.locator(".sentence").first.fill(text)
+        page.locator(".sentence").first.press("Enter")
+    page.wait_for_function("() => studio.live.frames > 220", timeout=120_000)
+    speed = page.evaluate("studio.live.times_real_time")
+    page.get_by_role("button", name="Stop").click()
+    assert heap[-1] - heap[0] < 30, heap
+    assert resident[-1] - resident[0] < 60, resident
+    assert speed > 5
+
+
+def test_a_room_without_a_floor_offers_ways_on(page: Any, tmp_path: Path):
+    """A wall at 1.2 m fills the picture: nobody can stand before it."""
+    Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(tmp_path / "rgb.png")
+    Image.fromarray(np.full((480, 640), 1200, np.uint16)).save(tmp_path / "depth.png")
+    drop(page, [tmp_path / "rgb.png", tmp_path / "depth.png"])
+    page.wait_for_selector(".status.error button", timeout=60_000)
+    assert "\n" not in page.inner_text(".status.error")
+    page.get_by_role("button", name="in the bundled room").click()
+    page.wait_for_selector(IDLE, timeout=60_000)
+    assert "s of radar in" in page.inner_text(".status")
+
+
+def test_a_mesh_becomes_a_room(page: Any, tmp_path: Path):
+    drop(page, [furnished(tmp_path / "room.glb", Y_UP)])
+    assert "s of radar in" in page.inner_text(".status")
+    assert "--mesh room.glb" in page.evaluate("studio.result.header.command")
+    page.locator("select[aria-label=Room]").select_option("demo")
+    page.wait_for_selector(IDLE, timeout=60_000)
+
+
+def test_the_keyboard_moves_the_start_and_walks_a_path(page: Any):
+    ask(page, "a person waves")
+    page.locator(".scene canvas").focus()
+    start = page.evaluate("studio.result.header.meta.person.starts_at_m")
+    page.keyboard.press("Shift+ArrowLeft")
+    page.wait_for_selector("main[data-busy=true]")
+    page.wait_for_selector(IDLE, timeout=60_000)
+    moved = page.evaluate("studio.result.header.meta.person.starts_at_m")
+    assert math.dist(moved, start) < 0.4  # a step, or the nearest free place
+    assert moved != start
+    ask(page, "a person walks to the left")
+    page.get_by_role("button", name="Draw path").click()
+    page.evaluate("studio.at = [0.3, 2.2]")
+    page.locator(".scene canvas").focus()
+    page.keyboard.press("Enter")
+    for _ in range(7):
+        page.keyboard.press("Shift+ArrowDown")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Walk path").click()
+    page.wait_for_selector(IDLE, timeout=60_000)
+    assert math.dist(page.evaluate("studio.result.header.meta.person.ends_at_m"), [0.3, 1.5]) < 0.15
+    page.evaluate("studio.follow({path: null})")
+    page.wait_for_selector(IDLE, timeout=60_000)
+
+
+def test_hovering_the_body_marks_its_cells(page: Any):
+    ask(page, "a person waves")
+    page.evaluate("studio.player.seek(5)")
+    x, y = page.evaluate("""(() => { const p = studio.result.joint(0, 5, 0), v = studio.player.scene;
+        const c = v.camera.position.clone().set(p[0], p[1], p[2]).project(v.camera);
+        const box = v.renderer.domElement.getBoundingClientRect();
+        return [box.left + (c.x + 1) / 2 * box.width, box.top + (1 - c.y) / 2 * box.height]; })()""")
+    page.mouse.move(x, y)
+    marks = page.evaluate("studio.player.panel('range_doppler').marks")
+    near, far = marks[0]["y"]
+    pelvis_m = page.evaluate("Math.hypot(...studio.result.joint(0, 5, 0))")
+    assert near < pelvis_m < far < near + 1.5
+    assert marks[0]["x"][0] < marks[0]["x"][1]
+    page.mouse.move(5, 5)
+    assert page.evaluate("studio.player.panel('range_doppler').marks") == []
 
 
 def test_the_offline_page_plays(page: Any, browser: Any, tmp_path: Path):
