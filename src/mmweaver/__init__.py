@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 from mmweaver.core.version import __version__
 
 if TYPE_CHECKING:
+    from mmweaver.calibration.calibrate import Calibration, calibrate
     from mmweaver.comparison.compare_signals import Comparison, compare
+    from mmweaver.core.board import Board
     from mmweaver.core.errors import InputError
     from mmweaver.core.presets import PRESETS
     from mmweaver.core.radar_config import RadarConfig
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 
 _HOME = {
     "AdcCube": "core.records",
+    "Board": "core.board",
+    "Calibration": "calibration.calibrate",
     "Comparison": "comparison.compare_signals",
     "Generation": "generation",
     "InputError": "core.errors",
@@ -37,6 +41,7 @@ _HOME = {
     "Recording": "recordings.read_recording",
     "Scene": "core.records",
     "Weaver": "generate",
+    "calibrate": "calibration.calibrate",
     "compare": "comparison.compare_signals",
     "load_radar": "formats.radar_file",
     "process_recording": "recordings.processing",
@@ -49,6 +54,8 @@ _MODULES = ("register", "testing")
 __all__ = [
     "PRESETS",
     "AdcCube",
+    "Board",
+    "Calibration",
     "Comparison",
     "Generation",
     "InputError",
@@ -61,6 +68,7 @@ __all__ = [
     "Scene",
     "Weaver",
     "__version__",
+    "calibrate",
     "compare",
     "load_radar",
     "process_recording",

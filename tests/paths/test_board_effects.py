@@ -52,14 +52,14 @@ def test_both_renderers_have_the_same_board(config: RadarConfig):
     place = rng.uniform((-1.0, 1.2, -0.5), (1.0, 2.6, 0.5), (60, 3))
     static = board.on_static(scattered_paths(place, rng.normal(size=60) + 0j, Interaction.DIFFUSE, board.radar))
     still = synthesis.static(static)
-    adc = synthesis.moving(moving) + still + synthesis.leakage(board)
+    adc = synthesis.moving(moving) + still + synthesis.leakage(*board.leakage)
     adc[:, 0, board.first_slot] *= board.first_chirp
     values = renderer.moving(moving)
-    renderer.add_static(values, renderer.static(static).layer() + renderer.leakage(board))
+    renderer.add_static(values, renderer.static(static).layer() + renderer.leakage(*board.leakage))
     assert error_db(values, cube_values(adc, config)) < -34
-    alone = synthesis.leakage(board).expand(1, config.num_loops, -1, -1, -1)
+    alone = synthesis.leakage(*board.leakage).expand(1, config.num_loops, -1, -1, -1)
     layer = torch.zeros_like(values[:1])
-    renderer.add_static(layer, renderer.leakage(board))
+    renderer.add_static(layer, renderer.leakage(*board.leakage))
     wanted = alone.clone()
     wanted[:, 0, board.first_slot] *= board.first_chirp
     assert error_db(layer, cube_values(wanted, config)) < -36

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from mmweaver.cli import (
+    calibrate,
     compare,
     completion,
     compress,
@@ -91,9 +92,8 @@ def _parser_and_commands() -> tuple[Parser, dict[str, Parser]]:
     parser.add_argument("--version", action="version", version=f"mmweaver {__version__}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", title="commands")
     modules_in_order = (
-        generate, studio, view, export, process, compare, points, radar, compress, decompress, info, rooms, motions,
-        motion, recognise, evaluate,
-        dataset, train, verify, completion,
+        generate, studio, view, export, process, compare, calibrate, points, radar, compress, decompress, info, rooms,
+        motions, motion, recognise, evaluate, dataset, train, verify, completion,
     )  # fmt: skip
     for module in modules_in_order:
         command = module.add_command(commands)

@@ -15,6 +15,7 @@ UNITS, MOST_VARIATION = {"amplitude": "%", "phase": "mrad"}, {"amplitude": 0.3, 
 STILL_SHARE = 1e-3  # moving energy of a static range bin, at most, of its static energy
 FEWEST_DRIFT_FRAMES = 8
 SHORTEST_DRIFT_M = 0.5  # spread of the static cells over range
+WRAPPED_BINS = 3  # at the end of the range axis, where the window's sidelobes of range 0 appear
 
 
 def last_of_band(evidence: SignalEvidence) -> FrameValues:
@@ -129,13 +130,21 @@ def drift(evidence: SignalEvidence) -> FrameValues:
 
     An oscillator that is off by the share e turns a cell at range r by 4 pi r e / wavelength. Raises CannotSeeError.
     """
+    slope, error = drift_slopes(evidence)
+    return FrameValues(np.abs(slope), at_most=bool(np.median(np.abs(slope)) < 2 * np.median(error)))
+
+
+def drift_slopes(evidence: SignalEvidence) -> tuple[np.ndarray, np.ndarray]:
+    """The same with its sign, and its standard error, (frame,) each, in mrad a metre. Raises CannotSeeError."""
     still = evidence.still
     if len(still) < FEWEST_DRIFT_FRAMES:
         raise CannotSeeError(f"it takes {FEWEST_DRIFT_FRAMES} frames, and these are {len(still)}")
     mean = still.mean(axis=0)
     level = (np.abs(mean) ** 2).mean(axis=1)
     moves = (np.abs(still - mean) ** 2).mean(axis=(0, 2))
-    steady = np.flatnonzero((moves < 0.01 * level) & (evidence.range_m > 0.25))
+    config = evidence.cube.config
+    wraps = config.first_range_bin + np.arange(still.shape[1]) >= config.num_unambiguous_range_bins - WRAPPED_BINS
+    steady = np.flatnonzero((moves < 0.01 * level) & (evidence.range_m > 0.25) & np.logical_not(wraps))
     range_m = evidence.range_m[steady]
     if len(steady) < 4 or np.ptp(range_m) < SHORTEST_DRIFT_M:
         raise CannotSeeError("static cells span less than half a metre")
@@ -145,8 +154,7 @@ def drift(evidence: SignalEvidence) -> FrameValues:
     fitted = np.linalg.lstsq(design, (phase * weight).T, rcond=None)[0]
     rest = (phase * weight).T - design @ fitted
     error = np.sqrt(np.linalg.inv(design.T @ design)[1, 1] * (rest**2).sum(axis=0) / (len(range_m) - 2))
-    slope = 1e3 * np.abs(fitted[1])
-    return FrameValues(slope, at_most=bool(np.median(slope) < 2e3 * np.median(error)))
+    return 1e3 * fitted[1], 1e3 * error
 
 
 def _whole_band(evidence: SignalEvidence) -> np.ndarray:

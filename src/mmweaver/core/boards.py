@@ -21,8 +21,9 @@ LARGEST_NUMBER = 2**31 - 1
 WIDEST_BAND_HZ = 10e9  # of one board
 # spread between boards: mean and standard deviation, or lowest and highest
 IF_END_DB, IF_NEAR_DB = (-9.0, -4.5), (-5.0, -1.0)  # of power: last 5 % of the band, range bins 2 to 6
-IF_SHARES = (0.0, 2.0, 6.0), (0.9, 0.95, 1.0)  # range bins of the high-pass filter; shares of the low-pass filter
-CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.5, 6.0  # standard deviation of each transmitter's and each receiver's
+NEAR_SHAPE = ((0, 1.0), (2, 1.0), (6, 0.95), (10, 0.6), (16, 0.35), (30, 0.0))  # range bin, share of IF_NEAR_DB
+END_SHAPE = ((0.89, 0.0), (0.905, -1.0), (0.92, -3.0), (0.935, -6.0), (0.955, -9.3))  # share of the band, dB
+CHANNEL_GAIN_DB, CHANNEL_PHASE_DEG = 0.4, (4.0, 14.0)  # standard deviations of each transmitter's and each receiver's
 LEAKAGE_OVER_NOISE_DB = (35.0, 43.0)  # of a chirp's range bin
 LEAKAGE_PAIRS_DB = 4.5  # standard deviation over pairs: 10 to 20 dB from the weakest of 12 to the strongest
 SKIRT_END_M = (0.5, 1.5)  # where it has fallen to the noise of a frame's cell
@@ -80,7 +81,7 @@ def typical_board(config: RadarConfig, number: int) -> Board:
     tx, rx = config.num_tx, config.num_rx
     if_share, if_gain_db = _filters(config, between(IF_NEAR_DB), between(IF_END_DB))
     gain_db = rng.normal(0, CHANNEL_GAIN_DB, (tx, 1)) + rng.normal(0, CHANNEL_GAIN_DB, (1, rx))
-    phase_deg = rng.normal(0, CHANNEL_PHASE_DEG, (tx, 1)) + rng.normal(0, CHANNEL_PHASE_DEG, (1, rx))
+    phase_deg = between(CHANNEL_PHASE_DEG) * (rng.normal(size=(tx, 1)) + rng.normal(size=(1, rx)))
     sign = 1 if rng.random() < 0.5 else -1
     leakage = _leakage(config, rng, between(LEAKAGE_OVER_NOISE_DB), between(SKIRT_END_M))
     return Board(
@@ -102,14 +103,19 @@ def _spacing_m(config: RadarConfig) -> float | None:
 
 
 def _filters(config: RadarConfig, near_db: float, end_db: float) -> tuple[np.ndarray, np.ndarray]:
-    """High-pass filter near range 0 and low-pass filter at the end of the band: shares of the band and gains in dB."""
-    near, end = IF_SHARES
-    used = 1.0 if config.complex_samples else 0.5  # of the sample rate
-    low = np.array(near) / config.num_samples
-    share = np.concatenate([low, [3 * low[-1]], used * np.array(end)])
-    # at bin 0, 2, 6, 18 and at 90, 95 and 100 % of the band: falls that give the recorded means
-    gain_db = np.array([2 * near_db, 1.4 * near_db, 0.6 * near_db, 0.0, 0.0, 0.55 * end_db, 1.5 * end_db])
-    return share, gain_db
+    """High-pass filter near range 0 and low-pass filter at the end of the band: shares of the sample rate, gains in dB.
+
+    Both with the shape that two boards show: the low-pass filter falls to -9 dB at 95 % of the band, where its
+    neighbour begins to fold in. Real samples (one board) show neither, only a slow fall.
+    """
+    if not config.complex_samples:
+        return np.array([0.0, 0.25, 0.5]), np.array([0.0, 0.0, 0.3 * end_db])
+    near, end = NEAR_SHAPE, END_SHAPE
+    low = np.minimum(np.array([at for at, _ in near]) / config.num_samples, 0.5)
+    share = np.concatenate([low, [at for at, _ in end], [0.975, 0.99, 1.0]])
+    gain_db = [times * near_db for _, times in near] + [gain for _, gain in end] + [end_db, end_db + 2, end_db + 2]
+    rising = np.concatenate([[True], np.diff(share) > 0])
+    return share[rising], np.array(gain_db)[rising]
 
 
 def _leakage(

@@ -144,7 +144,9 @@ class LearnedRoom:
             if self.board is not None:
                 turn = 2j * math.pi / config.wavelength_m * self.static.length_m.mean(dim=(1, 2))
                 self._layer_rate = response.scaled(turn.to(torch.complex64)).layer()  # by the carrier's drift
-                self.layer = self.layer + self.renderer.leakage(self.board) if background is None else self.layer
+                if background is None:
+                    self.layer = self.layer + self.renderer.leakage(*self.board.leakage)
+                    self._layer_rate = self._layer_rate + self.renderer.leakage(*self.board.leakage_rate)
         self._synthesis: tuple[AdcSynthesis, Tensor] | None = None
 
     def paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
@@ -299,7 +301,10 @@ class LearnedRoom:
             self._drift_rate = carrier_over_slope_s * synthesis.static_rate(self.static)
         if self.background is None:
             static = synthesis.static(self.static)
-            return static if self.board is None else static + synthesis.leakage(self.board)
+            if self.board is None:
+                return static
+            self._drift_rate = self._drift_rate + synthesis.leakage(*self.board.leakage_rate)
+            return static + synthesis.leakage(*self.board.leakage)
         return torch.from_numpy(static_samples(self.background.static.numpy(), self.config))
 
     def _sample_noise(self, cells: np.ndarray, first: int, seed: int) -> np.ndarray:

@@ -98,9 +98,8 @@ class AdcSynthesis:
         # each frame on its own: its bits do not depend on which others are asked for
         return torch.cat([self.static(paths.static, weight[frame : frame + 1]) for frame in range(len(weight))])
 
-    def leakage(self, board: "BoardEffects") -> Tensor:
-        """Samples of a board's leakage, complex64 (tx, rx, sample); the same in every loop."""
-        length_m, amplitude = board.leakage
+    def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
+        """Samples of leakage, complex64 (tx, rx, sample), the same in every loop; `BoardEffects.leakage` gives it."""
         fast = fast_time(length_m / SPEED_OF_LIGHT_MPS, 0.0, self.config)  # (tap, sample)
         adc = torch.tensordot(self._elements.of_pairs(amplitude), fast, dims=([0], [0]))
         return self._elements.slots(adc, 0)

@@ -94,6 +94,13 @@ class BoardEffects:
         shaped = amplitude.reshape(-1, config.num_tx, config.num_rx).astype(np.complex64)
         return torch.from_numpy(2 * board.leakage_range_m), torch.from_numpy(shaped)
 
+    @property
+    def leakage_rate(self) -> tuple[Tensor, Tensor]:
+        """The same, amplitudes as they change with the carrier's relative error."""
+        length_m, amplitude = self.leakage
+        turn = 2j * torch.pi / self.radar.wavelength_m * length_m
+        return length_m, (amplitude * turn[:, None, None]).to(torch.complex64)
+
 
 def as_built(board: Board, config: RadarConfig) -> RadarConfig:
     """The radar with the antenna places and the noise figure that its board has."""

@@ -159,15 +159,18 @@ class CubeRenderer:
     def _decoded(self, echo: Tensor) -> Tensor:
         return self._elements.decoded(self._array.mixed(echo.unflatten(1, (self.config.num_tx, -1)), 1).flatten(1))
 
-    def leakage(self, board: "BoardEffects") -> Tensor:
-        """What a board's leakage leaves at zero Doppler, complex64 (range, antenna)."""
-        length_m, amplitude = board.leakage
+    def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
+        """What leakage leaves at zero Doppler, complex64 (range, antenna); `BoardEffects.leakage` gives it."""
+        at_range = self.leakage_response(length_m)
+        return at_range.T @ self._elements.decoded(self._elements.of_pairs(amplitude).flatten(1))
+
+    def leakage_response(self, length_m: Tensor) -> Tensor:
+        """What leakage of amplitude 1 and path lengths (tap,) leaves in the range bins, complex64 (tap, range)."""
         config = self.config
         delay_s = length_m / SPEED_OF_LIGHT_MPS
         kernel, _ = self._range_kernel(self._range_bin - (length_m / (2 * config.range_resolution_m)).float()[:, None])
         turn = phasor(-config.chirp_slope_hz_per_s * delay_s**2 / 2)
-        at_range = (kernel * self._range_sign).to(torch.complex64) * turn[:, None]
-        return at_range.T @ self._elements.decoded(self._elements.of_pairs(amplitude).flatten(1))
+        return (kernel * self._range_sign).to(torch.complex64) * turn[:, None]
 
     def add_static(self, values: Tensor, layer: Tensor) -> None:
         """Adds static layers (range, antenna) or (frame, range, antenna) to cube values, in place."""

@@ -90,6 +90,10 @@ class Simulator:
                 self._static = self.synthesis.static(self.room.paths)
                 self._static += self._leakage()
             self._static_rate = self.synthesis.static_rate(self.room.paths)
+            if self.board is not None:  # how static samples change with the carrier's relative error
+                self._drift_rate = self._static_rate * (config.centre_frequency_hz / config.chirp_slope_hz_per_s)
+                if background is None:
+                    self._drift_rate = self._drift_rate + self.synthesis.leakage(*self.board.leakage_rate)
 
     def _receiver(self, seed: int) -> Receiver:
         """The radar's own, or that of the background recording."""
@@ -101,7 +105,7 @@ class Simulator:
     def _leakage(self) -> torch.Tensor:
         """Samples (tx, rx, sample) of the board's leakage, or of the usual one."""
         if self.board is not None and len(self.board.board.leakage_range_m):
-            return self.synthesis.leakage(self.board)
+            return self.synthesis.leakage(*self.board.leakage)
         return self.synthesis.static(leakage_path(self.config, self.impairments))
 
     def _use(self, recording: RadarCube) -> BackgroundRecording:
@@ -171,9 +175,7 @@ class Simulator:
     def _drifted(self, frames: np.ndarray, seed: int) -> torch.Tensor:
         """What the carrier's drift adds to the static samples of frames: (frame, tx, rx, sample)."""
         assert self.board is not None
-        carrier_over_slope_s = self.config.centre_frequency_hz / self.config.chirp_slope_hz_per_s
-        drift = torch.from_numpy(self.board.drift(frames, seed) * carrier_over_slope_s).float()
-        return drift[:, None, None, None] * self._static_rate
+        return torch.from_numpy(self.board.drift(frames, seed)).float()[:, None, None, None] * self._drift_rate
 
     def _people(
         self,

@@ -1,0 +1,115 @@
+"""Gain and phase of each antenna pair, from static cells of an unknown room.
+
+A strong cell is mostly one plane wave, so its phases over the antennas are those of a direction plus the board's. Over
+many cells of many directions the board's remain: directions and errors are found in turn, each in closed form. What is
+linear in an antenna's place is a direction too, so it cannot be seen: neither a turned board nor the offset of a row of
+antennas above another.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from mmweaver.calibration.finding import Finding
+from mmweaver.comparison.signal_evidence import SignalEvidence
+from mmweaver.core.radar_config import RadarConfig
+
+NEAREST_M = 0.6  # leakage and its skirt lie nearer
+OVER_NOISE = 100.0  # of a strong cell
+FEWEST_CELLS, BLOCKS, ROUNDS = 16, 8, 30
+SINES, HEIGHTS = np.linspace(-0.85, 0.85, 69), np.linspace(-0.4, 0.4, 13)
+SEEN_OVER_ERROR = 1.4  # rms of what was found over that of its error
+
+
+def fit_channels(evidence: Sequence[SignalEvidence]) -> Finding:
+    """Gain and phase of each antenna pair over their means."""
+    title = "antenna gains and phases"
+    config = evidence[0].cube.config
+    if config.is_coded:
+        return Finding(title=title, text="transmitters that send together do not show them apart")
+    cells = np.concatenate([_strong_cells(one) for one in evidence])
+    if len(cells) < FEWEST_CELLS:
+        return Finding(title=title, text=f"{len(cells)} strong static cells; it takes {FEWEST_CELLS}")
+    steering = _steering(config)
+    found, share = _errors_of(cells, steering, config)
+    left_out = [np.arange(len(cells)) * BLOCKS // len(cells) != block for block in range(BLOCKS)]
+    others = np.stack([_errors_of(cells[kept], steering, config)[0] for kept in left_out])
+    spread = np.angle(others * found.conj()), 20 * np.log10(np.abs(others) / np.abs(found))
+    phase_error, gain_error_db = (np.sqrt(((BLOCKS - 1) * part.var(axis=0)).mean()) for part in spread)
+    gain_db, phase_deg = 20 * np.log10(np.abs(found)), np.degrees(np.angle(found))
+    what = f"{len(cells)} cells, {share:.0%} of their energy in one plane wave each"
+    is_gain_seen = gain_db.std() > SEEN_OVER_ERROR * gain_error_db
+    is_phase_seen = _free_phases(config) > 0 and phase_deg.std() > SEEN_OVER_ERROR * np.degrees(phase_error)
+    if not is_gain_seen and not is_phase_seen:
+        return Finding(
+            title=title,
+            text=f"{gain_db.std():.1f} dB and {phase_deg.std():.0f} degrees are no more than their errors"
+            f" ({gain_error_db:.1f} dB, {np.degrees(phase_error):.0f} degrees; {what})",
+        )  # fmt: skip
+    pairs = config.num_tx, config.num_rx
+    said = [
+        f"gains differ by {gain_db.std():.1f} dB rms (+-{gain_error_db:.1f})" if is_gain_seen
+        else f"gains are alike within {gain_error_db:.1f} dB",
+        f"phases by {phase_deg.std():.0f} degrees rms (+-{np.degrees(phase_error):.0f})" if is_phase_seen
+        else f"phases within {np.degrees(phase_error):.0f} degrees",
+    ]  # fmt: skip
+    return Finding(
+        title=title, text=f"{', '.join(said)}; {what}; what is linear in an antenna's place is a direction, too",
+        fields={
+            "channel_gain_db": (gain_db * is_gain_seen).reshape(pairs),
+            "channel_phase_deg": (phase_deg * is_phase_seen).reshape(pairs),
+        },
+    )  # fmt: skip
+
+
+def _strong_cells(evidence: SignalEvidence) -> np.ndarray:
+    """Values (cell, antenna) of strong static range bins, mean over the frames, in order of range."""
+    still = evidence.still[np.logical_not(evidence.is_lost)].mean(axis=0)
+    power = (np.abs(still) ** 2).mean(axis=1)
+    noise = float(np.median(power)) / OVER_NOISE if evidence.noise is None else float(np.median(evidence.noise))
+    return still[(power > OVER_NOISE * noise) & (evidence.range_m > NEAREST_M)]
+
+
+def _places(config: RadarConfig) -> np.ndarray:
+    """x and z (antenna, 2) in wavelengths."""
+    return config.antenna_position_m[:, [0, 2]] / config.wavelength_m
+
+
+def _free_phases(config: RadarConfig) -> int:
+    """How many phases of antennas no direction can explain."""
+    places = _places(config)
+    return len(places) - int(np.linalg.matrix_rank(np.column_stack([np.ones(len(places)), places]), tol=0.05))
+
+
+def _steering(config: RadarConfig) -> np.ndarray:
+    """Phases (direction, antenna) of plane waves."""
+    places = _places(config)
+    heights = HEIGHTS if np.ptp(places[:, 1]) > 0.05 else np.zeros(1)
+    sines = SINES if np.ptp(places[:, 0]) > 0.05 else np.zeros(1)
+    directions = np.stack(np.meshgrid(sines, heights, indexing="ij"), -1).reshape(-1, 2)
+    return np.exp(-2j * np.pi * directions @ places.T)
+
+
+def _errors_of(cells: np.ndarray, steering: np.ndarray, config: RadarConfig) -> tuple[np.ndarray, float]:
+    """Factors (antenna,) of geometric mean 1 without what is linear in place, and the share of the best plane waves."""
+    values = cells / np.sqrt((np.abs(cells) ** 2).mean(axis=1, keepdims=True))
+    factor = np.ones(values.shape[1], complex)
+    share = np.zeros(len(values))
+    for _ in range(ROUNDS):
+        corrected = values / factor
+        beams = corrected @ steering.conj().T / values.shape[1]
+        best = np.abs(beams).argmax(axis=1)
+        wave = np.take_along_axis(beams, best[:, None], axis=1) * steering[best]
+        share = (np.abs(wave) ** 2).mean(axis=1) / (np.abs(corrected) ** 2).mean(axis=1)
+        weight = (1 / (1 - share + 0.05))[:, None]  # over the power of what is not that wave
+        factor = (weight * values * wave.conj()).sum(axis=0) / (weight * np.abs(wave) ** 2).sum(axis=0)
+        factor = _without_direction(factor, config)
+    return factor, float(np.median(share))
+
+
+def _without_direction(factor: np.ndarray, config: RadarConfig) -> np.ndarray:
+    """Factors of geometric mean 1, less the phase that is linear in an antenna's place."""
+    design = np.column_stack([np.ones(len(factor)), _places(config)])
+    phase = np.angle(factor * np.exp(-1j * np.angle(factor.sum())))
+    phase = phase - design @ np.linalg.lstsq(design, phase, rcond=0.05)[0]
+    return np.abs(factor) / np.exp(np.log(np.abs(factor)).mean()) * np.exp(1j * phase)

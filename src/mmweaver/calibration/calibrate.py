@@ -1,0 +1,142 @@
+"""`mmweaver.calibrate`: the board that made some recordings, as far as they show it.
+
+    recordings, point clouds --fits, each in closed form--> findings --> Board
+
+Every fit says what it found, or why it could not see it. Reference: docs/board.md, decision 222.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mmweaver.calibration.antenna_fits import fit_channels
+from mmweaver.calibration.cloud_fits import fit_elevation
+from mmweaver.calibration.finding import Finding
+from mmweaver.calibration.receiver_fits import fit_filter, fit_leakage, fit_noise_figure
+from mmweaver.calibration.time_fits import fit_drift, fit_first_chirp
+from mmweaver.comparison.compared_sides import RawReading, signals_of
+from mmweaver.comparison.signal_evidence import SignalEvidence
+from mmweaver.core.board import Board
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import PointCloud
+from mmweaver.formats.point_clouds.read_points import KINDS, points_kind, read_points
+from mmweaver.formats.radar_file import load_radar
+
+SIGNAL_FITS = (fit_filter, fit_noise_figure, fit_leakage, fit_channels, fit_first_chirp, fit_drift)
+NEVER_SEEN = (
+    Finding(title="range bias", text="it takes an echo at a known distance"),
+    Finding(title="gain of echoes", text="it takes an echo of known cross section at a known distance"),
+    Finding(title="coupling between antennas", text="it takes one target at many known directions"),
+    Finding(title="element spacing", text="it takes a target at known directions"),
+)
+CLOUD_SUFFIXES = (".csv", ".dat")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Calibration:
+    """A board, and what was found of it and what was not."""
+
+    board: Board
+    findings: tuple[Finding, ...]
+
+    def text(self) -> str:
+        """What was found, then what could not be seen and why, a line each."""
+        seen = [f"  {one.title}: {one.text}" for one in self.findings if one.is_found]
+        missed = [f"  {one.title}: {one.text}" for one in self.findings if not one.is_found]
+        return "\n".join(["found", *(seen or ["  nothing"]), "not seen", *(missed or ["  nothing"])])
+
+    def to_values(self) -> dict[str, Any]:
+        """The same for JSON; the tables are those of the board."""
+        return {
+            "board": self.board.to_values(),
+            "found": {one.title: one.text for one in self.findings if one.is_found},
+            "not_seen": {one.title: one.text for one in self.findings if not one.is_found},
+        }
+
+
+def calibrate(
+    *recordings: Any,
+    radar: str | Path | RadarConfig | None = None,
+    layout: str | None = None,
+    axes: str | None = None,
+    iq_order: str | None = None,
+    tx_order: tuple[int, ...] | None = None,
+    body_z_m: float | None = None,
+    name: str | None = None,
+) -> Calibration:
+    """The board that made the recordings: of a room with or without people, unlabelled; point clouds of people.
+
+    Each is a path (what `mmweaver compare` takes, or a point cloud that `mmweaver points` reads), a RadarCube, an
+    AdcCube, a PointCloud, or what `process_recording` and `Weaver.generate` give; all by one radar with the same
+    settings. `radar`: of raw samples and of clouds, a preset's name, a file or a RadarConfig. `body_z_m`: the true mean
+    height over the radar of the people in clouds. Raises InputError for what is no recording, and for several radars.
+    """
+    if not recordings:
+        raise InputError("which recordings? give one or more")
+    reading = RawReading(radar=radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order)
+    clouds: list[PointCloud] = []
+    evidence: list[SignalEvidence] = []
+    for source in recordings:
+        cloud = _cloud_of(source)
+        if cloud is not None:
+            clouds.append(cloud)
+        else:
+            evidence += [SignalEvidence(one) for one in signals_of(source, reading, "recording")]
+    config = _one_radar(evidence, radar)
+    findings: list[Finding] = []
+    if evidence:
+        findings += [fit(evidence) for fit in SIGNAL_FITS]
+    else:
+        findings.append(Finding(title="IF response, noise, leakage, antennas, chirps, drift", text="it takes a signal"))
+    if clouds:
+        findings.append(fit_elevation(clouds, config, body_z_m))
+    else:
+        findings.append(Finding(title="elevation offset", text="it takes point clouds of people"))
+    findings += NEVER_SEEN
+    fields = {field: value for one in findings for field, value in one.fields.items()}
+    missed = tuple(f"{one.title}: {one.text}" for one in findings if not one.is_found)
+    names = ", ".join(_name_of(source) for source in recordings)
+    board = Board(name=name or f"board of {names}"[:200], made_from=names[:1000], notes=missed, **fields)
+    return Calibration(board=board, findings=tuple(findings))
+
+
+def _cloud_of(source: Any) -> PointCloud | None:
+    """A point cloud, of a record or of a file that is one; None for anything else."""
+    if isinstance(source, PointCloud):
+        return source
+    if not isinstance(source, str | Path):
+        return None
+    path = Path(source)
+    is_points = path.name == "points.npz" or path.suffix.lower() in CLOUD_SUFFIXES
+    if not is_points and path.suffix.lower() == ".npz" and path.is_file():
+        is_points = points_kind(path) in KINDS and _has_points(path)
+    return read_points(path) if is_points else None
+
+
+def _has_points(path: Path) -> bool:
+    from mmweaver.core.safe_files.safe_arrays import read_npz
+
+    return {"frame", "pts"} <= set(read_npz(path))
+
+
+def _one_radar(evidence: Sequence[SignalEvidence], radar: str | Path | RadarConfig | None) -> RadarConfig:
+    """The radar of all recordings. Raises InputError where they differ, or where there is none."""
+    if not evidence:
+        if radar is None:
+            raise InputError("point clouds do not say which radar made them; give --radar")
+        return radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
+    first = evidence[0].cube.config
+    for one in evidence[1:]:
+        own = one.cube.config
+        same = ("start_frequency_hz", "chirp_slope_hz_per_s", "num_samples", "sample_rate_hz", "num_loops", "tx_order")
+        if any(getattr(own, name) != getattr(first, name) for name in same) or own.num_rx != first.num_rx:
+            raise InputError(
+                f"{one.signal.name} was recorded with another radar or other settings; calibrate one at a time"
+            )
+    return first
+
+
+def _name_of(source: Any) -> str:
+    return Path(source).name if isinstance(source, str | Path) else type(source).__name__

@@ -1,0 +1,65 @@
+"""mmweaver calibrate: the board that made some recordings."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from mmweaver.cli.arguments import add_layout_options, number, source
+
+EXAMPLES = """examples:
+  mmweaver calibrate empty.bin --radar profile.cfg --out board.json        # your room, nobody in it, some seconds
+  mmweaver calibrate walk/ sit/ empty/ --out board.json                    # folders of mmweaver process: any recordings
+  mmweaver calibrate adc.npy --radar radar.json --axes frame,loop,tx,rx,sample --out board.json
+  mmweaver calibrate near.csv middle.csv far.csv --radar iwr1443_mars --out board.json       # clouds of people
+  mmweaver calibrate cloud.csv --radar iwr1443_mars --body-z -0.15 --out board.json
+  mmweaver generate --demo --radar profile.cfg --board board.json --out like_mine/
+"""
+
+
+def add_command(commands: Any) -> argparse.ArgumentParser:
+    """Declares the command and its options."""
+    parser = commands.add_parser(
+        "calibrate", help="find the errors of your board in its recordings", epilog=EXAMPLES,
+        description="Finds what recordings tell of the board that made them: IF response, noise figure, leakage,"
+        " antenna gains and phases, first chirps, drift; of point clouds the elevation offset. Nothing need be known of"
+        " the room. Says what it could not see and why; generate --board takes the file.",
+    )  # fmt: skip
+    parser.add_argument(
+        "recordings", type=Path, nargs="+", metavar="RECORDING",
+        help="raw samples, a folder of mmweaver process, or a point cloud",
+    )  # fmt: skip
+    raw = parser.add_argument_group("what recordings do not bring")
+    raw.add_argument("--radar", type=source, metavar="NAME|FILE", help="preset, TI .cfg or radar.json")
+    raw.add_argument("--axes", metavar="NAMES", help="axes of a .npy in their order: frame,loop,tx,rx,sample")
+    raw.add_argument("--layout", metavar="NAME", help="whose .npy it is: hupr, mmmesh, rf_genesis, cubelearn")
+    add_layout_options(raw)
+    raw.add_argument(
+        "--body-z", type=number, metavar="M", dest="body_z_m",
+        help="the true mean height of the people in point clouds over the radar's level, in metres",
+    )  # fmt: skip
+    output = parser.add_argument_group("output")
+    output.add_argument("--out", type=Path, required=True, metavar="JSON", help="the board's file")
+    output.add_argument("--overwrite", action="store_true", help="replace a file that is there")
+    output.add_argument("--json", action="store_true", help="print what was found on stdout as JSON")
+    parser.set_defaults(run=run)
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Calibrates, writes and prints. Raises InputError."""
+    import json
+
+    from mmweaver.calibration.calibrate import calibrate
+    from mmweaver.core.output_checks import check_output_file
+
+    check_output_file(arguments.out, overwrite=arguments.overwrite, inputs=arguments.recordings)
+    found = calibrate(
+        *arguments.recordings, radar=arguments.radar, layout=arguments.layout, axes=arguments.axes,
+        iq_order=arguments.iq_order, tx_order=arguments.tx_order, body_z_m=arguments.body_z_m, name=arguments.out.stem,
+    )  # fmt: skip
+    found.board.save(arguments.out)
+    if arguments.json:
+        print(json.dumps(found.to_values(), indent=2, allow_nan=False, ensure_ascii=False))
+    else:
+        print(f"{found.text()}\nwrote {arguments.out}")
+    return 0

@@ -1,0 +1,174 @@
+"""A made board comes back from signals that were simulated with it, within stated tolerances."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+import mmweaver
+from mmweaver.calibration.calibrate import Calibration, calibrate
+from mmweaver.calibration.receiver_fits import skirt_end
+from mmweaver.core.board import Board
+from mmweaver.core.boards import typical_board
+from mmweaver.core.errors import InputError
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import AdcCube, PointCloud
+from mmweaver.paths.adc_synthesis import AdcSynthesis
+from mmweaver.paths.board_effects import BoardEffects
+from mmweaver.paths.paths import Interaction
+from mmweaver.paths.receiver import Impairments, Receiver
+from mmweaver.paths.static_paths import scattered_paths
+
+RADAR = replace(AWR1843, name="whole band", first_range_bin=0, num_range_bins=256)
+FRAMES = 16
+
+
+def cluttered_room(board: Board, config: RadarConfig = RADAR, frames: int = FRAMES) -> AdcCube:
+    """An empty room of 220 scatterers from 1.2 m on, recorded with a board and with noise, but no clock errors."""
+    rng = np.random.default_rng(8)
+    effects = BoardEffects(board, config)
+    azimuth, elevation = rng.uniform(-0.9, 0.9, 220), rng.uniform(-0.3, 0.3, 220)
+    towards = np.stack(
+        [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], -1
+    )
+    distance = np.linspace(1.2, 9.0, 220)[:, None]
+    amplitude = 2e-5 * (rng.normal(size=220) + 1j * rng.normal(size=220))
+    paths = effects.on_static(scattered_paths(towards * distance, amplitude, Interaction.DIFFUSE, effects.radar))
+    synthesis = AdcSynthesis(effects.radar, board=effects)
+    static = synthesis.static(paths) + synthesis.leakage(*effects.leakage)
+    carrier_over_slope_s = config.centre_frequency_hz / config.chirp_slope_hz_per_s
+    drift = torch.from_numpy(effects.drift(np.arange(frames), 0)).to(torch.complex64)
+    receiver = Receiver(effects.radar, Impairments(phase_noise_dbc_per_hz=None, chirp_jitter_s=0.0), 0, effects)
+    drift_rate = synthesis.static_rate(paths) * carrier_over_slope_s + synthesis.leakage(*effects.leakage_rate)
+    still = static + drift[:, None, None, None] * drift_rate
+    moving = torch.zeros((frames, config.num_loops, *still.shape[1:]), dtype=torch.complex64)
+    samples = receiver.receive(moving, still, torch.zeros_like(static), range(frames)).numpy()
+    return AdcCube(samples=samples, config=config, scale=1.0)
+
+
+@pytest.fixture(scope="module")
+def board() -> Board:
+    return replace(
+        typical_board(RADAR, 4), range_bias_m=0.0, elevation_phase_deg=0.0, drift_ppm=1.5, element_spacing_m=None,
+        noise_figure_db=12.0, first_chirp_amplitude_percent=0.6, first_chirp_phase_mrad=2.5,
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def found(board: Board) -> Calibration:
+    return calibrate(cluttered_room(board), name="made")
+
+
+def test_the_receiver_comes_back(board: Board, found: Calibration):
+    share = np.concatenate([np.arange(2, 12), np.arange(12, 250, 4)]) / 256
+    level_db = [np.interp(share, one.if_share, one.if_gain_db) for one in (board, found.board)]
+    difference_db = level_db[1] - level_db[0]
+    assert np.sqrt((difference_db**2).mean()) < 0.3
+    assert np.abs(difference_db).max() < 1.2  # at the steep end of the band, where a knot is a hundredth of it
+    assert found.board.noise_figure_db == pytest.approx(12.0, abs=0.25)
+
+
+def test_the_leakage_comes_back(board: Board, found: Calibration):
+    own, there = found.board, board
+    shown = there.leakage_range_m < 0.4
+    count = int(shown.sum())
+    assert len(own.leakage_range_m) >= count
+
+    def amplitudes(one: Board) -> np.ndarray:
+        return 10 ** (one.leakage_level_db[:count] / 20) * np.exp(1j * np.radians(one.leakage_phase_deg[:count]))
+
+    error = np.linalg.norm(amplitudes(own) - amplitudes(there)) / np.linalg.norm(amplitudes(there))
+    assert error < 0.05
+
+
+def test_antennas_come_back_but_for_a_direction(board: Board, found: Calibration):
+    gain_db = board.channel_gain_db - board.channel_gain_db.mean()
+    assert np.sqrt(((found.board.channel_gain_db - gain_db) ** 2).mean()) < 0.35
+    places = RADAR.antenna_position_m[:, [0, 2]]
+    design = np.column_stack([np.ones(12), places])
+    phase = board.channel_phase_deg.ravel()
+    phase = phase - design @ np.linalg.lstsq(design, phase, rcond=None)[0]
+    error = found.board.channel_phase_deg.ravel() - phase
+    assert np.sqrt((error**2).mean()) < max(3.0, 0.35 * phase.std())
+
+
+def test_what_changes_over_time_comes_back(found: Calibration):
+    assert found.board.first_chirp_amplitude_percent == pytest.approx(0.6, abs=0.12)  # its noise is 0.05
+    assert found.board.first_chirp_phase_mrad == pytest.approx(2.5, abs=1.0)  # 0.4
+    drift = BoardEffects(Board(drift_ppm=1.5), RADAR).drift(np.arange(FRAMES), 0)
+    assert found.board.drift_ppm == pytest.approx(1e6 * (drift - drift.mean()).std(), rel=0.25)
+
+
+def test_it_says_what_it_could_not_see(found: Calibration, tmp_path: Path):
+    text = found.text()
+    assert text.index("not seen") < text.index("range bias: it takes an echo at a known distance")
+    assert "elevation offset: it takes point clouds of people" in text
+    assert any(note.startswith("gain of echoes") for note in found.board.notes)
+    assert set(found.to_values()) == {"board", "found", "not_seen"}
+    found.board.save(tmp_path / "made.json")
+    assert mmweaver.Weaver(radar=RADAR).request("a person stands", board=tmp_path / "made.json").board.name == "made"
+
+
+def test_an_ideal_board_shows_no_errors():
+    found = calibrate(cluttered_room(Board(), frames=8))
+    assert np.abs(found.board.if_gain_db).max() < 1.0
+    assert not found.board.drift_ppm
+    assert abs(found.board.first_chirp_amplitude_percent) < 0.05
+    if found.board.channel_gain_db.size:
+        assert np.abs(found.board.channel_gain_db).max() < 0.8
+
+
+def people(range_m: np.ndarray, phase_deg: float, middle_m: float, seed: int = 0) -> PointCloud:
+    """Twelve points of a body in each frame, seen with a phase error of the upper antennas."""
+    rng = np.random.default_rng(seed)
+    height_m = middle_m + rng.uniform(-0.5, 0.5, (len(range_m), 12))
+    far_m = np.repeat(range_m[:, None], 12, axis=1)
+    sine = height_m / far_m - np.radians(phase_deg) / np.pi  # rows are half a wavelength apart
+    z_m = far_m * sine
+    y_m = np.sqrt(far_m**2 - z_m**2)
+    frame = np.repeat(np.arange(len(range_m)), 12)
+    zero = np.zeros(frame.size)
+    return PointCloud(
+        frame=frame, x_m=rng.normal(0, 0.1, frame.size), y_m=y_m.ravel(), z_m=z_m.ravel(), radial_velocity_mps=zero,
+        snr_db=zero,
+    )  # fmt: skip
+
+
+def test_the_elevation_offset_comes_back_from_people_at_several_distances():
+    clouds = [people(np.full(80, distance), 9.0, -0.1, seed) for seed, distance in enumerate((1.2, 2.0, 3.0, 4.0))]
+    found = calibrate(*clouds, radar="awr1843")
+    assert found.board.elevation_phase_deg == pytest.approx(9.0, abs=2.0)
+    assert any("it takes a signal" in note for note in found.board.notes)
+
+
+def test_the_elevation_offset_at_one_distance_takes_the_true_height():
+    cloud = people(np.full(100, 1.8), -7.0, -0.1)
+    unseen = calibrate(cloud, radar="awr1843")
+    assert not unseen.board.elevation_phase_deg
+    assert "--body-z" in unseen.text()
+    found = calibrate(cloud, radar="awr1843", body_z_m=-0.1)
+    assert found.board.elevation_phase_deg == pytest.approx(-7.0, abs=1.5)
+
+
+def test_where_a_skirt_ends():
+    range_m = np.arange(100) * 0.05
+    falling = 1e4 * 10 ** (-range_m * 8)
+    assert skirt_end(falling, 1.0, range_m)[1] == "it falls to the noise of a cell"
+    wall = falling + 3e3 * np.exp(-(((range_m - 0.6) / 0.05) ** 2))
+    end, how = skirt_end(wall, 1.0, range_m)
+    assert range_m[end] < 0.6
+    assert "echo at" in how
+
+
+def test_what_cannot_be_calibrated_is_refused():
+    with pytest.raises(InputError, match="which recordings"):
+        calibrate()
+    with pytest.raises(InputError, match="--radar"):
+        calibrate(people(np.full(30, 2.0), 0.0, 0.0))
+    other = replace(RADAR, name="other", num_samples=128, num_range_bins=128)
+    ideal = Board()
+    with pytest.raises(InputError, match="one at a time"):
+        calibrate(cluttered_room(ideal, frames=1), cluttered_room(ideal, other, frames=1))
