@@ -3,7 +3,7 @@
 python -m studies run compose_times --rooms /path/to/rooms
 
 The bundled sample, photographed rooms, and a procedural room of every kind, seen in the radar's default window. The
-first sentence in a room pays for what is computed once a room, and is reported apart. Results are named by `--name`,
+first sentence in a room, which leads to a seat, pays for what is computed once a room, and is reported apart. Results are named by `--name`,
 so that two versions can be compared on the same machine in the same hour.
 """
 
@@ -28,7 +28,7 @@ from studies.result_rows import complete_rows
 from studies.study import Reads
 
 SENTENCES = (
-    "a person walks to the left, then waves", "user seated on couch drinking water", "she walks, then sits down",
+    "she walks, then sits down", "a person walks to the left, then waves", "user seated on couch drinking water",
     "he does jumping jacks", "someone walks towards the radar, turns around and walks away", "a man boxes quickly",
     "she claps", "he squats", "a person stands up", "a person turns around",
 )  # fmt: skip

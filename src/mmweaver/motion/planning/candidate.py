@@ -9,6 +9,15 @@ from jaxtyping import Float
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.language.activities import CLEARANCE_M
 from mmweaver.motion.language.plan import MotionPlan, Step
+from mmweaver.motion.planning.approaches import (
+    CLOSEST_FEET_M,
+    Approach,
+    approach_from,
+    approaches,
+    fitting_approaches,
+    start_of_walk,
+    walk_to_seat,
+)
 from mmweaver.motion.planning.body_state import BodyState
 from mmweaver.motion.planning.curved_and_lateral_paths import (
     check_floor_space,
@@ -21,7 +30,6 @@ from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
     Sitting,
     any_variation,
-    are_reachable,
     fitting,
     long_enough_to_lie_on,
     preferred,
@@ -36,8 +44,6 @@ from mmweaver.motion.planning.targets import goes_to_target, start_for_target, w
 from mmweaver.motion.planning.trajectory import (
     NoTrajectory,
     Trajectory,
-    face_along,
-    ramps_of,
     signed_angle_rad,
     walk_anywhere,
     walk_circle,
@@ -46,21 +52,17 @@ from mmweaver.motion.planning.trajectory import (
 
 Array = np.ndarray
 FAVOURITE_COST_PER_M = 0.7
-CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who gets up
 _SAME_PLACE_M = 0.1
 _STRAIGHT = ("left", "right", "towards", "away", "")
 _USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
 _LONGEST_SHARE = 0.2  # of the starts, those with most room, where none has enough
-_SEAT_STARTS = 6  # starts of a walk to a seat that are tried
+_SEAT_WAYS = 4  # ways to seats for which a start of the walk is looked for
 _FALLS_OFF_STOOL = (
     0.5  # share of the falls tried from a stool: before a seat of the room there may be no floor for them
 )
 _NEAR_START_M = 1.0  # a seat so near to the requested start is the one meant
 _SEAT_AT_PLACE_M = 0.7  # from the free floor of a place
-_SEAT_DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
-_SEAT_SPEED_MPS = {"jog": (1.2, 3.6)}  # natural speeds of a walk that ends at a seat
-_WALK_TO_SEAT_MPS = (0.45, 1.6)
 
 
 def starts_seated(plan: MotionPlan) -> bool:
@@ -96,10 +98,9 @@ class CandidateSampler:
             trajectory.moves.append([])
             following = self.plan.steps[k + 1] if k + 1 < len(self.plan.steps) else None
             if step.moves:
-                wanted_seats = preferred(seats, following.seat if following else step.seat, self.floor.scene)
-                target = _seat_ahead(trajectory, step, following, wanted_seats)
+                target = self._seat_ahead(trajectory, step, following) if seats else None
                 _lay_move(trajectory, step, target, first=k == 0, last=following is None)
-                sitting = target if following is not None and following.lower == "sit_down" else None
+                sitting = target.sitting if target and following and following.lower == "sit_down" else None
             elif step.lower == "turn" and step.turn_deg:
                 turn_by(trajectory, step)
             elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
@@ -111,6 +112,7 @@ class CandidateSampler:
                 sitting = sitting or _stool_at_end(
                     trajectory, self.body, previous=self.plan.steps[k - 1], is_bed=lies_on_seat(self.plan)
                 )
+                trajectory.invents_seat = bool(self._approaches) and bool(trajectory.notes)
                 trajectory.turn_to(sitting.facing_rad, step.start_s - 0.3)
             trajectory.seat_height_m.append(sitting.height_m if sitting else STOOL_HEIGHT_M)
             if sitting is not None:
@@ -143,6 +145,28 @@ class CandidateSampler:
         subset = random_subset(preferred(seats, named, self.floor.scene), self.rng)
         return [any_variation(seat, self.rng) for seat in subset]
 
+    @cached_property
+    def _approaches(self) -> list[Approach]:
+        """Ways to walk up to the room's seats; to those that can be lain on where the person lies."""
+        ways = approaches(self.floor, self.body)
+        if not lies_on_seat(self.plan):
+            return ways
+        long = {id(one) for one in long_enough_to_lie_on([way.sitting for way in ways], self.floor.scene)}
+        return [way for way in ways if id(way.sitting) in long]
+
+    def _ways_of(self, seat: str) -> list[Approach]:
+        """The ways to the seats of a word, in random order."""
+        ways = fitting_approaches(self._approaches, seat, self.floor.scene)
+        return [ways[k] for k in self.rng.permutation(len(ways))]
+
+    def _seat_ahead(self, trajectory: Trajectory, step: Step, following: Step | None) -> Approach | None:
+        """How a walk ends at a seat; None where it does not, or no way fits."""
+        sits_down = following is not None and following.lower == "sit_down"
+        if not sits_down and step.direction != "seat":
+            return None
+        ways = self._ways_of(following.seat if following and sits_down else step.seat)
+        return approach_from(trajectory, step, ways, _direction_rad(trajectory, step))
+
     def _start(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting | None]:
         """The start of the trajectory, and how the person sits there, if so."""
         first = self.plan.steps[0]
@@ -161,7 +185,8 @@ class CandidateSampler:
                 usable = [seat for seat in usable if np.hypot(*(cells - seat.seat_m).T).min() < _SEAT_AT_PLACE_M]
             if any(step.lower not in ("sit", "sit_down", "lie_on_seat") for step in self.plan.steps):
                 # Getting up needs room in front of the seat, where a table may stand.
-                usable = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+                free = [seat for seat in usable if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+                usable = free or ([way.sitting for way in self._ways_of(first.seat)] if usable else [])
             return self._start_seated(usable)
         before_seat = self._seat_to_start_at(seats)
         if before_seat is not None:
@@ -184,7 +209,8 @@ class CandidateSampler:
     def _seat_behind(self, trajectory: Trajectory, seats: list[Sitting]) -> Sitting | None:
         """The seat in front of which the body stands: of the motion before, or of the room."""
         before = [] if self.after is None or self.after.sitting is None else [self.after.sitting]
-        near = (seat for seat in before + seats if np.hypot(*(seat.feet_m - trajectory.position_m)) < _SAME_PLACE_M)
+        known = before + seats + ([way.sitting for way in self._approaches] if seats else [])
+        near = (seat for seat in known if np.hypot(*(seat.feet_m - trajectory.position_m)) < _SAME_PLACE_M)
         return next(near, None)
 
     def _seat_to_start_at(self, seats: list[Sitting]) -> Sitting | None:
@@ -194,6 +220,7 @@ class CandidateSampler:
         if not down or self.start_m is not None or any(_changes_place(step) for step in steps[:down]):
             return None
         free = [seat for seat in seats if self.floor.clearance_at(seat.feet_m) > CLOSEST_FEET_M]
+        free = free or ([way.sitting for way in self._approaches] if seats else [])
         free = preferred(free, steps[down].seat, self.floor.scene)
         return free[int(self.rng.integers(len(free)))] if free else None
 
@@ -212,7 +239,9 @@ class CandidateSampler:
                 return spot
         to_seat = first.direction == "seat" or (len(self.plan.steps) > 1 and self.plan.steps[1].lower == "sit_down")
         if first.moves and seats and to_seat and self.rng.random() < 0.7:
-            return self._start_of_walk_to(seats[int(self.rng.integers(len(seats)))], first)
+            spot = self._start_of_walk_to_seat(first)
+            if spot is not None:
+                return spot
         cells = self._open_starts(first)
         spot = cells[int(self.rng.integers(len(cells)))]
         return spot + self.rng.uniform(-0.3, 0.3, 2) * self.floor.cell_m
@@ -221,20 +250,26 @@ class CandidateSampler:
         """Places to start at: for a straight walk those from which it has room, else those with most of it."""
         if not step.moves or step.lower not in _USUAL_MPS or step.arc_deg or step.direction not in _STRAIGHT:
             return self.floor.walkable_m
-        cells, free_m = self.floor.straight_starts(step.direction)
-        enough_m = _OF_USUAL * _USUAL_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
-        return cells[free_m >= min(enough_m, np.quantile(free_m, 1 - _LONGEST_SHARE))]
+        if id(step) not in self._roomy_starts:
+            cells, free_m = self.floor.straight_starts(step.direction)
+            enough_m = _OF_USUAL * _USUAL_MPS[step.lower] * step.pace * (step.end_s - step.start_s)
+            self._roomy_starts[id(step)] = cells[free_m >= min(enough_m, np.quantile(free_m, 1 - _LONGEST_SHARE))]
+        return self._roomy_starts[id(step)]
 
-    def _start_of_walk_to(self, sitting: Sitting, step: Step) -> Float[Array, "2"]:
-        """A position (x, y) from which a walk in the step's time ends at a seat; some position where there is none."""
-        cells = self.floor.walkable_m
-        apart_m = np.hypot(*(cells - sitting.feet_m).T)
-        lasts = step.end_s - step.start_s
-        cells = cells[(apart_m > 0.55 * lasts) & (apart_m < 1.35 * lasts)]
-        if not len(cells):
-            cells = self.floor.walkable_m
-        some = cells[self.rng.integers(len(cells), size=_SEAT_STARTS)]
-        return some[int(np.argmax(are_reachable(self.floor, some, sitting)))]
+    @cached_property
+    def _roomy_starts(self) -> dict[int, Float[Array, "cell 2"]]:
+        """`_open_starts` of the plan's steps, which are many times asked for."""
+        return {}
+
+    def _start_of_walk_to_seat(self, step: Step) -> Float[Array, "2"] | None:
+        """A position (x, y) from which a walk in the step's time ends at a seat; None where none was found."""
+        following = self.plan.steps[1] if len(self.plan.steps) > 1 else None
+        for way in self._ways_of(step.seat or (following.seat if following else ""))[:_SEAT_WAYS]:
+            fixed = {"left": np.pi, "right": 0.0}.get(step.direction)
+            spot = start_of_walk(way, step, fixed, self.rng)
+            if spot is not None:
+                return spot
+        return None
 
     def _start_seated(self, seats: list[Sitting]) -> tuple[Trajectory, Sitting]:
         """Starts on a seat of the scene, near the requested start; else on a stool, roughly facing the radar."""
@@ -270,28 +305,7 @@ def _changes_place(step: Step) -> bool:
     return step.moves or step.posture != "feet" or step.lower == "turn" or bool(step.facing) or step.place is not None
 
 
-def _seat_ahead(trajectory: Trajectory, step: Step, following: Step | None, seats: list[Sitting]) -> Sitting | None:
-    """The seat that a walk ends at: reachable, in the given direction, at a natural speed."""
-    if not (following is not None and following.lower == "sit_down") and step.direction != "seat":
-        return None
-    for sitting in seats:
-        gap = sitting.feet_m - trajectory.position_m
-        towards = float(np.arctan2(gap[1], gap[0]))
-        given_rad = _direction_rad(trajectory, step)
-        lasts = max(step.end_s - step.start_s - 0.35, 0.1)
-        speed = float(np.hypot(*gap)) / lasts
-        slowest, fastest = _SEAT_SPEED_MPS.get(step.lower, _WALK_TO_SEAT_MPS)
-        fits = slowest <= speed <= fastest
-        if (
-            fits
-            and (given_rad is None or abs(signed_angle_rad(given_rad, towards)) < _SEAT_DIRECTION_RAD)
-            and bool(are_reachable(trajectory.floor, trajectory.position_m[None], sitting)[0])
-        ):
-            return sitting
-    return None
-
-
-def _lay_move(trajectory: Trajectory, step: Step, target: Sitting | None, *, first: bool, last: bool) -> None:
+def _lay_move(trajectory: Trajectory, step: Step, target: Approach | None, *, first: bool, last: bool) -> None:
     """Lays out a step that moves: to a seat (`target`), to a landmark, on a curve, straight, or anywhere."""
     if step.route_m:
         walk_along(trajectory, step, first=first)
@@ -303,11 +317,7 @@ def _lay_move(trajectory: Trajectory, step: Step, target: Sitting | None, *, fir
         lay_curved_or_lateral(trajectory, step, _direction_rad(trajectory, step), first=first, last=last)
         return
     if target is not None:
-        gap = target.feet_m - trajectory.position_m
-        direction = float(np.arctan2(gap[1], gap[0]))
-        begin = face_along(trajectory, step, direction, step.start_s, first=first)
-        ramps = (ramps_of(step.end_s - begin, first=first, last=False)[0], 0.45)
-        trajectory.go(step, direction, float(np.hypot(*gap)), (begin, step.end_s), ramps)
+        walk_to_seat(trajectory, step, target, first=first)
         return
     trajectory.cost += 3.0 * (step.direction == "seat")
     direction = _direction_rad(trajectory, step)

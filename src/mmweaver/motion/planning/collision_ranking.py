@@ -19,9 +19,11 @@ from mmweaver.motion.planning.placement import Placement
 
 REPORTED_PENETRATION_M = 0.03  # deeper collisions are reported to the user
 MARGIN_M = 0.03  # depth is noisy, and furniture is seen from one side only
-MOST_TESTED, MOST_ANIMATED = 9, 3  # of an attempt's placements: compared closely, and of those that move animated
+MOST_TESTED, MOST_ANIMATED = 5, 1  # of an attempt's placements: compared closely, and of those that move animated
 # A sitter's occluded trunk and legs count as a collision of this depth: nobody knows what is there.
 _OCCLUDED_TRUNK_M, _OCCLUDED_LEGS_M = 0.075, 0.04
+# A stool that is invented though there is a seat counts as much: a seat is better where the body gets into little.
+_INVENTED_SEAT_M = 0.06
 _NEGLIGIBLE_M = 0.01  # less occlusion than this is no reason to test further placements
 # The most that a placement may cost before the next attempt is made; attempt 2 leaves the room's seats.
 _ENOUGH_M = {1: 0.0, 2: REPORTED_PENETRATION_M}
@@ -62,12 +64,14 @@ class _Tested:
     @property
     def cost_m(self) -> float:
         """What placements are ranked by."""
-        return self.penetration_m + self.trunk_cost_m + self.legs_cost_m
+        invented_m = _INVENTED_SEAT_M if self.placement.invents_seat else 0.0
+        return self.penetration_m + self.trunk_cost_m + self.legs_cost_m + invented_m
 
     @property
     def is_clear(self) -> bool:
         """Whether there is no reason to look for another placement."""
-        return self.penetration_m <= -MARGIN_M and self.trunk_cost_m + self.legs_cost_m <= _NEGLIGIBLE_M
+        hidden_m = self.trunk_cost_m + self.legs_cost_m
+        return self.penetration_m <= -MARGIN_M and hidden_m <= _NEGLIGIBLE_M and not self.placement.invents_seat
 
 
 def least_collision(
@@ -110,7 +114,7 @@ class _Ranking:
         best = better_than
         if best is None:
             best = self._animated(placements[0])
-            if best.is_clear:
+            if best.cost_m <= 0:
                 return best
             placements = placements[1:]
         animations = MOST_ANIMATED
@@ -124,7 +128,7 @@ class _Ranking:
                 animations -= 1
                 tested = self._animated(estimate.placement)
             best = tested if tested.cost_m < best.cost_m or tested.is_clear else best
-            if tested.is_clear:
+            if tested.cost_m <= 0:
                 break
         return best
 

@@ -87,6 +87,11 @@ class FloorMap:
         return {}
 
     @cached_property
+    def seat_approaches(self) -> list[list[Any]]:
+        """The ways to the seats; filled by `approaches`."""
+        return []
+
+    @cached_property
     def in_view(self) -> Bool[Array, "y x"]:
         """Whether radar and camera see a body that stands in a cell."""
         return self.sees(self.cell_centres_m)

@@ -25,7 +25,7 @@ from mmweaver.motion.planning.targets import check_targets
 from mmweaver.motion.planning.trajectory import NoTrajectory, Trajectory
 
 Array = np.ndarray
-MOST_TRIES, TRIES, ENOUGH = 140, 64, 24  # candidates tried for the first, for all, and found, at most
+MOST_TRIES, TRIES, ENOUGH = 140, 40, 16  # candidates tried for the first, for all, and found, at most
 _OCCLUDED_COST, _OCCLUDED_SITTING_COST = 4.0, 1.5  # of a trajectory, or seat, that the camera does not see
 _NUM_OCCLUSION_TESTS = 12  # along a trajectory
 _SEAT_RADIUS_M = 0.65  # within it a position counts as sitting
@@ -39,6 +39,7 @@ class Placement:
     steps: tuple[PlacedStep, ...]
     seats_m: tuple[tuple[float, float], ...]  # where the person sits
     assumptions: tuple[str, ...]
+    invents_seat: bool = False  # though the room has a seat that can be reached
 
     @property
     def is_still(self) -> bool:
@@ -154,6 +155,7 @@ def _placement(trajectory: Trajectory, plan: MotionPlan) -> Placement:
         steps=tuple(PlacedStep(step=step, moves=tuple(moves), seat_height_m=seat_m) for step, moves, seat_m in parts),
         seats_m=tuple(trajectory.seats_m),
         assumptions=tuple(dict.fromkeys(trajectory.notes)),
+        invents_seat=trajectory.invents_seat,
     )
 
 

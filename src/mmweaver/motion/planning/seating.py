@@ -98,7 +98,7 @@ def usual_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     if kind == 3:
         back = rng.uniform(0.3, 1.0) * _BACK_M * reach / max(float(np.hypot(*reach)), 1e-6)
         return replace(sitting, feet_m=sitting.feet_m - back, seat_m=sitting.seat_m - back, cost=0.2)
-    return _turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
+    return turned(sitting, float(rng.choice(_TURNS_RAD) * rng.choice([-1.0, 1.0])))
 
 
 def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
@@ -109,7 +109,7 @@ def any_variation(sitting: Sitting, rng: np.random.Generator) -> Sitting:
     shift = rng.uniform(-1, 1, 2) * spare
     moved = shift[0] * ahead + shift[1] * aside
     sitting = replace(sitting, feet_m=sitting.feet_m + moved, seat_m=sitting.seat_m + moved)
-    return _turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
+    return turned(sitting, float(rng.uniform(-1, 1) * _WIDEST_TURN_RAD))
 
 
 def random_subset(seats: list[Sitting], rng: np.random.Generator) -> list[Sitting]:
@@ -118,8 +118,8 @@ def random_subset(seats: list[Sitting], rng: np.random.Generator) -> list[Sittin
     return kept or seats
 
 
-def _turned(sitting: Sitting, turn: float) -> Sitting:
-    """Rotated about the seat by an angle in radians, the feet with it."""
+def turned(sitting: Sitting, turn: float) -> Sitting:
+    """The same seat, rotated about the seat by an angle in radians, the feet with it."""
     reach = sitting.feet_m - sitting.seat_m
     across = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     return replace(

@@ -62,6 +62,7 @@ class Trajectory:
     seats_m: list[tuple[float, float]] = field(default_factory=list)  # where the person sits
     cost: float = 0.0
     last_direction_rad: float | None = None
+    invents_seat: bool = False  # though the room has a seat that can be reached
     from_seat: bool = False  # has just stood up: the seat's own edge does not block the first metre
 
     def __post_init__(self) -> None:

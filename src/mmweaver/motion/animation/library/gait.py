@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
@@ -135,7 +135,7 @@ def stepping(context: StepContext, style: Style, *, jog: bool) -> Controls:
     moving = _moving(context, time_s, jog)
     for side in (LEFT, RIGHT):
         own = [k for k in range(len(strikes) - 2) if (k + first_side) % 2 == side]
-        falls = [_footfall(context, style, strikes, k, side, aside) for k in own]
+        falls = _footfalls(context, style, strikes, np.array(own), side, aside)
         _write_foot(controls, time_s, falls, side, style, jog)
     from scipy.interpolate import CubicSpline
 
@@ -175,26 +175,28 @@ def _weave(
     return aside
 
 
-def _footfall(
-    context: StepContext, style: Style, strikes: Float[Array, " k"], k: int, side: int,
+def _footfalls(
+    context: StepContext, style: Style, strikes: Float[Array, " strike"], own: Int[Array, " k"], side: int,
     weave: Callable[[Float[Array, " k"]], Float[Array, " k"]],
-) -> Footfall:  # fmt: skip
-    period = float(strikes[k + 1] - strikes[k])
-    stance = (1 + style.double_support) * period
-    middle = np.array([strikes[k] + stance / 2])
+) -> list[Footfall]:  # fmt: skip
+    """The stances of one foot, whose strikes are `own`; the path is evaluated once for all of them."""
+    stance = (1 + style.double_support) * (strikes[own + 1] - strikes[own])
+    middle = strikes[own] + stance / 2
     path: RootPath = context.path
-    root, heading = path.position_m(middle)[0], float(path.facing_rad(middle)[0])
-    share = float(rise(path.speed_mps(middle) / 0.6)[0])
+    heading = path.facing_rad(middle)
+    share = rise(path.speed_mps(middle) / 0.6)
     height_m = context.body.height_m
-    aside = SIDE_SIGN[side] * (HALF_STANCE * height_m * (1 - share) + style.half_stance_m * share)
-    aside = aside + float(weave(middle)[0])
-    velocity = path.position_m(middle + 0.01)[0] - path.position_m(middle - 0.01)[0]
-    back = np.sign(velocity @ np.array([np.cos(heading), np.sin(heading)])) if share > 0 else 1.0
-    behind = -ANKLE_BEHIND * height_m - style.ahead_m * share * back
+    aside = SIDE_SIGN[side] * (HALF_STANCE * height_m * (1 - share) + style.half_stance_m * share) + weave(middle)
+    velocity = path.position_m(middle + 0.01) - path.position_m(middle - 0.01)
     cos, sin = np.cos(heading), np.sin(heading)
-    place = root + np.array([behind * cos - aside * sin, behind * sin + aside * cos])
+    back = np.where(share > 0, np.sign(velocity[:, 0] * cos + velocity[:, 1] * sin), 1.0)
+    behind = -ANKLE_BEHIND * height_m - style.ahead_m * share * back
+    place = path.position_m(middle) + np.stack([behind * cos - aside * sin, behind * sin + aside * cos], axis=-1)
     yaw = heading + SIDE_SIGN[side] * (TOES_OUT_RAD * (1 - share) + style.toes_out_rad * share)
-    return Footfall(strike_s=float(strikes[k]), off_s=float(strikes[k]) + stance, place_m=place, yaw_rad=yaw)
+    return [
+        Footfall(strike_s=float(strikes[k]), off_s=float(strikes[k]) + float(lasts), place_m=at, yaw_rad=float(angle))
+        for k, lasts, at, angle in zip(own, stance, place, yaw, strict=True)
+    ]
 
 
 def _moving(context: StepContext, time_s: Float[Array, " n"], jog: bool) -> Float[Array, " n"]:

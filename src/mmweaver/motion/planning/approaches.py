@@ -1,0 +1,220 @@
+"""Ways to walk up to a seat: straight, along the front of it past a table, or from the side onto a chair at one.
+
+They depend on the room alone, so they are found once for a floor map and kept.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.records import Scene
+from mmweaver.motion.animation.assemble import assembled_controls, solved
+from mmweaver.motion.animation.library.sitting import pelvis_behind_feet_m
+from mmweaver.motion.animation.root_path import RootPath
+from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
+from mmweaver.motion.animation.step_context import PlacedStep
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.planning.body_samples import BodySamples
+from mmweaver.motion.planning.collision import CollisionMap
+from mmweaver.motion.planning.floor_map import FloorMap
+from mmweaver.motion.planning.seating import Sitting, are_reachable, preferred, turned, usable_seats
+from mmweaver.motion.planning.trajectory import (
+    TURN_OVERHEAD_S,
+    TURN_RATE_RADPS,
+    NoTrajectory,
+    Trajectory,
+    face_along,
+    ramps_of,
+    signed_angle_rad,
+)
+
+Array = np.ndarray
+CLOSEST_FEET_M = 0.05  # clearance in front of a seat for somebody who sits down or gets up
+_NARROW_M = 0.05  # clearance between couch and table for legs that pass there
+_TURNS_RAD = (0.0, 0.3, 0.6, 0.9, 1.2, 1.4)  # how far from ahead somebody may sit
+_TURN_COST, _SHIFT_COST, _NARROW_COST = 0.4, 0.3, 0.5
+_SEAT_WIDTH_M, _SHIFT_M = 0.6, 0.3  # of one sitter, and between places on a couch that are tried
+_LONGEST_NARROW_M, _GATE_STEP_M = 1.2, 0.1
+_OFF_FRONT_RAD = (0.0, 0.5)  # how far from along the seat's front the narrow way may lead
+_WAYS_A_SEAT, _MOST_STARTS = 4, 200
+_SPEEDS_MPS = {"jog": (1.2, 3.6)}  # natural ones of a walk that ends at a seat
+_WALK_MPS = (0.45, 1.6)
+_USUAL_HEIGHT_M, _SITS_DOWN_S = 1.7, 1.6  # of the body that tries the seats of a room
+_DEEPEST_M, _DEEP_COST_PER_M = 0.03, 20.0  # how deep it may get into what is near a seat
+_MOST_TESTED = 12  # ways to sit on one seat that are tested closely
+_DIRECTION_RAD = 0.9  # a seat lies in the direction of the sentence up to this angle
+
+
+@dataclass(frozen=True, kw_only=True)
+class Approach:
+    """How to sit on a seat, and where walks to it come from: (x, y) in metres."""
+
+    sitting: Sitting
+    gate_m: Float[Array, "2"] | None  # before a narrow way along the seat; None where the way is straight
+    starts_m: Float[Array, "start 2"]  # walkable places with a free straight way to the gate, or to the seat
+
+    @property
+    def corners_m(self) -> list[Float[Array, "2"]]:
+        """Where the walk turns, and its end in front of the seat."""
+        return [self.sitting.feet_m] if self.gate_m is None else [self.gate_m, self.sitting.feet_m]
+
+    def for_body(self, body: SkeletonProportions) -> "Approach":
+        """The same for a body of exactly this size: its pelvis is on the seat."""
+        seat, facing = self.sitting.seat_m, self.sitting.facing_rad
+        ahead = np.array([np.cos(facing), np.sin(facing)])
+        feet_m = seat + pelvis_behind_feet_m(body, self.sitting.height_m) * ahead
+        return replace(self, sitting=replace(self.sitting, feet_m=feet_m))
+
+
+def approaches(floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
+    """The ways to the usable seats of a room on which a body is clear of the rest; kept with the room."""
+    usual = FloorMap.of(floor.scene, floor.range_window_m, _USUAL_HEIGHT_M, with_assumed=floor.with_assumed)
+    if not usual.seat_approaches:
+        one = SkeletonProportions(_USUAL_HEIGHT_M)
+        ways = [way for seat in usable_seats(usual, one) for way in _ways_to(seat, usual, one)]
+        usual.seat_approaches.append(ways)
+    return [way.for_body(body) for way in usual.seat_approaches[0]]
+
+
+def fitting_approaches(ways: Sequence[Approach], word: str, scene: Scene) -> list[Approach]:
+    """Those to the seats that a word stands for; all of them where it fits none."""
+    kept = {id(sitting) for sitting in preferred([way.sitting for way in ways], word, scene)}
+    return [way for way in ways if id(way.sitting) in kept]
+
+
+def approach_from(
+    trajectory: Trajectory, step: Step, ways: Sequence[Approach], given_rad: float | None
+) -> Approach | None:
+    """The first way that a walk from here can take: free, in the given direction, at a natural speed."""
+    here_m = trajectory.position_m
+    for way in ways:
+        corners = np.stack([here_m, *way.corners_m])
+        gaps = np.diff(corners, axis=0)
+        lasts = max(step.end_s - step.start_s - 0.35 * len(gaps), 0.1)
+        slowest, fastest = _SPEEDS_MPS.get(step.lower, _WALK_MPS)
+        if not slowest <= float(np.hypot(*gaps.T).sum()) / lasts <= fastest:
+            continue
+        towards = float(np.arctan2(gaps[0, 1], gaps[0, 0]))
+        if given_rad is not None and abs(signed_angle_rad(given_rad, towards)) >= _DIRECTION_RAD:
+            continue
+        if bool(_are_free(trajectory.floor, here_m[None], way.sitting, way.gate_m)[0]):
+            return way
+    return None
+
+
+def start_of_walk(way: Approach, step: Step, direction_rad: float | None, rng: np.random.Generator) -> Array | None:
+    """A place (x, y) from which a walk in the step's time and direction takes this way; None where there is none."""
+    gaps_m = way.corners_m[0] - way.starts_m
+    further_m = 0.0 if way.gate_m is None else float(np.hypot(*(way.sitting.feet_m - way.gate_m)))
+    apart_m = np.hypot(*gaps_m.T) + further_m
+    lasts = step.end_s - step.start_s
+    fits = (apart_m > 0.55 * lasts) & (apart_m < 1.35 * lasts)
+    if direction_rad is not None:
+        towards = np.arctan2(gaps_m[:, 1], gaps_m[:, 0])
+        fits &= np.abs((towards - direction_rad + np.pi) % (2 * np.pi) - np.pi) < 0.9 * _DIRECTION_RAD
+    some = way.starts_m[fits]
+    return some[int(rng.integers(len(some)))] if len(some) else None
+
+
+def walk_to_seat(trajectory: Trajectory, step: Step, way: Approach, *, first: bool) -> None:
+    """Lays out the walk: straight, or through the gate and on along the front of the seat."""
+    corners = np.stack([trajectory.position_m, *way.corners_m])
+    gaps = np.diff(corners, axis=0)
+    lengths, directions = np.hypot(*gaps.T), np.arctan2(gaps[:, 1], gaps[:, 0])
+    time = step.start_s
+    for leg, (length, direction) in enumerate(zip(lengths, directions, strict=True)):
+        begin = face_along(trajectory, step, float(direction), time, first=first and leg == 0)
+        end = step.end_s
+        if leg + 1 < len(lengths):
+            turn_rad = abs(signed_angle_rad(float(direction), float(directions[leg + 1])))
+            turning_s = 0.5 * (TURN_OVERHEAD_S + turn_rad / TURN_RATE_RADPS)
+            end = begin + (step.end_s - turning_s - begin) * float(length / lengths.sum())
+        ramps = (ramps_of(end - begin, first=first and leg == 0, last=False)[0], min(0.45, 0.42 * (end - begin)))
+        trajectory.go(step, float(direction), float(length), (begin, end), ramps)
+        time = end
+    if time - step.start_s < 0.3:
+        raise NoTrajectory("no time to walk to the seat")
+
+
+def _ways_to(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Approach]:
+    """The least unusual ways to sit on a seat whose feet have room, can be walked to, and leave the body clear."""
+    cells = floor.walkable_m
+    cells = cells[:: max(1, len(cells) // _MOST_STARTS)]
+    found: list[Approach] = []
+    for sitting in _clear_sittings(seat, floor, body) if len(cells) else []:
+        if len(found) == _WAYS_A_SEAT:
+            break
+        for gate_m in (None, *_gates(sitting, floor)):
+            starts_m = cells[_are_free(floor, cells, sitting, gate_m)]
+            if len(starts_m):
+                cost = sitting.cost + _NARROW_COST * (gate_m is not None)
+                found.append(Approach(sitting=replace(sitting, cost=cost), gate_m=gate_m, starts_m=starts_m))
+                break
+    return found
+
+
+def _clear_sittings(seat: Sitting, floor: FloorMap, body: SkeletonProportions) -> list[Sitting]:
+    """Ways to sit where somebody who sits down gets no deeper into furniture than is reported, the best first."""
+    sittings = [one for one in _sittings(seat) if floor.clearance_at(one.feet_m) > CLOSEST_FEET_M]
+    if not sittings:
+        return []
+    obstacles = CollisionMap.of(floor.scene)
+    lower = Step(lower="sit_down", start_s=0.0, end_s=_SITS_DOWN_S)
+    placed = (PlacedStep(step=lower, seat_height_m=seat.height_m),)
+    at = RootPath(start_m=(0.0, 0.0), heading_rad=0.0, moves=(), turns=())
+    controls = assembled_controls(placed, at, body, seed=0, duration_s=_SITS_DOWN_S)
+    pose = solved(controls, body, duration_s=_SITS_DOWN_S, floor_z_m=floor.scene.floor_z_m)
+    sketch = BodySamples.of(pose).relative_to(at).without_repeats()
+    bodies = [
+        sketch.along(
+            RootPath(
+                start_m=(float(one.feet_m[0]), float(one.feet_m[1])), heading_rad=one.facing_rad, moves=(), turns=()
+            )
+        )
+        for one in sittings
+    ]
+    seats = [((float(one.seat_m[0]), float(one.seat_m[1])),) for one in sittings]
+    rough_m = obstacles.estimates_m(bodies, seats, margin_m=0.0)
+    order = np.argsort([one.cost + _DEEP_COST_PER_M * depth for one, depth in zip(sittings, rough_m, strict=True)])
+    found: list[Sitting] = []
+    for k in order[:_MOST_TESTED]:
+        depth_m = obstacles.penetration_m(bodies[k], seats[k])
+        if depth_m <= _DEEPEST_M:
+            found.append(replace(sittings[k], cost=sittings[k].cost + _DEEP_COST_PER_M * depth_m))
+    return sorted(found, key=lambda one: one.cost)
+
+
+def _sittings(seat: Sitting) -> Iterator[Sitting]:
+    """Sitting on a seat ahead, or turned to a side; on a wide one at several places along it."""
+    aside = np.array([-np.sin(seat.facing_rad), np.cos(seat.facing_rad)])
+    spare_m = max(0.0, (seat.width_m - _SEAT_WIDTH_M) / 2)
+    for shift_m in np.linspace(-spare_m, spare_m, 1 + 2 * int(np.ceil(spare_m / _SHIFT_M))):
+        moved = replace(seat, feet_m=seat.feet_m + shift_m * aside, seat_m=seat.seat_m + shift_m * aside)
+        for turn_rad in {sign * turn for turn in _TURNS_RAD for sign in (-1.0, 1.0)}:
+            cost = _SHIFT_COST * abs(float(shift_m)) + (0.3 + _TURN_COST * abs(turn_rad) if turn_rad else 0.0)
+            yield replace(turned(moved, turn_rad), cost=cost)
+
+
+def _gates(sitting: Sitting, floor: FloorMap) -> list[Float[Array, "2"]]:
+    """Walkable places from which a narrow but free way leads along the front of the seat, the nearest first."""
+    lengths_m = np.arange(_GATE_STEP_M, _LONGEST_NARROW_M + 1e-9, _GATE_STEP_M)
+    found = []
+    for side in (-1.0, 1.0):
+        for off in _OFF_FRONT_RAD:
+            angle = sitting.facing_rad + side * (np.pi / 2 - off)
+            line_m = sitting.feet_m + lengths_m[:, None] * np.array([np.cos(angle), np.sin(angle)])
+            can_stand, narrow = floor.can_stand(line_m), floor.clearance_at(line_m) > _NARROW_M
+            first = int(np.argmax(can_stand))
+            if can_stand[first] and narrow[:first].all():
+                found.append((float(lengths_m[first]), line_m[first]))
+    return [gate_m for _, gate_m in sorted(found, key=lambda one: one[0])]
+
+
+def _are_free(floor: FloorMap, places_m: Array, sitting: Sitting, gate_m: Array | None) -> Array:
+    """From which places (place 2) the straight way to the gate, or to the seat itself, is free: (place,)."""
+    if gate_m is None:
+        return are_reachable(floor, places_m, sitting)
+    lines_m = places_m[:, None] + np.linspace(0, 1, 60)[:, None] * (gate_m - places_m)[:, None]
+    return np.asarray(floor.can_stand(lines_m).all(axis=1))
