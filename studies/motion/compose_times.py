@@ -3,8 +3,8 @@
 python -m studies run compose_times --rooms /path/to/rooms
 
 The bundled sample, photographed rooms, and a procedural room of every kind, seen in the radar's default window. The
-first sentence in a room, which leads to a seat, pays for what is computed once a room, and is reported apart. Results are named by `--name`,
-so that two versions can be compared on the same machine in the same hour.
+first sentence in a room, which leads to a seat, pays for what is computed once a room, and is reported apart. Results
+are named by `--name`, so that two versions can be compared on the same machine in the same hour.
 """
 
 import argparse
