@@ -22,7 +22,9 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from mmweaver.scene.procedural.procedural_room import make_room  # noqa: E402
 from tests.browser.chromium import FLAGS, needs_browser, running_studio  # noqa: E402
+from tests.formats.point_clouds.test_read_points import out_of_box  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images"
 READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"
@@ -48,6 +50,7 @@ def main() -> None:
         page.goto(address)
         page.wait_for_selector(READY, timeout=180_000)
         take_pictures(page)
+        take_pictures_of_files(page, Path(log))
         if arguments.video:
             page.goto(address)
             page.reload()
@@ -66,6 +69,10 @@ def take_pictures(page: Any) -> None:
     page.wait_for_selector(IDLE, timeout=120_000)
     page.evaluate("studio.player.seek(9)")
     take(page, "studio_compare")
+    page.get_by_role("button", name="Numbers").click()
+    page.wait_for_selector("dialog[open]", timeout=60_000)
+    take(page, "studio_numbers")
+    page.get_by_role("button", name="Close").click()
     page.get_by_role("button", name="Compare").click()
     page.locator("select[aria-label=Method]").select_option("auto")
     page.wait_for_selector(IDLE, timeout=120_000)
@@ -92,6 +99,55 @@ def take_pictures(page: Any) -> None:
     take(page, "studio_phone")
     page.set_viewport_size(SIZE)
     page.emulate_media(color_scheme="light")
+
+
+def take_pictures_of_files(page: Any, folder: Path) -> None:
+    """What becomes of a mesh, of a data port's log, and of a room without a floor."""
+    ask(page, "a person walks to the right")
+    points = (
+        page.evaluate("[...studio.result.arrays.points.data]"),
+        page.evaluate("[...studio.result.arrays.point_frame.data]"),
+    )
+    write_port_log(folder / "xwr18xx.dat", np.reshape(points[0], (-1, 5)), np.array(points[1]))
+    drop(page, [folder / "xwr18xx.dat"])
+    page.evaluate("studio.player.seek(9)")
+    take(page, "studio_points")
+    write_mesh(folder / "living_room.glb")
+    drop(page, [folder / "living_room.glb"])
+    page.evaluate("studio.player.seek(12)")
+    take(page, "studio_mesh")
+    Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(folder / "rgb.png")
+    Image.fromarray(np.full((480, 640), 1200, np.uint16)).save(folder / "depth.png")
+    drop(page, [folder / "rgb.png", folder / "depth.png"])
+    take(page, "studio_no_floor")
+
+
+def drop(page: Any, files: list[Path]) -> None:
+    """Uploads files and waits for what comes of them."""
+    given = [{"name": file.name, "data": list(file.read_bytes())} for file in files]
+    page.evaluate("files => studio.upload(files.map(f => new File([new Uint8Array(f.data)], f.name)))", given)
+    page.wait_for_selector(IDLE, timeout=120_000)
+
+
+def write_port_log(file: Path, points: np.ndarray, frame: np.ndarray) -> None:
+    """Points (point, 5) and their frames as the out-of-box demo sends them."""
+    packets = [out_of_box(number, points[frame == number, :4]) for number in range(int(frame.max()) + 1)]
+    file.write_bytes(b"".join(packets))
+
+
+def write_mesh(file: Path) -> None:
+    """A furnished procedural room as GLB, y up."""
+    import trimesh
+
+    mesh, scene = make_room("living_room", 0, 3).mesh, trimesh.Scene()
+    for number, appearance in enumerate(mesh.appearances):
+        part = trimesh.Trimesh(mesh.vertices_m, mesh.faces[mesh.appearance == number], process=False)
+        part.remove_unreferenced_vertices()
+        rgb = (255 * np.clip(appearance.colour, 0, 1) ** (1 / 2.2)).astype(np.uint8)
+        part.visual.vertex_colors = np.tile([*rgb, 255], (len(part.vertices), 1)).astype(np.uint8)
+        part.apply_transform(np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]]))
+        scene.add_geometry(part, geom_name=f"{appearance.coco}.{number:03d}")
+    scene.export(str(file))
 
 
 def ask(page: Any, text: str) -> None:

@@ -9,7 +9,7 @@ import { unpack } from "./wire";
 
 const LIVE_CHUNKS = 12; // of the rolling picture
 const HISTORY = "mmweaver.sentences", MAX_HISTORY = 30;
-interface Asked { room: string; text: string[]; radar: string; board?: string; method: string; seed: number; at: [number, number] | null; path: [number, number][] | null; motion: string }
+interface Asked { room: string; text: string[]; radar: string; board?: string; method: string; seed: number; at: [number, number] | null; path: [number, number][] | null; motion: string; recogniser: string }
 
 export class Studio {
   readonly root = element("main", { class: "mmweaver studio" });
@@ -25,6 +25,7 @@ export class Studio {
   private roomChoice = element("select", { "aria-label": "Room" });
   private radarChoice = element("select", { "aria-label": "Radar" });
   private boardChoice = element("select", { "aria-label": "Board" });
+  private recogniserChoice = element("select", { "aria-label": "Labels in Live" });
   private recordingChoice = element("select", { "aria-label": "Recording" });
   private motionChoice = element("select", { "aria-label": "Motion" });
   private methodChoice = element("select", { "aria-label": "Method" });
@@ -53,7 +54,7 @@ export class Studio {
     this.root.append(
       element("div", { class: "top" },
         element("div", { class: "line" }, element("h1", { class: "brand" }, "mmWeaver"), this.text, this.generateButton, this.liveButton, this.compareButton, this.numbersButton),
-        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("motion", this.motionChoice), named("recording", this.recordingChoice), named("method", this.methodChoice), named("seed", this.seed),
+        element("div", { class: "line" }, this.second, named("room", this.roomChoice), named("radar", this.radarChoice), named("board", this.boardChoice), named("motion", this.motionChoice), named("recording", this.recordingChoice), named("labels", this.recogniserChoice), named("method", this.methodChoice), named("seed", this.seed),
           this.pathButton, element("button", { click: () => this.openDrawer() }, "Details"), this.exportChoice, this.fileButton(), this.themeButton())),
       this.status, element("div", { class: "body" }, this.player.root), this.known, this.drawer);
     this.generateButton.addEventListener("click", () => this.generate());
@@ -80,6 +81,7 @@ export class Studio {
       const offered = await this.api.open();
       fill(this.radarChoice, offered.radars); fill(this.methodChoice, offered.methods); fill(this.boardChoice, offered.boards);
       (this.boardChoice.parentElement as HTMLElement).hidden = offered.boards.length < 2;
+      fill(this.recogniserChoice, [["", "none"], ...offered.recognisers.map((name: string): [string, string] => [name, name])]); (this.recogniserChoice.parentElement as HTMLElement).hidden = !offered.recognisers.length;
       fill(this.recordingChoice, [["", "none"], ...offered.recordings.map((name: string): [string, string] => [name, name])]); (this.recordingChoice.parentElement as HTMLElement).hidden = !offered.recordings.length;
       fill(this.motionChoice, [["", "of the sentence"]]); (this.motionChoice.parentElement as HTMLElement).hidden = true; // until one is brought
       this.pathButton.hidden = !offered.paths; this.liveButton.hidden = !offered.live;
@@ -126,7 +128,7 @@ export class Studio {
 
   private asked(): Asked {
     const text = [this.text.value, this.second.value].map((one) => one.trim()).filter((one, i) => i === 0 || one);
-    return { room: this.roomChoice.value, text, radar: this.radarChoice.value, board: this.boardChoice.value, method: this.methodChoice.value, seed: Number(this.seed.value), at: this.at, path: this.path, motion: this.motionChoice.value };
+    return { room: this.roomChoice.value, text, radar: this.radarChoice.value, board: this.boardChoice.value, method: this.methodChoice.value, seed: Number(this.seed.value), at: this.at, path: this.path, motion: this.motionChoice.value, recogniser: this.recogniserChoice.value };
   }
   private state(): string {
     const { room, text, radar, method, seed, at, board, path } = this.asked(), pairs = new URLSearchParams({ room, radar, method, seed: String(seed) });
@@ -230,7 +232,7 @@ export class Studio {
     const rolling = joined(this.chunks);
     this.result = rolling; this.player.show(rolling); this.player.pause();
     const first = rolling.frames - chunk.frames, begun = performance.now(), lasts = chunk.frames * chunk.periodS * 1000;
-    this.tell(`live: ${this.live.frames} frames, made ${this.live.times_real_time.toFixed(1)} × faster than real time${this.live.refused ? "; " + this.live.refused : ""}`);
+    this.tell(`live: ${this.live.frames} frames, made ${this.live.times_real_time.toFixed(1)} × faster than real time${labelText(this.live.label)}${this.live.refused ? "; " + this.live.refused : ""}`);
     const step = () => {
       if (!this.socket) return;
       const share = (performance.now() - begun) / lasts;
@@ -322,9 +324,10 @@ export class Studio {
     this.tell(`reading ${name}…`);
     try { this.takeRecorded(new Sequence(await this.api.packed(`api/recording/${encodeURIComponent(name)}`, { method: "POST" })), name); } catch (error) { this.fail(error); }
   }
-  /** A recording shows no room, unless it is compared with what was made in one. */
+  /** A recording shows no room, unless it is compared with what was made in one, or was made in the bundled one that is shown. */
   private takeRecorded(sequence: Sequence, label: string): void {
-    if (!sequence.people && !this.kept) this.player.setRoom(null);
+    const isHere = sequence.header.meta.inputs?.sample && this.roomChoice.value === "demo";
+    if (!isHere && !this.kept) this.player.setRoom(null);
     this.take(sequence);
     this.tell(`${label}: ${sequence.frames} frames`);
   }
@@ -372,6 +375,7 @@ function corners(line: [number, number][]): [number, number][] {
   if (away(line[far]) < 0.12) return [line[0], line.at(-1)!];
   return [...corners(line.slice(0, far + 1)).slice(0, -1), ...corners(line.slice(far))];
 }
+const labelText = (found: { label: string; share: number; is_outside: boolean } | null) => (found ? `; recognised: ${found.label} (${Math.round(100 * found.share)} % of the votes${found.is_outside ? ", unlike anything it learned from" : ""})` : "");
 const round = (value: number) => Math.round(value * 100) / 100;
 const read = (key: string): string[] => { try { return JSON.parse(localStorage.getItem(key) ?? "[]"); } catch { return []; } };
 function fill(control: HTMLSelectElement, options: [string, string][]): void { control.replaceChildren(...options.map(([value, label]) => element("option", { value }, label))); }

@@ -34,6 +34,10 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         help="a result folder, a capture, a .dat, or a folder with a .bin and its .cfg; once more for each further one",
     )  # fmt: skip
     parser.add_argument(
+        "--recogniser", type=Path, action="append", default=[], metavar="DIR",
+        help="a folder of mmweaver recognise train, whose labels Live shows; once more for each further one",
+    )  # fmt: skip
+    parser.add_argument(
         "--host", default=LOOPBACK, help=f"address to listen on (default {LOOPBACK}: this machine only)"
     )
     parser.add_argument(
@@ -59,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"the studio needs the package {error.name}; pip install 'mmweaver[studio]'") from None
 
     serve(
-        arguments.room, arguments.recording, host=arguments.host, port=arguments.port, workers=arguments.workers,
-        announce=partial(print, flush=True), open_browser=not arguments.no_browser,
+        arguments.room, arguments.recording, arguments.recogniser, host=arguments.host, port=arguments.port,
+        workers=arguments.workers, announce=partial(print, flush=True), open_browser=not arguments.no_browser,
     )  # fmt: skip
     return 0

@@ -24,6 +24,7 @@ class Asked:
     seed: int = 0
     at: tuple[float, float] | None = None
     path: tuple[tuple[float, float], ...] | None = None  # corners of the walk on the floor
+    recogniser: str | None = None  # whose labels Live shows
     motion: str | None = None  # id of a motion that the session brought
 
     @classmethod
@@ -46,6 +47,7 @@ class Asked:
             board=_word(body, "board", DEFAULT_BOARD),
             method=_word(body, "method", "auto"), seed=seed, at=None if at is None else _place(at),
             path=None if path is None else _path(path), motion=_word(body, "motion", "") or None,
+            recogniser=_word(body, "recogniser", "") or None,
         )  # fmt: skip
 
     @property

@@ -11,8 +11,10 @@ from mmweaver.generate import Weaver
 from mmweaver.generation import Room
 from mmweaver.playback.sequence import make_playback
 from mmweaver.playback.wire import pack
+from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.streaming import StreamChunk
 from mmweaver.studio.asked import DEFAULT_BOARD, Asked
+from mmweaver.studio.live_labels import LiveLabels
 
 CHUNK_FRAMES = 10
 
@@ -20,7 +22,14 @@ CHUNK_FRAMES = 10
 class Live:
     """One stream of one session. `next_chunk` is called for each chunk; `say` hands in the next sentence."""
 
-    def __init__(self, weaver: Weaver, room: Room, asked: Asked, board: Board | str = DEFAULT_BOARD):
+    def __init__(
+        self,
+        weaver: Weaver,
+        room: Room,
+        asked: Asked,
+        board: Board | str = DEFAULT_BOARD,
+        recogniser: Recogniser | None = None,
+    ):
         if len(asked.text) > 1:
             raise InputError("Live has one person; leave the second sentence empty")
         self._sentences: deque[str] = deque(asked.text)
@@ -31,7 +40,9 @@ class Live:
             at=asked.at,
             chunk_frames=CHUNK_FRAMES,
             board=board,
+            fps=None if recogniser is None else recogniser.settings.frame_rate_hz,
         )
+        self._labels = None if recogniser is None else LiveLabels(recogniser)
         self._scale_db: tuple[float, float] | None = None
         self._frames = 0
         self._seconds = 0.0
@@ -59,6 +70,7 @@ class Live:
         period_s = chunk.cube.config.frame_period_s
         live = {
             "frames": self._frames, "first_frame": chunk.first_frame, "refused": chunk.refused, "text": chunk.text,
+            "label": None if self._labels is None else self._labels.push(chunk),
             "times_real_time": self._frames * period_s / max(self._seconds, 1e-6),
         }  # fmt: skip
         return pack({**shown.header, "live": live}, shown.arrays)

@@ -30,6 +30,7 @@ class _Announcing(uvicorn.Server):
 def serve(
     rooms: list[Path],
     recordings: list[Path],
+    recognisers: list[Path],
     *,
     host: str,
     port: int,
@@ -39,7 +40,8 @@ def serve(
 ) -> None:
     """Serves until interrupted; `announce` is given the lines for the user.
 
-    Raises InputError where the address cannot be had, a folder holds no room, or a recording does not exist.
+    Raises InputError where the address cannot be had, a folder holds no room, a recording does not exist, or a
+    recogniser is none.
     """
     bound = _bind(host, port)
     port = bound.getsockname()[1]
@@ -48,7 +50,7 @@ def serve(
     shown = "localhost" if host in ("0.0.0.0", "::") else host
     address = f"http://{shown}:{port}/" + ("" if token is None else f"?token={token}")
     try:
-        studio = StudioServer(Workshop(rooms, recordings), workers=workers)
+        studio = StudioServer(Workshop(rooms, recordings, recognisers), workers=workers)
         config = uvicorn.Config(
             studio.app(hosts=set(names), token=token), log_level="warning", ws_max_size=1 << 20,
             timeout_graceful_shutdown=2, limit_concurrency=400,

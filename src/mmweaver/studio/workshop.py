@@ -21,6 +21,7 @@ from mmweaver.playback.wire import pack
 from mmweaver.studio.asked import Asked
 from mmweaver.studio.compared import compared
 from mmweaver.studio.live import Live
+from mmweaver.studio.live_labels import OfferedRecognisers
 from mmweaver.studio.recorded import OfferedRecordings
 from mmweaver.studio.rooms import DEMO, OfferedRooms
 from mmweaver.studio.sessions import Result, Session, Sessions
@@ -34,9 +35,15 @@ _MOST_WEAVERS = 12  # each keeps the room that it worked in last
 class Workshop:
     """Rooms and weights shared by all sessions."""
 
-    def __init__(self, rooms: list[Path] | None = None, recordings: list[Path] | None = None):
+    def __init__(
+        self,
+        rooms: list[Path] | None = None,
+        recordings: list[Path] | None = None,
+        recognisers: list[Path] | None = None,
+    ):
         self.rooms = OfferedRooms(rooms or [])
         self.recordings = OfferedRecordings(recordings or [])
+        self.recognisers = OfferedRecognisers(recognisers or [])
         self.sessions = Sessions()
         self._weavers: OrderedDict[tuple[str, str, str, str], Weaver] = OrderedDict()
         self._lock = Lock()
@@ -56,6 +63,7 @@ class Workshop:
             "radars": [(name, name) for name in PRESETS],
             "methods": [("auto", "network"), ("physics", "physics (ray-traced)")],
             "boards": [(name, name.replace(":", " ")) for name in BOARDS],
+            "recognisers": self.recognisers.names,
             "recordings": self.recordings.names,
             "sentences": [activity.example for activity in BY_KEY.values()],
             "text": FIRST_TEXT,
@@ -140,7 +148,11 @@ class Workshop:
         asked = Asked.of(body)
         radar = self.radar_of(session, asked.radar)
         board = self.board_of(session, asked.board, radar)
-        return Live(self._weaver(asked, radar), self.room_of(session, asked.room), asked, board)
+        room = self.room_of(session, asked.room)
+        if asked.recogniser is None:
+            return Live(self._weaver(asked, radar), room, asked, board)
+        recogniser = self.recognisers.get(asked.recogniser)  # learned from the points of a board's firmware
+        return Live(Weaver(method=asked.method, radar=radar, points="firmware"), room, asked, board, recogniser)
 
     def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
         name = session.add(result)
