@@ -141,7 +141,7 @@ def write_mesh(file: Path) -> None:
 
     mesh, scene = make_room("living_room", 0, 3).mesh, trimesh.Scene()
     for number, appearance in enumerate(mesh.appearances):
-        part = trimesh.Trimesh(mesh.vertices_m, mesh.faces[mesh.appearance == number], process=False)
+        part: Any = trimesh.Trimesh(mesh.vertices_m, mesh.faces[mesh.appearance == number], process=False)
         part.remove_unreferenced_vertices()
         rgb = (255 * np.clip(appearance.colour, 0, 1) ** (1 / 2.2)).astype(np.uint8)
         part.visual.vertex_colors = np.tile([*rgb, 255], (len(part.vertices), 1)).astype(np.uint8)

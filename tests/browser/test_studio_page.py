@@ -71,9 +71,10 @@ def drop(page: Any, files: list[Path]) -> None:
         for (const f of files) transfer.items.add(new File([new Uint8Array(f.data)], f.name));
         const event = new DragEvent('drop', {dataTransfer: transfer, bubbles: true, cancelable: true});
         studio.root.dispatchEvent(event); }"""
+    before = page.inner_text(".status")
     page.evaluate(dropped, [{"name": file.name, "data": list(file.read_bytes())} for file in files])
-    page.wait_for_selector("main[data-busy=true]")
-    page.wait_for_selector(IDLE, timeout=60_000)
+    says_else = "before => document.querySelector('main[data-busy=false] .status')?.innerText.trim() !== before.trim()"
+    page.wait_for_function(f"before => document.querySelector('{IDLE}') && ({says_else})(before)", arg=before)
 
 
 def test_no_request_leaves_this_machine(visited: tuple[Any, list[str], list[str]], address: str):
@@ -341,8 +342,7 @@ def test_the_keyboard_moves_the_start_and_walks_a_path(page: Any):
     page.locator(".scene canvas").focus()
     start = page.evaluate("studio.result.header.meta.person.starts_at_m")
     page.keyboard.press("Shift+ArrowLeft")
-    page.wait_for_selector("main[data-busy=true]")
-    page.wait_for_selector(IDLE, timeout=60_000)
+    page.wait_for_function("at => String(studio.result.header.meta.person.starts_at_m) !== String(at)", arg=start)
     moved = page.evaluate("studio.result.header.meta.person.starts_at_m")
     assert math.dist(moved, start) < 0.4  # a step, or the nearest free place
     assert moved != start
