@@ -47,6 +47,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/scatterer_decode.py
 	$(BIN)/python benchmarks/weaver.py
 	$(BIN)/python benchmarks/stream.py
+	$(BIN)/python benchmarks/studio.py
 	$(BIN)/python benchmarks/devices.py
 	$(BIN)/python benchmarks/dataset.py
 	$(BIN)/python benchmarks/checksums.py

@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT))
 
 from mmweaver.scene.procedural.procedural_room import make_room  # noqa: E402
 from tests.browser.chromium import FLAGS, needs_browser, running_studio  # noqa: E402
-from tests.formats.point_clouds.test_read_points import out_of_box  # noqa: E402
+from tests.formats.point_clouds.test_read_points import packet  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images"
 READY, IDLE = "main[data-state=ready]", "main[data-busy=false]"
@@ -117,7 +117,7 @@ def take_pictures_of_files(page: Any, folder: Path) -> None:
     page.evaluate("studio.player.seek(12)")
     take(page, "studio_mesh")
     Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(folder / "rgb.png")
-    Image.fromarray(np.full((480, 640), 1200, np.uint16)).save(folder / "depth.png")
+    Image.fromarray(np.full((480, 640), 450, np.uint16)).save(folder / "depth.png")
     drop(page, [folder / "rgb.png", folder / "depth.png"])
     take(page, "studio_no_floor")
 
@@ -131,7 +131,12 @@ def drop(page: Any, files: list[Path]) -> None:
 
 def write_port_log(file: Path, points: np.ndarray, frame: np.ndarray) -> None:
     """Points (point, 5) and their frames as the out-of-box demo sends them."""
-    packets = [out_of_box(number, points[frame == number, :4]) for number in range(int(frame.max()) + 1)]
+    packets = []
+    for number in range(int(frame.max()) + 1):
+        rows = points[frame == number]
+        side = np.stack([10 * rows[:, 4], np.zeros(len(rows))], axis=-1).astype("<i2")  # SNR in 0.1 dB
+        tlvs = [(1, rows[:, :4].astype("<f4").tobytes()), (7, side.tobytes())]
+        packets.append(packet(number, tlvs, len(rows)))
     file.write_bytes(b"".join(packets))
 
 

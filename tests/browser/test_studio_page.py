@@ -318,9 +318,9 @@ def test_twenty_seconds_live(page: Any, address: Running):
 
 
 def test_a_room_without_a_floor_offers_ways_on(page: Any, tmp_path: Path):
-    """A wall at 1.2 m fills the picture: nobody can stand before it."""
+    """A wall at 0.45 m fills the picture: nobody can stand before it."""
     Image.fromarray(np.full((480, 640, 3), 180, np.uint8)).save(tmp_path / "rgb.png")
-    Image.fromarray(np.full((480, 640), 1200, np.uint16)).save(tmp_path / "depth.png")
+    Image.fromarray(np.full((480, 640), 450, np.uint16)).save(tmp_path / "depth.png")
     drop(page, [tmp_path / "rgb.png", tmp_path / "depth.png"])
     page.wait_for_selector(".status.error button", timeout=60_000)
     assert "\n" not in page.inner_text(".status.error")

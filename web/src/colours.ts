@@ -22,10 +22,10 @@ export function colourTable(name: string): Uint8ClampedArray {
   return table;
 }
 
-const VELOCITY = colourTable("coolwarm");
+const TOWARDS: Rgb = [0.07, 0.32, 0.92], STILL: Rgb = [0.42, 0.45, 0.5], AWAY: Rgb = [0.86, 0.12, 0.1];
 
-/** Colour of a radial velocity: blue towards the radar, red away from it, in 0..1. */
+/** Colour of a radial velocity, in 0..1: blue towards the radar, grey at rest, red away; seen before light and dark. */
 export function velocityColour(velocity: number, top: number): Rgb {
-  const i = Math.round((Math.max(-1, Math.min(1, velocity / top)) + 1) * 127.5) * 4;
-  return [VELOCITY[i] / 255, VELOCITY[i + 1] / 255, VELOCITY[i + 2] / 255];
+  const share = Math.min(1, Math.abs(velocity) / top) || 0, end = velocity < 0 ? TOWARDS : AWAY;
+  return STILL.map((still, c) => still + (end[c] - still) * share) as Rgb;
 }

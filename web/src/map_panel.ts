@@ -16,7 +16,7 @@ export interface Mark { x?: [number, number]; y?: [number, number]; colour?: str
 
 function ticks(from: number, to: number, about: number): number[] {
   const raw = Math.abs(to - from) / about, power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= 0.8 * raw)!;
+  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= 0.65 * raw)!;
   const out: number[] = [];
   for (let v = Math.ceil(Math.min(from, to) / step) * step; v <= Math.max(from, to) + 1e-9; v += step) out.push(Math.abs(v) < 1e-12 ? 0 : v);
   return out;
