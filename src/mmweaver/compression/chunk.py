@@ -33,7 +33,7 @@ from mmweaver.fields.scatterers.refinement import Damping, refined
 
 # frames, hop, peak, step, centroids of 1 and of more, noise, which of COARSE_STEPS, rank, flags
 PREFIX = struct.Struct("<HHffBBBBBB")
-HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE = 1, 2, 4, 8, 16, 32, 64
+HAS_STATIC, HAS_POINTS, HAS_CELLS, HAS_GAINS, HAS_RANK, IS_EXACT, HAS_NOISE, IS_VERSION_4 = 1, 2, 4, 8, 16, 32, 64, 128
 STATIC_ROUNDING = 0.4
 LEAST_SIZE = 2  # steps; weaker scatterers cost fewer bits as residual
 REFINED_STEPS = 3
@@ -183,23 +183,27 @@ class ChunkEncoder:
             front += draft.transform.packed
             code_cells(stream, cells.levels, cells.classes, draft.near, draft.transform.correlated, coarser)
             lost = lost - cells.values(step, coarser)
+        is_active = draft.is_active
+        if draft.transform.choice.range_dct:  # which spreads signal over all cells: errors are those of the cells
+            lost, is_active = np.moveaxis(draft.transform.inverse(lost), 3, 0), self.is_active
         lost = np.sum(np.square(np.abs(lost)), axis=0)
         prefix = PREFIX.pack(
             self.frames.num_frames, self.frames.hop, self.peak, step, *cells.centroids, _noise_level(self.noise_power),
             COARSE_STEPS.index(coarser or 1), draft.rank, flags,
         )  # fmt: skip
         return CodedChunk(
-            data=prefix + front + stream.to_bytes(), active_error=float(lost[draft.is_active].sum()),
+            data=prefix + front + stream.to_bytes(), active_error=float(lost[is_active].sum()),
             all_error=float(lost.sum()), step=step, mode=mode, sample=sample,
         )  # fmt: skip
 
     def draft(self, step: float, mode: ChunkMode, coarser: int) -> "ChunkDraft":
         """The chunk with its layers coded, and its cells not."""
         step = float(np.float32(step))
-        stream, flags, front = Encoder(), 0, b""
+        stream, flags, front = Encoder(), IS_VERSION_4, b""
         target, near = self.target, np.zeros(self.target.shape[:3], np.int64)
         if mode.with_points and self.layers is not None:
-            target, near, flags, front = self._points(stream, step)
+            target, near, more, front = self._points(stream, step)
+            flags += more
         noise_power = self.noise_power * (1 - 1 / (coarser or 4) ** 2)
         factors = RankFactors.of(target, step, noise_power) if mode.with_rank else None
         if factors is not None:
@@ -214,7 +218,7 @@ class ChunkEncoder:
         transform, coefficients = self._transformed(mode.transform, target, is_plain=target is self.target)
         return ChunkDraft(
             step=step, stream=stream, flags=flags, front=front, near=near, rank=0 if factors is None else factors.rank,
-            transform=transform, coefficients=coefficients, is_active=transform.spread_over_time(self.is_active),
+            transform=transform, coefficients=coefficients, is_active=transform.spread(self.is_active),
         )  # fmt: skip
 
     def exact(self, values: CubeValues) -> bytes:
@@ -228,7 +232,7 @@ class ChunkEncoder:
         """Some coefficients of a transform of the frames themselves, for estimates."""
         if choice not in self._samples:
             transform, coefficients = self._transformed(choice, self.target, is_plain=True)
-            mask = transform.spread_over_time(self.is_active)
+            mask = transform.spread(self.is_active)
             self._samples[choice] = CellSample.of(coefficients, mask, PREFIX.size + len(transform.packed))
         return self._samples[choice]
 
@@ -325,7 +329,7 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
     num_frames, hop, peak, step, one, more, noise, coarse, rank, flags = PREFIX.unpack_from(data)
     if not (num_frames and step > 0 and math.isfinite(step) and math.isfinite(peak) and coarse < len(COARSE_STEPS)):
         raise ValueError("impossible prefix")
-    if flags >= 2 * HAS_NOISE or bool(flags & HAS_RANK) != bool(rank):
+    if bool(flags & HAS_RANK) != bool(rank):
         raise ValueError("impossible flags")
     cells = config.num_range_bins * config.num_loops * config.num_antennas
     if (num_frames > 1 and num_frames * cells > MOST_VALUES) or cells > MOST_CELLS:
@@ -336,6 +340,7 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         shape = (num_frames, config.num_range_bins, config.num_loops, config.num_antennas)
         values = unpack_exact(data[PREFIX.size :], shape)
         return DecodedChunk(frames=frames, layers=None, residual=None, peak=peak, noise_power=noise_power, exact=values)
+    is_version_3 = not flags & IS_VERSION_4
     at, beams, shape = PREFIX.size, beams_of(config), frames.working_shape
     gains, transform = torch.ones(config.num_antennas, dtype=torch.complex64), None
     if flags & HAS_GAINS:
@@ -343,12 +348,12 @@ def _decode(data: bytes, config: RadarConfig, with_residual: bool) -> DecodedChu
         at += 2 * config.num_antennas
     noise: NoiseLayer | None = None
     if flags & HAS_NOISE:
-        noise = NoiseLayer.unpack(data[at:], shape, beams)
+        noise = NoiseLayer.unpack(data[at:], shape, beams, is_version_3=is_version_3)
         at += len(noise.packed)
     if flags & HAS_CELLS:
         transform = ChunkTransform.unpack(data[at:], beams, shape[2])
         at += len(transform.packed)
-    stream = Decoder(data[at:])
+    stream = Decoder(data[at:], is_version_3=is_version_3)
     layers, near = _decode_layers(stream, frames, step, flags, gains, noise_power)
     residual: np.ndarray | None = None
     if flags & HAS_RANK:

@@ -2,7 +2,8 @@
 
 Antennas: beams of the array, or the principal directions (KLT) of this chunk. Time: nothing, a DCT over the frames in
 the static Doppler bins, or in all. Doppler, where there are few bins: nothing, or their KLT, for short windows make
-them linearly dependent (two loops under a Hann window are one).
+them linearly dependent (two loops under a Hann window are one). Range: nothing, or a DCT, which collects what FFT
+windows spread over neighbouring cells, noise too, and pays where most cells have levels.
 """
 
 import struct
@@ -29,12 +30,14 @@ class TransformChoice:
     time: int = STATIC_DCT
     antenna_klt: bool = False
     doppler_klt: bool = False
+    range_dct: bool = False
 
     def name(self) -> str:
         """For people: "beams, DCT of static bins"."""
         parts = ["KLT of antennas" if self.antenna_klt else "beams"]
         parts += [("", "DCT of static bins", "DCT of all bins")[self.time]] if self.time else []
-        return ", ".join(parts + (["KLT of Doppler bins"] if self.doppler_klt else []))
+        parts += ["KLT of Doppler bins"] * self.doppler_klt + ["DCT of ranges"] * self.range_dct
+        return ", ".join(parts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,8 +66,12 @@ class ChunkTransform:
             flat = np.moveaxis(values, 2, 3).reshape(-1, values.shape[2])
             doppler, more = _klt(flat.T @ flat.conj(), WORD)
             words += more
-        correlated = (_is_correlated(values, 1), doppler is None and _is_correlated(values, 2))
+        correlated = (
+            not choice.range_dct and _is_correlated(values, 1),
+            doppler is None and _is_correlated(values, 2),
+        )
         header = choice.time + 4 * choice.antenna_klt + 8 * choice.doppler_klt + 16 * correlated[0] + 32 * correlated[1]
+        header += 64 * choice.range_dct
         return cls(
             choice=choice, antennas=antennas, doppler=doppler, correlated=correlated, packed=bytes([header]) + words
         )
@@ -73,8 +80,10 @@ class ChunkTransform:
     def unpack(cls, data: bytes, beams: Complex[Array, "beam antenna"], num_doppler: int) -> "ChunkTransform":
         """The transform of a stream that begins with `packed`. Raises ValueError for what no encoder writes."""
         (header,) = HEADER.unpack_from(data)
-        choice = TransformChoice(time=header & 3, antenna_klt=bool(header & 4), doppler_klt=bool(header & 8))
-        if header >= 64 or choice.time > FULL_DCT or (choice.doppler_klt and num_doppler > MOST_DOPPLER):
+        choice = TransformChoice(
+            time=header & 3, antenna_klt=bool(header & 4), doppler_klt=bool(header & 8), range_dct=bool(header & 64)
+        )
+        if header >= 128 or choice.time > FULL_DCT or (choice.doppler_klt and num_doppler > MOST_DOPPLER):
             raise ValueError("impossible transform")
         at, antennas, doppler = HEADER.size, beams, None
         if choice.antenna_klt:
@@ -91,11 +100,13 @@ class ChunkTransform:
         out = np.tensordot(self.antennas.astype(values.dtype), values, axes=(1, 3))
         if self.doppler is not None:
             out = out @ self.doppler.T.astype(values.dtype)
-        return self._over_time(out, inverse=False)
+        out = self._over_time(out, inverse=False)
+        return _dct(out, 2, inverse=False) if self.choice.range_dct else out
 
     def inverse(self, values: Complex[Array, "beam time range index"]) -> Complex[Array, "frame range doppler antenna"]:
         """Values of coefficients."""
-        out = self._over_time(values, inverse=True)
+        out = _dct(values, 2, inverse=True) if self.choice.range_dct else values
+        out = self._over_time(out, inverse=True)
         if self.doppler is not None:
             out = out @ self.doppler.conj().astype(values.dtype)
         return np.moveaxis(np.tensordot(self.antennas.conj().astype(values.dtype), out, axes=(0, 0)), 0, 3)
@@ -105,14 +116,14 @@ class ChunkTransform:
             return values
         chosen = slice(None) if self._is_full else static_bins(values.shape[3])
         out = values.copy()
-        out[..., chosen] = _dct(values[..., chosen], inverse=inverse)
+        out[..., chosen] = _dct(values[..., chosen], 1, inverse=inverse)
         return out
 
     @property
     def _is_full(self) -> bool:
         return self.choice.time == FULL_DCT or self.doppler is not None
 
-    def spread_over_time(self, mask: Array) -> Array:
+    def spread(self, mask: Array) -> Array:
         """Mask of cells (frame, range, doppler) -> mask of coefficients that hold some of them."""
         out = mask.copy()
         if self.doppler is not None:
@@ -120,6 +131,8 @@ class ChunkTransform:
         if self.choice.time != NO_DCT:
             chosen = slice(None) if self._is_full else static_bins(mask.shape[2])
             out[:, :, chosen] = out[:, :, chosen].any(axis=0)
+        if self.choice.range_dct:
+            out[...] = out.any(axis=1, keepdims=True)
         return out
 
 
@@ -135,12 +148,12 @@ def choices_of(shape: tuple[int, ...]) -> list[TransformChoice]:
     return found
 
 
-def _dct(values: Array, *, inverse: bool) -> Array:
-    """Orthonormal DCT over axis 1; complex64 stays complex64."""
+def _dct(values: Array, axis: int, *, inverse: bool) -> Array:
+    """Orthonormal DCT over an axis; complex64 stays complex64."""
     from scipy import fft
 
     transform = fft.idct if inverse else fft.dct
-    real, imaginary = (transform(part, axis=1, norm="ortho") for part in (np.real(values), np.imag(values)))
+    real, imaginary = (transform(part, axis=axis, norm="ortho") for part in (np.real(values), np.imag(values)))
     return real + values.dtype.type(1j) * imaginary
 
 

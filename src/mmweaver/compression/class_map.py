@@ -4,7 +4,7 @@ import numpy as np
 
 from mmweaver.compression.entropy import BitStream
 from mmweaver.compression.lattice import PHASES, Phase, known_neighbours
-from mmweaver.compression.symbol_model import MixedModel
+from mmweaver.compression.symbol_model import Batches, MixedModel
 
 Classes = np.ndarray  # (time, range, doppler) int64
 
@@ -25,6 +25,7 @@ class ClassMapCoder:
 
     def code(self, stream: BitStream, classes: Classes, near: Classes) -> None:
         """`near` (time, range, doppler): strength of the nearest scatterer, 0 for none."""
+        batches = Batches(stream)
         padded = np.zeros([size + 2 * MARGIN for size in classes.shape], np.int64)
         inside = padded[(slice(MARGIN, -MARGIN),) * 3]
         for stride in STRIDES:
@@ -32,7 +33,12 @@ class ClassMapCoder:
                 own = tuple(slice(stride * odd, None, 2 * stride) for odd in phase)
                 if classes[own].size:
                     contexts = self._contexts(padded, phase, stride, near[own])
-                    values = self.model.code(stream, contexts, classes[own].ravel())
+                    wanted = classes[own].ravel()
+                    parts = [
+                        self.model.code(stream, [context[batch] for context in contexts], wanted[batch])
+                        for batch in batches.of(len(wanted))
+                    ]
+                    values = np.concatenate(parts)
                     classes[own] = inside[own] = values.reshape(classes[own].shape)
 
     def _contexts(self, padded: Classes, phase: Phase, stride: int, near: Classes) -> list[np.ndarray]:

@@ -22,7 +22,12 @@ MOST_RUNGS = len(RUNGS) - 2
 
 
 class BitStream(ABC):
-    """Common interface of encoder and decoder: codes given values, or returns decoded ones."""
+    """Common interface of encoder and decoder: codes given values, or returns decoded ones.
+
+    `is_version_3`: models of levels and classes are those of .mmw version 3 (`level_coder`, `class_map`).
+    """
+
+    is_version_3 = False
 
     @abstractmethod
     def bits(self, probability: Probability, values: Integers) -> Integers:
@@ -99,8 +104,9 @@ class Encoder(BitStream):
 class Decoder(BitStream):
     """A BitStream that decodes the bytes of an Encoder."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes, *, is_version_3: bool = False) -> None:
         model, queue = _constriction()
+        self.is_version_3 = is_version_3
 
         self._coder = queue.RangeDecoder(np.frombuffer(data, "<u4").astype(np.uint32))
         self._bit, self._uniform_model = model.Bernoulli(perfect=False), model.Uniform()

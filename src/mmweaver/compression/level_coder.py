@@ -5,14 +5,15 @@ the imaginary one, and the place. The FFT windows correlate neighbouring cells a
 so a weighted sum of the neighbours predicts the level.
 """
 
-from collections.abc import Iterator
+import operator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mmweaver.compression.entropy import BitStream
 from mmweaver.compression.lattice import PHASES, Phase, known_neighbours
-from mmweaver.compression.symbol_model import SignedModel
+from mmweaver.compression.symbol_model import Batches, SignedModel
 
 Integers = np.ndarray  # int64; called thousands of times a cube
 
@@ -25,7 +26,8 @@ NUM_REAL = 4
 UNKNOWN = NUM_SIZES  # class of a size that is not known
 OWN, OTHER, WIDE, REAL = 3, 3, 2, 2  # weights of what predicts the size
 LARGER, LEAST_SCALE = 2.0, 0.3
-DIGITS = 4  # bits of an expected level beyond which the lowest are coded as uniform
+DIGITS, DIGITS_IN_3 = 3, 4  # bits of an expected level beyond which the lowest are coded as uniform; in version 3
+STRIDES, STRIDES_IN_3 = (4, 2, 1), (1,)  # of the lattices, one after the other
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +35,7 @@ class PhaseGroup:
     """Open cells of one phase."""
 
     phase: Phase
+    stride: int
     at: Integers  # flat index in the padded (time, range, doppler)
     column: Integers
     factor: Integers  # step of the cell in units of the fine step
@@ -46,6 +49,11 @@ class KnownSizes:
     other: Integers | None
     wide: Integers
     real: Integers | None = None  # magnitude of the real part, in levels
+
+    def some(self, cells: slice, real: Integers | None) -> "KnownSizes":
+        """Of some cells, with the magnitude of the real part of all."""
+        own, other, real = (None if size is None else size[cells] for size in (self.own, self.other, real))
+        return KnownSizes(own=own, other=other, wide=self.wide[cells], real=real)
 
 
 class LevelCoder:
@@ -73,11 +81,16 @@ class LevelCoder:
         `factor` (time, range, doppler): step of each cell in units of the finest, 0 where it is closed.
         """
         beams = self.shape[0]
-        size_of = tuple(num + 2 for num in self.shape[1:])
+        lattices = STRIDES_IN_3 if stream.is_version_3 else STRIDES
+        batches = Batches(stream)
+        self.offsets = {phase: self._offsets(phase, has_all=stream.is_version_3) for phase in PHASES}
+        margins = [lattices[0] if num > 1 or stream.is_version_3 else 0 for num in self.shape[1:]]
+        size_of = tuple(num + 2 * margin for num, margin in zip(self.shape[1:], margins, strict=True))
         strides = (size_of[1] * size_of[2], size_of[2], 1)
-        groups = list(_groups(factor, strides))
+        groups = list(_groups(factor, strides, lattices, margins))
         planes = np.zeros((2, beams, *size_of), np.int64)
-        inner = planes[:, :, 1:-1, 1:-1, 1:-1]
+        inside = tuple(slice(margin, margin + num) for margin, num in zip(margins, self.shape[1:], strict=True))
+        inner = planes[(slice(None), slice(None), *inside)]
         inner[...] = levels * factor
         planes = planes.reshape(2, beams, -1)
         before = np.zeros(planes.shape[2], np.int64)
@@ -86,16 +99,22 @@ class LevelCoder:
             wide = _neighbour_mean(before.reshape(size_of)).ravel() if beam else before
             for group in groups:
                 known = self._known(group, size, before if beam else None, wide, strides)
-                self._code_group(stream, group, planes[:, beam], known, beam, strides)
+                self._code_group(stream, group, planes[:, beam], known, beam, strides, batches)
                 size[group.at] = np.abs(planes[0, beam][group.at]) + np.abs(planes[1, beam][group.at])
             before = (size + before) // 2 if beam else size
         levels[...] = inner // np.maximum(factor, 1)
 
+    def _offsets(self, phase: Phase, *, has_all: bool) -> list[tuple[Phase, int]]:
+        """Known neighbours and their weights, without those along axes of one cell unless `has_all`."""
+        found = known_neighbours(phase)
+        single = [num == 1 and not has_all for num in self.shape[1:]]
+        return [(offset, weight) for offset, weight in found if not any(map(operator.and_, map(bool, offset), single))]
+
     def _known(self, group: PhaseGroup, size: Integers, before, wide: Integers, strides) -> KnownSizes:
         at, factor = group.at, group.factor
         around, total = np.zeros(len(at), np.int64), 0
-        for offset, weight in known_neighbours(group.phase):
-            around += weight * size[at + _flat(offset, strides)]
+        for offset, weight in self.offsets[group.phase]:
+            around += weight * size[at + group.stride * _flat(offset, strides)]
             total += weight
         return KnownSizes(
             own=4 * around // (total * factor) if total else None,
@@ -103,14 +122,19 @@ class LevelCoder:
             wide=4 * wide[at] // factor,
         )
 
-    def _code_group(self, stream, group: PhaseGroup, planes, known: KnownSizes, beam: int, strides) -> None:
+    def _code_group(self, stream, group: PhaseGroup, planes, known: KnownSizes, beam: int, strides, batches) -> None:
         at, factor = group.at, group.factor
         place = beam * self.shape[3] + group.column
         real: Integers | None = None
         for plane in planes:
             trend = self._trend(plane, group, strides) // factor
-            known = KnownSizes(own=known.own, other=known.other, wide=known.wide, real=real)
-            values = self._numbers(stream, known, trend, place, plane[at] // factor)
+            wanted = plane[at] // factor
+            values = np.concatenate(
+                [
+                    self._numbers(stream, known.some(batch, real), trend[batch], place[batch], wanted[batch])
+                    for batch in batches.of(len(at))
+                ]
+            )
             plane[at] = values * factor
             real = np.abs(values)
 
@@ -119,21 +143,24 @@ class LevelCoder:
         towards = np.abs(trend)
         is_far = towards >= FAR
         by_trend = np.where(is_far, NUM_TRENDS - 1, np.searchsorted(TREND_BOUNDS, towards, side="right"))
-        by_real = np.full(len(trend), NUM_REAL - 1) if known.real is None else np.minimum(known.real, NUM_REAL - 2)
-        by_wide = np.searchsorted(WIDE_BOUNDS, known.wide, side="right")
+        digits = np.frexp(np.maximum(expected >> 3, 1).astype(np.float64))[1].astype(np.int64)
+        shift = np.maximum(digits - (DIGITS_IN_3 if stream.is_version_3 else DIGITS), 0)
+        scaled = np.zeros_like(shift) if stream.is_version_3 else shift
+        unknown = np.full(len(trend), NUM_REAL - 1)
+        by_real = unknown if known.real is None else np.minimum(known.real >> scaled, NUM_REAL - 2)
+        by_wide = np.searchsorted(WIDE_BOUNDS, known.wide >> scaled, side="right")
         contexts = [
-            np.searchsorted(SIZE_BOUNDS, expected, side="right"),
-            _class_of(known.own, len(trend)) * NUM_REAL + by_real,
-            _class_of(known.other, len(trend)) * NUM_WIDE + by_wide,
+            np.searchsorted(SIZE_BOUNDS, expected >> scaled, side="right"),
+            _class_of(known.own, scaled) * NUM_REAL + by_real,
+            _class_of(known.other, scaled) * NUM_WIDE + by_wide,
             place,
         ]
         up = np.where(trend < 0, -1, 1)
         offset = np.where(is_far, (towards + 4) // 8, 0)
-        digits = np.frexp(np.maximum(expected >> 3, 1).astype(np.float64))[1].astype(np.int64)
         deviation = self.levels.code(
             stream,
             [context * NUM_TRENDS + by_trend for context in contexts],
-            np.maximum(digits - DIGITS, 0),
+            shift,
             wanted * up - offset,
             by_trend == 0,
         )
@@ -142,8 +169,8 @@ class LevelCoder:
     def _trend(self, plane: Integers, group: PhaseGroup, strides) -> Integers:
         """Level predicted by the windows' correlation, in eighths of a fine step."""
         at, (_, row, column) = group.at, strides
-        along = bool(group.phase[1]) and self.correlated[0]
-        across = bool(group.phase[2]) and self.correlated[1]
+        along = bool(group.phase[1]) and self.correlated[0] and group.stride == 1
+        across = bool(group.phase[2]) and self.correlated[1] and group.stride == 1
         if not (along or across):
             return np.zeros(len(at), np.int64)
         zero = np.zeros(len(at), np.int64)
@@ -168,21 +195,24 @@ def _expected(known: KnownSizes, num: int) -> Integers:
     return total // weight if weight else total + 5
 
 
-def _class_of(size: Integers | None, num: int) -> Integers:
-    return np.full(num, UNKNOWN) if size is None else np.searchsorted(SIZE_BOUNDS, size, side="right")
+def _class_of(size: Integers | None, shift: Integers) -> Integers:
+    return np.full(len(shift), UNKNOWN) if size is None else np.searchsorted(SIZE_BOUNDS, size >> shift, side="right")
 
 
-def _groups(factor: Integers, strides: tuple[int, int, int]) -> Iterator[PhaseGroup]:
-    for phase in PHASES:
-        own = factor[phase[0] :: 2, phase[1] :: 2, phase[2] :: 2]
-        where = np.nonzero(own)
-        if len(where[0]):
-            cell = [2 * index + odd for index, odd in zip(where, phase, strict=True)]
-            at = _flat((cell[0] + 1, cell[1] + 1, cell[2] + 1), strides)
-            yield PhaseGroup(phase=phase, at=at, column=cell[2], factor=own[where])
+def _groups(
+    factor: Integers, strides: tuple[int, int, int], lattices: tuple[int, ...], margins: Sequence[int]
+) -> Iterator[PhaseGroup]:
+    for stride in lattices:
+        for phase in PHASES if stride == lattices[0] else PHASES[1:]:
+            own = factor[tuple(slice(stride * odd, None, 2 * stride) for odd in phase)]
+            where = np.nonzero(own)
+            if len(where[0]):
+                cell = [stride * (2 * index + odd) for index, odd in zip(where, phase, strict=True)]
+                at = _flat([index + margin for index, margin in zip(cell, margins, strict=True)], strides)
+                yield PhaseGroup(phase=phase, stride=stride, at=at, column=cell[2], factor=own[where])
 
 
-def _flat(index: tuple, strides: tuple[int, int, int]):
+def _flat(index: Sequence, strides: tuple[int, int, int]):
     return index[0] * strides[0] + index[1] * strides[1] + index[2] * strides[2]
 
 

@@ -15,7 +15,7 @@ from mmweaver.compression.mmw_codec import (
     modes_without,
     scale_of,
 )
-from mmweaver.compression.mmw_container import MmwFile, MmwHeader, header_for, pack_header, pack_record
+from mmweaver.compression.mmw_container import VERSION, MmwFile, MmwHeader, header_for, pack_header, pack_record
 from mmweaver.compression.segment import COARSER, SegmentEncoder
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
@@ -42,7 +42,7 @@ class MmwWriter:
             if not append:
                 raise InputError(f"{path} exists; choose another name or append to it")
             file = MmwFile(self.path)
-            if file.version < 3:
+            if file.version < VERSION:
                 raise InputError(f"{path} is of version {file.version}, which cannot be appended to; compress it again")
             self._header, self._end = file.header, file.num_bytes - file.cut_short
             self._last_s = float(file.records[-1].frame_time_s[-1])

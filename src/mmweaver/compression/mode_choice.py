@@ -45,6 +45,11 @@ class ModeChooser:
         best = min(choices, key=lambda choice: self.encoder.sample(choice).at(step, coarser).cost(step, coarser))
         self.plain = ChunkMode(transform=best)
 
+    @property
+    def over_range(self) -> ChunkMode:
+        """The best mode without any layer, with a DCT of the ranges."""
+        return ChunkMode(transform=replace(self.plain.transform, range_dct=True))
+
     def decide(self, step: float, coarser: int) -> None:
         """Decides on the mode."""
         self.decide_transform(step, coarser)

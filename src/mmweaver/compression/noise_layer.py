@@ -45,7 +45,12 @@ class NoiseLayer:
 
     @classmethod
     def unpack(
-        cls, data: bytes, shape: tuple[int, int, int, int], beams: Complex[Array, "beam antenna"]
+        cls,
+        data: bytes,
+        shape: tuple[int, int, int, int],
+        beams: Complex[Array, "beam antenna"],
+        *,
+        is_version_3: bool = False,
     ) -> "NoiseLayer":
         """The layer of bytes that begin with `packed`. Raises ValueError for what no encoder writes."""
         size, step, one, more = HEADER.unpack_from(data)
@@ -56,7 +61,7 @@ class NoiseLayer:
         cells = QuantizedCells(
             levels=np.zeros((2, shape[3], *shape[:3]), np.int64), classes=classes, centroids=(one, more)
         )
-        _code(Decoder(data[HEADER.size : last]), cells)
+        _code(Decoder(data[HEADER.size : last], is_version_3=is_version_3), cells)
         return cls(packed=data[:last], values=from_noise(cells.values(step, 1).astype(np.complex64), beams))
 
 

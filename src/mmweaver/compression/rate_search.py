@@ -28,6 +28,7 @@ WITHIN_DB, AIM_DB = 0.2, 0.08  # better than the quality asked for
 LEAST_ERROR = 1e-30  # relative to the squared peak
 SAME_ERROR = 0.1  # difference of log(error) within which an estimate is trusted
 CLOSE_ERROR = 1.01  # times the error allowed that is as good
+OVER_RANGE_LOSES = 1.7  # times the error estimated: cells are predicted by neighbours, which no estimate knows
 NOISE_SHARE = 0.97  # of the error allowed that a noise layer may leave
 MOST_SHARE = 0.9  # of the bytes that the noise may have
 NOISE_STEPS, NOISE_TRIALS = 8, 5
@@ -50,6 +51,11 @@ class Found:
         return sum(len(chunk.data) for chunk in self.coded)
 
     @property
+    def active_error(self) -> float:
+        """Energy of the error in active cells."""
+        return sum(chunk.active_error for chunk in self.coded)
+
+    @property
     def all_error(self) -> float:
         """Energy of the error in all cells."""
         return sum(chunk.all_error for chunk in self.coded)
@@ -70,6 +76,7 @@ def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) ->
         found = _finest(segment, num_bytes, found.step, segment.coarser, progress)
     if segment.coarser > 1:
         found = _evened(segment, num_bytes, found, progress)
+        found = _over_range(segment, num_bytes, found, progress)
     if found.num_bytes > num_bytes:
         more = found.num_bytes - num_bytes
         raise InputError(f"the bytes are too few for this recording; give at least {more} more")
@@ -104,14 +111,21 @@ def _step_of(segment: SegmentEncoder, is_fine: Callable[[float], bool]) -> float
 
 
 def _finest(
-    segment: SegmentEncoder, num_bytes: int, step: float, coarser: int, progress: Progress, noise_step: float = 0.0
-) -> Found:
-    """The chunks with the finest step that fit; larger ones where none does."""
+    segment: SegmentEncoder, num_bytes: int, step: float, coarser: int, progress: Progress, noise_step: float = 0.0,
+    *, over_range: bool = False,
+) -> Found:  # fmt: skip
+    """The chunks with the finest step that fit; larger ones where none does. `over_range`: after a DCT of ranges."""
+
+    def coded(step: float) -> Found:
+        if over_range:
+            return Found(coded=segment.encode_over_range(step), step=step, coarser=1)
+        return _coded(segment, step, coarser, noise_step)
+
     fits: Found | None = None
     larger: Found | None = None
     low, high = segment.finest_step, segment.coarsest_step
     for trial in range(TRIALS):
-        one = _coded(segment, step, coarser, noise_step)
+        one = coded(step)
         progress(f"trial {trial + 1}")
         if one.num_bytes <= num_bytes:
             fits, high = one if fits is None or one.num_bytes > fits.num_bytes else fits, step
@@ -126,7 +140,7 @@ def _finest(
         else:
             step = _between(larger, fits, num_bytes, is_even=bool(trial % 3 == 2))
     if fits is None:
-        fits = _coded(segment, segment.coarsest_step, coarser, noise_step)
+        fits = coded(segment.coarsest_step)
     return fits
 
 
@@ -190,6 +204,20 @@ def _evened(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Pro
         if coarser == 1 or one.all_error <= allowed * CLOSE_ERROR:
             return one
         coarser -= 1
+
+
+def _over_range(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Progress) -> Found:
+    """The chunks after a DCT of the ranges, all cells alike, where that is better in active cells and over all."""
+    bounds, errors = (segment.finest_step, segment.coarsest_step), []
+    for samples in (segment.samples(), segment.samples_over_range()):
+        step = _step_of_size(samples, num_bytes, 1, *bounds)
+        errors.append(sum(sample.at(step, 1).all_error for sample in samples))
+    by_cell = found.active_error / segment.active_share, found.all_error
+    if OVER_RANGE_LOSES * errors[1] / max(errors[0], LEAST_ERROR) * max(by_cell) > min(by_cell):
+        return found
+    one = _finest(segment, num_bytes, step, 1, progress, over_range=True)
+    is_better = one.all_error < found.all_error and one.active_error < found.active_error
+    return one if is_better and one.num_bytes <= num_bytes else found
 
 
 def _noise_steps(

@@ -91,6 +91,19 @@ class SegmentEncoder:
         """All chunks without layers, all cells alike."""
         return [chooser.encoder.encode(step, chooser.plain, 1) for chooser in self._choosers]
 
+    def encode_over_range(self, step: float) -> list[CodedChunk]:
+        """All chunks without layers, all cells alike, after a DCT of the ranges."""
+        return [chooser.encoder.encode(step, chooser.over_range, 1) for chooser in self._choosers]
+
+    def samples_over_range(self) -> list[CellSample]:
+        """Samples of these."""
+        return [chooser.encoder.sample(chooser.over_range.transform) for chooser in self._choosers]
+
+    @property
+    def active_share(self) -> float:
+        """Share of the cells that are active."""
+        return float(np.mean([chooser.encoder.is_active.mean() for chooser in self._choosers]))
+
     def samples(self) -> list[CellSample]:
         """Samples of the chunks without layers."""
         return [chooser.encoder.sample(chooser.plain.transform) for chooser in self._choosers]

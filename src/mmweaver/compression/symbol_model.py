@@ -3,6 +3,8 @@
 Probabilities are ratios of counts: additions, products and divisions of IEEE doubles, identical on every machine.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from mmweaver.compression.entropy import BitStream
@@ -16,6 +18,26 @@ HALF = 12  # signed numbers from -HALF to HALF have a symbol each; others escape
 ESCAPE = 2 * HALF + 1
 SIZE = ESCAPE + 1
 MOST_BITS = 30
+FIRST_BATCH = 16
+
+
+class Batches:
+    """Stretches of symbols after which models learn: a batch is coded by what was learned before it.
+
+    In version 3 they were not divided, and a first phase of large levels cost eight bits each too many.
+    """
+
+    def __init__(self, stream: BitStream):
+        self.is_endless, self.num_coded = stream.is_version_3, 0
+
+    def of(self, num: int) -> Iterator[slice]:
+        """The batches of the next `num` symbols; each is as long as all before it together."""
+        first = 0
+        while first < num:
+            last = num if self.is_endless else min(num, first + max(FIRST_BATCH, self.num_coded))
+            yield slice(first, last)
+            self.num_coded += last - first
+            first = last
 
 
 class MixedModel:
@@ -78,7 +100,10 @@ class MixedModel:
 
 
 class SignedModel:
-    """Signed integers in contexts: high part by symbol, the lowest `shift` bits uniform, large ones by escape."""
+    """Signed integers in contexts: high part by symbol, the lowest `shift` bits uniform, large ones by escape.
+
+    In version 3 escapes hold the low bits too.
+    """
 
     def __init__(self, scales: list[np.ndarray]):
         """`scales` (context,) of each table: the magnitude to expect."""
@@ -89,20 +114,21 @@ class SignedModel:
         self, stream: BitStream, contexts: list[Integers], shift: Integers, values: Integers, mirrored
     ) -> Integers:
         """Codes values (n,); `mirrored` (n,): a value and its negative are equally likely."""
+        if shift.max(initial=0) > MOST_BITS:
+            raise ValueError("a number too large: the stream is damaged")
         half = (1 << shift) >> 1
         high = (values + half) >> shift
         low = values + half - (high << shift)
         symbol = np.where(np.abs(high) <= HALF, high + HALF, ESCAPE)
         symbol = self.symbols.code(stream, contexts, symbol, mirrored)
-        out = symbol - HALF
+        out, far = symbol - HALF, np.flatnonzero(symbol == ESCAPE)
+        if len(far) and not stream.is_version_3:
+            out[far] = self._far(stream, high[far])
         if shift.any():
-            out = (
-                (out << shift)
-                - half
-                + stream.uniform(np.where(symbol < ESCAPE, 1 << shift, 1), np.where(symbol < ESCAPE, low, 0))
-            )
-        far = np.flatnonzero(symbol == ESCAPE)
-        if len(far):
+            has_low = (symbol < ESCAPE) | (not stream.is_version_3)
+            low = stream.uniform(np.where(has_low, 1 << shift, 1), np.where(has_low, low, 0))
+            out = (out << shift) - half + low
+        if len(far) and stream.is_version_3:
             out[far] = self._far(stream, values[far])
         return out
 
