@@ -55,7 +55,7 @@ def main() -> None:
             page.goto(address)
             page.reload()
             page.wait_for_selector(READY, timeout=180_000)
-            write_video(IMAGES / "studio.mp4", film(page))
+            write_video(IMAGES / "studio.mp4", film(page, Path(log) / "living_room.glb"))
         chromium.close()
 
 
@@ -185,8 +185,8 @@ def take(page: Any, name: str) -> None:
     )
 
 
-def film(page: Any) -> Iterator[np.ndarray]:
-    """Pictures (height, width, 3) of a session, FRAME_RATE_HZ a second of its playback."""
+def film(page: Any, mesh: Path) -> Iterator[np.ndarray]:
+    """Pictures (height, width, 3) of a session, FRAME_RATE_HZ a second of its playback; `mesh` is a room to drop."""
 
     def shot() -> np.ndarray:
         return np.asarray(
@@ -222,7 +222,25 @@ def film(page: Any) -> Iterator[np.ndarray]:
     page.locator("select[aria-label=Method]").select_option("physics")
     page.wait_for_selector(IDLE, timeout=120_000)
     yield from played()
-    yield from held(1.0)
+    page.get_by_role("button", name="Numbers").click()
+    page.wait_for_selector("dialog[open]", timeout=120_000)
+    yield from held(2.5)
+    page.get_by_role("button", name="Close").click()
+    page.get_by_role("button", name="Compare").click()
+    page.locator("select[aria-label=Method]").select_option("auto")
+    page.wait_for_selector(IDLE, timeout=120_000)
+    page.evaluate("studio.follow({path: null})")
+    page.wait_for_selector(IDLE, timeout=120_000)
+    drop(page, [mesh])
+    yield from played()
+    yield from typed("a person squats")
+    yield from played()
+    page.locator("select[aria-label=Room]").select_option("demo")
+    page.wait_for_selector(IDLE, timeout=120_000)
+    page.get_by_role("button", name="Live").click()
+    page.wait_for_function("() => studio.live && studio.live.frames > 30", timeout=120_000)
+    for _ in range(6 * FRAME_RATE_HZ):
+        yield shot()
 
 
 def write_video(file: Path, pictures: Iterator[np.ndarray]) -> None:

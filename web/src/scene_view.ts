@@ -322,6 +322,7 @@ function detections(sequence: Sequence, frame: number, isRound: boolean): THREE.
     if (frames[k] === frame) { place.push(data[5 * k], data[5 * k + 1], data[5 * k + 2]); colour.push(...velocityColour(data[5 * k + 3], 1.5)); }
   const points = cloud(new Float32Array(place), new Float32Array(colour), isRound ? 0.09 : 0.07), material = points.material as THREE.PointsMaterial;
   if (isRound) { material.map = DOT; material.alphaTest = 0.5; }
+  material.depthTest = false; points.renderOrder = 1; // echoes lie on and in the body that would hide them
   return points;
 }
 
