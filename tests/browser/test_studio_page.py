@@ -380,6 +380,20 @@ def test_hovering_the_body_marks_its_cells(page: Any):
     assert page.evaluate("studio.player.panel('range_doppler').marks") == []
 
 
+def test_the_notebook_widget_plays(page: Any):
+    """As anywidget calls it: the bundle's default export renders the bytes of the model."""
+    canvases = page.evaluate("""async () => {
+        const bundle = await import(document.querySelector('script[src]').src), el = document.createElement('div');
+        const path = 'api/result/' + studio.result.header.result, headers = {'x-session': studio.api.session};
+        const bytes = new DataView(await (await fetch(path, {headers})).arrayBuffer());
+        document.body.append(el);
+        const dispose = bundle.default.render({model: {get: name => name === 'sequence' ? bytes : null}, el});
+        const canvases = el.querySelectorAll('figure canvas').length;
+        dispose(); el.remove();
+        return canvases; }""")
+    assert canvases == 5
+
+
 def test_the_offline_page_plays(page: Any, browser: Any, tmp_path: Path):
     result = page.evaluate("studio.result.header.result")
     content = page.evaluate(

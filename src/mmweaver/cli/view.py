@@ -3,9 +3,13 @@
 import argparse
 import webbrowser
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mmweaver.core.output_checks import check_output_file
+
+if TYPE_CHECKING:
+    from mmweaver.playback.sequence import Playback
+    from mmweaver.stored_result import StoredResult
 
 EXAMPLES = """examples:
   mmweaver view walk/                       # writes walk/view.html and opens it
@@ -37,8 +41,42 @@ def run(arguments: argparse.Namespace) -> int:
     from mmweaver.stored_result import read_result
 
     stored = read_result(arguments.folder)
-    write_page(out, make_playback(stored.cube, stored.points, stored.poses, stored.meta), None, stored.title)
+    sequence = make_playback(stored.cube, stored.points, stored.poses, stored.meta)
+    write_page(out, sequence, _room(stored), stored.title)
     print(out)
     if not arguments.no_browser:
         webbrowser.open(out.resolve().as_uri())
     return 0
+
+
+def _room(stored: "StoredResult") -> "Playback | None":
+    """The room of a generated result, where its files are still what they were; a result folder holds none."""
+    inputs = stored.meta.get("inputs")
+    if not stored.poses or not isinstance(inputs, dict):
+        return None
+    from mmweaver.generate import Weaver
+    from mmweaver.playback.html_page import OFFLINE_ROOM_POINTS
+    from mmweaver.playback.room import room_playback
+
+    weaver = Weaver(method="physics")
+    if "sample" in inputs:
+        room = weaver.sample_room()
+    elif (rgb := _same(inputs, "rgb")) is not None and (depth := _same(inputs, "depth")) is not None:
+        room = weaver.read_room(rgb, depth, _same(inputs, "camera"))
+    else:
+        return None
+    range_m = stored.cube.grid.range_m
+    return room_playback(room.scene, "room", (float(range_m[0]), float(range_m[-1])), max_points=OFFLINE_ROOM_POINTS)
+
+
+def _same(inputs: dict[str, Any], name: str) -> Path | None:
+    """An input file that has not changed since."""
+    from mmweaver.core.checksums import sha256_of_file
+
+    said = inputs.get(name)
+    if not isinstance(said, dict):
+        return None
+    path = said.get("path")
+    if not isinstance(path, str) or not Path(path).is_file() or sha256_of_file(Path(path)) != said.get("sha256"):
+        return None
+    return Path(path)
