@@ -28,6 +28,7 @@ from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import AS_PUBLISHED
 
 SENTENCE = "a person walks towards the radar, then waves with the left hand"
 NUM_FRAMES, ROUNDS = 20, 15
@@ -65,7 +66,7 @@ def costs(weights: Path, *, with_physics: bool) -> dict[str, float]:
         "weaver_encode_room": lambda: LearnedRoom(network, scene, config),
     }
     if with_physics:
-        simulator = Simulator(scene, config)
+        simulator = Simulator(scene, config, propagation=AS_PUBLISHED)
         steps["physics_motion_to_cube"] = lambda: radar_cube(simulator.run(pose, num_frames=NUM_FRAMES, seed=0).adc)
     return least(steps)
 

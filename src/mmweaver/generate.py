@@ -31,7 +31,7 @@ from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.formats.ti_calibration import read_ti_calibration
 from mmweaver.generation import Generation, Room
-from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Signal
+from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Signal, physics_with
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
@@ -74,7 +74,8 @@ class Weaver:
     `calibration`: the channel errors that the radar's firmware compensates (default: those of its .cfg); ADC samples
     are then as that board records them, cube and points as it compensates them. `weights`: a file or folder of
     `mmweaver train`, or a Hub name, for the network, which then makes all signals;
-    `from_pretrained` is the short form. Raises InputError for unknown names.
+    `from_pretrained` is the short form. `bounces`, of the physics alone: 2 (default), paths over body and room, or 1,
+    those of first order. Raises InputError for unknown names.
     """
 
     def __init__(
@@ -87,6 +88,7 @@ class Weaver:
         firmware: FirmwareSettings | None = None,
         weights: str | Path | None = None,
         calibration: ChannelCalibration | None = None,
+        bounces: int | None = None,
     ):
         if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
@@ -98,6 +100,8 @@ class Weaver:
         else:
             self.method_name = method if file is None else "weaver"
             self.method = METHODS[method]() if file is None else Learned(file)
+        if bounces is not None:
+            self.method = physics_with(self.method, bounces)
         self.weights = None if file is None else file_digest(file)
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         is_named = not isinstance(radar, RadarConfig)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, Protocol, TypeVar, runtime_checkable
 
@@ -10,12 +10,14 @@ import numpy as np
 
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.board import Board
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
 from mmweaver.core.registry import Registry
 from mmweaver.core.stages import Stages
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.paths.ray_traced import ASSUMPTIONS, SEVERAL_PEOPLE, Simulator
+from mmweaver.paths.static_paths import Propagation
 
 if TYPE_CHECKING:
     from mmweaver.models.learned_paths import LearnedRoom
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 LEARNED_NOTE = UsualAssumption(
     "echoes were written by a network trained on simulated rooms; phases of surfaces and skin are sampled"
 )
+FIRST_ORDER_ALONE = "one bounce off rough surfaces and off the body: no paths over both"
 RECORDED = "static clutter is that of the background recording"
 
 
@@ -73,9 +76,12 @@ class Method(Protocol):
 class Physics:
     """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
 
-    def __init__(self) -> None:
+    def __init__(self, propagation: Propagation | None = None) -> None:
+        self.propagation = propagation or Propagation()
         self._prepared = _Latest(
-            lambda scene, config, background, board: Simulator(scene, config, background=background, board=board)
+            lambda scene, config, background, board: Simulator(
+                scene, config, background=background, board=board, propagation=self.propagation
+            )
         )
 
     def __call__(
@@ -106,11 +112,21 @@ class Physics:
                     samples[part] = chunk.samples
                 scale, done = chunk.scale, part.stop
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
+        order = (FIRST_ORDER_ALONE,) if self.propagation.bounces == 1 else ()
         return Signal(
             cube=RadarCube(values=values, grid=grid, config=config, scale=scale),
             adc=AdcCube(samples=samples, config=config, scale=scale) if keep_adc else None,
-            assumptions=(*ASSUMPTIONS, *several, *_of_background(simulator.background)),
+            assumptions=(*ASSUMPTIONS, *order, *several, *_of_background(simulator.background)),
         )
+
+
+def physics_with(method: Method, bounces: int) -> Method:
+    """The physics with so many bounces. Raises InputError for another method or number."""
+    if not isinstance(method, Physics):
+        raise InputError("bounces are an option of --method physics alone: the network has learned one")
+    if bounces not in (1, 2):
+        raise InputError(f"bounces must be 1 or 2, not {bounces}")
+    return Physics(replace(method.propagation, bounces=bounces))
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:

@@ -22,6 +22,7 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
 
@@ -95,7 +96,11 @@ def simulated(
     quiet = replace(NOISE_FREE, leakage_db=impairments.leakage_db)
     other = replace(pose, subject=pose.subject + OTHER_SKIN)
     cube, realization, noise_free = (
-        radar_cube(Simulator(scene, AWR1843, receiver).run(skin, num_frames=num_frames, seed=seed).adc)
+        radar_cube(
+            Simulator(scene, AWR1843, receiver, propagation=AS_PUBLISHED)
+            .run(skin, num_frames=num_frames, seed=seed)
+            .adc
+        )
         for skin, receiver in ((pose, impairments), (other, impairments), (pose, quiet))
     )
     name = activity + (ALONE if is_alone else "")
@@ -147,7 +152,7 @@ def walking_in_recording(data: Path, seed: int = 0) -> StudySignal:
     """
     frame, config = _two_people_frame(data), two_people_radar()
     pose = pose_of("walking", seconds=NUM_FRAMES * config.frame_period_s, seed=seed, radar=config)
-    simulator = Simulator(without_room(sample_scene()), config, IDEAL)
+    simulator = Simulator(without_room(sample_scene()), config, IDEAL, propagation=AS_PUBLISHED)
     skins = (pose, replace(pose, subject=pose.subject + OTHER_SKIN))
     walkers = [simulator.run(skin, num_frames=NUM_FRAMES, seed=seed).adc for skin in skins]
     gain = np.sqrt(_strongest_moving(two_people(data).cube) / _strongest_moving(radar_cube(walkers[0])))

@@ -38,6 +38,7 @@ from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.training.activity_examples import activity_examples, compute_log_maps
@@ -112,7 +113,7 @@ def simulated_in(scene_of: Callable[[UnseenRoom], Scene], *, micro_seed: int) ->
     """The simulator in some room."""
 
     def method(room: UnseenRoom) -> Maker:
-        simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed)
+        simulator = Simulator(scene_of(room), room.room.config, micro_seed=micro_seed, propagation=AS_PUBLISHED)
         num_frames = room.room.joints_m.shape[1]
 
         def make(pose: PoseSequence, seed: int) -> RadarCube:

@@ -31,6 +31,7 @@ from mmweaver.metrics.scorecard import METRICS, scorecard
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.weights import WeightsCard, load_weights
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.recordings.captures import read_capture
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -150,7 +151,7 @@ def _mean(room: StoredRoom, given: np.ndarray) -> Method:
 
 def _realization(room: StoredRoom, plan_seed: int) -> Method:
     scene = make_room(room.kind, room.layout, plan_seed).scene(room.lighting)
-    simulator = Simulator(scene, room.config, micro_seed=1)
+    simulator = Simulator(scene, room.config, micro_seed=1, propagation=AS_PUBLISHED)
 
     def method(index: int) -> RadarCube:
         spec = SequenceSpec(index=index, person=int(room.person[index]), activity=room.activity[index],

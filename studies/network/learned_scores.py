@@ -36,6 +36,7 @@ from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.weights import load_weights, read_card, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -86,7 +87,7 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
     """The simulator in some room, always with another noise seed than the ground truth."""
 
     def method(case: Case) -> RadarCube:
-        simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed)
+        simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed, propagation=AS_PUBLISHED)
         spec, frames = case.spec, len(case.joints[0])
         subject, noise = spec.person + skin, spec.seed + OTHER
         made = generate_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)
@@ -115,7 +116,7 @@ def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, re
 
 def empty_room(scene: Scene, config: RadarConfig, num_frames: int, seed: int) -> RadarCube:
     """The radar's recording of a room with nobody in it, with noise."""
-    return radar_cube(Simulator(scene, config).run((), num_frames=num_frames, seed=seed).adc)
+    return radar_cube(Simulator(scene, config, propagation=AS_PUBLISHED).run((), num_frames=num_frames, seed=seed).adc)
 
 
 def nearest(train: list[StoredRoom]) -> Method:

@@ -24,7 +24,7 @@ from mmweaver.dsp.spectra import azimuth_axis_rad, range_azimuth_power
 from mmweaver.metrics.map_scores import log_map_difference_db, log_map_ssim
 from mmweaver.paths.adc_synthesis import AdcSynthesis
 from mmweaver.paths.paths import Interaction
-from mmweaver.paths.static_paths import RayTracedRoom
+from mmweaver.paths.static_paths import AS_PUBLISHED, RayTracedRoom
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.procedural.room_kinds import KINDS
 from mmweaver.scene.reconstruction import reconstruct
@@ -50,12 +50,17 @@ def evaluated(kind: str, layout: int, seed: int = 0) -> Scores:
     config = PRESETS["awr1843"]
     made = make_room(kind, layout, seed)
     photo = made.photo("day", noise=True)
-    truth, realization = RayTracedRoom(made.scene("day"), config), RayTracedRoom(made.scene("day"), config, 1)
-    own, true = _parts(RayTracedRoom(reconstruct(photo), config, 1)), _parts(realization)
+    truth, realization = (
+        RayTracedRoom(made.scene("day"), config, propagation=AS_PUBLISHED),
+        RayTracedRoom(made.scene("day"), config, 1, propagation=AS_PUBLISHED),
+    )
+    own, true = _parts(RayTracedRoom(reconstruct(photo), config, 1, propagation=AS_PUBLISHED)), _parts(realization)
     specular = _parts(realization, turned=stream(layout, kind, "mirrors"))[Interaction.SPECULAR]
     cubes = {
         "zeros": 0 * _adc(truth),
-        "photo without mask": _adc(RayTracedRoom(reconstruct(_without_mask(photo)), config, 1)),
+        "photo without mask": _adc(
+            RayTracedRoom(reconstruct(_without_mask(photo)), config, 1, propagation=AS_PUBLISHED)
+        ),
         "photo": sum(own.values()),
         "photo, true specular reflectors": sum((own | {Interaction.SPECULAR: specular}).values()),
         "photo, true edges": sum((own | {Interaction.EDGE: true[Interaction.EDGE]}).values()),

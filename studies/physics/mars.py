@@ -32,6 +32,7 @@ from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import Impairments
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from studies.manifest import StudyRun
 from studies.physics.cloud_scores import CloudScores, part_of, score
 from studies.physics.empty_room_cube import empty_room
@@ -114,6 +115,7 @@ def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed
         empty_room(floor_z_m=feet_m - 0.04, has_floor=variant.has_floor, wall_y_m=variant.wall_m),
         IWR1443_MARS,
         variant.impairments,
+        propagation=AS_PUBLISHED,
     )
     if not variant.has_ghosts:
         simulator.room.reflectors = []

@@ -26,6 +26,7 @@ from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.micro_motion import STILL
 from mmweaver.motion.multi_person import compose_people
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from studies.fields.field_signals import OTHER_SKIN, sample_scene
 from studies.manifest import StudyRun
 from studies.result_rows import complete_rows
@@ -166,7 +167,7 @@ def _mean(values: list[float]) -> tuple[float, list[float]]:
 
 def measure(run: StudyRun, picture: Path | None = None, seeds: tuple[int, ...] = SEEDS) -> Path:
     """All arrangements; one row each."""
-    simulator = Simulator(sample_scene(), AWR1843)
+    simulator = Simulator(sample_scene(), AWR1843, propagation=AS_PUBLISHED)
     rows, shown = [], []
     for name, places in ARRANGEMENTS.items():
         every: dict[int, dict[str, dict[str, float]]] = {}

@@ -26,6 +26,7 @@ from mmweaver.formats.dca1000 import read_bin
 from mmweaver.formats.mmwave_studio import read_mmwave_studio
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from studies.fields.field_signals import pose_of, sample_scene, two_people_radar
 from studies.manifest import StudyRun
 from studies.physics.empty_room_cube import empty_room
@@ -142,7 +143,7 @@ def slow_frame(adc: AdcCube) -> AdcCube:
 
 def sample_room(config: RadarConfig, seed: int) -> AdcCube:
     """One frame of the sample room with nobody in it."""
-    return Simulator(sample_scene(), config).run((), num_frames=1, seed=seed).adc
+    return Simulator(sample_scene(), config, propagation=AS_PUBLISHED).run((), num_frames=1, seed=seed).adc
 
 
 def walker(config: RadarConfig, seed: int) -> AdcCube:
@@ -154,7 +155,7 @@ def walker(config: RadarConfig, seed: int) -> AdcCube:
     shifted = pose.joints_m + np.append(place - pelvis[:2], 0.0)
     from_middle = replace(pose, time_s=pose.time_s - middle_s, joints_m=shifted)
     room = empty_room(floor_z_m=float(shifted[..., 2].min()) - 0.04, wall_y_m=WALL_M)
-    return Simulator(room, config).run(from_middle, num_frames=1, seed=seed).adc
+    return Simulator(room, config, propagation=AS_PUBLISHED).run(from_middle, num_frames=1, seed=seed).adc
 
 
 def breather(config: RadarConfig, seed: int) -> AdcCube:
@@ -172,7 +173,7 @@ def breather(config: RadarConfig, seed: int) -> AdcCube:
     time_s = np.array([0.0, 0.5, 1.0]) * frames * BGT60.frame_period_s
     pose = replace(standing, time_s=time_s, joints_m=np.repeat(place, 3, axis=0))
     room = empty_room(floor_z_m=floor_m - chest_m, wall_y_m=None)
-    return slow_frame(Simulator(room, BGT60).run(pose, num_frames=frames, seed=seed).adc)
+    return slow_frame(Simulator(room, BGT60, propagation=AS_PUBLISHED).run(pose, num_frames=frames, seed=seed).adc)
 
 
 def rows(

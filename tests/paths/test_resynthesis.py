@@ -15,7 +15,7 @@ from mmweaver.dsp.cube import cube_values, radar_cube
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.receiver import IDEAL, Impairments
 from mmweaver.paths.resynthesis import Resynthesis, TracedMotion
-from mmweaver.paths.static_paths import OF_NETWORKS
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.paths.static_paths_store import room_arrays, room_of, room_words
 from mmweaver.paths.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -28,7 +28,7 @@ DEVICES = ["cpu", *(["cuda"] if torch.cuda.is_available() else [])]
 
 @pytest.fixture(scope="module")
 def simulator() -> Simulator:
-    return Simulator(make_room("office", 0, 0).scene(), AWR1843, propagation=OF_NETWORKS)
+    return Simulator(make_room("office", 0, 0).scene(), AWR1843, propagation=AS_PUBLISHED)
 
 
 def _replayed(simulator: Simulator, device: str, impairments: Impairments, realization: int = 0) -> np.ndarray:
@@ -49,7 +49,7 @@ def error_db(got: np.ndarray, wanted: np.ndarray) -> float:
 @pytest.mark.parametrize("device", DEVICES)
 def test_it_gives_what_the_simulator_gave(simulator: Simulator, device: str):
     """Only what moves counts here, or the room would hide every error: measured -76 dB, a relative 1.6e-4."""
-    ideal = Simulator(make_room("office", 0, 0).scene(), AWR1843, IDEAL, propagation=OF_NETWORKS)
+    ideal = Simulator(make_room("office", 0, 0).scene(), AWR1843, IDEAL, propagation=AS_PUBLISHED)
     wanted = ideal.run(POSE, num_frames=FRAMES, seed=SEED).adc.samples
     still = ideal.room_adc
     got = _replayed(ideal, device, IDEAL)

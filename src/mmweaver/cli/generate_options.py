@@ -44,6 +44,10 @@ def add_generate_options(parser: argparse.ArgumentParser) -> None:
         " physics, those of the ray tracer, at five times the cost",
     )  # fmt: skip
     advanced.add_argument(
+        "--bounces", type=int, choices=(1, 2),
+        help=Rare("of --method physics: 2 (default), paths over body and room, room and room, body-radar-body, or 1"),
+    )  # fmt: skip
+    advanced.add_argument(
         "--weights", type=source, metavar="FILE|DIR|HUB",
         help="the network's weights: a file or folder of mmweaver train, or a name on the Hub",
     )  # fmt: skip

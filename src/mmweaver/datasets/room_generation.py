@@ -16,7 +16,7 @@ from mmweaver.motion.compose import compose
 from mmweaver.motion.language.timing import plan_motion
 from mmweaver.motion.people import Person
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import OF_NETWORKS, PreparedRoom, RayTracedRoom
+from mmweaver.paths.static_paths import AS_PUBLISHED, PreparedRoom, RayTracedRoom
 from mmweaver.paths.visibility import Visibility
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
@@ -77,7 +77,7 @@ def generate_room(
     """
     room = make_room(spec.kind, spec.layout, spec.seed)
     true_scene = room.scene(spec.lighting)
-    simulator = Simulator(true_scene, config, board=board, propagation=OF_NETWORKS)
+    simulator = Simulator(true_scene, config, board=board, propagation=AS_PUBLISHED)
     photo = room.photo(spec.lighting, noise=True)
     one = trace_sequence if geometry_only else generate_sequence
     made, refused = [], []
@@ -95,7 +95,7 @@ def generate_room(
 def _geometry(simulator: Simulator, photo: RgbdPhoto) -> RoomGeometry:
     stored = replace(photo, depth_m=photo.depth_m.astype(np.float32).astype(np.float64))  # as stored
     return RoomGeometry(
-        room=simulator.room, photographed=RayTracedRoom(reconstruct(stored), simulator.config, propagation=OF_NETWORKS)
+        room=simulator.room, photographed=RayTracedRoom(reconstruct(stored), simulator.config, propagation=AS_PUBLISHED)
     )
 
 

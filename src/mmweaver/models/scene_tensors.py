@@ -15,7 +15,7 @@ from mmweaver.paths.antenna import scatterer_gain
 from mmweaver.paths.apparent_paths import apparent_direction
 from mmweaver.paths.image_method import SpecularReflector
 from mmweaver.paths.radar_equation import pattern_towards_db
-from mmweaver.paths.static_paths import OF_NETWORKS, PreparedRoom, RayTracedRoom
+from mmweaver.paths.static_paths import AS_PUBLISHED, PreparedRoom, RayTracedRoom
 from mmweaver.scene.photo.depth_grid import DepthGrid, make_grid
 
 IMAGE_ROWS, IMAGE_COLUMNS = 120, 160
@@ -56,7 +56,7 @@ class SceneTensors(TensorRecord):
         columns = _nearest(IMAGE_COLUMNS, grid.depth_m.shape[1])
         camera = resized(grid.intrinsics, IMAGE_COLUMNS, IMAGE_ROWS)
         view = np.ix_(rows, columns)
-        points = _points(room or RayTracedRoom(scene, config, propagation=OF_NETWORKS), scene)
+        points = _points(room or RayTracedRoom(scene, config, propagation=AS_PUBLISHED), scene)
         planes = _planes(scene, config)
         return cls(
             image=_tensor(_image(grid, scene, view)),

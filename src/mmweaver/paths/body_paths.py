@@ -8,6 +8,7 @@ import torch
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.paths.antenna import pattern, scatterer_gain
 from mmweaver.paths.body_model import ScatteringBody
+from mmweaver.paths.body_room_paths import BodyRoomPaths
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.image_method import SpecularReflector, fresnel_radius_m
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
@@ -124,10 +125,17 @@ class BodyPaths:
         direct = self.parts[0].power()
         for index in range(len(room.reflectors)):
             self.parts += self._ghosts(index, direct)
+        self.second: BodyRoomPaths | None = None
+        if room.propagation.bounces > 1 and known is None:
+            self.second = BodyRoomPaths(self, direct)
 
     def paths(self, frame: int) -> list[Paths]:
         """All paths over the person in one frame, a record (path,) for each time segment."""
-        return [Paths.cat([part.paths(frame, motion) for part in self.parts]) for motion in self.posed.motion[frame]]
+        return [self._segment(frame, motion) for motion in self.posed.motion[frame]]
+
+    def _segment(self, frame: int, motion: np.ndarray) -> Paths:
+        second = [] if self.second is None else self.second.paths(frame, motion)
+        return Paths.cat([part.paths(frame, motion) for part in self.parts] + second)
 
     def occluded_paths(self, frame: int) -> StaticPaths:
         """The static paths that the person occludes in one frame."""
@@ -163,17 +171,18 @@ class BodyPaths:
         if self.known is not None:
             return self.known.skin
         facing = self.cos > self.body.echo.least_cos
-        facing &= self._traced.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
+        facing &= self.traced.is_clear(np.zeros(3), self.posed.place_m, ROOM_MARGIN_M)
         return self.posed.is_clear(np.zeros(3), self.posed.place_m, SKIN_MARGIN_M, facing)
 
     @property
-    def _traced(self) -> RayTracedRoom:
+    def traced(self) -> RayTracedRoom:
+        """The room, with its ray caster."""
         assert isinstance(self.room, RayTracedRoom), "a room without a ray caster needs a known visibility"
         return self.room
 
     def _direct(self) -> "SkinPaths":
         cross_section = self.body.echo.back(self.cos) * self.body.area_m2 * self.body.brightness
-        amplitude = self.gain * self._pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
+        amplitude = self.gain * self.pattern(-self.towards) ** 2 * np.sqrt(cross_section) / self.distance_m**2
         return SkinPaths(
             None, None, np.arange(len(self.body.micro_phase)), amplitude * self.body.micro_phase, self.visible
         )
@@ -196,9 +205,9 @@ class BodyPaths:
             return []
         most = min(GHOST_SLAB_ECHOES, self.room.propagation.slab_echoes)
         slab = face.echoes(cos_face, self.config.centre_frequency_hz, most)
-        over = self.gain * self._pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / length_m * taper
+        over = self.gain * self.pattern(corner / np.maximum(leg_m, 1e-6)[..., None]) / length_m * taper
         micro = self.body.micro_phase[chosen]
-        direct = self._pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]
+        direct = self.pattern(-self.towards[:, chosen]) / self.distance_m[:, chosen]
         half = to_corner + self.towards[:, chosen]
         cos_half = (normal * half).sum(-1) / np.maximum(np.linalg.norm(half, axis=-1), 1e-6)
         skin = self.body.echo
@@ -222,11 +231,12 @@ class BodyPaths:
         which = np.nonzero(ask)
         clear = ask.copy()
         for start, end in ((np.zeros_like(corner), corner), (corner, place)):
-            clear[which] &= self._traced.is_clear(start[which], end[which], WALL_MARGIN_M)
+            clear[which] &= self.traced.is_clear(start[which], end[which], WALL_MARGIN_M)
         clear = self.posed.is_clear(np.zeros(3), corner, SKIN_MARGIN_M, clear)
         return self.posed.is_clear(corner, place, SKIN_MARGIN_M, clear)
 
-    def _pattern(self, direction: np.ndarray) -> np.ndarray:
+    def pattern(self, direction: np.ndarray) -> np.ndarray:
+        """Amplitude of one antenna in unit directions (..., 3)."""
         return pattern(direction.reshape(-1, 3), self.config).reshape(direction.shape[:-1])
 
 

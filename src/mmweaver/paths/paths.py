@@ -23,9 +23,12 @@ class Interaction(IntEnum):
     BODY = 3
     BODY_WALL = 4  # the body, and a face before or after it
     WALL_BODY_WALL = 5  # the body, and the same face before and after it
+    BODY_ROOM = 6  # the body, and a rough surface before or after it
+    BODY_RADAR_BODY = 7  # the body, the radar itself, and the body again
+    ROOM_ROOM = 8  # two surfaces of the room, at least one of them rough
 
 
-STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # in the order of a room's paths
+STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # of first order, as a room has them
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,6 +14,8 @@ from mmweaver.paths.edge_scattering import find_edges
 from mmweaver.paths.image_method import SLAB_ECHOES, SpecularReflector, specular_paths, specular_reflectors
 from mmweaver.paths.materials import MATERIALS, mean_reflectivity
 from mmweaver.paths.paths import STATIC_KINDS, Interaction, StaticPaths
+from mmweaver.paths.room_patches import RoomPatches
+from mmweaver.paths.room_room_paths import room_room_paths
 
 AZIMUTH_CELLS, ELEVATION_CELLS = 128, 64
 AZIMUTH_LIMIT_RAD, ELEVATION_LIMIT_RAD = np.radians(62.0), np.radians(50.0)
@@ -26,17 +28,19 @@ NEAREST_M = 0.15
 class Propagation:
     """Which paths a room has."""
 
+    bounces: int = 2  # 1: off rough surfaces once, off the body once; 2: body and room, room and room, body-radar-body
     slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
 
 
-# What the networks have learned from and are given: rooms as they were before slabs had two surfaces.
-OF_NETWORKS = Propagation(slab_echoes=1)
+# What the network has learned from, and what studies published before there was a second order were computed with.
+AS_PUBLISHED = Propagation(bounces=1, slab_echoes=1)
 
 
 class PreparedRoom:
     """What of a room needs no more rays: its specular reflectors and its static paths, for one radar.
 
-    The paths are in the order of STATIC_KINDS. `static_paths_store` keeps such rooms as arrays.
+    The paths are in the order of STATIC_KINDS, then those of second order. `static_paths_store` keeps the first as
+    arrays.
     """
 
     def __init__(
@@ -44,7 +48,7 @@ class PreparedRoom:
         propagation: Propagation | None = None,
     ):  # fmt: skip
         self.config, self.reflectors, self.paths = config, reflectors, paths
-        self.propagation = propagation or OF_NETWORKS
+        self.propagation = propagation or AS_PUBLISHED
 
     @cached_property
     def counts(self) -> dict[Interaction, int]:
@@ -73,6 +77,14 @@ class RayTracedRoom(PreparedRoom):
         self.config, self.reflectors = config, specular_reflectors(scene.planes)
         paths = StaticPaths.cat([self._diffuse(scene), self._specular(), self._edges(scene)])
         super().__init__(config, self.reflectors, paths, self.propagation)
+        if self.propagation.bounces > 1:
+            self.paths = StaticPaths.cat([paths, room_room_paths(self)])
+
+    @cached_property
+    def patches(self) -> RoomPatches:
+        """What second bounces are computed over."""
+        all_of_them = self._patches.and_those(self._edge_patches)
+        return all_of_them.merged(stream(self.micro_seed, "room", "patches"))
 
     def is_clear(self, start_m: np.ndarray, end_m: np.ndarray, margin_m: float) -> np.ndarray:
         """Bool (...): nothing of the room lies between start and end (..., 3), but for a margin at either end."""
@@ -101,7 +113,10 @@ class RayTracedRoom(PreparedRoom):
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
         cos = np.abs((normal * direction).sum(axis=1))
         cross_section = 4 * cos * distance**2 * solid_angle[hit]
-        cross_section *= self._diffuse_share(scene, scene.face_material[face], cos, np.abs(normal[:, 2]) > 0.7)
+        material = scene.face_material[face]
+        cross_section *= self._diffuse_share(scene, material, cos, np.abs(normal[:, 2]) > 0.7)
+        place_m, phase = direction * distance[:, None], np.exp(2j * np.pi * cycles[hit])
+        self._patches = RoomPatches.of_surfaces(place_m, normal, cross_section, phase, material)
         return self._scattered(direction * distance[:, None], cross_section, cycles[hit], Interaction.DIFFUSE)
 
     @property
@@ -169,7 +184,11 @@ class RayTracedRoom(PreparedRoom):
         cross_section *= np.exp(-2 * (cos / EDGE_LOBE) ** 2)
         cycles = rng.random(len(cos))
         keep = (cross_section > 1e-7) & (distance > NEAREST_M) & (distance < self.config.max_range_m)
-        return self._scattered(edges.place_m[keep], cross_section[keep], cycles[keep], Interaction.EDGE)
+        place_m, cross_section, cycles = edges.place_m[keep], cross_section[keep], cycles[keep]
+        # into other directions than straight back an edge scatters as if it were seen from the side
+        level = cross_section / np.exp(-2 * (cos[keep] / EDGE_LOBE) ** 2) * EDGE_LOBE
+        self._edge_patches = RoomPatches.of_edges(place_m, level, np.exp(2j * np.pi * cycles), edges.material[keep])
+        return self._scattered(place_m, cross_section, cycles, Interaction.EDGE)
 
     def _scattered(
         self, place_m: np.ndarray, cross_section_m2: np.ndarray, cycles: np.ndarray, kind: Interaction

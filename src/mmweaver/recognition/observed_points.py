@@ -13,6 +13,7 @@ from mmweaver.dsp.firmware import firmware_points
 from mmweaver.dsp.firmware_cfar import counts_per_db
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.skin_scattering import LAMBERT, SkinEcho
+from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.recognition.diffuse_clutter import diffuse_clutter
 from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.variation import VariationSample
@@ -46,7 +47,9 @@ def observed_cloud(
     clutter = diffuse_clutter(radar, now.clutter_db, stream(seed, "diffuse clutter"))
     firmware = _less_sensitive(board.firmware, now.threshold_db, board.radar.num_antennas)
     adc = (
-        Simulator(scene, radar).run(pose, num_frames=frames, seed=seed, num_points=board.skin_points, echo=_skin(now))
+        Simulator(scene, radar, propagation=AS_PUBLISHED).run(
+            pose, num_frames=frames, seed=seed, num_points=board.skin_points, echo=_skin(now)
+        )
     ).adc
     cloud = firmware_points(replace(adc, samples=adc.samples + clutter), firmware)
     return _tilted(cloud, np.radians(now.tilt_deg))

@@ -1,0 +1,172 @@
+"""Second-order paths of a person: body and rough surfaces of the room in either order, body-radar-body.
+
+Radar -> part of the body -> patch of the room -> radar and back, power gain^2 sigma_b sigma_q / (4 pi (d_b d_bq d_q)^2)
+of one order; both are coherent. A part stands for its skin points, with their bistatic cross section. Of some
+thousand pairs so many are kept at random, the strong ones always, that the mean power stays.
+Reference: docs/radar_primer.md, section 5; decision 225.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import torch
+
+from mmweaver.core.seeding import stream
+from mmweaver.geometry.body_capsules import CAPSULES, Capsule, part_of
+from mmweaver.paths.antenna import pattern
+from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
+from mmweaver.paths.room_patches import roulette
+
+if TYPE_CHECKING:
+    from mmweaver.paths.body_paths import BodyPaths
+
+MOST_PAIRS = 48  # of body part and patch in a frame
+MOST_PATCHES = 200  # of which those are chosen
+SKIN_POINTS = 64  # that stand for the body
+NEAREST_M = 0.15  # from a body part to a patch: nearer ones touch it, where the radar equation does not hold
+ROOM_MARGIN_M = 0.06
+FAINTEST_OF_DIRECT = 1e-6  # power of a frame's pairs, or of body-radar-body, that is left out
+# A radar as what a body's echo meets: an evaluation board of 7 cm by 7 cm, half of whose power comes back, diffusely.
+BOARD_AREA_M2, BOARD_REFLECTIVITY = 0.07**2, 0.5
+
+
+def part_of_capsule() -> np.ndarray:
+    """Index of the body part, trunk parts first and limbs by side, of each capsule."""
+    names = [_part_name(capsule) for capsule in CAPSULES]
+    known = sorted(set(names))
+    return np.array([known.index(name) for name in names])
+
+
+def _part_name(capsule: Capsule) -> str:
+    kind = part_of(capsule.end)
+    if kind in ("elbow", "wrist", "knee", "ankle", "foot"):
+        return capsule.end.replace("foot", "ankle")
+    return "lower trunk" if capsule.start in ("pelvis", "spine1") or kind == "hip" else "upper trunk"
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Pairs:
+    """The chosen pairs of one frame."""
+
+    part: np.ndarray  # (pair,)
+    patch: np.ndarray  # (pair,)
+    amplitude: np.ndarray  # (pair,) complex
+
+
+class BodyRoomPaths:
+    """Second-order paths of one person, frame by frame."""
+
+    def __init__(self, body_paths: "BodyPaths", direct_power: np.ndarray):
+        """`direct_power` (frame,) of the direct paths, in mW."""
+        self.of, self.room = body_paths, body_paths.traced
+        self.patches = self.room.patches
+        count = len(self.of.body.micro_phase)
+        chosen = np.unique(np.linspace(0, count - 1, min(SKIN_POINTS, count)).astype(int))
+        _, group = np.unique(part_of_capsule()[self.of.body.part], return_inverse=True)
+        one_hot = np.eye(group.max() + 1)[:, group]
+        # a part is where its visible skin is, or all of its skin where none is visible; (frame, part, point)
+        shown = one_hot * (body_paths.visible[:, None] + 1e-6)
+        self._members = shown / shown.sum(axis=2, keepdims=True)
+        self._of_part = one_hot
+        self._chosen, self._of_chosen = chosen, one_hot[:, chosen]
+        self._area_m2 = self.of.body.area_m2 * self.of.body.brightness[chosen] * count / len(chosen)
+        self._phase = self.of.body.micro_phase[one_hot.argmax(axis=1)]
+        rng = stream(self.room.micro_seed, "room", "second bounces")
+        self._patch_luck = rng.random(len(self.patches))
+        self._pair_luck = rng.random((len(one_hot), len(self.patches)))
+        self._patch_gain = pattern(_unit(self.patches.place_m), self.room.config)
+        self._patch_m = np.linalg.norm(self.patches.place_m, axis=1)
+        self.pairs = [self._pairs(frame, direct_power[frame]) for frame in range(self.of.num_frames)]
+        self.twice = [self._body_radar_body(frame, direct_power[frame]) for frame in range(self.of.num_frames)]
+
+    def paths(self, frame: int, motion: np.ndarray) -> list[Paths]:
+        """Paths (path,) of one time segment of a frame; `motion` (point, 3, 3) is that of all skin points."""
+        parts = np.tensordot(self._members[frame], motion, axes=1)  # (part, 3, 3)
+        pairs, twice = self.pairs[frame], self.twice[frame]
+        there = np.flatnonzero(twice)
+        return [
+            self._record(
+                pairs.amplitude, parts[pairs.part], self._over(parts[pairs.part], pairs.patch), Interaction.BODY_ROOM
+            ),
+            self._record(twice[there], 2 * parts[there], 2 * parts[there], Interaction.BODY_RADAR_BODY),
+        ]
+
+    def _over(self, body: np.ndarray, patch: np.ndarray) -> np.ndarray:
+        """Apparent motion (pair, 3, 3) of the end that leads over a patch: its direction, and as far as the body."""
+        place = self.patches.place_m[patch]
+        leg = body[:, 0] - place
+        leg_m = np.linalg.norm(leg, axis=1)
+        along = leg / leg_m[:, None]
+        rate = (along * body[:, 1]).sum(axis=1)
+        across2 = (body[:, 1] ** 2).sum(axis=1) - rate**2
+        radial = np.stack([self._patch_m[patch] + leg_m, rate, (along * body[:, 2]).sum(axis=1) + across2 / leg_m], 1)
+        return radial[:, :, None] * _unit(place)[:, None]
+
+    def _record(self, amplitude: np.ndarray, departure: np.ndarray, arrival: np.ndarray, kind: Interaction) -> Paths:
+        return Paths(
+            amplitude=torch.from_numpy(amplitude.astype(np.complex64)),
+            departure=ApparentPoint.of(departure),
+            arrival=ApparentPoint.of(arrival),
+            is_reciprocal=torch.full((len(amplitude),), kind is Interaction.BODY_ROOM),
+            interaction=torch.full((len(amplitude),), int(kind), dtype=torch.uint8),
+        )
+
+    def _pairs(self, frame: int, direct_power: float) -> _Pairs:
+        """Those of one frame, chosen."""
+        of = self.of
+        parts_m = self._members[frame] @ of.posed.place_m[frame]
+        middle_m = of.posed.place_m[frame].mean(axis=0)
+        gap_m = np.maximum(np.linalg.norm(self.patches.place_m - middle_m, axis=1), 2 * NEAREST_M)
+        level = self.patches.cross_section_m2 * (self._patch_gain / (self._patch_m * gap_m)) ** 2
+        near, standing_for = roulette(level, self._patch_luck, MOST_PATCHES)
+        some = self.patches[near]
+        clear = self.room.is_clear(np.broadcast_to(middle_m, some.place_m.shape), some.place_m, ROOM_MARGIN_M)
+        near, some, standing_for = near[clear], some[clear], standing_for[clear]
+        leg = some.place_m - parts_m[:, None]  # (part, patch, 3)
+        leg_m = np.maximum(np.linalg.norm(leg, axis=2), NEAREST_M)
+        sigma = self._bistatic(frame, some.place_m)  # (part, patch)
+        power = of.gain**2 * (of.pattern(_unit(parts_m))[:, None] * self._patch_gain[near]) ** 2 * sigma
+        power = power * some.into(-leg / leg_m[..., None]) / (4 * np.pi)
+        power *= standing_for / (np.linalg.norm(parts_m, axis=1)[:, None] * leg_m * self._patch_m[near]) ** 2
+        total = power.sum()
+        if total < FAINTEST_OF_DIRECT * direct_power:
+            none = np.zeros(0, int)
+            return _Pairs(part=none, patch=none, amplitude=np.zeros(0, complex))
+        pair, standing_for = roulette(power.ravel(), self._pair_luck[:, near].ravel(), MOST_PAIRS)
+        part, patch = np.unravel_index(pair, power.shape)
+        size = np.sqrt(power.ravel()[pair] * standing_for)
+        return _Pairs(
+            part=part, patch=near[patch], amplitude=size * self._phase[part] * self.patches.phase[near[patch]]
+        )
+
+    def _bistatic(self, frame: int, place_m: np.ndarray) -> np.ndarray:
+        """Cross sections (part, patch) of the body's parts from the radar's direction into those of places."""
+        of, chosen = self.of, self._chosen
+        seen = chosen[of.visible[frame, chosen]]
+        own = of.visible[frame, chosen]
+        towards, normal = of.towards[frame, seen], of.posed.normal[frame, seen]
+        out = _unit(place_m - of.posed.place_m[frame, seen][:, None])  # (point, patch, 3)
+        cos_out = np.einsum("pqi,pi->pq", out, normal)
+        cos_in = of.cos[frame, seen]
+        # |towards + out|^2 = 2 + 2 towards . out
+        half = np.sqrt(np.maximum(2 + 2 * np.einsum("pqi,pi->pq", out, towards), 1e-9))
+        cos_half = np.clip((cos_in[:, None] + cos_out) / half, -1, 1)
+        each = of.body.echo.over(cos_in[:, None], cos_out, cos_half)
+        return (self._of_chosen[:, own] * self._area_m2[own]) @ each
+
+    def _body_radar_body(self, frame: int, direct_power: float) -> np.ndarray:
+        """Amplitudes (part,) of echoes that the radar's own board throws back to the body; 0 where too faint."""
+        of, body = self.of, self.of.body
+        # skin as near as it is: within arm's reach the parts' middles would be half as strong
+        sigma = body.echo.back(of.cos[frame]) * body.area_m2 * body.brightness * of.visible[frame]
+        each = self._of_part @ (sigma / of.distance_m[frame] ** 4)
+        towards = _unit(self._members[frame] @ of.posed.place_m[frame])
+        board = 4 * BOARD_REFLECTIVITY * BOARD_AREA_M2 * np.maximum(towards[:, 1], 0.0) ** 2
+        level = of.gain * of.pattern(towards) ** 2
+        amplitude = level * np.sqrt(each * each.sum() * board) / (4 * np.pi) * self._phase**2
+        return np.where(np.abs(amplitude) ** 2 > FAINTEST_OF_DIRECT * direct_power, amplitude, 0.0)
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)

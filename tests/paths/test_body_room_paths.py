@@ -1,0 +1,158 @@
+"""Second-order paths of a person: lengths, levels, and the sum of both against Sionna RT."""
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.paths.body_model import body_of
+from mmweaver.paths.body_paths import BodyPaths
+from mmweaver.paths.body_room_paths import BOARD_AREA_M2, BOARD_REFLECTIVITY
+from mmweaver.paths.paths import Interaction, Paths
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.receiver import IDEAL
+from mmweaver.paths.room_patches import roulette
+from mmweaver.paths.skin_scattering import LAMBERT
+from mmweaver.paths.static_paths import Propagation
+from tests.rooms import back_wall, floor, plane, scene_of, standing_person
+
+PERSON = standing_person((0.2, 2.0, -1.1))
+EDGES_M = np.arange(2.4, 4.81, 0.4)
+# Body and rough walls alone, diffuse reflection of depth 2 in Sionna RT 2.2.0 (1e6 samples, antennas of TR 38.901,
+# concrete with S = 0.35 and a body with S = 0.9, mean of two seeds): power in these ranges over that of the body, dB.
+SIONNA_DB = (-31.6, -35.6, -34.6, -39.9, -45.1, -48.5)
+
+
+def concrete_box() -> Scene:
+    """4 m wide, 2.6 m high, its back wall at 5 m and no wall behind the radar, which is 1.1 m above the floor."""
+    sides = (
+        plane("floor", (0, 2.5, -1.1), (0, 0, 1), (1, 0, 0), (2.0, 3.0), "concrete"),
+        plane("wall", (0, 5, 0.2), (0, -1, 0), (1, 0, 0), (2.0, 1.3), "concrete"),
+        plane("wall", (-2, 2.5, 0.2), (1, 0, 0), (0, -1, 0), (2.5, 1.3), "concrete"),
+        plane("wall", (2, 2.5, 0.2), (-1, 0, 0), (0, 1, 0), (2.5, 1.3), "concrete"),
+        plane("ceiling", (0, 2.5, 1.5), (0, 0, -1), (-1, 0, 0), (2.0, 2.5), "concrete"),
+    )
+    return scene_of(sides, floor_z_m=-1.1)
+
+
+def body_paths(simulator: Simulator, person: PoseSequence, frames: int = 1) -> BodyPaths:
+    joints_m = simulator._joints_at_nodes(person, np.arange(frames))
+    return BodyPaths(simulator.room, body_of(person, echo=LAMBERT), simulator.clock, joints_m)
+
+
+def of_kind(paths: Paths, kind: Interaction) -> Paths:
+    return paths[paths.interaction == int(kind)]
+
+
+def power(paths: Paths) -> np.ndarray:
+    """Of each path, both orders as paths of their own."""
+    return paths.amplitude.abs().numpy() ** 2 * np.where(paths.is_reciprocal.numpy(), 2, 1)
+
+
+def halo_db(realizations: int = 8) -> np.ndarray:
+    """Power of body-room paths in ranges between EDGES_M over that of the direct paths, mean over realizations."""
+    wide = replace(AWR1843, azimuth_beamwidth_deg=65.0, elevation_beamwidth_deg=65.0)
+    shares = []
+    for seed in range(realizations):
+        simulator = Simulator(concrete_box(), wide, IDEAL, micro_seed=seed)
+        (paths,) = body_paths(simulator, replace(PERSON, subject=seed)).paths(0)
+        over_room = of_kind(paths, Interaction.BODY_ROOM)
+        in_ranges, _ = np.histogram(over_room.length_m.numpy() / 2, EDGES_M, weights=power(over_room))
+        shares.append(in_ranges / power(of_kind(paths, Interaction.BODY)).sum())
+    return 10 * np.log10(np.mean(shares, axis=0))
+
+
+def test_the_level_behind_a_body_is_that_of_sionna():
+    """Within 6 dB in each 0.4 m, as bodies and antennas differ, and 3 dB of the whole."""
+    ours, theirs = halo_db(), np.array(SIONNA_DB)
+    assert np.abs(ours - theirs).max() < 6.0
+    total = [10 * np.log10((10 ** (part / 10)).sum()) for part in (ours, theirs)]
+    assert abs(total[0] - total[1]) < 3.0
+
+
+@pytest.mark.slow  # test_the_level_behind_a_body_is_that_of_sionna holds the same against stored figures
+def test_the_stored_figures_are_those_of_an_installed_sionna(tmp_path: Path):
+    """Skipped where Sionna RT is absent; in a process of its own, which an old LLVM aborts."""
+    vertices, faces = body_of(PERSON).hull(PERSON.joints_m[:1].astype(float))
+    np.savez(tmp_path / "body.npz", vertices=vertices[0], faces=faces)
+    script = Path(__file__).with_name("sionna_halo.py")
+    done = subprocess.run([sys.executable, script, tmp_path / "body.npz"], capture_output=True, text=True, timeout=300)
+    if done.returncode:
+        pytest.skip("no working sionna-rt")
+    assert np.abs(np.array(done.stdout.split(), float) - SIONNA_DB).max() < 2.0
+
+
+def test_lengths_follow_the_body_over_the_room():
+    """The length of a path changes as |b| + |b - q| + |q| of a gliding body; out and back differ in direction."""
+    simulator = Simulator(concrete_box(), AWR1843, IDEAL)
+    gliding = standing_person((0.2, 2.0, -1.1), (0.3, -1.0, 0.0))
+    found = body_paths(simulator, gliding, 2)
+    assert found.second is not None
+    for frame in range(2):
+        pairs, second = found.second.pairs[frame], found.second
+        (paths,) = (of_kind(one, Interaction.BODY_ROOM) for one in found.paths(frame))
+        assert len(paths) == len(pairs.patch) > 10
+        body = second._members[frame] @ found.posed.place_m[frame]
+        place = second.patches.place_m[pairs.patch]
+        legs = np.linalg.norm(body[pairs.part], axis=1), np.linalg.norm(body[pairs.part] - place, axis=1)
+        expected_m = legs[0] + legs[1] + np.linalg.norm(place, axis=1)
+        assert np.allclose(paths.length_m.numpy(), expected_m, atol=1e-6)
+        velocity = np.array([0.3, -1.0, 0.0])
+        rate = (body[pairs.part] / legs[0][:, None] + (body[pairs.part] - place) / legs[1][:, None]) @ velocity
+        assert np.allclose(paths.rate_mps.numpy(), rate, atol=1e-3)
+        assert paths.is_reciprocal.all()
+        assert np.allclose(paths.arrival.direction.numpy(), place / np.linalg.norm(place, axis=1)[:, None], atol=1e-9)
+
+
+def test_the_radars_own_board_throws_an_echo_back_at_twice_the_range():
+    """sigma sigma_board / ((4 pi)^2 d^4) of the direct power: about -50 dB at 0.9 m."""
+    near = standing_person((0.0, 1.0, -1.3))
+    simulator = Simulator(scene_of((back_wall(4.0),)), AWR1843, IDEAL)
+    (paths,) = body_paths(simulator, near).paths(0)
+    direct, twice = (of_kind(paths, kind) for kind in (Interaction.BODY, Interaction.BODY_RADAR_BODY))
+    share_db = 10 * np.log10(power(twice).sum() / power(direct).sum())
+    assert -60 < share_db < -40
+    mean_m = [(one.length_m.numpy() * power(one)).sum() / power(one).sum() / 2 for one in (direct, twice)]
+    assert mean_m[1] == pytest.approx(2 * mean_m[0], rel=0.1)
+    assert BOARD_AREA_M2 * BOARD_REFLECTIVITY < 0.01
+
+
+def test_without_the_second_bounce_there_are_no_such_paths():
+    kinds = {1: 0, 2: 0}
+    for bounces in kinds:
+        simulator = Simulator(concrete_box(), AWR1843, IDEAL, propagation=Propagation(bounces=bounces))
+        (paths,) = body_paths(simulator, PERSON).paths(0)
+        kinds[bounces] = int((paths.interaction > int(Interaction.WALL_BODY_WALL)).sum())
+        static = int((simulator.room.paths.interaction == int(Interaction.ROOM_ROOM)).sum())
+        assert (static > 0) == (bounces == 2)
+    assert kinds[1] == 0
+    assert kinds[2] > 10
+
+
+def test_a_roulette_keeps_the_mean_power_and_the_strong_ones():
+    rng = np.random.default_rng(0)
+    power_of = rng.gamma(0.3, size=2000)
+    power_of[0] = 50.0
+    sums = []
+    for seed in range(200):
+        kept, standing_for = roulette(power_of, np.random.default_rng(seed).random(2000), 100)
+        assert len(kept) <= 130
+        assert kept[0] == 0
+        assert standing_for[0] == 1.0
+        sums.append((power_of[kept] * standing_for).sum())
+    assert np.mean(sums) == pytest.approx(power_of.sum(), rel=0.02)
+
+
+def test_room_room_paths_come_in_both_orders():
+    room = Simulator(scene_of((floor(), back_wall())), AWR1843, IDEAL).room
+    paths = room.paths.of_kind(Interaction.ROOM_ROOM)
+    count = len(paths)
+    assert count > 20
+    departures = {tuple(row) for row in np.round(paths.departure_vertex_m.numpy(), 5)}
+    assert departures == {tuple(row) for row in np.round(paths.arrival_vertex_m.numpy(), 5)}
+    assert (paths.length_m > 0).all()
