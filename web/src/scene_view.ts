@@ -291,7 +291,7 @@ export class SceneView {
     if (!w || !h) return;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2)); this.renderer.setSize(w, h);
     this.camera.aspect = w / h; this.camera.updateProjectionMatrix();
-    this.render();
+    this.draw(); // at once: setting the size has cleared the canvas
   }
   private render(): void {
     if (this.pending) return;
