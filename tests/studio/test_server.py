@@ -278,6 +278,17 @@ def test_names_stay_in_their_folder():
     assert len(safe_name("x" * 500 + ".png", set())) == 80
 
 
+def test_a_session_takes_what_was_prepared_for_it_along():
+    workshop = Workshop()
+    ours, other = workshop.sessions.open(), workshop.sessions.open()
+    ours.radars["mine"] = ("mine.json", PRESETS["awr1843"])
+    for one, radar in ((ours, "mine"), (other, "awr1843")):
+        workshop.live(one, {**WALK, "radar": radar})
+    workshop.end(ours)
+    assert [key[1] for key in workshop._weavers] == ["awr1843"]
+    workshop.sessions.end_all()
+
+
 def test_uploads_are_taken_with_the_session(page: TestClient):
     own = session(page)
     upload(page, own, {"photo.png": b"alone"})

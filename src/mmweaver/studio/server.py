@@ -198,7 +198,7 @@ class StudioServer:
         with contextlib.suppress(WebSocketDisconnect):
             while True:
                 await socket.receive_text()
-        self.workshop.sessions.end(session)
+        self.workshop.end(session)
 
     async def _live(self, socket: WebSocket) -> None:
         """Sentences come, chunks go; a chunk is made when the page has taken the one before the last."""

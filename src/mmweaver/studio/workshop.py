@@ -154,6 +154,14 @@ class Workshop:
         recogniser = self.recognisers.get(asked.recogniser)  # learned from the points of a board's firmware
         return Live(Weaver(method=asked.method, radar=radar, points="firmware"), room, asked, board, recogniser)
 
+    def end(self, session: Session) -> None:
+        """Ends a session; what was prepared for its rooms, radars and boards goes with it."""
+        own = {*session.rooms, *session.radars, *session.boards}
+        with self._lock:
+            for key in [key for key in self._weavers if own & set(key)]:
+                del self._weavers[key]
+        self.sessions.end(session)
+
     def _kept(self, session: Session, result: Result, more: dict[str, Any]) -> bytes:
         name = session.add(result)
         self.sessions.keep_within_memory()
