@@ -75,7 +75,8 @@ class Weaver:
     are then as that board records them, cube and points as it compensates them. `weights`: a file or folder of
     `mmweaver train`, or a Hub name, for the network, which then makes all signals;
     `from_pretrained` is the short form. `bounces`, of the physics alone: 2 (default), paths over body and room, or 1,
-    those of first order. Raises InputError for unknown names.
+    those of first order; `clutter` likewise: "all" (default) or "resolved", that of photo and mesh alone. Raises
+    InputError for unknown names.
     """
 
     def __init__(
@@ -89,6 +90,7 @@ class Weaver:
         weights: str | Path | None = None,
         calibration: ChannelCalibration | None = None,
         bounces: int | None = None,
+        clutter: str | None = None,
     ):
         if weights is not None and method not in ("weaver", DEFAULT_METHOD):
             raise InputError(f"weights are for the method 'weaver', not {method!r}; leave them out")
@@ -100,8 +102,8 @@ class Weaver:
         else:
             self.method_name = method if file is None else "weaver"
             self.method = METHODS[method]() if file is None else Learned(file)
-        if bounces is not None:
-            self.method = physics_with(self.method, bounces)
+        if bounces is not None or clutter is not None:
+            self.method = physics_with(self.method, bounces, clutter)
         self.weights = None if file is None else file_digest(file)
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         is_named = not isinstance(radar, RadarConfig)

@@ -77,7 +77,7 @@ class Physics:
     """Ray-traced ADC samples, then the radar's own processing. The room is prepared once and kept for the next call."""
 
     def __init__(self, propagation: Propagation | None = None) -> None:
-        self.propagation = propagation or Propagation()
+        self.propagation = propagation or Propagation(clutter=True)
         self._prepared = _Latest(
             lambda scene, config, background, board: Simulator(
                 scene, config, background=background, board=board, propagation=self.propagation
@@ -120,13 +120,24 @@ class Physics:
         )
 
 
-def physics_with(method: Method, bounces: int) -> Method:
-    """The physics with so many bounces. Raises InputError for another method or number."""
+def physics_with(method: Method, bounces: int | None, clutter: str | None) -> Physics:
+    """The physics with so many bounces, and clutter "all" or "resolved"; None leaves it as it is.
+
+    Raises InputError for another method or value.
+    """
     if not isinstance(method, Physics):
-        raise InputError("bounces are an option of --method physics alone: the network has learned one")
-    if bounces not in (1, 2):
+        raise InputError("bounces and clutter are options of --method physics alone: the network has learned its own")
+    if bounces not in (None, 1, 2):
         raise InputError(f"bounces must be 1 or 2, not {bounces}")
-    return Physics(replace(method.propagation, bounces=bounces))
+    if clutter not in (None, "all", "resolved"):
+        raise InputError(f"clutter must be 'all' or 'resolved', not {clutter!r}")
+    own = method.propagation
+    return Physics(
+        replace(
+            own, bounces=own.bounces if bounces is None else bounces,
+            clutter=own.clutter if clutter is None else clutter == "all",
+        )
+    )  # fmt: skip
 
 
 def _adc_shape(config: RadarConfig, num_frames: int) -> tuple[int, int, int, int, int]:

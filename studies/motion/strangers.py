@@ -70,7 +70,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    weaver = Weaver("physics", bounces=1)
+    weaver = Weaver("physics", bounces=1, clutter="resolved")
     room = weaver.sample_room()
     texts = SENTENCES.read_text(encoding="utf-8").splitlines()
     digest = hashlib.sha256(SENTENCES.read_bytes()).hexdigest()

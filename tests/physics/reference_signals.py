@@ -33,7 +33,7 @@ def walking() -> PoseSequence:
 def signal(method: str) -> np.ndarray:
     """The cube of two frames in the bundled room, complex64 (frame, range, doppler, antenna), over its peak."""
     room = Weaver(method="physics").sample_room()
-    first_order = Physics(Propagation(bounces=1))
+    first_order = Physics(Propagation(bounces=1, clutter=False))
     made = first_order if method == "physics_first_order" else METHODS[method]()
     cube = made(
         room.scene, (walking(),), AWR1843, num_frames=FRAMES, seed=5, keep_adc=False, stages=Stages()

@@ -203,7 +203,7 @@ def _weaver(
     return Weaver(
         method=arguments.method, radar=radar, listener=listener, points=arguments.points, firmware=firmware,
         weights=arguments.weights, calibration=read_ti_calibration(radar_of(arguments, DEFAULT_RADAR) or ""),
-        bounces=arguments.bounces,
+        bounces=arguments.bounces, clutter=arguments.clutter,
     )  # fmt: skip
 
 

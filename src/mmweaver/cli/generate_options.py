@@ -48,6 +48,10 @@ def add_generate_options(parser: argparse.ArgumentParser) -> None:
         help=Rare("of --method physics: 2 (default), paths over body and room, room and room, body-radar-body, or 1"),
     )  # fmt: skip
     advanced.add_argument(
+        "--clutter", choices=("all", "resolved"),
+        help=Rare("of --method physics: with static clutter that photo and mesh do not resolve (default), or without"),
+    )  # fmt: skip
+    advanced.add_argument(
         "--weights", type=source, metavar="FILE|DIR|HUB",
         help="the network's weights: a file or folder of mmweaver train, or a name on the Hub",
     )  # fmt: skip

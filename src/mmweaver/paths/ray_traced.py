@@ -29,6 +29,7 @@ from mmweaver.paths.paths import Interaction, ScenePaths, StaticPaths
 from mmweaver.paths.receiver import LEAKAGE_PATH_LENGTH_M, Impairments, Receiver, leakage
 from mmweaver.paths.skin_scattering import SkinEcho
 from mmweaver.paths.static_paths import Propagation, RayTracedRoom
+from mmweaver.paths.unresolved_clutter import unresolved_clutter
 from mmweaver.paths.visibility import Visibility
 
 CHUNK_FRAMES = 20  # bounds memory: so many frames of samples exist at once
@@ -78,6 +79,8 @@ class Simulator:
         self.synthesis = AdcSynthesis(built, board=self.board)
         self.clock = self.synthesis.clock
         self.room = RayTracedRoom(scene, built, micro_seed, propagation)
+        if self.room.propagation.clutter:
+            self.room.paths = StaticPaths.cat([self.room.paths, unresolved_clutter(built, micro_seed)])
         if self.board is not None:
             self.room.paths = self.board.on_static(self.room.paths)
         self.background: BackgroundRecording | None = None

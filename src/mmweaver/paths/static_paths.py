@@ -29,6 +29,7 @@ class Propagation:
     """Which paths a room has."""
 
     bounces: int = 2  # 1: off rough surfaces once, off the body once; 2: body and room, room and room, body-radar-body
+    clutter: bool = False  # whether there is static clutter that photo and mesh do not resolve
     slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
 
 

@@ -1,0 +1,45 @@
+"""Static clutter that no photo and no mesh resolves: cables, textures, rims, what stands outside the picture.
+
+Many weak patches in all directions and at all ranges, several a range-angle cell; their cross sections are gamma
+distributed about a mean, so that amplitudes are K distributed. Level and density are those of one recording of a
+furnished room; see decision 226. Reference: Ward, Tough and Watts, "Sea clutter", 2013, chapter 4 (K distribution).
+"""
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.seeding import stream
+from mmweaver.paths.antenna import pattern, scatterer_gain
+from mmweaver.paths.paths import Interaction, StaticPaths
+from mmweaver.paths.static_paths import scattered_paths
+
+# Received power a metre of range is the same from 1 to 6 m in the recording: as of so many square metres at 2 m.
+SQUARE_METRES_A_METRE = 1.5e-4
+AT_M = 2.0
+FARTHEST_M = 8.0  # beyond, patches have the cross section of those there
+NEAREST_M = 0.5
+PATCHES_A_METRE = 300
+SHAPE = 0.5  # of the gamma distribution; smaller is spikier
+AZIMUTH_RAD, ELEVATION_RAD = np.radians(62.0), np.radians(40.0)
+
+
+def unresolved_clutter(config: RadarConfig, micro_seed: int) -> StaticPaths:
+    """The patches of one room and radar, by the room's seed."""
+    rng = stream(micro_seed, "room", "unresolved clutter")
+    count = int(PATCHES_A_METRE * max(config.max_range_m - NEAREST_M, 0.0))
+    range_m = np.sort(rng.uniform(NEAREST_M, max(config.max_range_m, NEAREST_M), count))
+    azimuth, elevation = (
+        rng.uniform(-AZIMUTH_RAD, AZIMUTH_RAD, count),
+        rng.uniform(-ELEVATION_RAD, ELEVATION_RAD, count),
+    )
+    towards = np.stack(
+        [np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)], axis=1
+    )
+    gain = pattern(towards, config) ** 2
+    texture = rng.gamma(SHAPE, 1 / SHAPE, count)
+    mean_m2 = SQUARE_METRES_A_METRE / PATCHES_A_METRE * (np.minimum(range_m, FARTHEST_M) / AT_M) ** 4
+    # the level is that of all directions together, as antennas weigh them
+    cross_section_m2 = mean_m2 * texture / max(float((gain**2).mean()) if count else 1.0, 1e-9)
+    amplitude = scatterer_gain(config) * gain * np.sqrt(cross_section_m2) / range_m**2
+    phase = np.exp(2j * np.pi * rng.random(count))
+    return scattered_paths(towards * range_m[:, None], amplitude * phase, Interaction.CLUTTER, config)

@@ -1,0 +1,50 @@
+"""Static clutter that photo and mesh do not resolve: level, distribution and where it is."""
+
+import numpy as np
+import pytest
+
+from mmweaver.core.presets import AWR1843
+from mmweaver.methods import Physics, physics_with
+from mmweaver.paths.antenna import scatterer_gain
+from mmweaver.paths.paths import Interaction
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.receiver import IDEAL
+from mmweaver.paths.static_paths import Propagation
+from mmweaver.paths.unresolved_clutter import AT_M, NEAREST_M, SQUARE_METRES_A_METRE, unresolved_clutter
+from tests.rooms import back_wall, floor, scene_of
+
+
+def test_as_much_comes_back_from_every_metre_as_was_recorded():
+    """The mean power a metre of range is that of the stated cross section at 2 m, from the nearest patch to 8 m."""
+    stated = SQUARE_METRES_A_METRE * (scatterer_gain(AWR1843) / AT_M**2) ** 2
+    profiles = []
+    for seed in range(20):
+        paths = unresolved_clutter(AWR1843, seed)
+        range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
+        profiles.append(np.histogram(range_m, np.arange(1.0, 7.1), weights=np.abs(paths.amplitude.numpy()) ** 2)[0])
+        assert range_m.min() > NEAREST_M - 1e-3
+    assert np.mean(profiles, axis=0) == pytest.approx(stated, rel=0.25)
+
+
+def test_amplitudes_are_spikier_than_a_gaussian_sum():
+    """A gamma distribution with shape 0.5 has a variance of two means squared."""
+    paths = unresolved_clutter(AWR1843, 0)
+    range_m = paths.length_m.mean(dim=(1, 2)).numpy() / 2
+    near = (range_m > 1) & (range_m < 8)
+    ahead = near & (np.abs(paths.departure_vertex_m.numpy()[:, 0]) < 0.2 * range_m)
+    power = np.abs(paths.amplitude.numpy()[ahead]) ** 2
+    assert power.var() / power.mean() ** 2 > 1.5
+    assert near.sum() / 7 == pytest.approx(300, rel=0.1)
+
+
+def test_the_front_door_has_it_and_the_ray_tracer_only_where_asked():
+    scene = scene_of((floor(), back_wall()))
+    counts = {}
+    for clutter in (False, True):
+        room = Simulator(scene, AWR1843, IDEAL, propagation=Propagation(clutter=clutter)).room
+        counts[clutter] = int((room.paths.interaction == int(Interaction.CLUTTER)).sum())
+    assert counts[False] == 0
+    assert counts[True] > 1000
+    assert Physics().propagation.clutter
+    assert not physics_with(Physics(), 1, "resolved").propagation.clutter
+    assert physics_with(Physics(), 1, None).propagation == Propagation(bounces=1, clutter=True)
