@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.signal import lfilter
 
 from mmweaver.compression.lossless_file import LosslessFile, compress_bin
 from mmweaver.compression.rivals.codec_interface import library
@@ -25,6 +26,7 @@ from studies.result_rows import complete_rows
 from studies.study import Reads
 
 EXPERIMENT = "lossless_codecs"
+LMS_TAPS, LMS_SHIFT = 16, 9
 CHANNELS = (1, 2, 4, 8)  # audio compressors take the words as so many channels; the smallest file counts
 
 Compress = Callable[[Path, Path, RadarConfig], int]
@@ -92,10 +94,30 @@ def jpegxl(path: Path, _folder: Path, config: RadarConfig) -> int:
     return len(library("imagecodecs").jpegxl_encode(words.astype(np.uint16), lossless=True, effort=7, numthreads=1))
 
 
+def sign_lms(path: Path, _folder: Path, _config: RadarConfig) -> int:
+    """A stand-in for TTA: a sign-LMS filter of 16 taps a channel, then Rice codes, whose bits are counted."""
+    words = np.fromfile(path, "<i2").astype(np.int64)
+    return min(_sign_lms_bytes(words[: len(words) // num * num].reshape(-1, num)) for num in CHANNELS[2:])
+
+
+def _sign_lms_bytes(samples: np.ndarray) -> int:
+    weights, past = np.zeros((2, LMS_TAPS, samples.shape[1]), np.int64)
+    errors = np.empty_like(samples)
+    for index, sample in enumerate(samples):
+        errors[index] = error = sample - ((weights * past).sum(axis=0) >> LMS_SHIFT)
+        weights += np.sign(past) * np.sign(error)
+        past[1:], past[0] = past[:-1], sample
+    size = np.abs(errors)
+    mean = lfilter([0.0, 1 / 32], [1.0, -31 / 32], size, axis=0)  # of the errors before
+    digits = np.floor(np.log2(np.maximum(mean, 1))).astype(np.int64)
+    return int(np.sum((2 * size >> digits) + 1 + digits)) // 8
+
+
 RECORDINGS = {"office": office, "two_people": two_people}
 CODECS: dict[str, Compress] = {
     "mmwl": ours, "zstd": by_tool("zstd", "-19", "-q", "-c", "--single-thread"), "xz": by_tool("xz", "-9e", "-k", "-c"),
     "flac": flac, "wavpack": wavpack, "blosc2": blosc2, "jpegxl": jpegxl,
+    "sign_lms": sign_lms,
 }  # fmt: skip
 
 
@@ -133,11 +155,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--data", type=Path, action=Reads, required=True, help="folder of recordings (with radar/ in it)"
     )
+    parser.add_argument("--codecs", nargs="*", default=list(CODECS))
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     """Every codec on every recording; one file a codec."""
-    for name in CODECS:
+    for name in options.codecs:
         rows = [codec_row(name, recording, options.data) for recording in RECORDINGS]
         run.write(EXPERIMENT, name, config={}, rows=complete_rows(rows))
         print(name, [(row["size"]["bytes"], row["seconds"]["cpu"]) for row in rows], flush=True)

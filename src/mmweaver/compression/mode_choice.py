@@ -7,6 +7,7 @@ import torch
 
 from mmweaver.compression.chunk import ChunkEncoder, ChunkMode, CodedChunk
 from mmweaver.compression.chunk_transform import TransformChoice, choices_of
+from mmweaver.compression.residual_stream import PRICE
 from mmweaver.fields.scatterers.fitting import FitRecipe, fitted
 from mmweaver.fields.scatterers.layers import Layers
 
@@ -15,7 +16,7 @@ POINTS_A_FRAME = 50
 FIT_STAGES, LAST_STEPS, LEAST_GAIN = 20, 6, 12.0
 MOST_MATRIX = 2**26  # multiplications of a singular value decomposition that is worth trying
 
-FREE_MODES = ("transforms", "scatterers", "low rank")
+FREE_MODES = ("transforms", "scatterers", "low rank", "noise layer", "DCT of ranges")
 EFFORTS = {"full": (), "fast": ("scatterers",)}  # modes that are not tried: the fit takes most of the time
 
 
@@ -30,12 +31,15 @@ class ModeChooser:
         self.plain = ChunkMode(transform=choices_of(encoder.target.shape)[0])
         self.mode: ChunkMode | None = None
 
-    def encode(self, step: float, coarser: int, noise_step: float = 0.0) -> CodedChunk:
-        """The chunk at a step, in the mode decided on; with a noise layer where it has a step."""
+    def encode(self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE) -> CodedChunk:
+        """The chunk at a step, in the mode decided on; with a noise layer where it has a step.
+
+        `price`: see `quantized`.
+        """
         if self.mode is None:
             self.decide(step, coarser)
         assert self.mode is not None
-        return self.encoder.encode(step, replace(self.mode, noise_step=noise_step), coarser)
+        return self.encoder.encode(step, replace(self.mode, noise_step=noise_step), coarser, price)
 
     def decide_transform(self, step: float, coarser: int) -> None:
         """Decides on the transform of `plain`, the best mode without any layer."""

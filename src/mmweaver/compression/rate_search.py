@@ -12,6 +12,7 @@ import numpy as np
 from mmweaver.compression.cell_choice import active_cells
 from mmweaver.compression.cell_sample import CellSample
 from mmweaver.compression.chunk import CodedChunk, decode_chunk
+from mmweaver.compression.residual_stream import PRICE
 from mmweaver.compression.segment import SegmentEncoder
 from mmweaver.core.errors import InputError
 from mmweaver.core.shapes import CubeValues
@@ -22,7 +23,7 @@ CLOSE_ENOUGH, AIM = 0.988, 0.994  # of the bytes allowed
 SAME_MODE = 1.0  # difference of log(step) beyond which modes are chosen again
 EVEN_DB = 0.15  # dB that the error over all cells may exceed that of an even coder
 SPARE = 1.25  # times the bytes: an even coder by the estimate has no less error than a real one of fewer bytes
-SCANNED = np.linspace(-0.35, 0.35, 15)  # differences of log(step) where a quality jumps
+MOST_PRICE, PRICES = 1000.0, 10  # squared steps a bit, where a quality jumps; how many are tried
 WITHIN_DB, AIM_DB = 0.2, 0.08  # better than the quality asked for
 
 LEAST_ERROR = 1e-30  # relative to the squared peak
@@ -76,7 +77,7 @@ def within_bytes(segment: SegmentEncoder, num_bytes: int, progress: Progress) ->
         found = _finest(segment, num_bytes, found.step, segment.coarser, progress)
     if segment.coarser > 1:
         found = _evened(segment, num_bytes, found, progress)
-        found = _over_range(segment, num_bytes, found, progress)
+        found = found if "DCT of ranges" in segment.without else _over_range(segment, num_bytes, found, progress)
     if found.num_bytes > num_bytes:
         more = found.num_bytes - num_bytes
         raise InputError(f"the bytes are too few for this recording; give at least {more} more")
@@ -189,7 +190,9 @@ def _evened(segment: SegmentEncoder, num_bytes: int, found: Found, progress: Pro
         step = _step_of_size(samples, num_bytes / (factor**share * even_factor ** (1 - share)), coarser, *bounds)
         if coarser == 1 or error_factor * sum(sample.at(step, coarser).all_error for sample in samples) <= allowed:
             break
-    noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
+    noise_step, with_noise = 0.0, 0.0
+    if "noise layer" not in segment.without:
+        noise_step, with_noise = _noise_steps(segment, num_bytes, allowed, samples, factor)
     if noise_step and with_noise < step:
         trial = _coded(segment, with_noise, 0, noise_step)
         noise_bytes = sum(chunk.sample.front_bytes for chunk in trial.coded) - sum(one.front_bytes for one in samples)
@@ -280,16 +283,16 @@ def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress)
     if not np.any(cube.values):
         return segment.exact()
     is_active = active_cells(cube.values)
-    best: tuple[float, list[bytes]] | None = None
+    best: tuple[float, float, list[bytes]] | None = None  # quality, logarithm of the step
     low, high = math.log(segment.finest_step), math.log(segment.coarsest_step)
 
-    def is_enough(log_step: float) -> tuple[list[CodedChunk], float]:
+    def is_enough(log_step: float, price: float = PRICE) -> tuple[list[CodedChunk], float]:
         """Encodes; keeps the worst that is good enough."""
         nonlocal best
-        coded = segment.encode(math.exp(log_step), segment.coarser)
+        coded = segment.encode(math.exp(log_step), segment.coarser, price=price)
         found_db = -error_db(cube.values, _values_of(coded, cube), is_active)
         if found_db >= quality_db and (best is None or found_db < best[0]):
-            best = found_db, [chunk.data for chunk in coded]
+            best = found_db, log_step, [chunk.data for chunk in coded]
         return coded, found_db
 
     guess = math.log(_step_of_quality(segment, quality_db, is_active))
@@ -301,14 +304,17 @@ def within_error(segment: SegmentEncoder, quality_db: float, progress: Progress)
             break
         low, high = (guess, high) if found_db >= quality_db else (low, guess)
         guess = _next_quality(coded, guess, found_db - quality_db - AIM_DB, low, high, is_late=trial > TRIALS // 2)
-    if best is not None and best[0] > quality_db + WITHIN_DB:  # the quality jumps here: look around
-        for difference in SCANNED:
-            is_enough(guess + difference)
-            if best[0] <= quality_db + WITHIN_DB:
+    if best is not None and best[0] > quality_db + WITHIN_DB:  # the quality jumps here: levels are lowered instead
+        cheap, dear, log_step = math.log(PRICE), math.log(MOST_PRICE), best[1]
+        for _ in range(PRICES):
+            _, found_db = is_enough(log_step, math.exp((cheap + dear) / 2))
+            if quality_db <= found_db <= quality_db + WITHIN_DB:
                 break
+            middle = (cheap + dear) / 2
+            cheap, dear = (middle, dear) if found_db >= quality_db else (cheap, middle)
     if best is None:
         raise InputError(f"a quality of {quality_db:g} dB cannot be reached; ask for less")
-    return best[1]
+    return best[2]
 
 
 def _step_of_quality(segment: SegmentEncoder, quality_db: float, is_active: np.ndarray) -> float:

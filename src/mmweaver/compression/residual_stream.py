@@ -12,6 +12,7 @@ from mmweaver.compression.level_coder import LevelCoder
 Array = np.ndarray
 ROUNDING = 0.36  # values are rounded up from 1 - ROUNDING: small levels cost more bits than they save distortion
 PRICE = 0.11  # Lagrange multiplier: squared steps per bit
+LOWERED = (0.5, 0.75, 0.9, 0.0)  # shares of levels that are tried in turn
 ZERO_BITS, SIGN_AND_SIZE_BITS, OPEN_BITS = 0.35, 3.0, 3.0
 FIRST_OCTAVES, FIRST_OCTAVE_BITS, OCTAVE_BITS = 2, 1.6, 1.25
 
@@ -44,13 +45,16 @@ def quantized(
 
     `coarser` 0: cells that are not active stay closed.
 
-    `price`: squared steps that a bit must save; at 0 all cells are coded in which any level is not zero.
+    `price`: squared steps that a bit must save; at 0 all cells are coded in which any level is not zero, above PRICE
+    levels are lowered too.
     """
     own_step = np.where(is_active, step, step * (coarser or 1))
     parts = np.stack([np.real(coefficients), np.imag(coefficients)])
     parts /= own_step.astype(parts.dtype)
     magnitude = np.abs(parts)
     levels = np.floor(magnitude + magnitude.dtype.type(ROUNDING))
+    if price > PRICE:
+        levels = _lowered(magnitude, levels, price)
     is_open = _is_worthwhile(magnitude, levels, price) & levels.any(axis=(0, 1)) & (is_active | (coarser > 0))
     levels *= is_open
     centroids = _centroids(magnitude[:, :, is_open], levels[:, :, is_open])
@@ -71,6 +75,15 @@ def code_cells(
     ClassMapCoder(classes.shape[2]).code(stream, classes, near)
     factor = np.where(classes == FINE, 1, coarser) * (classes > CLOSED)
     LevelCoder(levels.shape[1:], correlated).code(stream, levels, factor)
+
+
+def _lowered(magnitude: Array, levels: Array, price: float) -> Array:
+    """Levels lowered as far as each bit that this saves costs less error than `price`."""
+    for share in LOWERED:
+        lower = np.floor(levels * share)
+        error = np.square(magnitude - lower) - np.square(magnitude - levels)
+        levels = np.where(error < price * (approximate_bits(levels) - approximate_bits(lower)), lower, levels)
+    return levels
 
 
 def _is_worthwhile(magnitude: Array, levels: Array, price: float) -> Array:

@@ -12,6 +12,7 @@ from mmweaver.compression.chunk import ChunkEncoder, CodedChunk
 from mmweaver.compression.chunk_frames import ChunkFrames
 from mmweaver.compression.chunk_transform import MOST_DOPPLER
 from mmweaver.compression.mode_choice import ModeChooser
+from mmweaver.compression.residual_stream import PRICE
 from mmweaver.core.records import RadarCube
 
 SHORT_CHUNK = 20  # frames
@@ -79,9 +80,9 @@ class SegmentEncoder:
             chooser.decide(step, self.coarser)
         return before != [chooser.mode for chooser in self._choosers]
 
-    def encode(self, step: float, coarser: int, noise_step: float = 0.0) -> list[CodedChunk]:
+    def encode(self, step: float, coarser: int, noise_step: float = 0.0, price: float = PRICE) -> list[CodedChunk]:
         """All chunks at a step, in the modes decided on; with a noise layer where it has a step."""
-        return [chooser.encode(step, coarser, noise_step) for chooser in self._choosers]
+        return [chooser.encode(step, coarser, noise_step, price) for chooser in self._choosers]
 
     def noise_samples(self) -> list[CellSample]:
         """Samples of the noise layers."""

@@ -1,0 +1,52 @@
+"""Draws rate against error in active cells for every recording of study `codec_cuts`: docs/images/codec_curves.png.
+
+python tools/codec_curves.py
+"""
+
+import json
+from pathlib import Path
+
+from matplotlib import pyplot as plt
+
+ROOT = Path(__file__).resolve().parents[1]
+OURS, COLUMNS, METRIC = "mmw", 5, "nmse_active_db"
+SIZES_KB = (2.5, 10, 40)
+Curves = dict[str, dict[str, list[tuple[int, float]]]]  # of each recording, of each codec: bytes and dB
+
+
+def curves(results: Path) -> Curves:
+    """All results of the study."""
+    found: Curves = {}
+    for path in sorted((results / "codec_cuts").glob("*.json")):
+        for row in json.loads(path.read_text(encoding="utf-8"))["rows"]:
+            error = row["metrics"][METRIC]["value"]
+            if error is not None:
+                codecs = found.setdefault(row["dataset"]["name"], {})
+                codecs.setdefault(path.stem, []).append((row["size"]["bytes"], error))
+    return found
+
+
+def draw(found: Curves, out: Path) -> None:
+    """One small diagram a recording, ours in colour over the others in grey."""
+    plt.rcParams.update({"font.size": 7})
+    rows = -(-len(found) // COLUMNS)
+    figure, axes = plt.subplots(rows, COLUMNS, figsize=(12, 2.1 * rows), sharex=True, layout="constrained")
+    for axis in axes.flat[len(found) :]:
+        axis.set_visible(False)
+    for axis, (name, codecs) in zip(axes.flat, found.items(), strict=False):
+        for codec, points in sorted(codecs.items(), key=lambda pair: pair[0] == OURS):
+            kilobytes, error_db = zip(*[(size / 1000, error) for size, error in sorted(points)], strict=True)
+            style = {"color": "tab:red", "lw": 1.5} if codec == OURS else {"color": "0.7", "lw": 0.8}
+            axis.plot(kilobytes, error_db, "o-", ms=2.5, **style)
+            if codec != OURS:
+                axis.annotate(codec, (kilobytes[-1], error_db[-1]), color="0.6", fontsize=4)
+        axis.set(title=name, xscale="log", ylim=(None, 5))
+        axis.set_xticks(SIZES_KB, labels=SIZES_KB)
+        axis.minorticks_off()
+    figure.supxlabel("KB")
+    figure.supylabel("error in active cells, dB")
+    figure.savefig(out, dpi=90)
+
+
+if __name__ == "__main__":
+    draw(curves(ROOT / "results"), ROOT / "docs" / "images" / "codec_curves.png")
