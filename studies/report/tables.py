@@ -16,6 +16,7 @@ from studies.report.computed_tables import (
     zero_shot_table,
 )
 from studies.report.learned_tables import LEARNED
+from studies.report.paper_items import paper_table
 from studies.report.table_layouts import MatrixTable, MetricTable, PivotTable, RowTable
 
 SCORES = ("nmse_db", "nmse_active_db", "nmse_moving_db", "psnr_db", "cssim", "rd_ssim", "ra_ssim", "chamfer_m")
@@ -36,6 +37,17 @@ SUPER_RESOLUTION = PivotTable(
            *(("sampled_places", str(radius)) for radius in range(1, 8)),
            *((kind, factor) for kind in ("more_bandwidth", "more_loops", "more_antennas") for factor in FINER)),
 )  # fmt: skip
+RADIUS_COLUMNS = {
+    "zero_padding": "zero padding (baseline)", "linear_raw": "linear", "linear_centred": "linear, phases centred",
+    "inr_paper": "the paper's INR", "inr_smooth_short": "our INR", "scatterers": "scatterers",
+}  # fmt: skip
+SAMPLING_RADIUS = PivotTable(
+    sources=("super_resolution/*",),
+    rows=(("ground truth", "{dataset.truth}"), ("radius, eighths of a bin", "{dataset.factor:g}")),
+    across="{record.method}",
+    cells={name: ((head, "{metrics.nmse_db:number}"),) for name, head in RADIUS_COLUMNS.items()},
+    order=tuple(("sampled_places", str(radius)) for radius in range(1, 8)),
+)
 NOISE_METRICS = ("distribution_distance", "neighbour_correlation")
 NOISE_COUNTS = ("points_a_frame", "false_points_a_frame", "missed_points_a_frame")
 RENDERED_NOISE = RowTable(
@@ -302,6 +314,7 @@ DAMAGED_SETS = RowTable(
 )  # fmt: skip
 
 TABLES: dict[str, Callable[[Path], str]] = {
+    "paper": paper_table, "sampling_radius": SAMPLING_RADIUS.render,
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
     "rendered_noise": RENDERED_NOISE.render, "scatterer_tracks": TRACKS.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,

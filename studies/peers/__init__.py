@@ -1,0 +1,1 @@
+"""Other signal generators on the same work."""

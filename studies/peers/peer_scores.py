@@ -1,0 +1,172 @@
+"""How near do other generators come to the ground truth in unseen rooms, and does clutter matter?
+
+    mmweaver dataset rooms/ --rooms living_room,classroom,workshop --layouts 16 --sequences 1
+    python -m studies run peer_scores --data rooms/ --runs build/peers --most 48
+
+The deciding comparison of `learned_scores` with RF-Genesis on the same joints: ground truth is the simulator in the
+true room, SSIM of range-azimuth and range-Doppler maps in decibels over cells that show something. RF-Genesis has no
+scale, so each of its sequences is given the gain that fits the ground truth best, an oracle's. Rows: as released,
+repaired with the body alone, with a generic room, with our photographed room. `zeros` and `generic_room_physics` are
+the baselines, `realization`, the true room with other phases, the oracle. Rooms are cached one by one, so a stopped run
+goes on.
+
+`clutter` groups the rooms into thirds by the share of the floor within the radar's range that furniture covers.
+"""
+
+import argparse
+import time
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.records import RadarCube, Scene
+from mmweaver.core.seeding import stream
+from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
+from mmweaver.datasets.dataset_store import read_plan, read_rooms
+from mmweaver.datasets.room_generation import generate_sequence, pose_of
+from mmweaver.metrics.scorecard import METRICS, scorecard
+from mmweaver.models.weights import load_weights, shipped_weights
+from mmweaver.paths.ray_traced import Simulator
+from mmweaver.paths.static_paths import OF_NETWORKS
+from mmweaver.scene.procedural.procedural_room import make_room
+from mmweaver.scene.reconstruction import reconstruct
+from studies.manifest import StudyRun
+from studies.network.learned_scores import OTHER, Case, Method, cases_of, interval, learned
+from studies.network.room_cache import RoomCache, digest
+from studies.peers.rf_genesis import RfGenesis, Triangles
+from studies.result_rows import complete_rows, dataset_of
+from studies.study import Reads
+
+COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "cssim", "psnr_db", "chamfer_m", "hausdorff_m")
+BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
+ROOM_PIXELS = 64  # of RF-Genesis with a room: every pixel of it is an echo
+CLUTTER = ("low", "medium", "high")
+CLUTTER_ROWS = ("zeros", "weaver", "physics_in_photographed_room", "realization")
+Scores = dict[str, dict[str, float]]
+
+
+def simulated(scene: Scene, case: Case, micro_seed: int) -> RadarCube:
+    """Our simulator in a scene, with other skin and noise than the ground truth and the same kinds of paths."""
+    simulator = Simulator(scene, case.room.config, micro_seed=micro_seed, propagation=OF_NETWORKS)
+    spec = case.spec
+    made = generate_sequence(
+        spec, case.true_scene, simulator, len(case.joints[0]), subject=spec.person + OTHER, noise_seed=spec.seed + OTHER
+    )
+    return made.cube
+
+
+def with_best_gain(cube: RadarCube, truth: RadarCube) -> RadarCube:
+    """The cube times the one factor with which its magnitudes are nearest to those of the truth."""
+    own, true = (np.abs(one.values).astype(float).ravel() for one in (cube, truth))
+    gain = (own @ true) / max(own @ own, 1e-300)
+    return replace(cube, values=(cube.values * gain).astype(np.complex64), scale=truth.scale)
+
+
+def peer(settings: RfGenesis, case: Case, room: Scene | None = None) -> RadarCube:
+    """RF-Genesis with the motion of a case."""
+    spec, frames = case.spec, len(case.joints[0])
+    pose = replace(pose_of(spec, case.true_scene, case.room.config, frames), height_m=PEOPLE_HEIGHT_M[spec.person])
+    traced = settings if room is None else replace(settings, room=triangles(room), pixels=ROOM_PIXELS)
+    return traced.cube(pose, case.room.config, frames)
+
+
+def triangles(scene: Scene) -> Triangles:
+    """A scene's mesh."""
+    return np.asarray(scene.vertices_m, np.float32), np.asarray(scene.faces, np.uint32)
+
+
+def methods_of(network: Any, generic: Scene) -> dict[str, Method]:
+    """Every row by name."""
+    repaired = RfGenesis(repaired=True, has_environment=False)
+    return {
+        "weaver": learned(network, lambda case: case.room),
+        "physics_in_photographed_room": lambda case: simulated(reconstruct(case.room.photo), case, 1),
+        "generic_room_physics": lambda case: simulated(generic, case, 1),
+        "realization": lambda case: simulated(case.true_scene, case, 1),
+        "rf_genesis_as_released": lambda case: peer(RfGenesis(), case),
+        "rf_genesis_repaired_body": lambda case: peer(repaired, case),
+        "rf_genesis_repaired_generic_room": lambda case: peer(repaired, case, generic),
+        "rf_genesis_repaired_photographed_room": lambda case: peer(repaired, case, reconstruct(case.room.photo)),
+    }  # fmt: skip
+
+
+def scores_of(case: Case, methods: dict[str, Method]) -> Scores:
+    """{row: {column: value}} of one room, with all zeros and the CPU seconds of each."""
+    truth = case.room.cube(case.index)
+    found: Scores = {}
+    for name, method in methods.items():
+        began = time.process_time()
+        cube = method(case)
+        seconds = time.process_time() - began
+        card = scorecard(with_best_gain(cube, truth) if name.startswith("rf_genesis") else cube, truth)
+        found[name] = {**{column: card.prediction[column] for column in COLUMNS}, "cpu_s": seconds}
+        found["zeros"] = {**{column: card.baselines["zeros"][column] for column in COLUMNS}, "cpu_s": 0.0}
+    return found
+
+
+def clutter_of(case: Case) -> float:
+    """Share of the floor ahead within the radar's range on which furniture stands or hangs, of the true room."""
+    free = case.true_scene.free_space
+    x_m, y_m = np.meshgrid(free.x_m, free.y_m)
+    distance_m = np.hypot(x_m, y_m)
+    ahead = (distance_m < case.room.config.range_m[-1]) & (np.abs(np.arctan2(x_m, y_m)) < np.radians(60))
+    return float(1 - free.is_free[ahead].mean())
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--data", type=Path, action=Reads, required=True, help="of mmweaver dataset, with signals")
+    parser.add_argument("--split", default="test_room")
+    parser.add_argument("--most", type=int, default=48, help="rooms, sampled at random")
+    parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    plan = read_plan(options.data)
+    cases = cases_of(read_rooms(options.data), options.split, 1, plan, 0)
+    order = stream(0, "order of rooms").permutation(len(cases))
+    cases = [cases[index] for index in order[: options.most]]
+    network, card = load_weights(shipped_weights())
+    methods = methods_of(network, make_room("office", 0, plan["seed"]).scene("day"))
+    about = {"data_plan": plan, "weights": digest(shipped_weights()), "columns": COLUMNS}
+    cache = RoomCache(options.runs, about)
+    names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
+    each = []
+    for name, case in zip(names, cases, strict=True):
+        each.append(cache.figures(name, partial(scores_of, case, methods)))
+        print(name, {row: round(values["ra_ssim"], 2) for row, values in each[-1].items()}, flush=True)
+    settings = {"weights": card.__dict__, "data_plan": plan}
+    rows = [_row(name, each, names) for name in each[0]]
+    run.write("peer_scores", options.split, config=settings, rows=_complete(rows, options.data))
+    clutter = np.array([clutter_of(case) for case in cases])
+    rows = [row for level in CLUTTER for row in _clutter_rows(level, clutter, each, names, options.data)]
+    run.write("peer_scores", "clutter", config=settings, rows=rows)
+
+
+def _clutter_rows(
+    level: str, clutter: np.ndarray, each: list[Scores], names: list[str], data: Path
+) -> list[dict[str, Any]]:
+    """Rows of the third of the rooms with this much clutter."""
+    third = np.array_split(np.argsort(clutter, kind="stable"), len(CLUTTER))[CLUTTER.index(level)]
+    rows = [_row(name, [each[i] for i in third], [names[i] for i in third]) for name in CLUTTER_ROWS]
+    covered = [float(clutter[third].min()), float(clutter[third].max())]
+    rows = [{**row, "clutter": level, "share_of_floor_covered": covered} for row in rows]
+    return _complete(rows, data, baselines=("zeros",))
+
+
+def _complete(rows: list[dict[str, Any]], data: Path, baselines: tuple[str, ...] = BASELINES) -> list[dict[str, Any]]:
+    return complete_rows(
+        rows, dataset=dataset_of(data), seeds=[0], baselines=baselines, oracles=ORACLES,
+        unknown={"seconds": "metric cpu_s has those of each method"},
+    )  # fmt: skip
+
+
+def _row(method: str, each: list[Scores], rooms: list[str]) -> dict[str, Any]:
+    metrics = {}
+    for column in (*COLUMNS, "cpu_s"):
+        mean, low, high = interval(np.array([one[method][column] for one in each]), rooms)
+        unit = METRICS[column].unit if column in METRICS else "s"
+        metrics[column] = {"value": mean, "interval_95": [low, high], "unit": unit}
+    return {"method": method, "n": len(rooms), "num_rooms": len(set(rooms)), "metrics": metrics}
