@@ -1,6 +1,6 @@
 """How near do other generators come to the ground truth in unseen rooms, and does clutter matter?
 
-    mmweaver dataset rooms/ --rooms living_room,classroom,workshop --layouts 16 --sequences 1
+    mmweaver dataset rooms/ --rooms living_room,classroom,workshop --layouts 16 --sequences 1 --board ideal
     python -m studies run peer_scores --data rooms/ --runs build/peers --most 48
 
 The deciding comparison of `learned_scores` with RF-Genesis on the same joints: ground truth is the simulator in the

@@ -66,7 +66,7 @@ class RfGenesis:
                 samples[frame, loop] = chirps.samples(places_m, amplitude)
         return radar_cube(AdcCube(samples=samples, config=config, scale=1.0))
 
-    def _pictures(self, pose: PoseSequence, config: RadarConfig, num_frames: int) -> list["Picture"]:
+    def _pictures(self, pose: PoseSequence, config: RadarConfig, num_frames: int) -> list["BodyPicture"]:
         count = int(np.ceil(num_frames * config.frame_period_s * MOTION_RATE_HZ)) + 2
         time_s = np.clip(np.arange(count) / MOTION_RATE_HZ, pose.time_s[0], pose.time_s[-1])
         flat = pose.joints_m.reshape(len(pose.time_s), -1)
@@ -76,7 +76,7 @@ class RfGenesis:
 
 
 @dataclass
-class Picture:
+class BodyPicture:
     """One motion frame's picture, a row each pixel; distance and brightness are 0 where a ray meets nothing."""
 
     distance_m: np.ndarray
@@ -84,7 +84,7 @@ class Picture:
     place_m: np.ndarray  # (pixel, 3)
     cos: np.ndarray  # of the angle between ray and surface
 
-    def fill_from(self, other: "Picture") -> None:
+    def fill_from(self, other: "BodyPicture") -> None:
         """Gives dark pixels what another picture has there, in place."""
         dark = self.brightness == 0
         for own, given in zip(self._columns, other._columns, strict=True):
@@ -127,7 +127,7 @@ class _Camera:
             key for key, _ in self._parameters.items() if key.startswith("body") and "positions" in key
         )
 
-    def pictures(self, mesh: BodyMesh) -> Iterator[Picture]:
+    def pictures(self, mesh: BodyMesh) -> Iterator[BodyPicture]:
         sensor = self._scene.sensors()[0]
         index = np.arange(self._pixels**2)
         across, down = index % self._pixels / self._pixels, index // self._pixels / self._pixels
@@ -140,7 +140,7 @@ class _Camera:
             distance_m = np.array(met.t, float)
             is_met = np.isfinite(distance_m) & (distance_m < 9999)
             place = np.where(is_met[:, None], np.array(met.p, float).T, 0.0)
-            yield Picture(
+            yield BodyPicture(
                 distance_m=np.where(is_met, distance_m, 0.0),
                 brightness=np.array(mi.render(self._scene, spp=32), float)[:, :, 0].ravel(),
                 place_m=np.stack([place[:, 0], -place[:, 2], place[:, 1]], -1),
@@ -176,14 +176,14 @@ def _environment() -> tuple[np.ndarray, np.ndarray]:
     ), picture.ravel()
 
 
-def _pair(pictures: list[Picture], time_s: float) -> tuple[Picture, Picture, float]:
+def _pair(pictures: list[BodyPicture], time_s: float) -> tuple[BodyPicture, BodyPicture, float]:
     """The pictures before and after a time, and how far it lies between them."""
     place = min(time_s * MOTION_RATE_HZ, len(pictures) - 1.001)
     return pictures[int(place)], pictures[int(place) + 1], place - int(place)
 
 
 def _at_once(
-    pictures: list[Picture], config: RadarConfig, time_s: float, environment: tuple[np.ndarray, np.ndarray] | None
+    pictures: list[BodyPicture], config: RadarConfig, time_s: float, environment: tuple[np.ndarray, np.ndarray] | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """As released: places (tx, point, 3), the same for all transmitters, and amplitudes (point,), the distances."""
     before, after, share = _pair(pictures, time_s)
@@ -200,7 +200,7 @@ def _at_once(
 
 
 def _at_turns(
-    pictures: list[Picture], config: RadarConfig, loop_s: float, rough: np.ndarray | None
+    pictures: list[BodyPicture], config: RadarConfig, loop_s: float, rough: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Repaired: places (tx, point, 3) at each transmitter's turn of one loop, and amplitudes (point,)."""
     before, after, share = _pair(pictures, loop_s)
@@ -239,17 +239,17 @@ class _Chirps:
         delay_s = length_m / SPEED_OF_LIGHT_MPS
         loss = (config.wavelength_m / (4 * np.pi * length_m)) ** 2
         cycles = config.start_frequency_hz * delay_s - config.chirp_slope_hz_per_s * delay_s**2 / 2
-        return amplitude * loss * np.exp(2j * np.pi * cycles)
+        return (amplitude * loss * np.exp(2j * np.pi * cycles)).astype(np.complex64)
 
     def _beat(self, delay_s: np.ndarray) -> np.ndarray:
         """(point, sample) exp(j 2 pi slope delay t), by doubling."""
         config = self.config
         step = np.exp(2j * np.pi * config.chirp_slope_hz_per_s * delay_s / config.sample_rate_hz)
-        beat = np.empty((len(delay_s), config.num_samples), complex)
+        beat = np.empty((len(delay_s), config.num_samples), np.complex64)
         beat[:, 0] = np.exp(2j * np.pi * config.chirp_slope_hz_per_s * delay_s * config.adc_start_time_s)
         done = 1
         while done < config.num_samples:
             more = min(done, config.num_samples - done)
-            beat[:, done : done + more] = beat[:, :more] * (step**done)[:, None]
+            beat[:, done : done + more] = beat[:, :more] * (step**done).astype(np.complex64)[:, None]
             done += more
         return beat
