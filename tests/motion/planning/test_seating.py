@@ -5,7 +5,7 @@ import pytest
 
 from mmweaver.motion.animation.skeleton_proportions import SkeletonProportions
 from mmweaver.motion.planning.floor_map import FloorMap
-from mmweaver.motion.planning.seating import Sitting, random_subset, usable_seats, usual_variation
+from mmweaver.motion.planning.seating import Sitting, centred_to_lie, random_subset, usable_seats, usual_variation
 from tests.motion.rooms import WINDOW_M, room, seat
 
 
@@ -41,3 +41,15 @@ def test_some_seats_are_left_out_but_never_all():
     seats = usable_seats(FloorMap(room(seats=(seat(-0.6), seat(0.6))), WINDOW_M, 1.75), SkeletonProportions(1.75))
     kept = [random_subset(seats, np.random.default_rng(k)) for k in range(50)]
     assert {len(some) for some in kept} == {1, 2}
+
+
+def test_who_lies_down_is_in_the_middle_of_the_couch():
+    couch = [
+        Sitting(feet_m=np.array([x, 2.0]), facing_rad=-np.pi / 2, height_m=0.45, seat_m=np.array([x, 2.4]), width_m=1.6)
+        for x in (-0.4, 0.4)
+    ]
+    for place in centred_to_lie(couch, 1.75):
+        # The own left is the picture's right: the head is there, 0.6 m from the seat, the toes at 0.87.
+        head, toes = place.seat_m[0] + 0.6, place.seat_m[0] - 0.87
+        assert head + toes == pytest.approx(0.0, abs=0.02)
+        assert place.feet_m[0] == pytest.approx(place.seat_m[0])

@@ -349,7 +349,7 @@ def is_known(word: Word) -> bool:
         or text in TARGETS
         or text in LEGS
         or text.startswith(("arc", "deg", "from_", "on_", "fraction_"))
-        or text in ("onback", "onbelly", "highkick")
+        or text in ("onback", "onbelly", "highkick", "frontlunge")
         or text.replace(".", "").isdigit()
         or len(text) == 1
     )

@@ -33,8 +33,8 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\b{_LUNGE}(?:s|d|ing)?\b", " side_lunge "),
     (r"\blung(?:es?|ing) (?:sideways|to (?:the |his |her |their )?(left|right|side)s?(?: side)?)\b", r" side_lunge \1 leg "),
     (r"\b(left|right) front(?:al)?[- ]lunges?\b|\bfront(?:al)?[- ]lunges? (?:with (?:the )?)?(left|right)(?: leg)?\b",
-     r" lunges \1\2_leg "),
-    (r"\bfront(?:al)?[- ]lunges?\b", " lunges "),
+     r" frontlunge lunges \1\2_leg "),
+    (r"\bfront(?:al)?[- ]lunges?\b", " frontlunge lunges "),
     (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) arm and {_OWN}(?:same |left |right )?leg"
      r"(?: (?:out )?(?:to the side|sideways))?\b", r" limb_extension \1_leg "),
     (rf"\b(?:extends?|extending|rais(?:es|ing)|lifts?|lifting) {_OWN}(left|right) leg and {_OWN}(?:same |left |right )?arm"

@@ -9,6 +9,7 @@ from mmweaver.motion.language.words import Word
 
 OPPOSITE = {"left": "right", "right": "left"}
 MOST_TIMES = 60
+_TOKENS = ("onback", "onbelly", "lookdown", "highkick", "frontlunge")
 
 
 def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
@@ -30,7 +31,7 @@ def modifiers(words: list[Word], clause_text: str, notes: list[str]) -> Step:
             continue  # a part of the body
         elif text in DIRECTIONS:
             about = _direction(about, text, words, i)
-        elif "_" in text or text.startswith(("arc", "deg")) or text in ("onback", "onbelly", "lookdown", "highkick"):
+        elif "_" in text or text.startswith(("arc", "deg")) or text in _TOKENS:
             about = _token(about, text, texts)
         elif text in TIMES or text in NUMBERS or text.replace(".", "").isdigit():
             about = _number(about, text, words, i)
@@ -130,7 +131,7 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         return replace(about, style="back" if text == "onback" else "front")
     if text == "lookdown":
         return replace(about, facing="down")
-    return replace(about, style="high") if text == "highkick" else about
+    return replace(about, style={"highkick": "high", "frontlunge": "frontlunge"}.get(text, about.style))
 
 
 _PUSHED_FROM = {

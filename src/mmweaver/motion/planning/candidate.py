@@ -30,6 +30,7 @@ from mmweaver.motion.planning.seating import (
     STOOL_HEIGHT_M,
     Sitting,
     any_variation,
+    centred_to_lie,
     fitting,
     long_enough_to_lie_on,
     preferred,
@@ -57,6 +58,7 @@ _STRAIGHT = ("left", "right", "towards", "away", "")
 _USUAL_MPS = {"walk": 1.15, "jog": 2.8, "limp": 0.75, "stagger": 0.75, "crawl": 0.35}
 _OF_USUAL = 0.7  # a walk has room where it can go so much of its usual length
 _LONGEST_SHARE = 0.2  # of the starts, those with most room, where none has enough
+_NEAR_MIDDLE_M = 0.3  # from where on a couch somebody sits down to lie in its middle
 _SEAT_WAYS = 4  # ways to seats for which a start of the walk is looked for
 _FALLS_OFF_STOOL = (
     0.5  # share of the falls tried from a stool: before a seat of the room there may be no floor for them
@@ -136,7 +138,8 @@ class CandidateSampler:
         """The scene's seats with sampled ways to sit on them, as `attempt` allows."""
         seats = self._usable_seats
         if lies_on_seat(self.plan):
-            return long_enough_to_lie_on(seats, self.floor.scene)
+            long = long_enough_to_lie_on(seats, self.floor.scene)
+            return centred_to_lie(long, self.body.height_m)
         if not self.attempt:
             return [usual_variation(seat, self.rng) for seat in seats]
         named = next((step.seat for step in self.plan.steps if step.seat), "")
@@ -151,8 +154,8 @@ class CandidateSampler:
         ways = approaches(self.floor, self.body)
         if not lies_on_seat(self.plan):
             return ways
-        long = {id(one) for one in long_enough_to_lie_on([way.sitting for way in ways], self.floor.scene)}
-        return [way for way in ways if id(way.sitting) in long]
+        middles_m = [one.seat_m for one in self._seats()]
+        return [way for way in ways if any(np.hypot(*(way.sitting.seat_m - at)) < _NEAR_MIDDLE_M for at in middles_m)]
 
     def _ways_of(self, seat: str) -> list[Approach]:
         """The ways to the seats of a word, in random order."""

@@ -16,6 +16,8 @@ LOWEST_M, HIGHEST_M = 0.3, 0.65  # seats that a person can use
 _COUCHES, _CHAIRS = ("couch", "sofa", "settee", "bench"), ("chair", "armchair", "stool", "seat")
 _COUCH_M = 0.8  # a seat so wide is a couch, a narrower one a chair
 LYING_M = 1.35  # a seat so wide can be lain on
+_LYING_OFF_CENTRE = 0.077  # of the height: a lying body reaches so much farther from its seat to the feet
+_SAME_FACING_COS, _SAME_HEIGHT_M = 0.95, 0.1  # of two places on one couch
 _BED_RADIUS_M = 1.2  # a seat so near to a bed's centre is on it
 _TURNS_RAD, _TURN_COST = (0.2, 0.4, 0.6), 0.4  # a sitter may face past the table
 _WIDEST_TURN_RAD = 1.4
@@ -57,6 +59,27 @@ def fitting(seats: list[Sitting], word: str, scene: Scene) -> list[Sitting]:
 def long_enough_to_lie_on(seats: list[Sitting], scene: Scene) -> list[Sitting]:
     """Couches and beds on which a person can lie, along the edge where one sits."""
     return [seat for seat in seats if seat.width_m >= LYING_M or _on_bed(seat, scene)]
+
+
+def centred_to_lie(seats: list[Sitting], height_m: float) -> list[Sitting]:
+    """The places on couches and beds from which somebody who lies down, head to the own left, is in the middle.
+
+    The places on one couch, which face alike and are about as high, tell where its middle is.
+    """
+    centred = []
+    for seat in seats:
+        aside = np.array([-np.sin(seat.facing_rad), np.cos(seat.facing_rad)])
+        along_m = [float((other.seat_m - seat.seat_m) @ aside) for other in seats if _on_same_couch(seat, other)]
+        shift_m = (float(np.mean(along_m)) + _LYING_OFF_CENTRE * height_m) * aside
+        centred.append(replace(seat, feet_m=seat.feet_m + shift_m, seat_m=seat.seat_m + shift_m))
+    return centred
+
+
+def _on_same_couch(one: Sitting, other: Sitting) -> bool:
+    """Whether two places to sit belong to one couch: they face alike, are as high and nearer than its width."""
+    faces_alike = np.cos(one.facing_rad - other.facing_rad) > _SAME_FACING_COS
+    is_near = float(np.hypot(*(one.seat_m - other.seat_m))) < max(one.width_m, other.width_m)
+    return bool(faces_alike and is_near and abs(one.height_m - other.height_m) < _SAME_HEIGHT_M)
 
 
 def _on_bed(seat: Sitting, scene: Scene) -> bool:

@@ -24,7 +24,7 @@ def test_a_side_lunge_goes_over_the_bent_leg_from_a_wide_stance_with_the_arms_ou
         pelvis = joints[:, 0, :2] @ left * sign
         deepest, start = np.argmin(joints[:, 0, 2]), 0
         assert 0.1 < pelvis[deepest] - pelvis[start] < 0.6
-        assert 0.08 < joints[start, 0, 2] - joints[deepest, 0, 2] < 0.4
+        assert 0.05 < joints[start, 0, 2] - joints[deepest, 0, 2] < 0.4
         feet = (joints[:, joint("left_ankle"), :2] - joints[:, joint("right_ankle"), :2]) @ left
         assert feet.min() > 0.45
         wrists = (joints[:, joint("left_wrist"), :2] - joints[:, joint("right_wrist"), :2]) @ left
@@ -54,3 +54,19 @@ def test_hands_are_held_up_all_through_a_squat():
     for side in ("left", "right"):
         hands = joints[:, joint(f"{side}_wrist"), 2] - joints[:, joint("spine3"), 2]
         assert hands.min() > -0.1
+
+
+def test_a_front_lunge_leaves_the_leg_behind_straight_and_is_repeated():
+    joints = _pose("does front lunges with the left leg", 0)
+    thigh, shank = joints[:, 2] - joints[:, 5], joints[:, 8] - joints[:, 5]  # of the right leg, from the knee
+    cosine = np.sum(thigh * shank, axis=1) / np.linalg.norm(thigh, axis=1) / np.linalg.norm(shank, axis=1)
+    deepest = np.argmin(joints[:, 0, 2])
+    assert np.degrees(np.arccos(cosine[deepest])) > 145
+
+
+def test_who_opens_a_door_steps_back_and_returns():
+    joints = _pose("opens the door", 0)
+    feet = joints[:, (7, 8), :2]
+    moved_m = np.linalg.norm(feet - feet[0], axis=2).max(axis=0)
+    assert moved_m.max() > 0.15 > moved_m.min()
+    assert np.linalg.norm(feet[-1] - feet[0], axis=1).max() < 0.03

@@ -4,7 +4,18 @@ import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
 from mmweaver.motion.animation.library.gestures import mouth_in_chest_m
-from mmweaver.motion.animation.library.movement_primitives import cycles, hand_to, one_side, place, repeats, sides, vary
+from mmweaver.motion.animation.library.movement_primitives import (
+    cycles,
+    hand_to,
+    lift_weight,
+    one_side,
+    place,
+    repeats,
+    shift_foot,
+    shift_pelvis,
+    sides,
+    vary,
+)
 from mmweaver.motion.animation.profiles import plateau, rise, wander
 from mmweaver.motion.animation.step_context import StepContext
 
@@ -184,7 +195,7 @@ def knocking(context: StepContext, controls: Controls) -> Controls:
 
 
 def opening_door(context: StepContext, controls: Controls) -> Controls:
-    """The hand reaches for a handle, turns it, and pulls the door past the side of the body."""
+    """The hand reaches for a handle, turns it, and pulls the door past the side of the body, one foot stepping back."""
     time_s, n, side = context.time_s, len(context.time_s), one_side(context)
     ((begin, lasts),) = repeats(context, 2.2, 1.6, 3.2)[:1]
     up = plateau(time_s, begin, begin + lasts, 0.28 * lasts, 0.26 * lasts)
@@ -194,7 +205,20 @@ def opening_door(context: StepContext, controls: Controls) -> Controls:
     hand_to(controls, context.body, side, target, up, (-0.5, 0.6, -0.8))
     turn = plateau(time_s, begin + 0.4 * lasts, begin + 1.05 * lasts, 0.35 * lasts, 0.3 * lasts)
     controls.spine_rad[:, 2] += (0.25 if side == LEFT else -0.25) * turn
+    if context.step.lower == "stand":
+        _step_out_of_the_way(context, controls, side, begin + 0.36 * lasts, begin + 1.02 * lasts)
     return controls
+
+
+def _step_out_of_the_way(context: StepContext, controls: Controls, side: int, begin_s: float, end_s: float) -> None:
+    """The foot on the door's side steps back, the weight goes with it, and both return."""
+    time_s, h, span = context.time_s, context.body.height_m, end_s - begin_s
+    gone = plateau(time_s, begin_s, end_s, 0.34 * span, 0.34 * span)
+    air = plateau(time_s, begin_s, begin_s + 0.34 * span, 0.17 * span, 0.17 * span)
+    air = air + plateau(time_s, end_s - 0.34 * span, end_s, 0.17 * span, 0.17 * span)
+    shift_foot(controls, side, -0.16 * h * gone, 0.01 * h * gone, 0.03 * h * air)
+    lift_weight(controls, side, air)
+    shift_pelvis(controls, -0.075 * h * gone, 0.0, -0.008 * h * gone)
 
 
 def playing_guitar(context: StepContext, controls: Controls) -> Controls:

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.movement_primitives import shift_pelvis
+from mmweaver.motion.animation.library.movement_primitives import OUTWARD, shift_foot, shift_pelvis
 from mmweaver.motion.animation.library.standing import STAND_STRETCH, home_feet, upright
 from mmweaver.motion.animation.profiles import plateau, rise, through, travel
 from mmweaver.motion.animation.root_path import RootPath
@@ -241,16 +241,23 @@ def _spread_feet(controls: Controls, context: StepContext, spread: Float[Array, 
 
 
 def squatting(context: StepContext) -> Controls:
-    """Down until the knees are flexed by about 100 degrees, arms forward for balance, and up again."""
+    """On feet wider than the hips, down until the knees are flexed by about 115 degrees, and up again.
+
+    Depth, stance and pace are near those of the first subject of MARS; arms go forward for balance.
+    """
     controls, time_s, rng, body = upright(context), context.time_s, context.rng, context.body
-    period = 1 / context.tempo(0.36, 0.5, 0.65)
+    period = 1 / context.tempo(0.3, 0.38, 0.6)
     count = context.step.count or max(1, round(context.duration_s / period))
-    period = float(np.clip(context.duration_s / count, 1.05, 3.2))
+    period = float(np.clip(context.duration_s / count, 1.05, 3.6))
+    wider = float(rng.uniform(0.04, 0.095)) * body.height_m  # how much farther out each foot stands
+    for foot in (LEFT, RIGHT):
+        shift_foot(controls, foot, 0.0, wider, 0.0)
+        controls.foot_rad[:, foot, 0] += OUTWARD[foot] * 0.2
     down = np.zeros_like(time_s)
     for k in range(count):
         begin = context.start_s + k * period
         down += plateau(time_s, begin, begin + 0.98 * period, 0.45 * period, 0.45 * period)
-    knee = np.radians(rng.uniform(94, 112))
+    knee = np.radians(rng.uniform(120, 136))
     back = float(rng.uniform(0.085, 0.125)) * body.height_m
     lean = float(rng.uniform(0.4, 1.3))
     leg = np.sqrt(body.thigh_m**2 + body.shank_m**2 + 2 * body.thigh_m * body.shank_m * np.cos(knee))
@@ -264,7 +271,7 @@ def squatting(context: StepContext) -> Controls:
     controls.pelvis_rad[:, 1] += 0.42 * lean * down
     controls.spine_rad[:, 1] += 0.3 * lean * down
     controls.head_rad[:, 0] -= 0.45 * down
-    controls.knee_out_rad[:] += (0.2 * down)[:, None]
+    controls.knee_out_rad[:] += (0.3 * down)[:, None]
     lift_rad = float(rng.choice([rng.uniform(0.0, 0.5), rng.uniform(1.2, 1.9)]))  # arms hanging, or raised for balance
     controls.arm_rad[:, :, 0] += (lift_rad * down)[:, None]
     controls.arm_rad[:, :, 1] -= (0.1 * down)[:, None]

@@ -139,11 +139,18 @@ def hopping_on_one_leg(context: StepContext) -> Controls:
 
 
 def lunging(context: StepContext) -> Controls:
-    """A long step ahead with one leg, down until the thigh is nearly level, and back."""
+    """A long step ahead with one leg, down until the thigh is nearly level, and back.
+
+    A front lunge leaves the leg behind straight and goes less deep, again and again; as the first subject of MARS does.
+    """
     controls, time_s, h = upright(context), context.time_s, context.body.height_m
-    side = leg_side(context)
-    long = vary(context, 0.38, 0.06)
-    for k, (begin, lasts) in enumerate(repeats(context, 2.2, 1.6, 3.2)):
+    side, is_front = leg_side(context), context.step.style == "frontlunge"
+    long, deep = vary(context, 0.38, 0.06), 0.165
+    ahead, heel_rad = 0.5, 0.75
+    if is_front:
+        long, deep, ahead, heel_rad = vary(context, 0.36, 0.06), vary(context, 0.068, 0.1), 0.68, 0.1
+        context = _repeated(context, 3.0)
+    for k, (begin, lasts) in enumerate(repeats(context, 3.0 if is_front else 2.2, 1.6, 3.6)):
         acting = side if k % 2 == 0 or context.step.foot else 1 - side
         gone = plateau(time_s, begin, begin + lasts, 0.3 * lasts, 0.3 * lasts)
         air = plateau(time_s, begin, begin + 0.3 * lasts, 0.14 * lasts, 0.14 * lasts)
@@ -151,10 +158,16 @@ def lunging(context: StepContext) -> Controls:
         down = plateau(time_s, begin + 0.12 * lasts, begin + 0.88 * lasts, 0.36 * lasts, 0.36 * lasts)
         shift_foot(controls, acting, long * h * gone, 0.0, 0.05 * h * air)
         lift_weight(controls, acting, air)
-        shift_pelvis(controls, 0.5 * long * h * gone, 0.0, -0.165 * h * down)
-        controls.foot_rad[:, 1 - acting, 1] += 0.75 * down
+        shift_pelvis(controls, ahead * long * h * gone, 0.0, -deep * h * down)
+        controls.foot_rad[:, 1 - acting, 1] += heel_rad * down
         controls.spine_rad[:, 1] += 0.06 * down
     return controls
+
+
+def _repeated(context: StepContext, each_s: float) -> StepContext:
+    """The step with as many repetitions as its time allows, where the sentence names no number."""
+    count = context.step.count or max(1, round(context.duration_s / each_s))
+    return replace(context, step=replace(context.step, count=count))
 
 
 def crouching(context: StepContext) -> Controls:

@@ -1,7 +1,7 @@
 """Exercises of rehabilitation as people do them: side lunges, limb extensions, and how arms are held meanwhile.
 
-The exercises are those of MARS (An and Ogras, 2021). How far the joints go was chosen by hand; it has
-not been compared with the recordings.
+The exercises are those of MARS (An and Ogras, 2021). How far the joints go was chosen by hand, that of side lunges,
+squats and front lunges after a look at its first subject (studies/motion/mars_exercises.py).
 """
 
 import numpy as np
@@ -44,16 +44,16 @@ def side_lunging(context: StepContext) -> Controls:
     """From a wide stance the weight goes over one bent knee; the arms are held out to the sides."""
     controls, h = upright(context), context.body.height_m
     side, down = leg_side(context), _there_and_back(context, 3.0, 1.4, 5.0)
-    half = vary(context, 0.16, 0.12) * h  # how much wider each foot stands
+    half = vary(context, 0.1, 0.12) * h  # how much wider each foot stands
     for foot in (LEFT, RIGHT):
         shift_foot(controls, foot, 0.0, half, 0.0)
         controls.foot_rad[:, foot, 0] += OUTWARD[foot] * 0.25
-    aside = OUTWARD[side] * vary(context, 0.14, 0.15) * h * down
-    shift_pelvis(controls, -0.04 * h * down, aside, -(0.035 + vary(context, 0.085, 0.2) * down) * h)
+    aside = OUTWARD[side] * vary(context, 0.125, 0.1) * h * down
+    shift_pelvis(controls, -0.02 * h * down, aside, -(0.01 + vary(context, 0.056, 0.1) * down) * h)
     controls.spine_rad[:, 0] -= OUTWARD[side] * 0.06 * down
     controls.spine_rad[:, 1] += vary(context, 0.12, 0.3) * down
     controls.knee_out_rad[:] += 0.25
-    controls.knee_room[:] = np.maximum(controls.knee_room, 0.5)
+    controls.knee_room[:] = np.maximum(controls.knee_room, 0.2)
     _arms_out(context, controls)
     return controls
 
@@ -100,7 +100,7 @@ def _arm_aside(context: StepContext, controls: Controls, side: int, up: PerTime,
 
 def hands_up(context: StepContext, controls: Controls) -> Controls:
     """Both hands next to or in front of the face, elbows bent and out, as many hold them in squats and lunges."""
-    flexion, abduction = float(context.rng.uniform(0.3, 0.9)), float(context.rng.uniform(0.5, 1.0))
+    flexion, abduction = float(context.rng.uniform(0.6, 1.2)), float(context.rng.uniform(0.5, 1.0))
     bend = float(context.rng.uniform(1.9, 2.4))
     for arm in (LEFT, RIGHT):
         angles = np.tile([flexion, abduction, -0.3, bend], (len(context.time_s), 1))
