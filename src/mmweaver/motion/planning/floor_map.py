@@ -240,11 +240,18 @@ class FloorMap:
         return np.where(is_free.all(axis=1), _FARTHEST_M, steps[np.maximum(np.argmin(is_free, axis=1) - 1, 0)])
 
     def longest_free_m(self, wanted_m: float) -> float:
-        """The longest straight path in metres, at most `wanted_m`, from some places in eight directions."""
-        cells = self.walkable_m
-        some = cells[:: max(1, len(cells) // 40)]
-        angles = np.arange(8) * np.pi / 4
-        return max((float(self.free_lengths_m(place, angles, wanted_m).max()) for place in some), default=0.0)
+        """The longest straight path in metres, at most `wanted_m`, from some places in eight directions; kept."""
+        if wanted_m not in self._longest_m:
+            cells = self.walkable_m
+            some = cells[:: max(1, len(cells) // 40)]
+            angles = np.arange(8) * np.pi / 4
+            free_m = (float(self.free_lengths_m(place, angles, wanted_m).max()) for place in some)
+            self._longest_m[wanted_m] = max(free_m, default=0.0)
+        return self._longest_m[wanted_m]
+
+    @cached_property
+    def _longest_m(self) -> dict[float, float]:
+        return {}
 
     def nearest_walkable_m(self, position_m: Float[Array, "2"]) -> Float[Array, "2"] | None:
         """Centre (x, y) of the walkable cell nearest to a position, in metres; None where none is walkable."""
