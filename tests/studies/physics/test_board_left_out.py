@@ -1,0 +1,44 @@
+"""The classifier of boards left out, on made units; and what rooms count as within the recorded range."""
+
+import numpy as np
+
+from mmweaver.comparison.compare_signals import FEATURES
+from studies.physics.board_left_out import RANGES, accuracy, judged, room_rows, walkers
+from tests.rooms import back_wall, floor, scene_of
+
+BOARDS = ("one", "two", "three")
+
+
+def units(offset: float, seed: int) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(seed)
+    return {name: rng.normal(offset, 1.0, (12, len(FEATURES))) for name in BOARDS}
+
+
+def test_what_differs_is_found_and_what_is_alike_is_not():
+    apart = accuracy(judged(units(0.0, 0), units(5.0, 1), "two"))
+    alike = accuracy(judged(units(0.0, 0), units(0.0, 1), "two"))
+    assert apart["value"] > 0.95
+    assert alike["value"] < 0.8
+    low, high = alike["interval_95"]
+    assert low <= alike["value"] <= high
+
+
+def test_rooms_within_the_recorded_range_are_counted():
+    names = [feature.name for feature in FEATURES]
+    column = names.index("antenna_spread")
+    rooms = {str(room): np.full((4, len(FEATURES)), np.nan) for room in range(3)}
+    for value, room in zip((1.0, 3.0, 4.0), rooms.values(), strict=True):
+        room[:, column] = value
+    found = room_rows(rooms)["antenna_spread"]
+    assert found["within"] == 2
+    assert found["value"] == 3.0
+    assert set(RANGES) <= set(names)
+
+
+def test_two_people_walk_through_the_recorded_places():
+    scene = scene_of((floor(), back_wall(5.2)))
+    for pose, degrees in zip(walkers(scene, 0), (-15.0, 8.0), strict=True):
+        at = np.array([np.interp(0.0, pose.time_s, pose.joints_m[:, 0, axis]) for axis in range(2)])
+        assert abs(np.linalg.norm(at) - 2.93) < 0.05
+        assert abs(np.degrees(np.arctan2(at[0], at[1])) - degrees) < 1.0
+        assert abs(float(pose.joints_m[..., 2].min()) - scene.floor_z_m) < 1e-5
