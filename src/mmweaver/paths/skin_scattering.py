@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 # Skin returns -4.6 dB (permittivity 6.6 - 9.1j at 77 GHz); cloth and what comes back in the other polarisation take
-# some 4 dB more. Averaged over aspects this gives -5 dBsm, the upper end of what is published for people at 77 GHz.
+# some 4 dB more. Averaged over aspects this gives -7.5 dBsm, the lower end of what is published for people at 77 GHz.
 REFLECTIVITY = 0.14
 SLOPE = 0.10  # rms tilt of the surface along one direction, as a tangent: 6 degrees
 ALBEDO = 0.01  # of the diffuse part
