@@ -45,7 +45,7 @@ def draw(found: Curves, out: Path) -> None:
         axis.minorticks_off()
     figure.supxlabel("KB")
     figure.supylabel("error in active cells, dB")
-    figure.savefig(out, dpi=90)
+    figure.savefig(out, dpi=72)
 
 
 if __name__ == "__main__":
