@@ -72,6 +72,10 @@ CODEC_CUTS_SECONDS = PivotTable(
     sources=("codec_cuts/mmw", "codec_cuts/klt_context"), rows=(("signal", "{dataset.name}"),),
     across="{record.method}, {size.bytes_allowed:,} B", cell_template="{seconds.encode_cpu:.1f}",
 )  # fmt: skip
+CODEC_LIMITS = PivotTable(
+    sources=("codec_limits/*",), rows=(("signal", "{dataset.name}"), ("bytes", "{size.bytes_allowed:,}")),
+    across="{record.method}", cell_template="{metrics.nmse_active_db:number} / {metrics.nmse_db:number}",
+)  # fmt: skip
 LOSSLESS = RowTable(
     sources=("lossless_codecs/*",),
     columns=(("recording", "{dataset.name}"), ("codec", "{record.method}"), ("bytes", "{size.bytes:,}"),
@@ -319,6 +323,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "rendered_noise": RENDERED_NOISE.render, "scatterer_tracks": TRACKS.render,
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
     "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "lossless_codecs": LOSSLESS.render,
+    "codec_limits": CODEC_LIMITS.render,
     "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,

@@ -72,9 +72,7 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     size.add_argument(
         "--keep-noise", action="store_true", help="spend as much on cells of noise as on cells that hold signal"
     )
-    size.add_argument(
-        "--effort", choices=("full", "fast"), default="full", help="fast: no fit of scatterers, at most 0.05 s a frame"
-    )
+    size.add_argument("--effort", choices=("full", "fast"), default="full", help="fast: without the fit of scatterers")
     output = parser.add_argument_group("output")
     output.add_argument("-o", "--out", type=Path, metavar="FILE", help="the .mmw or .mmwl file to write")
     output.add_argument(
