@@ -250,7 +250,7 @@ def write_video(file: Path, pictures: Iterator[np.ndarray]) -> None:
     begun = time.monotonic()
     with av.open(str(file), "w") as container:
         stream: Any = container.add_stream(
-            "libx264", rate=Fraction(FRAME_RATE_HZ), options={"crf": "27", "preset": "slow"}
+            "libx264", rate=Fraction(FRAME_RATE_HZ), options={"crf": "32", "preset": "slow"}
         )
         stream.width, stream.height, stream.pix_fmt = SIZE["width"], SIZE["height"], "yuv420p"
         count = 0
