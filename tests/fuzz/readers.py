@@ -42,6 +42,7 @@ from tests.formats.test_mmwave_studio import SETUP
 from tests.fuzz import mutators as m
 from tests.fuzz.harness import Reader, wrong_numbers
 from tests.fuzz.log_readers import log_readers
+from tests.fuzz.mesh_readers import mesh_readers
 from tests.fuzz.set_readers import set_readers
 
 WIDTH, HEIGHT = 64, 48
@@ -65,6 +66,7 @@ def make_readers(folder: Path) -> list[Reader]:
         *_others(folder),
         *set_readers(folder),
         *log_readers(folder, config),
+        *mesh_readers(folder),
     ]
 
 

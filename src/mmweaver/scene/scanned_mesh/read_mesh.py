@@ -1,5 +1,6 @@
 """Reads a mesh (GLB, PLY, OBJ) by trimesh: triangles with a colour and a name each."""
 
+import logging
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -43,6 +44,7 @@ def read_mesh(path: Path) -> ColouredMesh:
     if suffix not in SUFFIXES:
         raise InputError(f"{path} is no mesh that is read; give one of {', '.join(SUFFIXES)}")
     content = read_bytes(path, max_bytes=MAX_BYTES)
+    logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # what is wrong becomes an InputError, or is left out
     with foreign_errors(path, "no mesh ({reason}); save it as GLB, PLY or OBJ with triangles"):
         loaded: Any = trimesh.load_scene(
             BytesIO(content), file_type=suffix[1:], resolver=_beside(path) if suffix == ".obj" else None, process=False
@@ -51,6 +53,8 @@ def read_mesh(path: Path) -> ColouredMesh:
         if sum(len(part.faces) for part in parts) > MAX_FACES:
             raise InputError(f"{path} has more than {MAX_FACES:,} triangles; simplify the mesh")
         read = [_part(part) for part in parts]
+        if any(vertices.shape[1:] != (3,) or faces.shape[1:] != (3,) for vertices, faces, *_ in read):
+            raise ValueError("its corners are no places, or its faces no triangles")
     if not read:
         raise InputError(f"{path} holds no triangles; a cloud of points is no mesh")
     return _joined(path, read)
