@@ -84,7 +84,7 @@ def test_unlabelled_recordings_and_a_background_are_used(task_file: Path, tmp_pa
     (tmp_path / "some").rename(tmp_path / "unlabelled")
     write_recordings(tmp_path, [replace(drawn_sequences(settings, 1)[0], label="place", name="empty")])
     task_file.write_text(TASK.format(more='unlabelled = "unlabelled"\nbackground = "place/empty.npz"'))
-    model = train_recogniser(task_file, tmp_path / "model", OPTIONS)
+    model = train_recogniser(task_file, tmp_path / "model", replace(OPTIONS, matching=True))
     assert model.matching is not None
     assert model.meta["unlabelled_windows"] == 32
     assert model.meta["self_training"]["used"]

@@ -27,7 +27,8 @@ from mmweaver.recognition.open_room import open_room
 from mmweaver.recognition.task_file import Mount
 from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
 
-LEAD_S = 0.75  # a recording does not begin at rest
+LEAD_S, LATEST_S = 0.75, 6.0  # a sequence is any part of what a person does, but its beginning
+NOISE_DB = (-3.0, 8.0)  # of the noise figure; copies of windows have less sensitive radars
 AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
 HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
 REST_S = (0.2, 0.8)  # before and after a single performance
@@ -70,6 +71,7 @@ def task_variation(mount: Mount) -> Variation:
     known = Variation(
         distance_m=(near, far), near_m=(max(near - 0.4, 0.5), near + 0.3),
         far_m=(max(far - 0.5, near + 0.6), far + 0.8), radar_height_m=(0.7, 1.6), wall_m=(far + 0.6, far + 3.0),
+        noise_db=NOISE_DB,
     )  # fmt: skip
     if mount.height_m is not None:
         known = replace(known, radar_height_m=_around(mount.height_m, HEIGHT_SPREAD_M))
@@ -118,7 +120,7 @@ def perform(
     tempo_own, amplitude_own = rng.normal(size=2).clip(-2, 2)
     tempo = who.tempo * (prior.on_way if moves else prior.on_spot) * np.exp(prior.tempo_of_performance * tempo_own)
     amplitude = who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
-    lead_s = 0.0 if once else LEAD_S + float(rng.uniform(0.0, 2.0))
+    lead_s = 0.0 if once else LEAD_S + float(rng.uniform(0.0, LATEST_S))
     needed_s = natural_s(plan) if once else lead_s + (seconds + 0.3) * tempo * 1.1
     scheduled = schedule(plan if once else repeated(plan, needed_s), needed_s)
     scene = open_room(floor_z_m=-now.radar_height_m, wall_y_m=None)

@@ -22,6 +22,7 @@ from mmweaver.recognition.body_features import body_features
 from mmweaver.recognition.feature_matching import QUANTILES, FeatureMatching, outside_share
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recorded_columns import RecordedColumns
+from mmweaver.recognition.side_features import side_features
 from mmweaver.recognition.task_file import RecordingSettings
 from mmweaver.recognition.task_recordings import windows_of
 from mmweaver.recognition.timeline_features import timeline_features
@@ -117,14 +118,19 @@ def recognition_features(
 
 def feature_names(row: dict[str, float]) -> tuple[str, ...]:
     """The features that a simulation can predict: heights count from the body, unevenness depends on the beam."""
-    old = [name for name in row if not name.startswith(("order_", "reach_", "fast_", "turns"))]
+    old = [name for name in row if not name.startswith(("order_", "reach_", "fast_", "turns", "side_"))]
     kept = {name for name in old if not UNPREDICTABLE & set(name.split("_"))} | (set(row) - set(old))
     return tuple(name for name in row if name in kept)
 
 
 def window_row(window: PointRecording) -> dict[str, float]:
     """All features of a window by name."""
-    return {**window_features(window), **body_features(window, STILL_MPS), **timeline_features(window)}
+    return {
+        **window_features(window),
+        **body_features(window, STILL_MPS),
+        **timeline_features(window),
+        **side_features(window),
+    }
 
 
 # files --------------------------------------------------------------------------------------------------------------

@@ -102,14 +102,16 @@ def samples_of(recording: PointRecording, gap_frames: int | None) -> list[PointR
     return [recording.part(int(part[0]), int(part[-1] - part[0]) + 1) for part in parts]
 
 
-def windows_of(recording: PointRecording, settings: RecordingSettings) -> list[PointRecording]:
+def windows_of(
+    recording: PointRecording, settings: RecordingSettings, step_s: float | None = None
+) -> list[PointRecording]:
     """Consecutive windows of each sample; one that is shorter than a window is a window with empty frames at its end.
 
-    Where recordings are never cut, what is left over at the end is dropped.
+    Where recordings are never cut, what is left over at the end is dropped. `step_s`: every so often a window begins.
     """
     windows: list[PointRecording] = []
     for sample in samples_of(recording, settings.gap_frames):
-        whole = sample.windows(settings.window_s)
+        whole = sample.windows(settings.window_s, step_s)
         if not whole and settings.has_single_performances:
             whole = [sample.part(0, settings.window_frames)]
         windows += whole

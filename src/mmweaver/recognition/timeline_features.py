@@ -21,7 +21,7 @@ BODY_M = 1.2  # points farther than this from the body's median are another echo
 
 def timeline_features(window: PointRecording) -> Row:
     """Named features of one window; nan means too few points."""
-    cloud = _of_the_body(window.cloud)
+    cloud = of_the_body(window.cloud)
     time_s = cloud.frame / window.frame_rate_hz
     velocity = cloud.radial_velocity_mps
     range_m = np.sqrt(cloud.x_m**2 + cloud.y_m**2 + cloud.z_m**2)
@@ -49,7 +49,7 @@ def timeline_features(window: PointRecording) -> Row:
     return row
 
 
-def _of_the_body(cloud: PointCloud) -> PointCloud:
+def of_the_body(cloud: PointCloud) -> PointCloud:
     """Moving points near their median."""
     moving = cloud.select(np.abs(cloud.radial_velocity_mps) > STILL_MPS)
     if not len(moving.frame):

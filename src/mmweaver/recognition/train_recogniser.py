@@ -27,6 +27,7 @@ from mmweaver.recognition.recogniser import (
     window_row,
 )
 from mmweaver.recognition.scoring import balanced_accuracy
+from mmweaver.recognition.sensitivity import sensitivity_weights
 from mmweaver.recognition.task_file import RecognitionTask, read_task
 from mmweaver.recognition.task_recordings import read_task_recording, read_task_recordings, windows_of
 from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
@@ -35,6 +36,8 @@ from mmweaver.recognition.window_augmentation import WindowAugmentation, augment
 SEQUENCES, QUICK_SEQUENCES = 40, 8  # people an activity
 SEQUENCE_FOLDER = "sequences"
 HELD_OUT = 4  # one person in so many is held out to test on generated people
+SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
+OVERLAP = 3  # windows of a generated sequence begin every so many parts of a window
 INSIDE_SHARE = 0.99  # of generated windows
 Listener = Callable[[str, int, int], object]
 
@@ -46,11 +49,12 @@ class TrainingOptions:
     sequences: int = SEQUENCES
     seed: int = 0
     prior: PerformancePrior = PerformancePrior()  # noqa: RUF009 (frozen)
-    copies: int = 3  # disturbed ones of each window
+    copies: int = 4  # disturbed ones of each window
     trees: int = 300
     leaf_size: int = 3
-    feature_share: float = 0.25
-    matching: bool = True  # of features, where there are unlabelled recordings
+    feature_share: float = 0.15
+    sensitivity: bool = True  # of the board, where there are unlabelled recordings
+    matching: bool = False  # of features to the generated ones, by quantiles of unlabelled recordings
     self_training: bool = True
 
     def __post_init__(self) -> None:
@@ -69,11 +73,13 @@ class GeneratedWindows:
     person: Int[np.ndarray, " window"]
     is_copy: np.ndarray  # (window,) bool
     names: tuple[str, ...]
+    importance: Float[np.ndarray, " window"] | None = None  # by the sensitivity of a board; None: all the same
 
     @property
     def weights(self) -> Float[np.ndarray, " window"]:
         """Every label weighs the same."""
-        return 1.0 / np.bincount(self.label)[self.label] * len(self.label)
+        own = np.ones(len(self.label)) if self.importance is None else self.importance
+        return own / np.bincount(self.label, own)[self.label] * len(self.label)
 
 
 def train_recogniser(
@@ -135,9 +141,10 @@ def generated_windows(
     how = WindowAugmentation(
         cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
         most_objects=0 if task.firmware.static_removal or background else WindowAugmentation().most_objects,
-        reversed_share=0.0, reflected_share=0.0,
+        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
     )  # fmt: skip
-    windows = [window for sequence in sequences for window in windows_of(sequence, task.recordings)]
+    step_s = task.recordings.window_s / OVERLAP
+    windows = [window for sequence in sequences for window in windows_of(sequence, task.recordings, step_s)]
     found = {window.label for window in windows}
     if missing := [label for label in task.recordings.labels if label not in found]:
         raise InputError(
@@ -185,16 +192,18 @@ def fitted(
 ) -> Recogniser:
     """Trees on all generated windows, adapted to unlabelled ones, with the accuracy on generated people held out."""
     own = ~made.is_copy
-    generated = quantiles_of(made.features[own])
-    shares = outside_share(made.features[own], generated)
+    generated = quantiles_of(made.features)
+    shares = outside_share(made.features, generated)
     meta: dict[str, Any] = {
         "generated_windows": int(own.sum()), "with_disturbed_copies": len(made.label),
         "generated_on_generated": generated_accuracy(made, options),
     }  # fmt: skip
+    features = recognition_features(unlabelled, made.names) if unlabelled else None
+    if features is not None and options.sensitivity:
+        made = replace(made, importance=sensitivity_weights(made.features, features, made.names))
     trees = trees_of(made, options)
     matching = None
-    if unlabelled:
-        features = recognition_features(unlabelled, made.names)
+    if features is not None:
         meta["unlabelled_windows"] = len(unlabelled)
         if options.matching:
             matching = FeatureMatching(recorded=quantiles_of(features), generated=generated)
@@ -226,8 +235,8 @@ def generated_accuracy(made: GeneratedWindows, options: TrainingOptions) -> dict
     held = made.person % HELD_OUT == HELD_OUT - 1
     if held.all() or not held.any():
         held = made.person == made.person.max()
-    votes = trees_of(made, options, which=~held, num_trees=100).probabilities(made.features[held & ~made.is_copy])
-    truth = made.label[held & ~made.is_copy]
+    votes = trees_of(made, options, which=~held, num_trees=100).probabilities(made.features[held])
+    truth = made.label[held]
     return {
         "balanced_accuracy": round(balanced_accuracy(truth, votes.argmax(axis=1)), 4),
         "windows": len(truth), "chance": round(1 / (int(made.label.max()) + 1), 4),

@@ -20,7 +20,8 @@ class WindowAugmentation:
     Moving and static points are kept with a probability between the given minimum and 1, whole frames are dropped, and
     some points of the slowest velocity are reported as static. Up to `most_objects` static objects add up to three
     neighbouring range cells each, detected always or intermittently; `false_points` is the largest mean number of
-    moving false alarms. `reversed_share` of the copies are reversed in time (with the sign of velocity),
+    moving false alarms. Points less than up to `snr_cut_db` above the weakest are dropped, as a less sensitive radar
+    drops them. `reversed_share` of the copies are reversed in time (with the sign of velocity),
     `reflected_share` are reflected left-right: by default half, 0 where order or sides matter.
     """
 
@@ -33,6 +34,7 @@ class WindowAugmentation:
     tilt_rad: float = 0.05
     cell_m: float = 0.0436  # range and velocity steps of the radar
     velocity_step_mps: float = 0.615
+    snr_cut_db: float = 0.0
     reversed_share: float = 0.5
     reflected_share: float = 0.5
 
@@ -47,6 +49,10 @@ def augmented(
     how = how or WindowAugmentation()
     cloud, frames = window.cloud, window.num_frames
     columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
+    if how.snr_cut_db and len(cloud.frame):
+        weakest_db = float(np.nanmin(cloud.snr_db)) + rng.uniform(0, how.snr_cut_db)
+        cloud = cloud.select(~(cloud.snr_db < weakest_db))
+        columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
     body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
     body = _reversed(body, frames, how, rng)
     parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng)]
