@@ -288,6 +288,16 @@ LIMBS = PivotTable(
            for name, head in (("faintest third", "faintest third"), ("middle third", "middle"),
                               ("brightest third", "brightest"))},
 )  # fmt: skip
+BLIND = RowTable(
+    sources=("blind_recognition/*",),
+    columns=(
+        ("task", "{dataset.name}"), ("role", "{role}"), ("recordings", "{how}"),
+        ("people generated", "{record.config.options.sequences}"), ("windows", "{metrics.window:interval.2}"),
+        ("three windows", "{metrics.three_windows:interval.2}"), ("a recording", "{metrics.recording:interval.2}"),
+        ("chance", "{metrics.window.baseline.chance:.2f}"), ("generated people", "{metrics.generated:.2f}"),
+        ("windows outside", "{distance.windows_outside:.2f}"),
+    ),
+)  # fmt: skip
 
 FAULTS = RowTable(
     sources=("injected_faults/*",),
@@ -334,7 +344,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
-    "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
+    "blind_recognition": BLIND.render, "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
     "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip

@@ -49,7 +49,7 @@ def augmented(
     how = how or WindowAugmentation()
     cloud, frames = window.cloud, window.num_frames
     columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
-    if how.snr_cut_db and len(cloud.frame):
+    if how.snr_cut_db and np.isfinite(cloud.snr_db).any():
         weakest_db = float(np.nanmin(cloud.snr_db)) + rng.uniform(0, how.snr_cut_db)
         cloud = cloud.select(~(cloud.snr_db < weakest_db))
         columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
