@@ -16,6 +16,7 @@ from mmweaver.recognition.task_file import RecordingSettings
 
 SUFFIXES = (".npz", ".dat", ".csv", ".txt", ".bin")
 MOST_FRAMES = 10_000_000
+BREAK_FRAMES = 100  # between the takes of one file
 
 
 def read_task_recordings(
@@ -79,8 +80,7 @@ def _from_columns(file: Path, columns: RecordedColumns) -> tuple[PointCloud, int
     held = read_npz(file, only=("frame", "pts", "num_frames"))
     frame = held.numbers("frame", ("point",), low=0, high=2**31).astype(int)
     pts = held.numbers("pts", ("point", "column"), low=-1e9, high=1e9).astype(float)
-    if (np.diff(frame) < 0).any():
-        raise InputError(f"{file} has frames out of order; leave it out")
+    frame = _takes_in_turn(frame)
     if "num_frames" in held:  # then frames count from 0
         frames = int(held.numbers("num_frames", (), low=_num_frames(frame), high=MOST_FRAMES))
         return columns.cloud(frame, pts, str(file)), frames
@@ -88,6 +88,13 @@ def _from_columns(file: Path, columns: RecordedColumns) -> tuple[PointCloud, int
     if _num_frames(frame) > MOST_FRAMES:
         raise InputError(f"{file} has frame numbers up to {frame[-1]}; leave it out")
     return columns.cloud(frame, pts, str(file)), _num_frames(frame)
+
+
+def _takes_in_turn(frame: np.ndarray) -> np.ndarray:
+    """Frame numbers (point,) that never fall: where a log begins to count again, another take follows after a break."""
+    falls = np.diff(frame, prepend=frame[:1]) < 0
+    before = np.concatenate([[0], frame[:-1]])
+    return frame + np.cumsum(np.where(falls, before - frame + BREAK_FRAMES, 0))
 
 
 # samples and windows ------------------------------------------------------------------------------------------------
