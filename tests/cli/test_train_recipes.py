@@ -15,8 +15,10 @@ from safetensors.torch import load_file
 
 from mmweaver.cli.main import main
 from mmweaver.core.presets import AWR1843
-from mmweaver.models.activity_network import ActivityNetwork
+from mmweaver.datasets.activity_store import read_activity_set
+from mmweaver.models.activity_network import ActivityNetwork, label_names_of, load_activity
 from mmweaver.models.weights import load_into, shipped_weights
+from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
 pytest.importorskip("zarr")
 
@@ -30,6 +32,22 @@ def test_activity_writes_weights_and_their_page(tiny_signals: Path, tmp_path: Pa
     assert (tmp_path / "a" / "README.md").is_file()
     assert list((tmp_path / "a" / "pictures").glob("*.png"))
     assert load_into(ActivityNetwork(AWR1843), Path(summary["weights"]), recipe="activity").steps == 2
+
+
+def test_a_set_of_ones_own_room_is_trained_on(
+    activity_set: Path,  # noqa: F811
+    tmp_path: Path, capsys: pytest.CaptureFixture[str],
+):  # fmt: skip
+    few = ["--data", str(activity_set), "--steps", "2", "--batch", "2", "--json"]
+    assert main(["train", "activity", "--out", str(tmp_path / "a"), *few]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert set(summary["scores"]["this network"]) == {"accuracy", "test_accuracy"}
+    weights = Path(summary["weights"])
+    assert label_names_of(weights) == ("waving", "walking", "squatting")
+    network = load_activity(weights, AWR1843)
+    stored = read_activity_set(activity_set)
+    assert network.of_cubes(torch.from_numpy(stored.cube(0).values)[None]).shape == (1, 3)
+    assert "held out" in (tmp_path / "a" / "README.md").read_text()
 
 
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

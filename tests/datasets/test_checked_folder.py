@@ -37,7 +37,7 @@ def test_a_damaged_room_is_made_anew(tiny_geometry: Path, tmp_path: Path):
         read_rooms(data)
     shutil.rmtree(data / "dining_room_000" / "geometry" / "room" / "face" / "c")
     (data / "plan.json").write_text((data / "plan.json").read_text().replace('"seed": 0', '"seed": 1'))
-    (data / "range_m" / "zarr.json").unlink()
+    (data / "range" / "zarr.json").unlink()
     reports = generate_dataset(data, replace(TINY_PLAN, geometry_only=True), AWR1843, repair=True)
     assert sorted(report.name for report in reports) == ["dining_room_000", "office_000"]
     assert read_all(data) == before

@@ -37,9 +37,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_it_reads_with_plain_zarr_and_its_axes_have_units(folder: Path):
     root = zarr.open_group(folder, mode="r")
-    assert root["range_m"].attrs["units"] == "m"
+    assert root["range"].attrs["units"] == "m"
     iq = root["office_000"]["iq"]
-    assert iq.metadata.dimension_names == ("sequence", "frame", "range", "doppler", "antenna", "part")
+    assert iq.metadata.dimension_names == ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
     assert iq.dtype == np.float16
     assert iq.shape[1:] == (4, 64, 32, 12, 2)
     assert json.loads((folder / PLAN_FILE).read_text())["seed"] == 0
@@ -124,7 +124,7 @@ def test_leftovers_of_a_zombie_worker_are_removed(tmp_path: Path):
 
 def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path):
     """Whatever part of the root is there, an empty folder included, the same command completes it to the bit."""
-    root = [PLAN_FILE, "zarr.json", "SHA256SUMS", "range_m"]
+    root = [PLAN_FILE, "zarr.json", "SHA256SUMS", "range"]
     for count in range(len(root) + 1):
         part = tmp_path / f"part_{count}"
         part.mkdir()
@@ -133,7 +133,7 @@ def test_a_set_begun_and_killed_at_once_is_resumed(folder: Path, tmp_path: Path)
             copy(folder / name, part / name)
         if count == 4:
             (part / "SHA256SUMS").unlink()
-            shutil.rmtree(part / "range_m" / "c")
+            shutil.rmtree(part / "range" / "c")
         if count == 3:  # a list of checksums is written last: what it lists was there, and is damaged
             with pytest.raises(InputError, match="--repair"):
                 open_dataset(part, PLAN, AWR1843)

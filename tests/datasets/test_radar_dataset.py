@@ -1,5 +1,6 @@
 """The data set for PyTorch: keys, shapes, splits, workers, and a network that learns from it."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -87,9 +88,37 @@ def test_unknown_names_are_refused(activity_set: Path, wrong: dict):  # noqa: F8
         RadarDataset(activity_set, **wrong)
 
 
+def test_a_data_set_of_rooms_has_the_same_reader(tiny_signals: Path):
+    data = RadarDataset(tiny_signals, ("rd", "points", "pose", "label"))
+    assert len(data) > 1
+    item = data[1]
+    assert item["rd"].shape[1:] == (64, 32)
+    assert item["pose"].shape[1:] == (22, 3)
+    assert len(item["points"])
+    assert data.label_names[item["label"]] == data.set.columns["label_name"][1]
+    train = RadarDataset(tiny_signals, ("label",), split="train")
+    assert 0 < len(train) <= len(data)
+    with pytest.raises(InputError, match="one split"):
+        RadarDataset(tiny_signals, ("label",), by="subject")
+
+
+def test_rooms_have_coordinates_and_texts_for_xarray(tiny_signals: Path):
+    xarray = pytest.importorskip("xarray")
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Object at")  # plan.json and the like in the root are no arrays
+        tree = xarray.open_datatree(tiny_signals, engine="zarr", consolidated=False)
+    rooms = [room for room in tree.children.values() if "iq" in room]
+    near = rooms[0].iq.sel(range=2.0, method="nearest")
+    assert abs(float(near.range) - 2.0) < 0.05
+    assert near.dims == ("sequence", "frame_time", "radial_velocity", "antenna", "part")
+    for name in ("label", "label_name", "text", "split", "person"):
+        assert rooms[0][name].dims == ("sequence",)
+    tree.close()
+
+
 def test_xarray_opens_it_with_coordinates(activity_set: Path, recwarn: pytest.WarningsRecorder):  # noqa: F811
     xarray = pytest.importorskip("xarray")
-    with xarray.open_zarr(activity_set / "sequences.zarr", consolidated=False) as opened:
+    with xarray.open_zarr(activity_set / "sequences.zarr") as opened:
         near = opened.iq.sel(range=2.0, method="nearest")
         assert abs(float(near.range) - 2.0) < 0.05
         assert opened.label_name.dims == ("sequence",)

@@ -58,7 +58,7 @@ def test_zarr(result: StoredResult, result_folder: Path, tmp_path: Path):
     import xarray
 
     export_result(result_folder, "zarr", tmp_path / "out")
-    with xarray.open_zarr(tmp_path / "out" / "result.zarr", consolidated=False, decode_times=False) as read:
+    with xarray.open_zarr(tmp_path / "out" / "result.zarr", decode_times=False) as read:
         np.testing.assert_array_equal(read.cube.values, result.cube.values)
         assert abs(float(read.sel(range=2.0, method="nearest").range) - 2.0) < 0.05
         assert read.attrs["joint_names"][0] == "pelvis"

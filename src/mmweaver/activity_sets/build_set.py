@@ -38,6 +38,7 @@ from mmweaver.datasets.activity_store import (
     packed_iq,
     write_set,
 )
+from mmweaver.datasets.zarr_arrays import consolidate
 from mmweaver.features import point_table
 from mmweaver.formats.npz_files import read_npz, write_npz
 from mmweaver.generate import Weaver, compose_request
@@ -206,6 +207,7 @@ class SetBuilder:
                 iq = create_iq(stage, len(parts), config, arrays["joints"].shape[1])
                 for number in range(len(parts)):
                     iq[number] = read_npz(self._part_file(number))["iq"]
+            consolidate(stage / STORE)
             report = self._leaks(columns, parts, stage)
             (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
             (stage / ACTIVITIES_FILE).write_text(self.activities_text, encoding="utf-8")

@@ -26,6 +26,7 @@ EXAMPLES = """examples:
   mmweaver train weaver --from run/ --captures take1/ take2/ take3/ --out tuned/
   torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
   mmweaver train activity --data data/ --out activity/
+  mmweaver train activity --data my_set/ --out recogniser/          # of mmweaver dataset --activities
   mmweaver generate --demo --weights run/ --out woven/
 """
 
@@ -42,9 +43,12 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     )
     parser.add_argument(
         "recipe", choices=("weaver", "activity"),
-        help="what is trained: the network, or a recogniser of twelve activities",
+        help="what is trained: the network, or a recogniser of the activities of the data",
     )  # fmt: skip
-    parser.add_argument("--data", type=Path, metavar="DIR", help="a data set of mmweaver dataset")
+    parser.add_argument(
+        "--data", type=Path, metavar="DIR",
+        help="a data set of mmweaver dataset; for recipe activity also a labelled set of your own room",
+    )  # fmt: skip
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for checkpoint, log and weights")
     parser.add_argument(
         "--from",
@@ -116,6 +120,8 @@ def run(arguments: argparse.Namespace) -> int:
     elif not is_quiet:
         where = summary.get("evaluated_on", "unseen rooms")
         print(f"{summary['weights']}: {summary['steps']} steps, loss in {where} {summary['validation_loss']:.3f}")
+        for who, of_data in summary.get("scores", {}).items():
+            print(f"{who}: " + ", ".join(f"{name.replace('_', ' ')} {score:.2f}" for name, score in of_data.items()))
     return 0
 
 
@@ -174,16 +180,17 @@ def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bo
 
 def _activity_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
     from mmweaver.training.activity_training import ActivityRecipe
-    from mmweaver.training.recipe_weights import write_activity_weights
+    from mmweaver.training.recipe_weights import activity_scores, write_activity_weights
 
     given = _given(arguments)
     with _bar(ActivityRecipe(**given).steps, is_quiet) as listener:
         trainer = train_recipes.train_on_data(arguments, given, listener, place, _options(arguments))
-    file = write_activity_weights(arguments.out, arguments.data, trainer) if place.is_first else None
-    return {
-        "weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value,
-        "validation": trainer.best.figures,
-    }  # fmt: skip
+    summary = {"steps": trainer.step, "validation_loss": trainer.best.value, "validation": trainer.best.figures}
+    if not place.is_first:
+        return summary
+    scores = activity_scores(arguments.data, trainer)
+    file = write_activity_weights(arguments.out, arguments.data, trainer, scores)
+    return {"weights": str(file), **summary, "scores": scores}
 
 
 def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:

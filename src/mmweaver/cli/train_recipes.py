@@ -21,14 +21,17 @@ def train_on_data(
     options: dict[str, Any],
 ) -> "Trainer":  # fmt: skip
     """Trains recipe `activity`; `given` are the settings of the recipe that the user gave. Raises InputError."""
-    from mmweaver.datasets.dataset_store import read_radar
-    from mmweaver.models.activity_network import load_activity
+    from mmweaver.datasets.room_sequences import labels_of, radar_of
+    from mmweaver.models.activity_network import label_names_of, load_activity
     from mmweaver.models.find_weights import find_weights
     from mmweaver.training.activity_training import ActivityRecipe, train_activity
 
     start = None
     if arguments.start is not None:
-        start = load_activity(find_weights(arguments.start), read_radar(arguments.data)).state_dict()
+        weights = find_weights(arguments.start)
+        start = load_activity(weights, radar_of(arguments.data)).state_dict()
+        if label_names_of(weights) != labels_of(arguments.data):
+            raise InputError(f"{weights} tells other labels apart than {arguments.data} has; train without --from")
     recipe = ActivityRecipe(**given)
     return train_activity(
         arguments.data, arguments.out, recipe, start=start, listener=listener, compute=place, **options

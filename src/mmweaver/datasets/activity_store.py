@@ -8,7 +8,7 @@
         point_sequence, point_frame   (point)
         label, subject, place, room, draw, heading, height   (sequence)
         label_name, text, split, split_subject, split_place, split_room, split_sentence   (sequence)  strings
-        frame_time, range, radial_velocity   coordinates in s, m, m/s
+        frame_time, range, radial_velocity   coordinates in s, m, m/s; antenna_position (antenna, axis) in m
     OUT/set.json, activities.toml, leaks.json, SHA256SUMS
 
 Arrays of signals are not compressed, so that the size of a sequence says nothing of its label; every chunk ends in its
@@ -30,7 +30,7 @@ from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.checked_folder import CheckedFolder
 from mmweaver.datasets.dataset_plan import shell_words
-from mmweaver.datasets.zarr_arrays import zarr_module
+from mmweaver.datasets.zarr_arrays import put_texts, zarr_module
 from mmweaver.formats.npz_files import POINT_COLUMNS
 
 SET_FILE, LEAKS_FILE, ACTIVITIES_FILE, STORE = "set.json", "leaks.json", "activities.toml", "sequences.zarr"
@@ -40,7 +40,8 @@ SPLIT_KEYS = ("subject", "place", "room", "sentence")
 STRINGS = ("label_name", "text", "split", *(f"split_{key}" for key in SPLIT_KEYS))
 NUMBERS = {"label": "int32", "subject": "int32", "place": "int32", "room": "int32", "draw": "int32",
            "heading": "float32", "height": "float32"}  # fmt: skip
-UNITS = {"heading": "rad", "height": "m", "joints": "m", "frame_time": "s", "range": "m", "radial_velocity": "m/s"}
+UNITS = {"heading": "rad", "height": "m", "joints": "m", "frame_time": "s", "range": "m", "radial_velocity": "m/s",
+         "antenna_position": "m"}  # fmt: skip
 IQ_DIMENSIONS = ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
 MADE_BY = "mmweaver dataset"
 MOST = 2**31 - 1  # of a number that counts something
@@ -71,9 +72,9 @@ def write_set(
     }  # fmt: skip
     for name, values in coordinates.items():
         _put(group, name, np.asarray(values, np.float64), (name,))
+    _put(group, "antenna_position", grid.antenna_position_m, ("antenna", "axis"))
     for name in STRINGS:
-        text = group.create_array(name, shape=(len(columns[name]),), dtype="string", dimension_names=("sequence",))
-        text[...] = np.asarray(columns[name], dtype=object)
+        put_texts(group, name, columns[name])
     for name, kind in NUMBERS.items():
         _put(group, name, np.asarray(columns[name], kind), ("sequence",))
     _put(group, "joints", arrays["joints"], ("sequence", "frame_time", "joint", "axis"))

@@ -22,19 +22,17 @@ from mmweaver.core.safe_files.regular_files import MEGABYTE, read_bytes
 from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.core.staging import is_staged, remove, staging_path, sync, sync_tree
-from mmweaver.datasets.dataset_plan import RADAR_FILE, DatasetPlan
+from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
 from mmweaver.datasets.geometry_store import write_geometry
 from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, TracedSequence
-from mmweaver.datasets.zarr_arrays import put_array, zarr_module
+from mmweaver.datasets.zarr_arrays import put_array, put_texts, zarr_module
 
 SEQUENCES_A_SHARD = 8
 LARGEST_ROOT_FILE = 64 * MEGABYTE
-AXES = {
-    "frame_time_s": ("frame",), "range_m": ("range",), "radial_velocity_mps": ("doppler",),
-    "antenna_position_m": ("antenna", "axis"),
-}  # fmt: skip
-ROOT_NAMES = (PLAN_FILE, RADAR_FILE, "zarr.json", *AXES, SUMS_FILE)
+# dimensions and coordinates of one name: xarray.open_datatree hands those of the root down to the rooms
+COORDINATES = {"frame_time": "frame_time_s", "range": "range_m", "radial_velocity": "radial_velocity_mps"}
+ROOT_NAMES = (PLAN_FILE, RADAR_FILE, "zarr.json", *COORDINATES, "antenna_position_m", SUMS_FILE)
 
 
 def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
@@ -74,8 +72,9 @@ def _can_begin(target: Path) -> bool:
 def _write_root(stage: Path, plan: DatasetPlan, config: RadarConfig) -> None:
     root = zarr_module().open_group(stage, mode="w")
     grid = CubeGrid.of(config, plan.num_frames)
-    for name, dimensions in AXES.items():
-        put_array(root, name, getattr(grid, name), dimensions)
+    for name, of_grid in COORDINATES.items():
+        put_array(root, name, getattr(grid, of_grid), (name,))
+    put_array(root, "antenna_position_m", grid.antenna_position_m, ("antenna", "axis"))
     root.attrs.update(
         {"made_by": "mmweaver dataset", "radar": parse_json(config.to_json(), "the radar"), "joints": list(JOINT_NAMES),
          "wavelength_m": config.wavelength_m, "checksums": SUMS_FILE}
@@ -162,17 +161,22 @@ def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
     signals = [s.cube.values for s in sequences if isinstance(s, GeneratedSequence)]
     if signals:
         iq, scale = _packed(signals)
-        axes = ("sequence", "frame", "range", "doppler", "antenna", "part")
+        axes = ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
         put_array(group, "iq", iq, axes, sequences=SEQUENCES_A_SHARD)
         put_array(group, "iq_scale", scale, ("sequence",))
     if generated.geometry is not None:
         write_geometry(group, generated.geometry, traced)
     if sequences:
-        pose = ("sequence", "frame", "joint", "axis")
+        pose = ("sequence", "frame_time", "joint", "axis")
         put_array(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
         put_array(group, "joint_velocity_mps", np.stack([s.joint_velocity_mps for s in sequences]), pose)
         put_array(group, "person", np.array([s.spec.person for s in sequences]), ("sequence",))
         put_array(group, "seed", np.array([s.spec.seed for s in sequences]), ("sequence",))
+        labels = np.array([list(ACTIVITIES).index(s.spec.activity) for s in sequences], np.int32)
+        put_array(group, "label", labels, ("sequence",))
+        put_texts(group, "label_name", [s.spec.activity for s in sequences])
+        put_texts(group, "text", [s.spec.text for s in sequences])
+        put_texts(group, "split", [s.spec.split for s in sequences])
 
 
 def _put_photo(group: Any, generated: GeneratedRoom) -> None:

@@ -1,4 +1,4 @@
-"""A PyTorch data set over a labelled set: features on the fly, or cached in memory."""
+"""A PyTorch data set over a labelled set, or a data set of rooms: features on the fly, or cached in memory."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -10,7 +10,8 @@ from torch.utils.data import Dataset
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, RadarCube
-from mmweaver.datasets.activity_store import SPLIT_KEYS, SPLITS, ActivitySet, read_activity_set
+from mmweaver.datasets.activity_store import SPLIT_KEYS, SPLITS
+from mmweaver.datasets.room_sequences import LabelledData, read_labelled
 from mmweaver.features import (
     dynamic_range_angle,
     micro_doppler_db,
@@ -32,19 +33,21 @@ FEATURES = (*OF_CUBE, "points", "pose", "label")
 
 
 class RadarDataset(Dataset[dict[str, Any]]):
-    """Sequences of a labelled set (`mmweaver dataset --activities`) as dicts of tensors, for torch's DataLoader.
+    """Sequences of a data set as dicts of tensors, for torch's DataLoader.
 
-    `features`: any of "iq" (complex64: frame, range, doppler, antenna), "rd" (dB: frame, range, doppler), "ra" (dB:
-    frame, range, azimuth), "re" (dB: frame, range, elevation), "drai" (linear: frame, 32, 32), "micro_doppler" (dB:
-    window, doppler), "points" ((point, 6): frame, x, y, z, velocity, SNR), "pose" ((frame, 22, 3) metres) and "label"
-    (int). `split`: "train", "validation", "test" or None for all; `by`: whether "subject", "place", "room" or
-    "sentence" is held out (default: what the set was made with). `cached` keeps features in memory once computed. The
-    order is that of the set; an item is the same in every worker. Raises InputError for unknown names.
+    `path`: a labelled set (`mmweaver dataset --activities`, `mmweaver generate --texts --store`) or a data set of rooms
+    (`mmweaver dataset --layouts`). `features`: any of "iq" (complex64: frame, range, doppler, antenna), "rd" (dB:
+    frame, range, doppler), "ra" (dB: frame, range, azimuth), "re" (dB: frame, range, elevation), "drai" (linear:
+    frame, 32, 32), "micro_doppler" (dB: window, doppler), "points" ((point, 6): frame, x, y, z, velocity, SNR), "pose"
+    ((frame, 22, 3) metres) and "label" (int). `split`: "train", "validation", "test", another split of a data set of
+    rooms, or None for all; `by`: whether "subject", "place", "room" or "sentence" of a labelled set is held out
+    (default: what it was made with). `cached` keeps features in memory once computed. The order is that of the set; an
+    item is the same in every worker. Raises InputError for unknown names.
     """
 
     def __init__(
         self,
-        path: str | Path | ActivitySet,
+        path: str | Path | LabelledData,
         features: Sequence[str] = ("rd", "label"),
         *,
         split: str | None = None,
@@ -54,13 +57,17 @@ class RadarDataset(Dataset[dict[str, Any]]):
         unknown = [name for name in features if name not in FEATURES]
         if unknown or not features:
             raise InputError(f"unknown features {', '.join(unknown) or '(none)'}; known: {', '.join(FEATURES)}")
-        if split is not None and split not in SPLITS:
-            raise InputError(f"unknown split {split!r}; known: {', '.join(SPLITS)}, or None for all")
         if by is not None and by not in SPLIT_KEYS:
             raise InputError(f"unknown key {by!r}; splits are by {', '.join(SPLIT_KEYS)}")
-        self.set = path if isinstance(path, ActivitySet) else read_activity_set(Path(path))
+        self.set = read_labelled(Path(path)) if isinstance(path, str | Path) else path
         self.features = tuple(features)
-        of_split = self.set.columns["split" if by is None else f"split_{by}"]
+        column = "split" if by is None else f"split_{by}"
+        if column not in self.set.columns:
+            raise InputError("a data set of rooms has one split, by room; leave out `by`")
+        of_split = self.set.columns[column]
+        known = sorted({*SPLITS, *map(str, of_split)})
+        if split is not None and split not in known:
+            raise InputError(f"unknown split {split!r}; known: {', '.join(known)}, or None for all")
         chosen = np.ones(len(self.set), bool) if split is None else of_split == split
         self.indices = np.flatnonzero(chosen)
         self._cache: dict[int, dict[str, Any]] | None = {} if cached else None

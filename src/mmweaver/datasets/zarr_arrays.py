@@ -1,5 +1,7 @@
 """Arrays of a data set's Zarr groups: every chunk is written, with a CRC-32C."""
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,7 +10,7 @@ from mmweaver.core.errors import InputError
 
 UNITS = {
     "iq": "1 (times iq_scale: sqrt(mW))", "iq_scale": "sqrt(mW)", "joints_m": "m", "joint_velocity_mps": "m/s",
-    "photo_depth_m": "m", "range_m": "m", "radial_velocity_mps": "m/s", "frame_time_s": "s",
+    "photo_depth_m": "m", "range": "m", "radial_velocity": "m/s", "frame_time": "s",
     "antenna_position_m": "m", "empty_iq": "sqrt(mW)",
 }  # fmt: skip
 
@@ -47,3 +49,18 @@ def put_array(
     unit = UNITS.get(name, "m" if name.endswith("_m") else "")
     if unit:
         array.attrs["units"] = unit
+
+
+def consolidate(store: Path) -> None:
+    """Collects the metadata of all arrays in the group's own, so that xarray opens it without a word or a search."""
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # version 3 of Zarr has no chapter on it yet; readers without it ignore it
+        zarr_module().consolidate_metadata(store)
+
+
+def put_texts(group: Any, name: str, texts: Sequence[str]) -> None:
+    """Writes one text for each sequence."""
+    array = group.create_array(name, shape=(len(texts),), dtype="string", dimension_names=("sequence",))
+    array[...] = np.asarray(texts, dtype=object)

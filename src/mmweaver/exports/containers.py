@@ -8,6 +8,7 @@ import numpy as np
 from mmweaver.conversions import to_dataset
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import JOINT_NAMES
+from mmweaver.datasets.zarr_arrays import consolidate
 from mmweaver.formats.npz_files import POINT_COLUMNS
 from mmweaver.stored_result import StoredResult
 
@@ -84,4 +85,5 @@ def write_zarr(result: StoredResult, out: Path) -> str:
     names = {f"{name}_names": [str(one) for one in dataset[name].values] for name in ("joint", "axis")}
     dataset = dataset.drop_vars(["joint", "axis"]).assign_attrs(names)
     dataset.to_zarr(out / "result.zarr", mode="w-", zarr_format=3, consolidated=False)
+    consolidate(out / "result.zarr")
     return "a Zarr store"

@@ -1,4 +1,4 @@
-"""Which of twelve activities a cube shows: a small convolutional network on its log maps.
+"""Which activity a cube shows, of twelve or of one's own set: a small convolutional network on its log maps.
 
     range-Doppler  (frame, 1, 64, 32) --convolutions--> (frame, 64, 8, 8) --over range--> (frame, 512)--+
     range-azimuth  (frame, 2, 64, 32) --convolutions--> (frame, 64, 8, 8) --over both---> (frame, 64)---+
@@ -9,14 +9,16 @@ The convolutional maps are also the features of the paper recipe's perceptual lo
 feature extractor").
 """
 
+import math
 from pathlib import Path
 
 import torch
 from torch import Tensor, nn
 
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.models.log_maps import NUM_ANGLE_MAPS, LogMaps
-from mmweaver.models.weights import load_into
+from mmweaver.models.weights import load_into, read_card
 
 ACTIVITY_NAMES = (
     "walking", "jogging", "waving", "clapping", "jumping jacks", "left-hand raise", "right-hand raise", "jumping",
@@ -28,18 +30,19 @@ DROPPED = 0.4
 
 
 class ActivityNetwork(nn.Module):
-    """Log maps (sequence, frame, 1, range, doppler) and (sequence, frame, 2, range, azimuth) -> (sequence, 12)."""
+    """Log maps (sequence, frame, 1, range, doppler) and (sequence, frame, 2, range, azimuth) -> (sequence, label)."""
 
-    def __init__(self, config: RadarConfig):
+    def __init__(self, config: RadarConfig, num_labels: int = len(ACTIVITY_NAMES)):
         super().__init__()
         self.config, self.maps = config, LogMaps(config)
         self.doppler = MapFeatures(1)
         self.angle = MapFeatures(NUM_ANGLE_MAPS)
-        per_frame = WIDTHS[-1] * 2 * 8 + WIDTHS[-1] * 2
-        self.head = TimeHead(per_frame)
+        velocities = math.ceil(config.num_loops / 4)  # two of the three convolutions halve them
+        per_frame = WIDTHS[-1] * 2 * velocities + WIDTHS[-1] * 2
+        self.head = TimeHead(per_frame, num_labels)
 
     def of_cubes(self, values: Tensor) -> Tensor:
-        """Complex cubes (sequence, frame, range, doppler, antenna) in sqrt(mW) -> (sequence, 12)."""
+        """Complex cubes (sequence, frame, range, doppler, antenna) in sqrt(mW) -> (sequence, label)."""
         return self(*self.maps(values))
 
     def forward(self, doppler: Tensor, angle: Tensor) -> Tensor:
@@ -83,16 +86,16 @@ class MapFeatures(nn.Module):
 
 
 class TimeHead(nn.Module):
-    """(sequence, frame, feature) -> (sequence, 12): convolutions over frames, their mean and largest."""
+    """(sequence, frame, feature) -> (sequence, label): convolutions over frames, their mean and largest."""
 
-    def __init__(self, features: int):
+    def __init__(self, features: int, num_labels: int = len(ACTIVITY_NAMES)):
         super().__init__()
         self.first = nn.Linear(features, FRAME_WIDTH)
         self.over_time = nn.Sequential(
             nn.SiLU(), nn.Dropout(DROPPED), nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=1), nn.SiLU(),
             nn.Conv1d(FRAME_WIDTH, FRAME_WIDTH, 3, padding=2, dilation=2), nn.SiLU(),
         )  # fmt: skip
-        self.last = nn.Sequential(nn.Dropout(DROPPED), nn.Linear(2 * FRAME_WIDTH, len(ACTIVITY_NAMES)))
+        self.last = nn.Sequential(nn.Dropout(DROPPED), nn.Linear(2 * FRAME_WIDTH, num_labels))
 
     def forward(self, frames: Tensor) -> Tensor:
         return self.last(self.summary(frames))
@@ -109,7 +112,15 @@ def _pooled(maps: Tensor, axes: tuple[int, ...]) -> Tensor:
 
 
 def load_activity(file: Path, config: RadarConfig) -> ActivityNetwork:
-    """Reads weights of recipe `activity`. Raises InputError for any other file."""
-    network = ActivityNetwork(config)
+    """Reads weights of recipe `activity`. Raises InputError for any other file, or one of a radar of other maps."""
+    network = ActivityNetwork(config, len(label_names_of(file)))
     load_into(network, file, recipe="activity")
     return network
+
+
+def label_names_of(file: Path) -> tuple[str, ...]:
+    """The words of the labels that weights of recipe `activity` tell apart, by number. Raises InputError."""
+    names = read_card(file).settings.get("label_names", ACTIVITY_NAMES)
+    if not isinstance(names, list | tuple) or not names or not all(isinstance(name, str) for name in names):
+        raise InputError(f"{file} has a header that cannot be read; fetch or write it again")
+    return tuple(names)

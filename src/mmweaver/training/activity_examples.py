@@ -1,4 +1,4 @@
-"""Labelled log maps of a data set, for training and evaluating the activity network."""
+"""Labelled log maps of a data set of rooms or of one's own, for training and evaluating the activity network."""
 
 import hashlib
 from collections.abc import Callable, Iterable
@@ -13,8 +13,8 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import RadarCube
 from mmweaver.core.tensor_files import read_tensors, write_tensors
-from mmweaver.datasets.dataset_store import StoredRoom, plan_text, read_rooms
-from mmweaver.models.activity_network import ACTIVITY_NAMES
+from mmweaver.datasets.activity_store import ActivitySet
+from mmweaver.datasets.room_sequences import LabelledData, plan_of, read_labelled
 from mmweaver.models.log_maps import LogMaps
 
 GAIN_SPREAD_DB, SHIFT_BINS, SHIFT_FRAMES = 2.0, 6, 3  # strength of the augmentation
@@ -26,7 +26,8 @@ class ActivityExamples:
 
     doppler: Tensor  # (sequence, frame, 1, range, doppler)
     angle: Tensor  # (sequence, frame, 2, range, azimuth)
-    label: Tensor  # (sequence,) index into ACTIVITY_NAMES
+    label: Tensor  # (sequence,) index into label_names
+    label_names: tuple[str, ...]
     room: tuple[str, ...]
     person: tuple[int, ...]
     config: RadarConfig
@@ -60,37 +61,41 @@ def activity_examples(
     Their maps are read from the file `cache` if it has the same sequences, else computed and, with `keep`, saved there;
     signals that are not stored are synthesised on `device`. Raises InputError where there are no sequences.
     """
-    rooms = read_rooms(folder, device=device)
-    chosen = [(room, index) for room in rooms for index, split in enumerate(room.split) if split in splits]
-    if not chosen:
-        raise InputError(f"{folder} has no sequences of {' or '.join(splits)}; make more with: mmweaver dataset")
-    unknown = {room.activity[index] for room, index in chosen} - set(ACTIVITY_NAMES)
-    if unknown:
-        raise InputError(f"{folder} has activities that this version does not know: {', '.join(sorted(unknown))}")
+    data = read_labelled(folder, device=device)
+    columns, config = data.columns, data.config
+    chosen = np.flatnonzero(np.isin(columns["split"], splits))
+    if not len(chosen):
+        raise InputError(f"{folder} has no sequences of {' or '.join(splits)}; {_more(data)}")
     if pick is not None:
-        labels = np.array([ACTIVITY_NAMES.index(room.activity[index]) for room, index in chosen])
-        chosen = [chosen[int(number)] for number in pick(labels)]
-    config = rooms[0].config
+        chosen = chosen[pick(columns["label"][chosen])]
     mark = _mark(folder, chosen)
     maps = None if cache is None else _read(cache, mark)
     if maps is None:
-        maps = compute_log_maps((room.cube(index) for room, index in chosen), config)
+        maps = compute_log_maps((data.cube(int(index)) for index in chosen), config)
         if cache is not None and keep:
             _write(cache, maps, mark)
     doppler, angle = maps
     return ActivityExamples(
         doppler=doppler,
         angle=angle,
-        label=torch.tensor([ACTIVITY_NAMES.index(room.activity[index]) for room, index in chosen]),
-        room=tuple(f"{room.kind}_{room.layout}" for room, _ in chosen),
-        person=tuple(int(room.person[index]) for room, index in chosen),
+        label=torch.from_numpy(columns["label"][chosen].astype(np.int64)),
+        label_names=data.label_names,
+        room=tuple(map(str, columns["room"][chosen])),
+        person=tuple(map(int, columns["subject"][chosen])),
         config=config,
     )
 
 
-def _mark(folder: Path, chosen: list[tuple[StoredRoom, int]]) -> str:
+def _more(data: LabelledData) -> str:
+    """How to make sequences of every split."""
+    if isinstance(data, ActivitySet):
+        return "each split needs people of its own: make the set with three --subjects or more, or another --split-by"
+    return "make more with: mmweaver dataset"
+
+
+def _mark(folder: Path, chosen: np.ndarray) -> str:
     """Hash of a data set's plan and the chosen sequences."""
-    words = [plan_text(folder), *(f"{room.folder.name} {index} {int(room.seed[index])}" for room, index in chosen)]
+    words = [plan_of(folder), *map(str, chosen)]
     return hashlib.sha256("\n".join(words).encode()).hexdigest()
 
 

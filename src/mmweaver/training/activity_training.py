@@ -10,7 +10,7 @@ import torch
 from torch import Tensor
 
 from mmweaver.core.seeding import stream
-from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
+from mmweaver.models.activity_network import ActivityNetwork
 from mmweaver.training.activity_examples import ActivityExamples, activity_examples, augmented
 from mmweaver.training.confusion_sheet import draw_confusion
 from mmweaver.training.device import ComputeDevice, Share
@@ -43,7 +43,7 @@ class ActivityBatch:
 
     doppler: Tensor  # (sequence, frame, 1, range, doppler)
     angle: Tensor  # (sequence, frame, 2, range, azimuth)
-    label: Tensor  # (sequence,) index into ACTIVITY_NAMES
+    label: Tensor  # (sequence,) index into the labels of the data
 
 
 class ActivityLearner(Learner):
@@ -66,7 +66,7 @@ class ActivityLearner(Learner):
         if self.unseen is None:
             return None
         answers = scores_of(self.network, self.unseen).argmax(dim=1).numpy()
-        return draw_confusion(self.unseen.label.numpy(), answers, ACTIVITY_NAMES)
+        return draw_confusion(self.unseen.label.numpy(), answers, self.unseen.label_names)
 
 
 def train_activity(
@@ -79,8 +79,9 @@ def train_activity(
     compute: ComputeDevice | None = None,
     **options: Any,
 ) -> Trainer:
-    """Trains on a data set, or resumes from `out`/checkpoint.pt; the returned Trainer holds the best network.
+    """Trains on a data set of rooms or a labelled set, or resumes from `out`/checkpoint.pt.
 
+    The returned Trainer holds the best network.
     `start`: weights to fine-tune. `options` go to `Trainer`. The log maps of all sequences are cached in `out`, for
     those of signals that are not stored cost more than the training. Raises InputError for a folder without data.
     """
@@ -89,7 +90,7 @@ def train_activity(
     unseen = activity_examples(data, ("validation",), out / VALIDATION_MAPS, **cache)
     examples = activity_examples(data, TRAIN_SPLITS, out / TRAIN_MAPS, **cache)
     torch.manual_seed(recipe.seed)
-    network = ActivityNetwork(examples.config)
+    network = ActivityNetwork(examples.config, len(examples.label_names))
     if start is not None:
         network.load_state_dict(start)
     trainer = Trainer(
@@ -127,7 +128,7 @@ def _fixed_batches(examples: ActivityExamples, count: int) -> Callable[[int, Sha
 
 
 def scores_of(network: ActivityNetwork, examples: ActivityExamples) -> Tensor:
-    """Scores (sequence, 12) before the softmax, on the CPU."""
+    """Scores (sequence, label) before the softmax, on the CPU."""
     network.eval()
     device = next(network.parameters()).device
     with torch.no_grad():

@@ -60,7 +60,7 @@ weaver = Weaver.from_pretrained(".")  # this folder, its weights.safetensors, or
 )
 ACTIVITY = Page(
     unit="",
-    about="""A recogniser of mmWeaver: which of twelve activities 20 frames of a radar show, from range-Doppler and
+    about="""A recogniser of mmWeaver: which of its labels some frames of a radar show, from range-Doppler and
 range-azimuth maps in decibels above the receiver's noise. It evaluates generated data, and its features are those
 of the paper's perceptual loss.""",
     limits="- One radar ({radar}); its maps are scaled by that radar's constants; other radars need other weights.",

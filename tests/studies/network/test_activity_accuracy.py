@@ -3,7 +3,7 @@
 import torch
 
 from mmweaver.core.presets import AWR1843
-from mmweaver.models.activity_network import ActivityNetwork
+from mmweaver.models.activity_network import ACTIVITY_NAMES, ActivityNetwork
 from mmweaver.training.activity_examples import ActivityExamples
 from studies.network.activity_accuracy import row_of
 
@@ -20,6 +20,7 @@ def test_a_network_that_says_one_thing_scores_that_things_share():
     examples = ActivityExamples(
         doppler=torch.zeros(4, 5, 1, 64, 32).half(), angle=torch.zeros(4, 5, 2, 64, 32).half(), label=label,
         room=("a", "a", "b", "b"), person=(0, 1, 0, 1), config=AWR1843,
+        label_names=ACTIVITY_NAMES,
     )  # fmt: skip
     row = row_of(network, examples, "test_room")
     metric = row["metrics"]["accuracy"]
