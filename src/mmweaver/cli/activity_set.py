@@ -30,6 +30,11 @@ def add_activity_options(group: Options) -> None:
     group.add_argument("--rgb", type=Path, metavar="PNG", help="instead of --room: colour picture of the room")
     group.add_argument("--depth", type=Path, metavar="FILE", help="its depth")
     group.add_argument("--camera", type=Path, metavar="JSON", help="its camera")
+    group.add_argument(
+        "--from-results", type=Path, metavar="DIR",
+        help="instead of making sequences: the result folders in DIR, as mmweaver generate --texts writes them, become"
+        " one set; without --activities each sentence is a label",
+    )  # fmt: skip
     group.add_argument("--each", type=whole, metavar="N", help="sequences of each label (default 20)")
     group.add_argument("--seconds", type=number, metavar="S", help="length of every sequence (default 3)")
     group.add_argument("--subjects", type=whole, metavar="N", help="different people (default 10)")
@@ -43,8 +48,8 @@ def add_activity_options(group: Options) -> None:
 
 
 def is_activity_set_asked(arguments: argparse.Namespace) -> bool:
-    """Whether --activities is given. Raises InputError where one of its options is given without it."""
-    if arguments.activities is not None:
+    """Whether --activities or --from-results is given. Raises InputError for one of their options without them."""
+    if arguments.activities is not None or arguments.from_results is not None:
         return True
     given = [name for name in NEEDS_ACTIVITIES if getattr(arguments, name) is not None]
     if given or arguments.no_iq:
@@ -55,6 +60,8 @@ def is_activity_set_asked(arguments: argparse.Namespace) -> bool:
 
 def run_activity_set(arguments: argparse.Namespace) -> int:
     """Makes what is missing of the set and prints the verdict of its leak report. Raises InputError."""
+    if arguments.from_results is not None:
+        return _run_from_results(arguments)
     from mmweaver.activity_sets.activity_list import read_activities
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
     from mmweaver.core.range_window import chosen_range
@@ -79,6 +86,29 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
         print(json.dumps({"out": str(arguments.out), "leaks": report}))
     elif not arguments.quiet:
         print(f"{len(activities.labels)} labels x {options.each} sequences in {arguments.out}; {report['verdict']}")
+    return 0
+
+
+def _run_from_results(arguments: argparse.Namespace) -> int:
+    """Result folders as one set."""
+    from mmweaver.activity_sets.activity_list import read_activities
+    from mmweaver.activity_sets.from_results import set_of_results
+    from mmweaver.core.output_checks import check_output_folder
+
+    given = [name for name in NEEDS_ACTIVITIES if name != "split_by" and getattr(arguments, name) is not None]
+    if given or arguments.no_iq:
+        name = given[0].replace("_", "-") if given else "no-iq"
+        raise InputError(f"--from-results takes sequences as they are; leave out --{name}")
+    check_output_folder(arguments.out, overwrite=False, inputs=[arguments.from_results])
+    activities = None if arguments.activities is None else read_activities(arguments.activities)
+    report = set_of_results(
+        arguments.from_results, arguments.out, activities=activities, split_by=arguments.split_by or "subject",
+        seed=arguments.seed, command=_command(),
+    )  # fmt: skip
+    if arguments.json:
+        print(json.dumps({"out": str(arguments.out), "leaks": report}))
+    elif not arguments.quiet:
+        print(f"{report['of']['order']['sequences']} sequences in {arguments.out}; {report['verdict']}")
     return 0
 
 

@@ -8,6 +8,7 @@ EXAMPLES = """examples:
   mmweaver export walk/ --to mat --out walk_mat/
   mmweaver export walk/ --to ros2 --out walk_bag/
   mmweaver generate --demo --radar hupr --bin --out walk/ && mmweaver export walk/ --to hupr --out hupr/
+  mmweaver export set/ --to results --out folders/    # each sequence of a labelled set
   mmweaver export --list
 """
 
@@ -19,7 +20,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         description="Writes result folders (or folders of results, such as --texts makes) for other tools: data-set"
         " layouts, MATLAB, netCDF, ROS 2, MCAP, Rerun and videos.",
     )  # fmt: skip
-    parser.add_argument("folder", type=Path, nargs="?", metavar="DIR", help="a result folder, or a folder of them")
+    parser.add_argument(
+        "folder", type=Path, nargs="?", metavar="DIR", help="a result folder, a folder of them, or a labelled set"
+    )
     parser.add_argument("--to", metavar="FORMAT", help="the format; --list names them")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the files")
     parser.add_argument("--overwrite", action="store_true", help="replace files in --out")
@@ -31,10 +34,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Exports one result or many. Raises InputError."""
-    import json
-
     from mmweaver.core.errors import InputError
-    from mmweaver.exports.export import FORMATS, export_result, is_of_two_radars
+    from mmweaver.datasets.activity_store import is_activity_set
+    from mmweaver.exports.export import FORMATS, export_result, export_set, is_of_two_radars
 
     if arguments.list:
         for name, one in FORMATS.items():
@@ -44,12 +46,21 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError("give a result folder, --to FORMAT and --out DIR; mmweaver export --list names the formats")
     if arguments.to not in FORMATS:
         raise InputError(f"unknown format {arguments.to!r}; known: {', '.join(FORMATS)}")
+    if is_activity_set(arguments.folder):
+        every = export_set(arguments.folder, arguments.to, arguments.out, overwrite=arguments.overwrite)
+        return _say({str(out): what for out, what in every}, arguments)
     together = is_of_two_radars(arguments.folder, arguments.to)
     results = {arguments.folder: ""} if together else _results(arguments.folder)
     written = {}
     for folder, place in results.items():
         out = arguments.out / place
         written[str(out)] = export_result(folder, arguments.to, out, overwrite=arguments.overwrite)
+    return _say(written, arguments)
+
+
+def _say(written: dict[str, str], arguments: argparse.Namespace) -> int:
+    import json
+
     if arguments.json:
         print(json.dumps(written, indent=2))
     else:

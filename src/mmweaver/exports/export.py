@@ -1,14 +1,15 @@
 """The table of formats, and the one function that writes any of them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
 from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.errors import InputError
+from mmweaver.exports.set_results import results_of_set
 from mmweaver.result_folder import radar_folder
-from mmweaver.stored_result import read_result
+from mmweaver.stored_result import StoredResult, read_result
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,6 +52,9 @@ FORMATS = {
     "ros2": Format(what="ROS 2 bag", module="robotics", function="write_ros2"),
     "mcap": Format(what="MCAP, for Foxglove", module="robotics", function="write_mcap"),
     "rerun": Format(what="Rerun recording (.rrd)", module="rerun_file", function="write_rerun"),
+    "results": Format(
+        what="a result folder, of each sequence of a labelled set", module="set_results", function="write_results"
+    ),
     "mp4": Format(what="video, H.264", module="videos", function="write_mp4"),
     "webm": Format(what="video, VP9", module="videos", function="write_webm"),
 }
@@ -68,9 +72,26 @@ def export_result(folder: Path | str, kind: str, out: Path | str, *, overwrite: 
         both = [read_result(Path(folder) / radar_folder(number)) for number in (1, 2)]
         with staged_folder(Path(out), overwrite=overwrite) as stage:
             return FORMATS[kind].writer_of_two()(*both, stage)
-    result = read_result(Path(folder))
+    return export_stored(read_result(Path(folder)), kind, out, overwrite=overwrite)
+
+
+def export_stored(result: StoredResult, kind: str, out: Path | str, *, overwrite: bool = False) -> str:
+    """Writes a result in another format into the folder `out`, as `export_result` does."""
     with staged_folder(Path(out), overwrite=overwrite) as stage:
         return FORMATS[kind].writer()(result, stage)
+
+
+def export_set(
+    folder: Path | str, kind: str, out: Path | str, *, overwrite: bool = False
+) -> Iterator[tuple[Path, str]]:
+    """Writes every sequence of a labelled set into a folder of its own below `out`, and gives each with what it holds.
+
+    Raises InputError for a format that needs raw samples, which a set does not keep, and for what is no set.
+    """
+    if FORMATS[kind].needs_samples:
+        raise InputError(f"{kind} needs raw samples, which a labelled set does not keep; generate results with --bin")
+    for name, result in results_of_set(Path(folder)):
+        yield Path(out) / name, export_stored(result, kind, Path(out) / name, overwrite=overwrite)
 
 
 def is_of_two_radars(folder: Path, kind: str) -> bool:
