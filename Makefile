@@ -50,6 +50,7 @@ bench: $(STAMP)
 	$(BIN)/python benchmarks/studio.py
 	$(BIN)/python benchmarks/devices.py
 	$(BIN)/python benchmarks/dataset.py
+	$(BIN)/python benchmarks/radar_dataset.py
 	$(BIN)/python benchmarks/checksums.py
 
 faults: $(STAMP)  ## kills, full disks and failed writes at every event of every command that writes; an hour or more

@@ -45,6 +45,7 @@ from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
+from mmweaver.scene.photo.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.read_photo import classes_of, read_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
@@ -156,14 +157,16 @@ class Weaver:
     def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None, **seen: Any) -> Room:
         """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
 
-        Or of a scan by Stray Scanner, Polycam (raw data), ScanNet or TUM RGB-D.
+        Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a RealSense's .bag.
 
         `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `seen`:
         `classes`, `segmenter` and `sam` as in `read_room`.
         """
         stages = Stages(self._listener)
         with stages("read the photo"):
-            if scan_kind(Path(capture)) is not None and rgb is None:
+            if is_bag(Path(capture)) and rgb is None:
+                found = read_bag_photo(Path(capture), photo)
+            elif scan_kind(Path(capture)) is not None and rgb is None:
                 found = read_scan_photo(Path(capture), photo)
             else:
                 found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))

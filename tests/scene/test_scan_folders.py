@@ -64,6 +64,19 @@ def polycam(folder: Path, clockwise: int = 0) -> None:
     place.write_text(json.dumps({"fx": fx, "fy": fy, "cx": cx, "cy": cy, **up}))
 
 
+def record3d(folder: Path, clockwise: int = 0) -> None:
+    """An unpacked .r3d, its depth in stored blocks of LZFSE; portrait photos are upright in it."""
+    assert clockwise == 0
+    rgb, depth_m, (fx, fy, cx, cy) = lying(0)
+    save(folder / "rgbd" / "0.jpg", rgb)
+    raw = depth_m.astype("<f4").tobytes()
+    blocks = [raw[:1000], raw[1000:]]
+    stored = b"".join(b"bvx-" + len(one).to_bytes(4, "little") + one for one in blocks) + b"bvx$"
+    (folder / "rgbd" / "0.depth").write_bytes(stored)
+    size = {"w": rgb.shape[1], "h": rgb.shape[0], "dw": depth_m.shape[1], "dh": depth_m.shape[0]}
+    (folder / "metadata").write_text(json.dumps({**size, "K": [fx, 0, 0, 0, fy, 0, cx, cy, 1], "fps": 60}))
+
+
 def scannet(folder: Path, clockwise: int = 0) -> None:
     rgb, depth_m, (fx, fy, cx, cy) = lying(clockwise)
     save(folder / "color" / "0.jpg", rgb)
@@ -97,6 +110,22 @@ def test_a_scan_is_the_upright_photo(write: Callable[[Path, int], None], clockwi
     assert_same_depth(found, depth_m)
     step = found.rgb.shape[0] // rgb.shape[0]
     assert np.abs(found.rgb[::step, ::step].astype(int) - rgb).mean() < 8
+
+
+def test_record3d_is_read_as_it_was_shown(tmp_path: Path):
+    record3d(tmp_path)
+    _, depth_m, numbers = lying(0)
+    assert scan_kind(tmp_path) == "Record3D"
+    read = read_scan_photo(tmp_path)
+    camera = resized(read.photo.intrinsics, *SIZE)
+    assert (camera.fx, camera.fy, camera.cx, camera.cy) == pytest.approx(numbers, abs=0.01)
+    assert_same_depth(read.photo, depth_m)
+    depth = tmp_path / "rgbd" / "0.depth"
+    whole = depth.read_bytes()
+    for damaged, says in ((whole[:500], "no LZFSE file"), (b"bvx-\4\0\0\0abcdbvx$", "4 bytes"), (b"", "no LZFSE")):
+        depth.write_bytes(damaged)
+        with pytest.raises(InputError, match=says):
+            read_scan_photo(tmp_path)
 
 
 def test_tum_has_its_unit_and_camera(tmp_path: Path):

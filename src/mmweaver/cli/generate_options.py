@@ -96,10 +96,10 @@ def _add_input_options(room: Options) -> None:
         " and ahead of the radar, for example door=0.9,2.8"),
     )  # fmt: skip
     room.add_argument(
-        "--capture", type=Path, metavar="DIR",
+        "--capture", type=Path, metavar="DIR|BAG",
         help=Rare(
-            "instead of --rgb: a folder with photos and depth: mmwave-capture-std (a RealSense), Stray Scanner, Polycam"
-            " (raw data), ScanNet or TUM RGB-D"
+            "instead of --rgb: a folder with photos and depth: mmwave-capture-std (a RealSense), Stray Scanner,"
+            " Record3D, Polycam (raw data), ScanNet or TUM RGB-D; or a RealSense's .bag"
         ),
     )  # fmt: skip
     room.add_argument(

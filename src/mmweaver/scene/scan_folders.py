@@ -1,4 +1,4 @@
-"""One photo with depth of a scan: folders of Stray Scanner, Polycam (raw data), ScanNet and TUM RGB-D.
+"""One photo with depth of a scan: folders of Stray Scanner, Record3D, Polycam (raw data), ScanNet and TUM RGB-D.
 
 The depth of phones is coarse; colours are resampled to it as `read_photo` does. Phones store pictures as the sensor
 lies; the recorded pose says which side is up, and the photo is rotated upright.
@@ -16,6 +16,7 @@ from mmweaver.core.safe_files.safe_text import read_json, read_text
 from mmweaver.core.shapes import DepthPixels, RgbPixels
 from mmweaver.geometry.pinhole import resized, rotated_clockwise
 from mmweaver.scene.photo.capture_photo import CapturedPhoto
+from mmweaver.scene.photo.lzfse import read_lzfse
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb
 from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
 from mmweaver.scene.photo.video_frame import read_video_frame
@@ -50,6 +51,8 @@ def scan_kind(folder: Path) -> str | None:
     """
     if (folder / "camera_matrix.csv").is_file() and (folder / "depth").is_dir():
         return "Stray Scanner"
+    if (folder / "metadata").is_file() and (folder / "rgbd").is_dir():
+        return "Record3D"
     if (folder / "keyframes" / "depth").is_dir():
         return "Polycam"
     if (folder / "intrinsic").is_dir() and (folder / "color").is_dir() and (folder / "depth").is_dir():
@@ -66,7 +69,7 @@ def read_scan_photo(folder: Path, index: int = 0) -> CapturedPhoto:
     """
     kind = scan_kind(folder)
     if kind is None:
-        raise InputError(f"{folder} is no scan of Stray Scanner, Polycam (raw data), ScanNet or TUM RGB-D")
+        raise InputError(f"{folder} is no scan of Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D")
     frame = _READERS[kind](folder, index)
     rgb, depth_m, camera = _upright(frame)
     depth_m, fill_notes = fill_scattered_holes(depth_m)
@@ -95,6 +98,29 @@ def _stray(folder: Path, index: int) -> _Frame:
     camera = _camera(matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2], rgb)
     files = {"rgb": video, "depth": depth}
     return _Frame(rgb=rgb, depth_m=read_depth(depth, MILLIMETRE)[0], camera=camera, up=up, files=files, notes=notes)
+
+
+def _record3d(folder: Path, index: int) -> _Frame:
+    """An unpacked .r3d: metadata (JSON: w, h, dw, dh, K by columns), rgbd/0.jpg, rgbd/0.depth (float32 metres, LZFSE).
+
+    Pictures are stored as the app shows them, upright.
+    """
+    colour = _chosen(folder / "rgbd", index, ".jpg")
+    depth = colour.with_suffix(".depth")
+    said, rgb = read_json(folder / "metadata"), read_rgb(colour)[0]
+    try:
+        fx, fy, cx, cy = (float(said["K"][at]) for at in (0, 4, 6, 7))
+        width, height = int(said["w"]), int(said["h"])
+        columns, rows = int(said.get("dw", 192)), int(said.get("dh", 256))
+    except (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError):
+        raise InputError(f"{folder / 'metadata'} lacks w, h or the camera K") from None
+    if not (16 <= rows <= 4000 and 16 <= columns <= 4000) or rgb.shape[:2] != (height, width):
+        raise InputError(f"{folder / 'metadata'} has other sizes than its pictures; export the scan again")
+    depth_m = np.frombuffer(read_lzfse(depth, 4 * rows * columns), "<f4").reshape(rows, columns).astype(np.float64)
+    depth_m = np.where(np.isfinite(depth_m) & (depth_m > 0), depth_m, np.nan)
+    files = {"rgb": colour, "depth": depth, "camera": folder / "metadata"}
+    notes = ("Record3D's picture was taken as upright, as the app shows it.",)
+    return _Frame(rgb=rgb, depth_m=depth_m, camera=_camera(fx, fy, cx, cy, rgb), files=files, notes=notes)
 
 
 def _polycam(folder: Path, index: int) -> _Frame:
@@ -150,7 +176,7 @@ def _tum(folder: Path, index: int) -> _Frame:
     )  # fmt: skip
 
 
-_READERS = {"Stray Scanner": _stray, "Polycam": _polycam, "ScanNet": _scannet, "TUM RGB-D": _tum}
+_READERS = {"Stray Scanner": _stray, "Record3D": _record3d, "Polycam": _polycam, "ScanNet": _scannet, "TUM RGB-D": _tum}
 
 
 def _chosen(folder: Path, index: int, *endings: str) -> Path:

@@ -104,7 +104,7 @@ def read_capture_photo(path: Path | str, index: int = 0, rgb: Path | None = None
     depth_m = np.where(raw > 0, raw * float(unit_m), np.nan)
     if not np.isfinite(depth_m).any():
         raise InputError(f"{folder / DEPTH}: photo {index} has no depth at all; choose another (--photo)")
-    colours = _coloured(depth_m, intrinsics, pixels, colour_intrinsics)
+    colours = coloured(depth_m, intrinsics, pixels, colour_intrinsics)
     if rotated:
         depth_m, colours = np.rot90(depth_m, -1).copy(), np.rot90(colours, -1).copy()
         intrinsics = rotated_clockwise(intrinsics)
@@ -121,7 +121,7 @@ def _assumptions(index: int) -> tuple[str, ...]:
     )
 
 
-def _coloured(
+def coloured(
     depth_m: DepthPixels,
     intrinsics: CameraIntrinsics,
     rgb: UInt8[Array, "rows columns 3"],
