@@ -45,8 +45,8 @@ from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
 from mmweaver.scene.photo.capture_photo import read_capture_photo
 from mmweaver.scene.photo.estimated_depth import scale_note
-from mmweaver.scene.photo.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.read_photo import classes_of, read_photo
+from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.reconstruction import reconstruct
 from mmweaver.scene.sample_photo import sample_photo
 from mmweaver.scene.scan_folders import read_scan_photo, scan_kind

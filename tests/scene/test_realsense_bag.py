@@ -9,7 +9,7 @@ from PIL import Image
 from mmweaver.core.errors import InputError
 from mmweaver.generate import Weaver
 from mmweaver.geometry.pinhole import resized
-from mmweaver.scene.photo.realsense_bag import is_bag, read_bag_photo
+from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
 from mmweaver.scene.sample_photo import sample_photo
 
 pytest.importorskip("rosbags")
