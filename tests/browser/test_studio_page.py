@@ -365,12 +365,13 @@ def test_the_keyboard_moves_the_start_and_walks_a_path(page: Any):
 
 def test_hovering_the_body_marks_its_cells(page: Any):
     ask(page, "a person waves")
-    page.evaluate("studio.player.seek(5)")
+    page.evaluate("studio.player.seek(5), studio.player.scene.draw()")  # at once, for the ray that finds the body
     x, y = page.evaluate("""(() => { const p = studio.result.joint(0, 5, 0), v = studio.player.scene;
         const c = v.camera.position.clone().set(p[0], p[1], p[2]).project(v.camera);
         const box = v.renderer.domElement.getBoundingClientRect();
         return [box.left + (c.x + 1) / 2 * box.width, box.top + (1 - c.y) / 2 * box.height]; })()""")
     page.mouse.move(x, y)
+    page.wait_for_function("studio.player.panel('range_doppler').marks.length")
     marks = page.evaluate("studio.player.panel('range_doppler').marks")
     near, far = marks[0]["y"]
     pelvis_m = page.evaluate("Math.hypot(...studio.result.joint(0, 5, 0))")
