@@ -3,6 +3,8 @@
 import importlib.util
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -165,3 +167,12 @@ def test_two_radars_at_a_right_angle_as_hupr_has_them(result_folder: Path, tmp_p
     assert (tmp_path / "mmmesh" / "radar_2" / "points").is_dir()
     with pytest.raises(InputError, match="rolled by 90"):
         export_result(two_radars("level", 0.0), "hupr", tmp_path / "none")
+
+
+def test_rerun(result_folder: Path, tmp_path: Path):
+    has("rerun")
+    export_result(result_folder, "rerun", tmp_path / "out")
+    command = [sys.executable, "-m", "rerun_cli", "rrd", "verify", str(tmp_path / "out" / "result.rrd")]
+    found = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert found.returncode == 0, found.stderr
+    assert "without error" in found.stdout + found.stderr
