@@ -44,6 +44,7 @@ COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "cssim"
 BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
 ROOM_PIXELS = 64  # of RF-Genesis with a room: every pixel of it is an echo
 CLUTTER = ("low", "medium", "high")
+LEAST_ROOMS_BY_CLUTTER = 12
 CLUTTER_ROWS = ("zeros", "weaver", "physics_in_photographed_room", "realization")
 Scores = dict[str, dict[str, float]]
 
@@ -140,6 +141,9 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     settings = {"weights": card.__dict__, "data_plan": plan}
     rows = [_row(name, each, names) for name in each[0]]
     run.write("peer_scores", options.split, config=settings, rows=_complete(rows, options.data))
+    if len(cases) < LEAST_ROOMS_BY_CLUTTER:
+        print(f"no groups by clutter, for they need {LEAST_ROOMS_BY_CLUTTER} rooms")
+        return
     clutter = np.array([clutter_of(case) for case in cases])
     rows = [row for level in CLUTTER for row in _clutter_rows(level, clutter, each, names, options.data)]
     run.write("peer_scores", "clutter", config=settings, rows=rows)

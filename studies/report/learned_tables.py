@@ -33,6 +33,26 @@ SUMMARY = RowTable(
         ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"),
     ),
 )  # fmt: skip
+PEERS = RowTable(
+    sources=("peer_scores/test_room",),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "generic_room_physics": "our physics in some other room (baseline)",
+        "rf_genesis_as_released": "RF-Genesis, as released",
+        "rf_genesis_repaired_body": "RF-Genesis, repaired, body alone",
+        "rf_genesis_repaired_generic_room": "RF-Genesis, repaired, some other room",
+        "rf_genesis_repaired_photographed_room": "RF-Genesis, repaired, our photographed room",
+        "weaver": "our network, from the photo",
+        "physics_in_photographed_room": "our physics, from the photo",
+        "realization": "the true room, random phases (oracle)",
+    },
+    columns=(
+        ("made by", "{label}"), ("rooms", "{n}"), ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
+        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
+        ("PSNR, dB", "{metrics.psnr_db:fixed.1}"), ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"),
+        ("CPU, s", "{metrics.cpu_s:fixed.1}"),
+    ),
+)  # fmt: skip
 UNSEEN_METHODS = (
     "nearest_training_pose", "weaver", "weaver_with_background", "physics_in_photographed_room", "realization",
 )  # fmt: skip
@@ -131,6 +151,7 @@ COST = MatrixTable(
     ),
 )  # fmt: skip
 LEARNED = {
+    "peer_scores": PEERS,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN, "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
