@@ -183,7 +183,8 @@ def room_rows(each_room: dict[str, Units]) -> dict[str, Any]:
         within = int(((values >= low) & (values <= high)).sum())
         each = [round(float(one), 2) if np.isfinite(one) else None for one in values]
         metrics[name] = {
-            "value": _middle(values), "unit": "see mmweaver compare", "rooms": each, "within": within,
+            "value": _middle(values), "unit": FEATURES[names.index(name)].unit, "rooms": each, "within": within,
+            "definition": FEATURES[names.index(name)].definition,
             "recorded": [low, high], "baseline": {"recorded_middle": (low + high) / 2},
         }  # fmt: skip
     return metrics
