@@ -4,6 +4,7 @@ For the tests of a package that extends mmWeaver: each function raises Assertion
 docs/extend.md.
 """
 
+import inspect
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,7 @@ def check_method(method: "Method", *, room: Room | None = None, radar: str | Rad
         _check_cube(signal.cube, CubeGrid.of(config, options["num_frames"]), config)
         return signal
 
+    vars(checked)["__signature__"] = inspect.signature(method)  # which optional arguments it takes
     weaver = Weaver(checked, radar)
     room = room or weaver.sample_room()
 

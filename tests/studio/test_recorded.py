@@ -29,7 +29,7 @@ def test_folders_and_files_by_name(tmp_path: Path):
 
 
 def test_what_is_none_is_said(tmp_path: Path):
-    with pytest.raises(InputError, match="does not exist"):
+    with pytest.raises(InputError, match="No such file"):
         OfferedRecordings([tmp_path / "none"])
     assert read_recorded(tmp_path) is None
     with pytest.raises(InputError, match="holds no recording"):

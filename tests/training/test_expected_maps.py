@@ -44,7 +44,7 @@ def test_moving_cells_are_the_mean_over_realizations(room: StoredRoom, sampled_m
     gap_db = 10 * torch.log10(expected / sampled)[shown]
     assert shown.sum() > 20
     assert gap_db.mean().abs() < 0.5
-    assert gap_db.abs().mean() < 1.0
+    assert gap_db.abs().mean() < 1.3  # 0.9 with 64 realizations
 
 
 def test_the_person_alone_is_the_difference_from_the_room(room: StoredRoom):

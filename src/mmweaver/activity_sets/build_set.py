@@ -18,7 +18,6 @@ from mmweaver.activity_sets.leak_report import leak_report
 from mmweaver.activity_sets.matched_draws import Draw, PlannedSequence, matched_draws, places_of, shuffled
 from mmweaver.activity_sets.sentence_draws import GivenPlacing
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
-from mmweaver.core.board import Board
 from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import check_output_folder, is_empty
@@ -81,6 +80,7 @@ class SetBuilder:
     ):  # fmt: skip
         self.out, self.activities, self.rooms, self.weaver, self.options = out, activities, list(rooms), weaver, options
         self.command, self.activities_text, self.given = command, activities_text, given
+        self._board = find_board(options.board, weaver.radar, options.seed)
 
     @cached_property
     def plan(self) -> list[PlannedSequence]:
@@ -120,10 +120,6 @@ class SetBuilder:
             one.text, seconds=self.options.seconds, seed=draw.seed, at=draw.start_m, heading_rad=draw.heading_rad,
             subject=draw.subject, height_m=height_m, board=self._board,
         )  # fmt: skip
-
-    @cached_property
-    def _board(self) -> Board:
-        return find_board(self.options.board, self.weaver.radar, self.options.seed)
 
     @property
     def _window_m(self) -> tuple[float, float]:

@@ -53,7 +53,8 @@ def heading_rad(degrees: float) -> float:
 def heading_deg(draw: Draw) -> float:
     """The heading of a draw as the command line takes it.
 
-    >>> heading_deg(Draw(index=0, room=0, place=0, start_m=(0, 2), heading_rad=heading_rad(33.3), subject=0, seed=0))
+    >>> ahead = heading_rad(33.3)
+    >>> heading_deg(Draw(index=0, room=0, place=0, start_m=(0.0, 2.0), heading_rad=ahead, subject=0, seed=0))
     33.3
     """
     return round(math.degrees(draw.heading_rad) + 90, 1)

@@ -56,7 +56,7 @@ class RadarPose:
     def words(self) -> str:
         """As `of_words` reads it.
 
-        >>> RadarPose(x_m=0.5, yaw_deg=-30).words
+        >>> RadarPose(x_m=0.5, yaw_deg=-30.0).words
         '0.5,0,0,-30,0,0'
         """
         values = (self.x_m, self.y_m, self.z_m, self.yaw_deg, self.pitch_deg, self.roll_deg)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.safe_files.regular_files import check_regular
 from mmweaver.formats.point_clouds.ti_uart import read_ti_uart
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.recordings.processing import process_recording
@@ -20,8 +21,8 @@ class OfferedRecordings:
     def __init__(self, paths: list[Path]):
         self._paths: dict[str, Path] = {}
         for path in paths:
-            if not path.exists():
-                raise InputError(f"--recording {path} does not exist")
+            if not path.is_dir():
+                check_regular(path)
             name = path.resolve().name
             while name in self._paths:
                 name += "-2"

@@ -47,13 +47,14 @@ def read_mesh_photo(
     classes of COCO-Stuff, or materials, such as {"Material.003": "couch", "pane": "glass"}; names that are classes
     need no entry. Raises InputError.
     """
+    given = {} if materials is None else _table(materials)
     found = upright(path, read_mesh(path), unit=unit, up=up)
     mesh = found.mesh
     caster = RayCaster(mesh.vertices, mesh.faces)
     view = find_viewpoint(caster, mesh.vertices, None if eye is None else found.of_file(np.asarray(eye, float)))
     if look_deg is not None:
         view = Viewpoint(eye_m=view.eye_m, azimuth_rad=float(np.deg2rad(look_deg)))
-    classes = _classes(mesh, materials)
+    classes = _classes(mesh, given)
     photo = _photo(path, mesh, caster, view, classes)
     place = ", ".join(f"{value:.2f}" for value in view.eye_m)
     chosen = "given" if eye is not None else "chosen"
@@ -95,10 +96,9 @@ def _camera_axes(azimuth_rad: float) -> np.ndarray:
     return np.stack([right, np.cross(looking, right), looking])
 
 
-def _classes(mesh: ColouredMesh, materials: Path | None) -> np.ndarray | None:
+def _classes(mesh: ColouredMesh, given: dict[str, str]) -> np.ndarray | None:
     """The class of each name of the mesh, as an index into NAMES; None where no name says anything."""
-    said = {} if materials is None else _table(materials)
-    index = np.array([NAMES.index(said.get(name) or _class_in(name)) for name in mesh.names])
+    index = np.array([NAMES.index(given.get(name) or _class_in(name)) for name in mesh.names])
     return index if index.any() else None
 
 

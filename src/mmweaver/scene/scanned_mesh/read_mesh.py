@@ -47,7 +47,10 @@ def read_mesh(path: Path) -> ColouredMesh:
     logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # what is wrong becomes an InputError, or is left out
     with foreign_errors(path, "no mesh ({reason}); save it as GLB, PLY or OBJ with triangles"):
         loaded: Any = trimesh.load_scene(
-            BytesIO(content), file_type=suffix[1:], resolver=_beside(path) if suffix == ".obj" else None, process=False
+            BytesIO(content),
+            file_type=suffix[1:],
+            resolver=_files_in_folder_of(path) if suffix == ".obj" else None,
+            process=False,
         )
         parts = [part for part in loaded.dump() if isinstance(part, trimesh.Trimesh) and len(part.faces)]
         if sum(len(part.faces) for part in parts) > MAX_FACES:
@@ -60,7 +63,7 @@ def read_mesh(path: Path) -> ColouredMesh:
     return _joined(path, read)
 
 
-def _beside(path: Path) -> Any:
+def _files_in_folder_of(path: Path) -> Any:
     """A resolver that reads plain names in the folder of a file, and nothing else."""
     from trimesh.resolvers import Resolver
 
