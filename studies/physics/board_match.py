@@ -22,11 +22,12 @@ from mmweaver.comparison.signal_evidence import ComparedSignal, SignalEvidence
 from mmweaver.core.board import Board
 from mmweaver.core.boards import IDEAL_BOARD, typical_board
 from mmweaver.core.presets import BGT60
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.raw_npy import read_adc_npy
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.scene.sample_photo import sample_scene
+from studies.fields.field_signals import sample_scene
 from studies.manifest import StudyRun
 from studies.physics.signal_statistics import recorded_hall, recorded_people
 from studies.result_rows import complete_rows
@@ -70,14 +71,17 @@ def features_of(adc: AdcCube) -> dict[str, float]:
     return {name: float(one.spread.median) for name, one in found.items() if one.spread is not None}
 
 
+def whole_band(config: RadarConfig) -> RadarConfig:
+    """The radar with all its range bins, and a transmit power where the recording's is unknown."""
+    return replace(
+        config, first_range_bin=0, num_range_bins=config.num_unambiguous_range_bins, tx_power_dbm=12.0
+    )  # fmt: skip
+
+
 def simulated(like: AdcCube, board: Board, seed: int) -> AdcCube:
     """The empty sample room, recorded by a radar and board of this kind."""
-    config = like.config
-    whole = replace(
-        config, first_range_bin=0, num_range_bins=config.num_unambiguous_range_bins, tx_power_dbm=12.0,
-    )  # fmt: skip
     frames = min(len(like.samples), MOST_FRAMES)
-    return Simulator(sample_scene(), whole, board=board).run((), num_frames=frames, seed=seed).adc
+    return Simulator(sample_scene(), whole_band(like.config), board=board).run((), num_frames=frames, seed=seed).adc
 
 
 def rows_of(name: str, adc: AdcCube) -> list[dict[str, Any]]:
@@ -93,8 +97,8 @@ def rows_of(name: str, adc: AdcCube) -> list[dict[str, Any]]:
         **{key: value for key, value in features_of(adc).items() if key in OF_FIRST_CHIRP},
     }
     ideal, own = (features_of(simulated(adc, one, 0)) for one in (IDEAL_BOARD, board))
-    config = simulated(adc, IDEAL_BOARD, 0).config
-    typical = [features_of(simulated(adc, typical_board(config, number), number)) for number in range(TYPICAL_BOARDS)]
+    boards = [typical_board(whole_band(adc.config), number) for number in range(TYPICAL_BOARDS)]
+    typical = [features_of(simulated(adc, one, number)) for number, one in enumerate(boards)]
     rows = []
     for feature in (feature for feature in FEATURES if feature in recorded and feature in own):
         middle = [one[feature] for one in typical if feature in one]
