@@ -19,7 +19,7 @@ from mmweaver.paths.cube_rendering import CubeRenderer
 
 MIDDLE = (0.3, 0.8)  # shares of the band that are passed alike
 NEAREST_NOISE_BIN = 2  # nearer ones hold the leakage and the converter's offset
-NARROW_BINS, NUM_WIDE, LAST_SHARE = 12, 24, 0.9  # knots: each near bin; wide ones; every hundredth of the last tenth
+NARROW_BINS, NUM_WIDE, NUM_END, LAST_SHARE = 12, 24, 25, 0.9  # knots: each near bin, wide ones, those of the last tenth
 SKIRT_LIMIT_M, LEAKAGE_M = 1.5, 0.15
 OVER_NOISE, OVER_LOWEST = 2.0, 10.0  # where a skirt ends; what is an echo of the room
 SMALLEST_SHARE = 1e-3  # of the largest singular value: less of a tap is noise
@@ -69,7 +69,7 @@ def _knot_edges(count: int) -> list[tuple[int, int]]:
     """Range bins (first, behind last) of each knot."""
     near = [(at, at + 1) for at in range(NEAREST_NOISE_BIN, min(NARROW_BINS, count))]
     wide = np.unique(np.linspace(min(NARROW_BINS, count), LAST_SHARE * count, NUM_WIDE + 1).astype(int))
-    end = np.unique(np.linspace(wide[-1], count, 11).astype(int))
+    end = np.unique(np.linspace(wide[-1], count, NUM_END + 1).astype(int))
     return near + [(int(low), int(high)) for part in (wide, end) for low, high in pairwise(part)]
 
 

@@ -132,6 +132,7 @@ def _leakage(
     fall_db = (level_db + whole_frame_db) * taps / max(end_m, step_m)
     shape = (len(taps), config.num_tx, config.num_rx)
     pairs_db = rng.normal(0, LEAKAGE_PAIRS_DB, shape[1:])
+    pairs_db -= 10 * np.log10((10 ** (pairs_db / 10)).mean())
     levels = a_chirp_dbm - config.tx_power_dbm + level_db - fall_db[:, None, None] + pairs_db
     levels = levels + np.where(taps > 0, -6.0, 0.0)[:, None, None]  # the skirt is of echoes of its own
     return taps, levels, rng.uniform(-180, 180, shape)
