@@ -76,6 +76,16 @@ CODEC_LIMITS = PivotTable(
     sources=("codec_limits/*",), rows=(("signal", "{dataset.name}"), ("bytes", "{size.bytes_allowed:,}")),
     across="{record.method}", cell_template="{metrics.nmse_active_db:number} / {metrics.nmse_db:number}",
 )  # fmt: skip
+BOARD_MATCH = RowTable(
+    sources=("board_match/openradar_two_people", "board_match/iwr6843_dca1000", "board_match/bgt60_breathing"),
+    columns=(
+        ("recording", "{dataset.name}"), ("feature", "{title}"),
+        ("recorded", "{metrics.feature.oracle.recorded:number}"),
+        ("ideal board (baseline)", "{metrics.feature.baseline.ideal:number}"),
+        ("typical boards (baseline)", "{metrics.feature.baseline.typical:number}"),
+        ("calibrated board", "{metrics.feature:number}"),
+    ),
+)  # fmt: skip
 LOSSLESS = RowTable(
     sources=("lossless_codecs/*",),
     columns=(("recording", "{dataset.name}"), ("codec", "{record.method}"), ("bytes", "{size.bytes:,}"),
@@ -334,6 +344,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "codecs": codecs_table, "codec_margins": codec_margins_table, "codec_cuts": codec_cuts_table,
     "codec_cuts_seconds": CODEC_CUTS_SECONDS.render, "lossless_codecs": LOSSLESS.render,
     "codec_limits": CODEC_LIMITS.render,
+    "board_match": BOARD_MATCH.render,
     "codec_seconds": CODEC_SECONDS.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
