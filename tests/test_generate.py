@@ -2,12 +2,14 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import mmweaver
+from mmweaver.core.board import Board
 from mmweaver.core.errors import InputError
 from mmweaver.core.presets import AWR1843
 from mmweaver.core.records import AdcCube, CubeGrid, PoseSequence, RadarCube, Scene
@@ -300,3 +302,18 @@ def test_a_background_recording_is_of_one_radar(weaver: Weaver, room: Room, walk
     poses = [mmweaver.RadarPose(), mmweaver.RadarPose(x_m=1.0)]
     with pytest.raises(InputError, match="one radar pose"):
         weaver.generate(known, TEXT, frames=2, radar_poses=poses)
+
+
+def test_the_person_has_the_errors_of_the_background_recording(room: Room):
+    """Of a recording that shows them: a furnished room of many static cells, by a board with large errors."""
+    config = replace(AWR1843, name="whole", first_range_bin=0, num_range_bins=256)
+    own = Board(channel_gain_db=np.zeros((3, 4)), channel_phase_deg=np.array([[0, 60, -50, 0]] * 3, float))
+    recording = radar_cube(Simulator(room.scene, config, board=own).run((), num_frames=4, seed=1).adc)
+    weaver, known = Weaver(radar=config), room.with_background(recording)
+    board, given = weaver.board_of(weaver.request(TEXT, frames=2), known)
+    assert given == {"board": board}
+    assert board.name == "of the background recording"
+    assert not board.leakage_range_m.size
+    found = board.channel_phase_deg.mean(axis=0)
+    assert found[1] - found[2] == pytest.approx(110, abs=25)
+    assert weaver.board_of(weaver.request(TEXT, frames=2, board="ideal"), known)[0].is_ideal

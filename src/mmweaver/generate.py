@@ -23,7 +23,7 @@ from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
-from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
+from mmweaver.core.records import PoseSequence, RadarCube, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
@@ -110,6 +110,7 @@ class Weaver:
         is_named = not isinstance(radar, RadarConfig)
         self.calibration = read_ti_calibration(str(radar)) if calibration is None and is_named else calibration
         self._listener = listener
+        self._calibrated: tuple[RadarCube, Board] | None = None  # of the latest background recording
         check_points(points, self.radar)
         self.points = points
         if points == "firmware" and firmware is None:
@@ -276,13 +277,9 @@ class Weaver:
         y away from the radar) in metres, chosen if not given; for several texts a list of such places. People keep
         half a metre apart. `keep_adc` also returns the raw samples, which take several times the cube's memory; the
         cube is the same without. `board`, whose errors the signal has: "typical" (sampled by the
-        seed; the default without a background), "typical:N", "ideal", a board.json or a `Board` (docs/board.md); for
-        another board the room is prepared anew. The same seed gives the same bits. Raises InputError for a request that
-        cannot be met.
-
-        `radar_poses`: radars that do not stand at the camera, or several that record the same room and motion at the
-        same time. The result is that of the first, and its `radars` are all of them; every position in a result is in
-        the frame of its own radar. Places asked for stay the camera's. Only physics makes such signals.
+        seed; the default, but with a background the one that recorded it), "typical:N", "ideal", a board.json or a
+        `Board` (docs/board.md); for another board the room is prepared anew. The same seed gives the same bits. Raises
+        InputError for a request that cannot be met.
         """
         request = self.request(
             text, motion=motion, frames=frames, seconds=seconds, fps=fps, seed=seed, at=at,
@@ -389,7 +386,10 @@ class Weaver:
         What the radar's own .cfg compensates is no error of the signal. Raises InputError for a method that knows no
         boards, where one was asked for.
         """
-        board = request.board_with(room.background)
+        if request.board is None and room.background is not None:
+            board = self._board_of_background(room.background)
+        else:
+            board = request.board_without_background
         if request.board is None and self.calibration is not None:
             board = compensated(board)
         if board.is_ideal:
@@ -399,6 +399,19 @@ class Weaver:
         if request.board is not None:
             raise InputError(f"method {self.method_name!r} makes signals of an ideal board alone (docs/extend.md)")
         return IDEAL_BOARD, {}
+
+    def _board_of_background(self, background: RadarCube) -> Board:
+        """The board that made a background recording, as far as that shows it; its leakage and noise are in it."""
+        if self._calibrated is None or self._calibrated[0] is not background:
+            from mmweaver.calibration.calibrate import calibrate
+
+            found = calibrate(background, name="of the background recording").board
+            none = np.zeros(0)
+            bare = replace(
+                found, noise_figure_db=None, leakage_range_m=none, leakage_level_db=none, leakage_phase_deg=none
+            )
+            self._calibrated = background, bare
+        return self._calibrated[1]
 
     def _meta(
         self, request: Request, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...],

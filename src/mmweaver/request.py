@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from mmweaver.core.board import Board
-from mmweaver.core.boards import IDEAL_BOARD, find_board
+from mmweaver.core.boards import find_board
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import RadarPose, check_poses
@@ -53,7 +53,7 @@ class Request:
     heading_rad: float | None = None  # where the first person's body faces first, from +x towards +y
     as_recorded: bool = False  # the recorded positions are kept
     keep_adc: bool = False
-    board: Board | None = None  # None: a typical one of this seed, or with a background recording an ideal one
+    board: Board | None = None  # None: a typical one of this seed, or that of a background recording
     radar_poses: tuple[RadarPose, ...] = ()  # none: one radar at the camera
 
     @property
@@ -66,11 +66,10 @@ class Request:
         near_m, far_m = float(self.config.range_m[0]), float(self.config.range_m[-1])
         return max(near_m, min(NEAREST_PERSON_M, far_m / 2)), far_m
 
-    def board_with(self, background: object | None) -> Board:
-        """The board that makes the signal."""
-        if self.board is not None:
-            return self.board
-        return find_board("typical", self.config, self.seed) if background is None else IDEAL_BOARD
+    @property
+    def board_without_background(self) -> Board:
+        """The board that makes the signal in a room without a background recording."""
+        return find_board("typical", self.config, self.seed) if self.board is None else self.board
 
     @property
     def text(self) -> str | list[str]:

@@ -18,7 +18,7 @@ NEAREST_M = 0.6  # leakage and its skirt lie nearer
 OVER_NOISE = 100.0  # of a strong cell
 FEWEST_CELLS, BLOCKS, ROUNDS = 16, 8, 30
 SINES, HEIGHTS = np.linspace(-0.85, 0.85, 69), np.linspace(-0.4, 0.4, 13)
-SEEN_OVER_ERROR = 1.4  # rms of what was found over that of its error
+SEEN_OVER_ERROR = 2.0  # rms of what was found over that of its error
 
 
 def fit_channels(evidence: Sequence[SignalEvidence]) -> Finding:

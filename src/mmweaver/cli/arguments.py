@@ -252,7 +252,8 @@ def add_board_option(parser: Options) -> None:
     parser.add_argument(
         "--board", type=source, metavar="typical|ideal|FILE",
         help="the board whose errors the signal has: typical, sampled by the seed from the spread of recorded boards"
-        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate",
+        " (default; typical:N is one of them), ideal, or a board.json of mmweaver calibrate; with --background the"
+        " default is the recording's own",
     )  # fmt: skip
 
 

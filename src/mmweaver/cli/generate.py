@@ -178,8 +178,11 @@ def _request_toml(arguments: argparse.Namespace, **instead: Any) -> str:
 
 
 def _board(arguments: argparse.Namespace) -> str | None:
-    """The board by name; a typical one with the number of the seed, the same for all sequences of a run."""
-    name = arguments.board or ("typical" if arguments.background is None else "ideal")
+    """The board by name; a typical one with the number of the seed, the same for all sequences of a run.
+
+    None: that of the background recording.
+    """
+    name = arguments.board or ("typical" if arguments.background is None else None)
     return f"typical:{arguments.seed % 2**31}" if name == "typical" else name
 
 
