@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from mmweaver.calibration.background_board import BackgroundBoard
 from mmweaver.core.board import Board
 from mmweaver.core.boards import IDEAL_BOARD, compensated
 from mmweaver.core.channel_calibration import ChannelCalibration
@@ -23,7 +24,7 @@ from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
-from mmweaver.core.records import PoseSequence, RadarCube, RgbdPhoto, Scene
+from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
@@ -110,7 +111,7 @@ class Weaver:
         is_named = not isinstance(radar, RadarConfig)
         self.calibration = read_ti_calibration(str(radar)) if calibration is None and is_named else calibration
         self._listener = listener
-        self._calibrated: tuple[RadarCube, Board] | None = None  # of the latest background recording
+        self._background_board = BackgroundBoard()
         check_points(points, self.radar)
         self.points = points
         if points == "firmware" and firmware is None:
@@ -387,7 +388,7 @@ class Weaver:
         boards, where one was asked for.
         """
         if request.board is None and room.background is not None:
-            board = self._board_of_background(room.background)
+            board = self._background_board.of(room.background)
         else:
             board = request.board_without_background
         if request.board is None and self.calibration is not None:
@@ -399,19 +400,6 @@ class Weaver:
         if request.board is not None:
             raise InputError(f"method {self.method_name!r} makes signals of an ideal board alone (docs/extend.md)")
         return IDEAL_BOARD, {}
-
-    def _board_of_background(self, background: RadarCube) -> Board:
-        """The board that made a background recording, as far as that shows it; its leakage and noise are in it."""
-        if self._calibrated is None or self._calibrated[0] is not background:
-            from mmweaver.calibration.calibrate import calibrate
-
-            found = calibrate(background, name="of the background recording").board
-            none = np.zeros(0)
-            bare = replace(
-                found, noise_figure_db=None, leakage_range_m=none, leakage_level_db=none, leakage_phase_deg=none
-            )
-            self._calibrated = background, bare
-        return self._calibrated[1]
 
     def _meta(
         self, request: Request, room: Room, people: tuple[Motion, ...], poses: tuple[PoseSequence, ...],
