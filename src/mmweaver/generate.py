@@ -387,10 +387,8 @@ class Weaver:
         What the radar's own .cfg compensates is no error of the signal. Raises InputError for a method that knows no
         boards, where one was asked for.
         """
-        if request.board is None and room.background is not None:
-            board = self._background_board.of(room.background)
-        else:
-            board = request.board_without_background
+        is_of_background = request.board is None and room.background is not None
+        board = self._background_board.of(room.background) if is_of_background else request.board_without_background
         if request.board is None and self.calibration is not None:
             board = compensated(board)
         if board.is_ideal:
