@@ -103,6 +103,7 @@ def test_from_pretrained_refuses_before_any_room_is_read(tmp_path: Path):
         Weaver.from_pretrained(tmp_path)
 
 
+@pytest.mark.slow  # test_capture_training.py finds gain and parameters in this process
 def test_tuning_on_own_captures_is_one_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     torch.manual_seed(0)
     start = tmp_path / "start"

@@ -39,11 +39,21 @@ def drawn_sequences(settings: RecordingSettings, people: int = 6, first: int = 0
     ]
 
 
-def small_recogniser(task_file: Path, options: TrainingOptions = OPTIONS) -> Recogniser:
-    """Trained on `drawn_sequences`."""
+def small_recogniser(task_file: Path) -> Recogniser:
+    """Trained on `drawn_sequences`, once for each text of a task."""
+    text = task_file.read_text()
+    if text not in _trained:
+        _trained[text] = _fitted(task_file)
+    return _trained[text]
+
+
+_trained: dict[str, Recogniser] = {}
+
+
+def _fitted(task_file: Path) -> Recogniser:
     task = read_task(task_file)
-    made = generated_windows(drawn_sequences(task.recordings), task, options)
-    return fitted(made, [], task, options)
+    made = generated_windows(drawn_sequences(task.recordings), task, OPTIONS)
+    return fitted(made, [], task, OPTIONS)
 
 
 def write_recordings(folder: Path, recordings: list[PointRecording]) -> None:

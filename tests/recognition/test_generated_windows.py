@@ -86,6 +86,7 @@ def test_habits_change_one_activity_only():
         replace(RECIPE, habits={"run": {"vigour": (0.0, 1.0)}})
 
 
+@pytest.mark.slow  # test_generated_sequences.py has parts of long performances
 def test_a_window_may_be_any_part_of_a_path():
     """Of a few walkers to and fro, some approach, some recede, at different speeds."""
     activities = {**RECIPE.activities, "walk": ("a person walks back and forth",)}

@@ -28,7 +28,8 @@ def test_the_options_of_a_study_are_reachable(capsys: pytest.CaptureFixture[str]
 def test_list_names_every_study_with_its_question(capsys: pytest.CaptureFixture[str]):
     assert main(["list"]) == 0
     shown = capsys.readouterr().out
-    assert "physics:\n  mars " in shown
+    assert "\nphysics:\n  board_left_out " in shown
+    assert "\n  mars " in shown
     assert "train_paper" in shown
 
 
