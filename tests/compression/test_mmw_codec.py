@@ -37,7 +37,9 @@ def crowd_in(num_bytes: int, *, keep_noise: bool = False) -> bytes:
     return compress_cube(crowd(), num_bytes=num_bytes, keep_noise=keep_noise)
 
 
-@pytest.mark.parametrize("num_bytes", [1500, 4000, 9000])
+@pytest.mark.parametrize(
+    "num_bytes", [4000, pytest.param(1500, marks=pytest.mark.slow), pytest.param(9000, marks=pytest.mark.slow)]
+)
 def test_the_requested_size_is_not_exceeded(num_bytes: int, tmp_path: Path):
     cube, data = crowd(), crowd_in(num_bytes)
     assert 0.97 * num_bytes <= len(data) <= num_bytes
@@ -58,6 +60,7 @@ def test_the_requested_quality_is_met(tmp_path: Path):
     assert -27 < error_db(again.values[active], cube.values[active]) <= -25
 
 
+@pytest.mark.slow  # test_chunk.py has the noise layer of a chunk
 def test_noise_is_kept_on_request(tmp_path: Path):
     """Bytes go to the signal unless noise is requested too; both report their errors."""
     cube = crowd()
@@ -182,7 +185,11 @@ SHAPES = {
 }
 
 
-@pytest.mark.parametrize("name", SHAPES)
+# slow: every second shape
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] if number % 2 else []) for number, name in enumerate(SHAPES)],
+)
 def test_cubes_of_any_shape_use_their_bytes(name: str, tmp_path: Path):
     cube = plain_cube(*SHAPES[name])
     data = compress_cube(cube, num_bytes=1500)
@@ -202,7 +209,14 @@ def test_nearly_empty_cubes_are_kept(name: str, kind: str, tmp_path: Path):
     assert np.abs(read_cube(tmp_path / "a.mmw").values - cube.values).max() < 1e-4
 
 
-@pytest.mark.parametrize("name", ["two loops, 120 frames", "one antenna", "one frame", "one loop, 300 frames"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "two loops, 120 frames",
+        "one frame",
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("one antenna", "one loop, 300 frames")),
+    ],
+)
 def test_cubes_of_any_shape_reach_their_quality(name: str, tmp_path: Path):
     cube = plain_cube(*SHAPES[name])
     (tmp_path / "a.mmw").write_bytes(compress_cube(cube, quality_db=20.0))
@@ -229,6 +243,7 @@ def test_a_file_that_was_cut_short_holds_the_frames_before(long_file: bytes, tmp
     assert facts["cut_short_bytes"] > 0
 
 
+@pytest.mark.slow  # test_cubes_of_any_shape_use_their_bytes has chunks of several modes
 def test_the_mode_follows_the_recording():
     """Four loops under a Hann window are three; a steady scene over many frames is one frame after a DCT."""
     radar = replace(SMALL, num_loops=4, num_range_bins=4)

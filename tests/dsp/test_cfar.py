@@ -41,7 +41,11 @@ def noise_cells() -> np.ndarray:
 
 @pytest.mark.parametrize("cfar", CFARS)
 @pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("cells", [CfarCells(), CfarCells(guard=(2, 2), training=(6, 4))], ids=["wide", "narrow"])
+@pytest.mark.parametrize(
+    "cells",
+    [CfarCells(), pytest.param(CfarCells(guard=(2, 2), training=(6, 4)), marks=pytest.mark.slow)],
+    ids=["wide", "narrow"],
+)
 def test_windowed_noise_of_twelve_antennas_has_the_requested_false_alarm_rate(
     noise_cells, cfar, rate: float, cells: CfarCells
 ):
