@@ -27,6 +27,7 @@ def test_no_damage_is_accepted(geometry_only: bool, request: pytest.FixtureReque
     assert outcomes == {"refused": 3}
 
 
+@pytest.mark.slow  # test_no_damage_is_accepted finds it
 def test_a_damaged_room_is_made_anew(tiny_geometry: Path, tmp_path: Path):
     data = tmp_path / "set"
     shutil.copytree(tiny_geometry, data)

@@ -24,6 +24,7 @@ def rooms(tiny_signals: Path) -> list[RoomExamples]:
     return examples(tiny_signals, "train")
 
 
+@pytest.mark.slow  # test_resuming.py: any training goes on where it stopped
 def test_interrupted_training_equals_an_uninterrupted_one(
     tiny_signals: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
