@@ -8,6 +8,7 @@ import pytest
 from mmweaver.cli.main import main
 
 
+@pytest.mark.slow  # tests/scene/procedural and tests/cli/test_generate.py hold its parts
 def test_rooms_are_written_and_generated_from(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     out = tmp_path / "rooms"
     assert main(["rooms", str(out), "--kinds", "living_room,corridor", "--layouts", "2", "--seed", "1", "--json"]) == 0

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 import torch
 
 from mmweaver.motion.motiongpt.tokenizer import MotionTokenizer, TokenizerConfig
@@ -22,6 +23,7 @@ def error(model: MotionTokenizer) -> float:
         return float((model.decode(model.encode(batch)) - batch).square().mean() / batch.square().mean())
 
 
+@pytest.mark.slow  # test_an_interruption_changes_nothing trains it, too
 def test_it_learns_and_uses_its_codes(tmp_path: Path):
     recipe = TokenizerRecipe(steps=150, batch=8, frames=32, learning_rate=2e-3)
     trained = train_tokenizer(waves(), TINY, recipe, tmp_path / "state.pt")

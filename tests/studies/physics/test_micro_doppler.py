@@ -62,6 +62,7 @@ def test_who_goes_nowhere_faces_the_radar_or_turns_the_back_on_it(walk: Recorded
         assert np.sign(toes[..., 1].mean()) == facing
 
 
+@pytest.mark.slow  # it simulates two walks
 def test_a_walk_is_wider_than_the_same_body_frozen_and_its_cadence_is_found(walk: RecordedMotion):
     shown_by = simulator()
     seen, rigid = (spectrogram(motion, shown_by, 0, is_away=False) for motion in (walk, frozen(walk)))
@@ -74,7 +75,7 @@ def test_a_walk_is_wider_than_the_same_body_frozen_and_its_cadence_is_found(walk
     assert still["spread_mps"] < 0.5 < found["spread_mps"]
 
 
-@pytest.mark.slow  # the test above, of one direction
+@pytest.mark.slow  # the walks of both directions
 def test_figures_are_of_both_directions(walk: RecordedMotion):
     shown_by = simulator()
     found, _ = figures(walk, "walking", shown_by, 0)
