@@ -10,6 +10,7 @@ STAMP := $(VENV)/.installed
 # A file of tests stays with one process, which then makes its data once; long files are not kept for the end.
 PYTEST := $(BIN)/python -m pytest -q -n auto --dist loadfile --no-loadscope-reorder
 # Benchmarks measure one thread; the tests set their own.
+bench: export PYTHONPATH := .
 bench: export OMP_NUM_THREADS := 1
 bench: export OPENBLAS_NUM_THREADS := 1
 
