@@ -17,8 +17,8 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
     room = tmp_path / "room"
     shutil.copytree(SAMPLE, room)
     (tmp_path / "a.toml").write_text(ACTIVITIES)
-    told = ["dataset", str(tmp_path / "set"), "--room", str(room), "--activities", str(tmp_path / "a.toml")]
-    assert main([*told, "--each", "1", "--seconds", "2", "--no-iq", "--json", "--quiet"]) == 0
+    arguments = ["dataset", str(tmp_path / "set"), "--room", str(room), "--activities", str(tmp_path / "a.toml")]
+    assert main([*arguments, "--each", "1", "--seconds", "2", "--no-iq", "--json", "--quiet"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["leaks"]["verdict"].startswith("leaks")
     stored = read_activity_set(tmp_path / "set")

@@ -16,9 +16,9 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("view")
     for file in ("rgb.webp", "depth.png", "camera.json"):
         shutil.copy(SAMPLE / file, folder / file)
-    told = ["--rgb", "rgb.webp", "--depth", "depth.png", "--camera", "camera.json"]
-    told = [str(folder / word) if (folder / word).is_file() else word for word in told]
-    assert main(["generate", *told, "--text", "a person waves", "--no-pictures", "--quiet", "--out",
+    arguments = ["--rgb", "rgb.webp", "--depth", "depth.png", "--camera", "camera.json"]
+    arguments = [str(folder / word) if (folder / word).is_file() else word for word in arguments]
+    assert main(["generate", *arguments, "--text", "a person waves", "--no-pictures", "--quiet", "--out",
                  str(folder / "out")]) == 0  # fmt: skip
     return folder
 

@@ -5,6 +5,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from mmweaver.cli.recognise_text import accuracy_lines, confusion_lines
+
 EXAMPLES = """examples:
   mmweaver evaluate zero-shot-activity --recordings RadHAR/Data/Test
   mmweaver evaluate zero-shot-activity --recordings recordings/ --json
@@ -48,17 +50,5 @@ def run(arguments: argparse.Namespace) -> int:
 
 def lines(scores: dict[str, Any]) -> list[str]:
     """The scores for people."""
-    text = [f"{scores['recordings']} recordings; trained on {scores['generated_windows']} generated windows alone"]
-    for name, words in (("window", "windows of 2 s"), ("three_windows", "three windows"), ("recording", "recordings")):
-        row = scores[name]
-        low, high = row["interval_95"]
-        text.append(
-            f"  {words:15s} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
-            f" {row['baseline']['chance']:.3f}, n {row['n']}"
-        )
-    width = max(len(name) for name in scores["classes"]) + 2
-    text.append("  windows, true in rows, recognised in columns")
-    text.append(" " * (width + 2) + "".join(f"{name:>{width}}" for name in scores["classes"]))
-    for name, row in zip(scores["classes"], scores["window"]["confusion"], strict=True):
-        text.append(f"  {name:{width}}" + "".join(f"{count:>{width}}" for count in row))
-    return text
+    head = f"{scores['recordings']} recordings; trained on {scores['generated_windows']} generated windows alone"
+    return [head, *accuracy_lines(scores, "windows of 2 s"), *confusion_lines(scores)]

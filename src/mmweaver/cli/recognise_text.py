@@ -26,25 +26,37 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
 
 def score_lines(scores: dict[str, Any]) -> list[str]:
     """Scores with baseline, confusion matrix, and how far the recordings lie from what was generated."""
-    text = [f"{scores['recordings']} recordings"]
-    for name, words in (("window", "windows"), ("three_windows", "three windows"), ("recording", "recordings")):
-        row = scores[name]
-        low, high = row["interval_95"]
-        text.append(
-            f"  {words:14s} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
-            f" {row['baseline']['chance']:.3f}, n {row['n']}"
-        )
+    text = [f"{scores['recordings']} recordings", *accuracy_lines(scores)]
     expected = scores["generated_on_generated"]
     if expected:
         text.append(f"  on generated people who were held out: {expected['balanced_accuracy']:.3f}")
-    width = max(len(name) for name in scores["classes"]) + 2
-    text.append("  windows, true in rows, recognised in columns")
-    text.append(" " * (width + 2) + "".join(f"{name:>{width}}" for name in scores["classes"]))
-    for name, row in zip(scores["classes"], scores["window"]["confusion"], strict=True):
-        text.append(f"  {name:{width}}" + "".join(f"{count:>{width}}" for count in row))
+    text += confusion_lines(scores)
     far = scores["distance"]
     text.append(
         f"  from generated windows: {far['features_far']:.0%} of {far['features']} features are far off,"
         f" {far['windows_outside']:.0%} of windows are unlike any"
     )
     return text + ([f"  warning: {scores['warning']}"] if scores["warning"] else [])
+
+
+def accuracy_lines(scores: dict[str, Any], windows: str = "windows") -> list[str]:
+    """Balanced accuracy with interval and chance: per window, per three windows, per recording."""
+    text, width = [], max(len(windows), 13) + 1
+    for name, words in (("window", windows), ("three_windows", "three windows"), ("recording", "recordings")):
+        row = scores[name]
+        low, high = row["interval_95"]
+        text.append(
+            f"  {words:{width}s} balanced accuracy {row['balanced_accuracy']:.3f} ({low:.3f} to {high:.3f}), chance"
+            f" {row['baseline']['chance']:.3f}, n {row['n']}"
+        )
+    return text
+
+
+def confusion_lines(scores: dict[str, Any]) -> list[str]:
+    """The confusion matrix of windows."""
+    width = max(len(name) for name in scores["classes"]) + 2
+    text = ["  windows, true in rows, recognised in columns"]
+    text.append(" " * (width + 2) + "".join(f"{name:>{width}}" for name in scores["classes"]))
+    for name, row in zip(scores["classes"], scores["window"]["confusion"], strict=True):
+        text.append(f"  {name:{width}}" + "".join(f"{count:>{width}}" for count in row))
+    return text

@@ -26,7 +26,7 @@ from mmweaver.geometry.aligned_photo import AlignedPhoto
 
 MAX_FRAMES = 100  # longer sequences are thinned out
 SLOW_OVER_NOISE = 10.0  # power of what changes from frame to frame over the noise
-SLOW_OVER_FAST = 316.0  # and over what moves within frames: 25 dB (a walk has -7 to 14, waving 19, standing 38)
+SLOW_OVER_FAST = 316.0  # and over movement within frames: 25 dB (a walk has -7 to 14, waving 19, standing 38)
 BELOW_FLOOR_M = 0.15  # points deeper below the floor are no echoes of anything that stands there
 Power = Float[Array, "frame range column"]
 RangeAngle = Float[Array, "range column"]
@@ -158,7 +158,7 @@ class FigureData:
 
     @cached_property
     def range_doppler_moving(self) -> Power:
-        """Power (frame, range, doppler) of what moves."""
+        """Power (frame, range, doppler), clutter removed."""
         return range_doppler_power(self._moving)
 
     @cached_property
@@ -176,12 +176,12 @@ class FigureData:
 
     @cached_property
     def range_azimuth_moving(self) -> Power:
-        """Power (frame, range, azimuth) of what moves."""
+        """Power (frame, range, azimuth), clutter removed."""
         return range_azimuth_power(self._moving, self.azimuth_rad)
 
     @cached_property
     def range_elevation_moving(self) -> Power:
-        """Power (frame, range, elevation) of what moves."""
+        """Power (frame, range, elevation), clutter removed."""
         return range_elevation_power(self._moving, self.elevation_rad)
 
     @cached_property

@@ -96,7 +96,7 @@ def read_task(file: Path | str) -> RecognitionTask:
     _only_known(content, "", file)
     if not isinstance(content.get("radar"), str):
         raise InputError(f'{file} names no radar; write radar = "profile.cfg", or a preset such as "awr1843"')
-    said = _radar_beside(content["radar"], file.parent)
+    said = _radar_of(content["radar"], file.parent)
     radar = load_radar(said)
     rate_hz = _number(recordings, "frame_rate_hz", RATE_HZ, file) or 1 / radar.frame_period_s
     gap = _number(recordings, "gap_frames", GAP_FRAMES, file)
@@ -167,7 +167,7 @@ def _place(content: dict[str, Any], name: str, file: Path) -> Path | None:
     return file.parent / said
 
 
-def _radar_beside(said: str, folder: Path) -> str:
+def _radar_of(said: str, folder: Path) -> str:
     """A radar file next to the task file, else the words themselves: a preset, or a path from the working folder."""
     name, _ = split_radar(said)
     return str(folder / said) if (folder / name).is_file() else said

@@ -122,9 +122,9 @@ def test_an_obj_reads_nothing_outside_its_folder(tmp_path: Path):
 
 def test_the_command_line_takes_a_mesh(tmp_path: Path):
     path = furnished(tmp_path / "room.glb", Y_UP)
-    told = ["generate", "--mesh", str(path), "--mesh-eye", "2.5,1.1,-0.5", "--mesh-look", "90", "--no-pictures"]
-    assert main([*told, "--text", "a person waves", "--seed", "1", "--quiet", "--out", str(tmp_path / "out")]) == 0
+    arguments = ["generate", "--mesh", str(path), "--mesh-eye", "2.5,1.1,-0.5", "--mesh-look", "90", "--no-pictures"]
+    assert main([*arguments, "--text", "a person waves", "--seed", "1", "--quiet", "--out", str(tmp_path / "out")]) == 0
     assumed = json.loads((tmp_path / "out" / "meta.json").read_text())["assumed"]
     assert any("looks at 90 degrees" in one for one in assumed)
-    assert main([*told, "--rgb", "a.png", "--text", "a person waves", "--out", str(tmp_path / "no")]) == 2
+    assert main([*arguments, "--rgb", "a.png", "--text", "a person waves", "--out", str(tmp_path / "no")]) == 2
     assert not (tmp_path / "no").exists()
