@@ -28,13 +28,14 @@ from mmweaver.motion.language.lexicon import (
     STEPPING,
     TARGETS,
     THINGS,
+    TIMES,
 )
 from mmweaver.motion.language.modifiers import modifiers
 from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.places import Place, place_of
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.suggestions import not_known
-from mmweaver.motion.language.verb_steps import LEGS, step_of
+from mmweaver.motion.language.verb_steps import GAITS, LEGS, step_of
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import Word
 
@@ -66,6 +67,11 @@ class ParsedClause:
         return not self.steps and not self.unknown
 
     @property
+    def says_times(self) -> bool:
+        """Whether it says how often: 'twice', 'multiple times'."""
+        return any(word.text in TIMES or word.text == "times" for word in self.words)
+
+    @property
     def is_empty(self) -> bool:
         return self.adds_nothing and replace(self.about, clause="") == Step()
 
@@ -83,7 +89,7 @@ class ParsedClause:
             hand="both" if {last.hand, about.hand} == {"left", "right"} else last.hand or about.hand,
             direction=last.direction or about.direction,
             speed=last.speed or about.speed,
-            count=last.count or about.count,
+            count=last.count or (0 if last.lower in GAITS and more.says_times else about.count),
             seat=last.seat or about.seat,
             seconds=last.seconds or about.seconds,
             clauses=(*last.clauses, more.number),
@@ -348,7 +354,7 @@ def is_known(word: Word) -> bool:
         or text in ("left", "right", "not", "without", "moving", "sideways", "on_spot", "lookdown")
         or text in TARGETS
         or text in LEGS
-        or text.startswith(("arc", "deg", "from_", "on_", "fraction_"))
+        or text.startswith(("arc", "deg", "from_", "on_", "fraction_", "rounds_"))
         or text in ("onback", "onbelly", "highkick", "frontlunge")
         or text.replace(".", "").isdigit()
         or len(text) == 1

@@ -85,7 +85,7 @@ PHRASES: tuple[tuple[str, str], ...] = (  # replaced in this order before anythi
     (r"\bhands? together\b", " hands "),
     (r"\bhands and knees\b|\ball fours\b", " allfours "),
     (r"(?<!the )(?<!his )(?<!her )(?<!its )\bright (after|before|then|now)\b", r" \1 "),
-    (r"\ba (?:couple|pair) of (?:times|steps)\b", " 2 times "),
+    (r"\ba (?:couple|pair) of (times|steps)\b", r" 2 \1 "),
     (r"\b(?:several|many|a few|multiple|some|few) (times|steps|punches|squats|jumps|claps|sips)\b", r" 3 \1 "),
     (r"\bonce again\b|\bagain\b|\bonce more\b", " "),
     (r"\bone[- ]two\b", " "),

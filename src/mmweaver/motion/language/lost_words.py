@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.lexicon import ARMS, TIMES
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import words_in
@@ -14,6 +15,16 @@ _WITH_ARMS = words_in(
     crawl push_ups plank downward_dog jumping_jacks limb_extension fall pick_up put_down dance kneel_down kneel_up kneel
     get_up stand_up stretch sit_down one_leg golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
     bow stairs
+    """
+)
+
+
+# Activities in which one hand or foot is not told from the other.
+_WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms hips shrug stretch hands_up breathe")
+_WITH_ONE_FOOT = words_in(
+    """
+    limp hop_one_leg one_leg kick stomp raise_leg lunge side_lunge limb_extension kneel_down kneel_up stairs tree_pose
+    warrior_pose
     """
 )
 
@@ -32,8 +43,13 @@ def lost_words(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
         lost.append("the circle is not shown")
     if "sideways" in texts and not any(_has_side(step) or step.lower == "sidestep" for step in steps):
         lost.append("the side is not shown")
-    if TIMES & set(texts) and not any(_is_counted(step) for step in steps):
+    if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")
+    handed = [step for step in steps if step.hand and (step.upper or step.lower in ("pick_up", "put_down"))]
+    if any(step.hand in _SIDES for step in steps) and all(step.upper in _WITHOUT_ONE_HAND for step in handed):
+        lost.append("which hand or foot it is is not shown")
+    if any(step.foot and step.lower not in _WITH_ONE_FOOT for step in steps):
+        lost.append("which foot it is is not shown")
     return list(dict.fromkeys(lost))
 
 
@@ -66,4 +82,8 @@ def _is_round(step: Step) -> bool:
 
 
 def _is_counted(step: Step) -> bool:
-    return bool(step.count or abs(step.turn_deg) >= 360.0 or abs(step.arc_deg) >= 360.0)
+    """Whether it is done as often as the sentence says."""
+    countable = BY_KEY[step.upper or step.lower].counted_s is not None
+    return bool(
+        (step.count and (countable or step.count == 1)) or abs(step.turn_deg) >= 360.0 or abs(step.arc_deg) >= 360.0
+    )

@@ -44,7 +44,8 @@ def _left_or_right(about: Step, words: list[Word], i: int, notes: list[str]) -> 
     if after in ARMS or after.removesuffix("s") in ("punch", "jab", "hook") or _arm_soon(words, i):
         return replace(about, hand="both" if about.hand and about.hand != text else text)
     if about.direction == "circle":
-        return replace(about, arc_deg=360.0 if text == "left" else -360.0)
+        around_deg = max(abs(about.arc_deg), 360.0)
+        return replace(about, arc_deg=around_deg if text == "left" else -around_deg, style="")
     bends = ("turn", "rotate", "pivot", "spin")
     if before in OWN and not any(
         word.lemma in bends or word.text.startswith(("arc", "deg", "in_circle")) for word in words
@@ -120,12 +121,15 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         return replace(about, arc_deg=float(text[3:]))
     if text.startswith("deg") and text[3:].isdigit():
         return replace(about, turn_deg=float(text[3:]))
+    if text.startswith("rounds_"):
+        times = text.removeprefix("rounds_")
+        return replace(about, arc_deg=360.0 * int(NUMBERS.get(times, times)), style="either")
     if text.startswith("fraction_"):
         _, part, whole = text.split("_")
         return replace(about, arc_deg=360.0 * int(part) / max(int(whole), 1))
     if text == "from_side":
         return replace(about, style="side")
-    if text.startswith(("from_", "on_")) and "pushed" in texts and not about.direction:
+    if text.startswith(("from_", "on_")) and "pushed" in texts and about.direction in ("", "away"):
         return replace(about, direction=_PUSHED_FROM.get(text.removeprefix("from_"), about.direction))
     if text in ("onback", "onbelly"):
         return replace(about, style="back" if text == "onback" else "front")
@@ -138,4 +142,5 @@ _PUSHED_FROM = {
     "own_left": "left", "own_right": "right",  # of a person who faces the viewer
     "behind": "forwards", "back": "forwards", "rear": "forwards", "front": "backwards", "left": "right",
     "right": "left", "on_left_side": "right", "on_right_side": "left",
+    "on_own_left_side": "left", "on_own_right_side": "right",
 }  # fmt: skip

@@ -1,6 +1,7 @@
 """Other ways to say what the grammar knows, tried where a sentence is not understood as it is."""
 
 import re
+from collections.abc import Callable
 
 _OWN = r"(?:(?:his|her|its|their|the|both|a|an|one|my) )*"
 _SIDE = r"(?:left|right)"
@@ -9,10 +10,28 @@ _WALK = r"(?:walks?|walking|goes|going|runs?|running|moves?|moving|jogs?|jogging
 _HOLDING = r"drinks?|drinking|eats?|eating|reads?|reading|waves?|waving|claps?|clapping|types?|typing|writes?|phones?"
 _MOTION = r"(?:motions?|movements?|gestures?|moves?|exercises?)"
 
-NORMAL_FORMS: tuple[tuple[str, str], ...] = (
+NORMAL_FORMS: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
     # misspelt and mistyped
     (r"\bper(?:so|o|os)ns? (?=walks|is|goes|turns|jumps|does|makes|runs)", "person "), (r"\bperons?\b", "person"),
     (r"\bsomone\b|\bsome ?one ?who\b", "someone"), (r"\brigth\b|\brihgt\b", "right"), (r"\beft\b", "left"), (r"\b(?:a|the) humans\b", "a human"),
+    (r"\b([a-z]{3,})ig\b", r"\1ing"), (r"\bste(?:s|pes|sp|ts)\b|\bst(?:pe|ep)[st]s?\b(?<!steps)", "steps"), (r"\b(\w+)pipng\b", r"\1pping"), (r"\bwaling\b", "walking"), (r"\b(?:is|it) knees\b", "his knees"),
+    (r"\bagains?g?t?(?: the)? clock-?wise(?: direction)?\b", "counterclockwise"), (r"\bto to\b", "to"), (r"\bist\b", "is"), (r"\bgets? done on\b|\bgetting done on\b", "gets down on"), (r"\bbuched\b", "pushed"), (r"\btu rns\b", "turns"),
+    (r"\s*\((?:\s*[a-z?, ]+\s*)\)", ""), (r"[/|]", " or "), (r"\b([a-z]+) or [a-z]+(?= (?:movement|motion|is empty|with))", r"\1"), (r" instead(?= *(?:$|[.,]))", ""),
+    (r"\b(?:pretends|seems?|appears?|try|tries|trying) to (?:start |begin )?(?=[a-z])", ""), (r"\blooks? like (?=playing|dancing|waving|walking)", "is "), (r"\b(?:,? )?during (?:that|this|which)(?=,| | the)", " while"),
+    (r"\b(?:a motion|motions?|movements?|moves|an action)(?: a bit)? (?:like|which resembles|that resembles|similar to|as if|resembling) (?=[a-z]+ing)", ""), (r"\b(?:is )?(?:mak|perform|do)(?:es|s|ing)? (?=(?:play|throw|kick|punch|wav|wip|stirr|hitt|bounc|swimm|danc|walk|runn|jump|driv)ing)", "is "),
+    (r"\b(?:mak|perform|do)(?:es|s|ing)? (?:an? |some |one )?(?:[a-z]+ )?(kick|punch|throw|wave|stir|jump|bow|squat|knock)(?:p?ing)? (?:motion|movement|gesture|move)s?\b(?: like [a-z ]+?(?=$|[,.]| and))?", r"\1s"),
+    (r"\b(?:is )?(?:mak|perform|do)(?:es|s|ing)? (?:an? )?(?:little|small|big|high|short|quick|stretched|nice)? ?jump (?:in the air|mid-?air|up(?:wards?)?)\b|\b(jump(?:s|ing)?) (?:straight )?(?:(?:\d+|about \d+) ?(?:cm|centimeters?) )?(?:up(?:wards?)|in the air)(?= *(?:$|[.,]|and|then|with))", "jumps"),
+    (r"\b(?:use|using|uses) (?:his|her|its|their|the) (left|right|both) (hands?|arms?|foot|leg) to (toss|hit|pick|wipe|push|pull|throw|grab|wave|clean|kick|punch|stir|reach|knock|drink|write|bang)\b", r"with the \1 \2 \3s"),
+    (r"\b(?:does|do|performs?|makes|making|doing) (?:an? )?(\d+)[- ]?degrees? twist\b", r"turns \1 degrees"), (r"\ban? (\d+) (clockwise|counter-?clockwise) jump\b", r"\1 degree \2 jump"),
+    (r"(?:,? and|,? then|,)? returns(?= *(?:$|[.,]))", ", then walks back"), (r"\bwalks sideways back(?: to [a-z ]+)?\b", "sidesteps"), (r"\bsidestep(?:s|ping) back to [a-z ]+?(?=$|[,.])", "sidesteps"),
+    (r"\bdue to (?:an? )?(?:strong |hard |light |slight )?(?:push|shove|hit)(?: forwards?| backwards?)?\b", "because he is pushed"), (r"\b(?:steps?|lunges?|moves?)( fast| quickly| backwards)? to the (left|right)(?:,? as if he was pushed| because he is pushed)", r"is pushed to the \2"),
+    (r"\bgets? (?:slightly )?(?:off|out of) balance\b", "stumbles"), (r"\bmakes an? (?:break|pause|stop)\b", "stops"), (r"\b(?:rises|rise|rising) (?=and lowers)", "raises "), (r"\b(raises|lifts) and lowers\b", r"\1"),
+    (r"\bwalks (?:up|down )?(?:(?:\d+|two|three|four|five|a few|some) )?steps (?:up|down) (?:an? |the )?stairs?\b", "step_up_and_down"), (r"\b(?:counter|anti)?-?clockwise small circle\b", lambda found: "small circle " + found[0].split()[0]), (r"\bmoves? (anti-?clockwise|counter-?clockwise|clockwise) in a circle\b", r"walks in a circle \1"),
+    (r"\bsubject (?=in )", "person walks "), (r"\bmoves? (quickly|slowly|fast)(?= and| *[,.])", r"walks \1"), (r"\bmoves? (?:in|along) (?=an? (?:\w+ )?(?:quarter|half|edge|circle))", "walks in "), (r"\bmoves along\b", "walks along"),
+    (r"\b(?:is )?getting down on\b|\bgets? on(?=(?: \w+)? (?:all|knees|his|her))", "goes down on"), (r"\bsit(?:s|ting)(?: down)? in a kneeling position\b", "kneels down"), (r"\b(?:is )?sitting on his knees is\b", "kneeling"),
+    (r"\bhops? (\d+|two|three|four|five) times on the (left|right) leg forwards?\b", r"hops on the \2 leg \1 times"), (r"\b(jump(?:s|ing)? sidewards|jumps sideways)(?: (?:several|\d+|two|three) times)? to the left and right\b", "jumps to the left, then jumps to the right"),
+    (r"\bwalk(s|ing) in(?: a)? bend(?:ing)?(?: motion)?\b", r"walk\1 in a curve"), (r"\b(?:in|with) right angles\b", "by 90 degrees"), (r"\bforwards and (right|left)wards?\b", "forwards"), (r"\b(?:in )?(?:an? )?(?:lying )?eight\b(?= *(?:$|[.,]))", "in a circle"),
+    (r"\bthen (?:walks )?(\d+) (?:more|steps more)\b", r"then walks \1 steps"), (r"\b(\w+) slow and (\w+) fast steps\b", r"\1 slow step, then \2 fast steps"), (r"\b(?:the )?same way back\b", "back"),
     (r"\bassumes? an upright (?:posture|stance|position)(?: after(?:wards?)?)?\b", "stands up"),
     (r"(?:,? (?:and|before|then))* (?:returns?|goes back|gets? back|get back|recovers?) (?:in|into|to) (?:(?:the|his|her|its) )?(?:(?:previous|original|initial|old|former|starting) )?(?:position|place|spot)\b(?= *(?:$|[.,]))", ", then walks back"),
     (r",? (?:in order |so as )?(?:not )?to (?:avoid|prevent|not|keep from|maintain|stay) [^,.;]*?(?=$|[,.;]| and\b| then\b)|,? so (?:that )?(?:it|he|she) (?:does|do|did) ?(?:not|n't) [^,.;]*", ""),
@@ -185,7 +204,7 @@ NORMAL_FORMS: tuple[tuple[str, str], ...] = (
     (r"\bthe (?:own )?arms? (?=(?:hanging|swinging))", "the arms "),
     (r"\bwith (?:both |his |her |its )*arms (?:hanging|at (?:the|his|her) sides?)(?: down)?\b", " "),
 )  # fmt: skip
-_COMPILED: list[tuple[re.Pattern[str], str]] = []
+_COMPILED: list[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]]] = []
 
 
 def in_normal_form(text: str) -> str:

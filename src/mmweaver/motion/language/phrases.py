@@ -53,9 +53,12 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\b(?:rais(?:es|ing|ed?)|lift(?:s|ing)?) {_OWN}(?:left |right )?(arms?|hands?) (?:up )?to (?:the )?(?:height|level) of "
      rf"{_OWN}(?:shoulders?|chest)\b", r" arms_out \1 "),
     (r"\bin (?:the |his |her |its |their )back\b", " from_back "),
-    (r"\bon (?:the |his |her |its |their )(left|right) (?:hand )?(?:shoulder|side)\b(?=[^,.]*)", r" on_\1_side "),
+    (r"\bon (?:his |her |its |their )(left|right) (?:hand )?(?:shoulder|side|arm|hip)\b(?!.*\bto (?:the|its) (?:left|right))",
+     r" on_own_\1_side "),
+    (r"\bon (?:the |his |her |its |their )(left|right) (?:hand )?(?:side|shoulder)\b", r" on_\1_side "),
     (r"\b(?:goes|gets|going|getting|go|get|falls|drops|sinks|moves|drop|fall|sits|descends)(?: down)?(?: slowly)?"
      rf" (?:down )?(?:on|onto|to|in|into) {_OWN}(?:one |his left |his right |left |right )?knees?\b", " kneel_down "),
+    (rf"\b(?:steps?|stepping|walks?|comes?|lands?) (?:down )?(?:on|onto) {_OWN}(?:two |both )?knees\b", " kneel_down "),
     (r"\bkneels? (?:down|on|onto)\b|\bkneeling down\b|\bknees (?:down|on)\b|\bknelt(?: down)?\b|\bsits on (?:his|her) heels\b",
      " kneel_down "),
     (r"\b(?:is |are )(?:kneeling|on (?:his|her|its|their) knees)\b", " kneeling "),
@@ -90,6 +93,8 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
      r"(?: air| small| imaginary| acoustic| electric| big| virtual)*[- ]?(?:guitar|banjo|ukulele|ukelele|bass|lute)\b",
      " play_guitar "),
     (r"\bplays? (?:an? |the )?air[- ]?guitar\b", " play_guitar "),
+    (r"\bplay(?:s|ing)? (?:some |a few |an? |the |several )?(?:[a-z]+ )?(?:chords?|songs?|melod(?:y|ies)|tunes?|notes?|music|solos?) (?:on|with) (?:an? |the |his |her )?"
+     r"(?:[a-z]+ )?(guitar|violin)\b", r" play_\1 "),
     (r"\b(?:plays?|playing|play|pretends? to play|practices?)(?: on)?(?: an?| the| some| his| her| its)?"
      r"(?: air| small| imaginary)*[- ]?(?:violin|fiddle|viola)\b", " play_violin "),
     (r"\b(?:plays?|playing|play)(?: some)? golf\b|\b(?:golf|drive)[- ](?:swing|strike|stroke|drive|hit|shot)s?\b"
@@ -191,5 +196,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bclock[- ]?wise\b", " to the right "),
     (r"\bback to (?:the |his |her |its |their )?(?:start(?:ing)?|initial|original|first|old)[a-z ]*"
      r"(?:point|position|place|spot|pose|track|path|trajectory)?\b", " back_to_start "),
+    (r"\b(?:back )?to (?:the (?:place|spot|point|position) )?where (?:he|she|it|they|the person) (?:came from|started|began|was(?: before)?|stood(?: before)?)\b",
+     " back_to_start "),
     (r"\bto (?:the|his|her|its) (?:original |starting |initial |start )(?:standing )?(?:position|point|place|spot)\b", " back_to_start "),
 )  # fmt: skip

@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from mmweaver.core.errors import InputError
+from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
 from mmweaver.motion.language.clauses import split_clauses
@@ -16,6 +17,7 @@ from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
 from mmweaver.motion.language.plan import APPROXIMATED, DONE, ClauseRecord, MotionPlan, Step
 from mmweaver.motion.language.postures import carried_over, with_postures
+from mmweaver.motion.language.repetitions import Repetition, repetition_of
 from mmweaver.motion.language.spelling import correct_spelling
 from mmweaver.motion.language.suggestions import not_known
 from mmweaver.motion.language.verbs import RECOVERING
@@ -45,6 +47,9 @@ def parse(text: str) -> MotionPlan:
         raise InputError("a number in the sentence has more than 9 digits; say a smaller one")
     if len(text) > LONGEST_TEXT:
         raise InputError(f"the text has {len(text)} characters, {LONGEST_TEXT} are allowed; say it shorter")
+    repeated = repetition_of(text)
+    if repeated.times > 1 and len(repeated.text.split()) > 1:
+        return _several_times(parse(repeated.text), repeated, given_text)
     try:
         return _parsed(with_approximations(text, only_always=True), text)
     except InputError as error:
@@ -55,6 +60,23 @@ def parse(text: str) -> MotionPlan:
             except InputError:
                 continue
         raise error from None
+
+
+def _several_times(plan: MotionPlan, repeated: Repetition, given_text: str) -> MotionPlan:
+    """A plan done as often as the sentence says; raises InputError for too many steps."""
+    if len(plan.steps) * repeated.times > MOST_STEPS:
+        raise InputError(
+            f"{len(plan.steps)} movements {repeated.times} times are more than {MOST_STEPS}; say fewer, or none and ask"
+            " for more --seconds"
+        )
+    number, first = len(plan.clauses), plan.steps[0]
+    if len(plan.steps) == 1 and BY_KEY[first.upper or first.lower].counted_s and not first.count and not first.moves:
+        first = replace(first, count=repeated.times, clauses=(*first.clauses, number))
+        return replace(plan, text=given_text, steps=(first,), clauses=(*plan.clauses, ClauseRecord(repeated.words)))
+    again = [replace(step, clauses=(*step.clauses, number)) for step in plan.steps * (repeated.times - 1)]
+    steps = carried_over(with_postures([*plan.steps, *again]))
+    clauses = (*plan.clauses, ClauseRecord(repeated.words))
+    return replace(plan, text=given_text, steps=tuple(steps), clauses=clauses)
 
 
 def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPlan:

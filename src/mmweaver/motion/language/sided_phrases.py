@@ -7,9 +7,23 @@ _HAVING = r"(?:(?:has|have|having|with|holds?|holding|keeps?|keeping|puts?) )?"
 _TO_SIDES = r"(?:to (?:the|both|his|her|its|their) sides?|sideways|horizontal(?:ly)?)"
 _AHEAD = r"(?:forwards?|ahead|to the front|in front(?: of (?:him|her|it|them)(?:self)?)?)"
 
+_GAIT = r"walks?|walking|goes|going|runs?|running|jogs?|jogging|moves|moving|paces|pacing|strolls|strolling"
+_WIDE = r"(?: (?:small|big|large|wide|tight|narrow|full|whole|complete))*"
+
 # Replaced in this order, before `gesture_phrases.GESTURE_PHRASES`.
 SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     # circles and curves
+    (rf"\b({_GAIT})((?: [a-z]+ly)?)(?: in| along| around)? (two|three|four|five|[2-5]){_WIDE}(?: ({_CLOCK}|left|right))?{_WIDE} (?:circles|rounds)\b",
+     r"\1\2 in_circle rounds_\3 \4 "),
+    (rf"\b({_GAIT})((?: [a-z]+ly)?) ({_CLOCK})(?! (?:{_CLOCK}|circles?|rounds?|in|on|along|around|quarter|half|turn|a|\d))", r"\1\2 in a circle \3"),
+    (r"\bturn(s|ing)? (?:at|round|around) (?:an?|the|some) (left |right )?corner\b", r"walk\1 around a \2corner"),
+    (rf"\b({_GAIT}|turns?) an? (left |right )?corner\b", r"walks around a \2corner"),
+    (r"\b(?:performs?|does|doing|makes|making|walks?|walking) (?:an? )?(?:full |complete |whole |tight |wide )*(\d+)[- ]?deg(?:ree)?s? (curve|bend|circle)\b",
+     r"walks in a \1 degree \2"),
+    (r"\b(?:walk|go|mov|run)(s|es|ing)?( around)? on (?:his |her |its |the )?(?:hands and knees|knees and hands|hands and feet)\b", r"crawls\2"),
+    # with which hand
+    (r"\b(left|right)[- ]handed\b(?! (?:person|man|woman|human|boxing|throw|punch|jab|wave))", r"with the \1 hand"),
+    (r"\b(?:both|two)[- ]handed\b", "with both hands"),
     (rf"\b(quarter|quater|half|full|complete|small|big|narrow|tight|wide|large|little)(?: of an?)?,? ({_CLOCK}) circles?\b",
      r"\1 circle \2"),
     (r"\b(?:an? )?(left|right)(?:wards?|[- ]sided) ((?:quarter |half |full )?circle)\b", r" \2 to the \1 "),

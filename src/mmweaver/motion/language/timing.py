@@ -150,6 +150,8 @@ def _limits(step: Step) -> tuple[float, float]:
     if step.lower == "turn" and step.turn_deg:
         lasts = 0.3 + abs(step.turn_deg) / 185
         return lasts, lasts + 0.2
+    if step.direction == "circle" and step.moves and not step.count:
+        return _circle_limits(step)
     if step.distance_m and step.moves:
         usual_mps = {"jog": 2.6, "walk": 1.1}.get(step.lower, 0.7) * (0.65, 1.0, 1.3)[step.speed + 1]
         return step.distance_m / (1.4 * usual_mps) + 0.3, step.distance_m / usual_mps + 0.6
@@ -162,6 +164,13 @@ def _limits(step: Step) -> tuple[float, float]:
     return max(doing.least_s, under.least_s * under.once), max(doing.natural_s, under.natural_s * under.once)
 
 
+def _circle_limits(step: Step) -> tuple[float, float]:
+    """Least and natural duration of going round in a circle, as often as the sentence says, in seconds."""
+    rounds = max(abs(step.arc_deg) / 360, 1.0)
+    speed_mps = {"jog": 1.6, "walk": 1.1, "crawl": 0.35}.get(step.lower, 0.7) * (0.7, 1.0, 1.3)[step.speed + 1]
+    return rounds * 2 * math.pi * 0.4 / (1.25 * speed_mps) + 0.3, rounds * 2 * math.pi * 0.7 / speed_mps + 0.6
+
+
 def _is_done_once(step: Step) -> bool:
     """Whether a step takes its natural time only."""
     return BY_KEY[step.lower].once or (step.lower == "stand" and bool(step.upper) and BY_KEY[step.upper].once)
@@ -169,7 +178,8 @@ def _is_done_once(step: Step) -> bool:
 
 def is_elastic(step: Step) -> bool:
     """Whether a step can go on for as long as there is time."""
-    return not (_is_done_once(step) or step.count or step.seconds or step.distance_m)
+    rounds = step.direction == "circle" and abs(step.arc_deg) > 360
+    return not (_is_done_once(step) or step.count or step.seconds or step.distance_m or rounds)
 
 
 def _spans(steps: tuple[Step, ...], duration_s: float) -> list[float]:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from mmweaver.core.errors import InputError
-from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS
+from mmweaver.motion.language.lexicon import ARMS, BASE_VERB_SPEED, OWN, RADAR, TARGETS, TIMES
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import Word
@@ -12,6 +12,7 @@ LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "r
 ON_ONE_LEG = frozenset(["leg", "left_leg", "right_leg"])
 SIDES = {"left": 1.0, "right": -1.0}
 AIMED = ("point", "look_around")
+GAITS = ("walk", "jog", "limp", "stagger", "crawl")
 
 
 def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
@@ -24,7 +25,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
         step = replace(step, speed=step.speed or BASE_VERB_SPEED[word.lemma])
     if word.lemma in ("jog", "trot"):
         step = replace(step, style="jog")
-    step = _arms_step(step, texts)
+    step = _times_of_a_walk(_arms_step(step, texts), texts)
     if step.lower == "stand" and step.upper and step.seat and texts & {"on", "in"}:
         step = replace(step, lower="sit")  # "reads a book on the sofa"
     if step.upper == "carry" and step.lower == "stand" and _goes_somewhere(step, words):
@@ -39,6 +40,16 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     else:
         step = replace(step, direction="", arc_deg=0.0, turn_deg=0.0, facing=_facing(words))
     return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
+
+
+def _times_of_a_walk(step: Step, texts: set[str]) -> Step:
+    """'Walks three times' counts no paces; in a circle it counts the rounds."""
+    if step.lower not in GAITS or not step.count or not texts & {*TIMES, "times"} or texts & {"step", "steps"}:
+        return step
+    if step.direction != "circle":
+        return replace(step, count=0)
+    side = 1.0 if step.arc_deg >= 0 else -1.0
+    return replace(step, count=0, arc_deg=side * 360.0 * step.count, style=step.style if step.arc_deg else "either")
 
 
 def _arms_step(step: Step, texts: set[str]) -> Step:

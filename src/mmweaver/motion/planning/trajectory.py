@@ -19,6 +19,7 @@ SHORTEST_LEG_M = 0.5
 SHORTEST_WALK_M = 0.6  # one step
 PACING_LEG_M = {"walk": 0.8, "jog": 2.0}  # shortest leg of walking or running to and fro
 CIRCLE_RADII_M = (0.9, 0.75, 0.6, 0.5, 0.4)
+FASTER = 1.3  # than usual, to complete a circle
 
 
 class NoTrajectory(Exception):  # noqa: N818 - control flow, not an error
@@ -229,17 +230,24 @@ def _open_direction(trajectory: Trajectory, wanted_m: float, *, keep_heading: bo
 
 
 def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) -> None:
-    """Walks in a circle, as wide as the room allows."""
+    """Walks in a circle, as wide as time and room allow: whole rounds, and at least one where there is time for it."""
     rng = trajectory.rng
-    side = float(np.sign(step.arc_deg)) or (1.0 if rng.random() < 0.5 else -1.0)
+    side = float(np.sign(step.arc_deg)) if step.arc_deg and step.style != "either" else float(rng.choice([-1.0, 1.0]))
     direction = trajectory.heading_rad if not first else float(rng.uniform(0, 2 * np.pi))
     begin = face_along(trajectory, step, direction, step.start_s, first=first)
     ramps = ramps_of(step.end_s - begin, first=first, last=last)
-    speed = min(preferred_speed_mps(step, rng), 1.1 if step.lower == "walk" else 1.6)
+    speed = min(preferred_speed_mps(step, rng), 1.6 if step.lower == "jog" else 1.1)
+    within_m = speed * (step.end_s - begin - sum(ramps) / 2)
+    widest_m, narrowest_m = CIRCLE_RADII_M[0], CIRCLE_RADII_M[-1]
     for radius in CIRCLE_RADII_M:
+        length = _rounds(step, within_m / (2 * np.pi * radius)) * 2 * np.pi * radius
+        if length > FASTER * within_m:
+            if radius > narrowest_m:
+                continue
+            length = within_m  # there is time for a part of it
         move = Move(
-            start_s=begin, end_s=step.end_s, length_m=speed * (step.end_s - begin - sum(ramps) / 2),
-            direction_rad=direction, ramp_in_s=ramps[0], ramp_out_s=ramps[1], curvature_per_m=side / radius,
+            start_s=begin, end_s=step.end_s, length_m=length, direction_rad=direction, ramp_in_s=ramps[0],
+            ramp_out_s=ramps[1], curvature_per_m=side / radius,
         )  # fmt: skip
         circle_m = trajectory.position_m + move.shift_m(np.linspace(begin, step.end_s, 60))
         if trajectory.floor.can_stand(circle_m).all():
@@ -247,6 +255,14 @@ def walk_circle(trajectory: Trajectory, step: Step, *, first: bool, last: bool) 
             trajectory.position_m = trajectory.position_m + move.end_shift_m
             trajectory.heading_rad = direction + move.curvature_per_m * move.length_m
             trajectory.last_direction_rad = None
-            trajectory.cost += float(trajectory.floor.cost_at(circle_m).mean()) + 0.3 * (CIRCLE_RADII_M[0] - radius)
+            trajectory.cost += float(trajectory.floor.cost_at(circle_m).mean()) + 0.3 * (widest_m - radius)
             return
-    raise NoTrajectory("no room for a circle of 0.4 m")
+    raise NoTrajectory(f"no room for a circle of {narrowest_m:g} m")
+
+
+def _rounds(step: Step, usual: float) -> float:
+    """How often it goes round: as often as the sentence says, else whole rounds at about the usual speed."""
+    if step.count:
+        return usual  # the paces are counted
+    asked = abs(step.arc_deg) / 360
+    return asked if asked > 1 else max(1.0, round(usual))
