@@ -4,14 +4,15 @@ python -m studies run kitml --sentences <folder of kitml_text>
 python -m studies run kitml --sentences <folder> --list        # the sentences to annotate, with their readings
 
 The sentences are split by motion into a half on which the lexicon was developed and a half for checking. Of this second
-half 300 drawn uniformly are never read, only counted. Of the others, those in no earlier sample, 1,100 were read to
-widen the grammar (the development draw). Then it was frozen, 300 of those that nobody had read were drawn, and the
-understood ones annotated by hand. Right: every movement that the sentence names is shown in its order, with its side,
-direction, hand or foot where one is given. Said: some of it is shown otherwise or not, and the clause's record says so.
-Wrong: the same, without a word. The verdicts are in results/kitml/judgements.json with the reading they were given for;
-a reading that has changed since makes its verdict void, and the result counts those. Six earlier samples
-(judgements_first.json and so on; the sixth is the draw before this one) are unchanged; they evaluate earlier grammars.
-docs/motion.md says what else limits the figures.
+half 300 drawn uniformly are counted. Of the others, those in no earlier sample, 1,100 were read to widen the grammar
+(the development draw). Two samples of 300 were drawn of those that nobody had read (the sixth and the seventh), each
+after a freeze. Now 300 are drawn of what is left: 97 of these, and 209 of the uniform draw that no sample had held. The
+understood ones are annotated by hand, once. Right: every movement that the sentence names is shown in its order, with
+its side, direction, hand or foot where one is given. Said: some of it is shown otherwise or not, and the clause
+says so. Wrong: the same, without a word. The verdicts are in results/kitml/judgements.json with the readings they were
+given for; a reading that has changed since makes its verdict void, and the result counts those. Seven earlier samples
+(judgements_first.json and so on) are unchanged and evaluate earlier grammars. docs/motion.md says what else limits the
+figures.
 """
 
 import argparse
@@ -35,9 +36,9 @@ from studies.study import Reads
 DRAWN = 300  # sentences of the checking half that were never judged before
 Judgements = dict[str, dict[str, str]]  # name -> reading, verdict (right | said | wrong), why
 DEVELOPED = 1100  # sentences of the checking half that were read to widen the grammar
-SEED, SIXTH_SEED, UNIFORM_SEED, DEVELOPMENT_SEED = 2030, 2029, 2028, 4242
+SEED, SEVENTH_SEED, SIXTH_SEED, UNIFORM_SEED, DEVELOPMENT_SEED = 2031, 2030, 2029, 2028, 4242
 BEFORE_DEVELOPMENT = ("first", "second", "third", "fourth", "fifth")
-EARLIER = (*BEFORE_DEVELOPMENT, "sixth")
+EARLIER = (*BEFORE_DEVELOPMENT, "sixth", "seventh")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,17 +96,19 @@ def understood(sentences: list[Sentence]) -> dict[str, str]:
 
 
 def fresh_draw(checking: list[Sentence], before: Collection[str]) -> tuple[list[str], list[str]]:
-    """Names of the development draw and of the 300 to annotate, neither judged before nor drawn uniformly.
+    """Names of the development draw and of the 300 to annotate, which nobody has read.
 
-    `before`: what was judged before the development draw. The sixth sample, of sentences left by that draw, is left out
-    of the 300, with those of its sentences that were refused.
+    `before`: what was judged before the development draw. The sixth and seventh samples, of sentences left by that
+    draw, are left out of the 300, with those of their sentences that were refused.
     """
-    uniform = set(uniform_draw(checking))
-    free = [sentence.name for sentence in checking if sentence.name not in before and sentence.name not in uniform]
+    uniform = uniform_draw(checking)
+    free = [sentence.name for sentence in checking if sentence.name not in before and sentence.name not in set(uniform)]
     order = stream(DEVELOPMENT_SEED, "kitml", "development draw").permutation(len(free))
     developed, rest = ([free[k] for k in part] for part in (order[:DEVELOPED], order[DEVELOPED:]))
     left = [rest[k] for k in stream(SIXTH_SEED, "kitml", "third fresh").permutation(len(rest))[DRAWN:]]
-    return developed, [left[k] for k in stream(SEED, "kitml", "seventh").permutation(len(left))[:DRAWN]]
+    unread = [left[k] for k in stream(SEVENTH_SEED, "kitml", "seventh").permutation(len(left))[DRAWN:]]
+    unread += [name for name in uniform if name not in before]
+    return developed, [unread[k] for k in stream(SEED, "kitml", "eighth").permutation(len(unread))[:DRAWN]]
 
 
 def uniform_draw(checking: list[Sentence]) -> list[str]:

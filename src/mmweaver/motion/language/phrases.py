@@ -43,7 +43,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bupper[- ]?body\b|\btorso\b", " torso "),
     (r"\b(wav(?:es?|ing)(?: (?:his|her|its|their|the) (?:left |right )?(?:hands?|arms?))?) (?:from )?(?:left and right|right and left|"
      r"to the left and (?:to the )?right)\b", r" \1 "),
-    (r"\bpick(?:s|ing|ed)? (?:up )?(?:an?|the|his|her) (?:tea |coffee |water |mobile |smart|wine |cell )?(?:phone|cup|glass|mug|bottle|"
+    (r"\bpick(?:s|ing|ed)? (?:up )?(?:an?|the|his|her) (?:tea |coffee |water |mobile |smart|wine |cell )?(?:phone|cup|glass?|mug|bottle|"
      r"book|pen|remote|fork|spoon|plate|knife|key|keys|newspaper|magazine|tablet|bag|telephone)\b(?: up)?(?! (?:from|off) the (?:floor|ground))",
      " reach "),
     (r"\bfrom (?:his|her|its|their) (left|right)(?:[- ]hand)?(?: side)?\b", r" from_own_\1 "),

@@ -21,6 +21,11 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:performs?|does|doing|makes|making|walks?|walking) (?:an? )?(?:full |complete |whole |tight |wide )*(\d+)[- ]?deg(?:ree)?s? (curve|bend|circle)\b",
      r"walks in a \1 degree \2"),
     (r"\b(?:walk|go|mov|run)(s|es|ing)?( around)? on (?:his |her |its |the )?(?:hands and knees|knees and hands|hands and feet)\b", r"crawls\2"),
+    (r"\b(\w+) and (?:a )?half steps\b", r"\1 steps"),
+    # a push that is received
+    (r"\b(?:recovers?|recovering) from (?:the|this|that) (?:push|shove|hit|kick|punch|blow)\b", "recovers"),
+    (r"\b(?:counterbalanc|compensat|balanc)(?:es|ing|e) (?:for )?(?:the |this |an? )?(?:push|shove|hit|kick|punch|blow)\b", "recovers"),
+    (r"\b(?:absorb|tak|receiv)(?:s|es|ing) (?:an? |the )?(?:punch|blow|hit|shove)\b", "is pushed"),
     # with which hand
     (r"\b(left|right)[- ]handed\b(?! (?:person|man|woman|human|boxing|throw|punch|jab|wave))", r"with the \1 hand"),
     (r"\b(?:both|two)[- ]handed\b", "with both hands"),

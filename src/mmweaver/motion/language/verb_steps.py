@@ -147,7 +147,7 @@ def _turning_step(step: Step, words: list[Word], at: int) -> Step:
     if facing:
         return replace(step, facing=facing, direction="", turn_deg=0.0, arc_deg=0.0)
     angle = step.turn_deg or step.arc_deg or (360.0 if step.direction == "circle" or word.lemma == "spin" else 0.0)
-    side, times = SIDES.get(step.direction, 0.0), step.count
+    side, times = SIDES.get(step.direction, 0.0), step.count if texts & {*TIMES, "times", "turns"} else 0
     step = replace(step, count=0, arc_deg=0.0, turn_deg=0.0)
     if times > 1:  # "turns around twice"
         angle = times * (angle or (90.0 if side and "around" not in texts else 180.0))
