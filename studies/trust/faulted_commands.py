@@ -32,7 +32,8 @@ TRAINED = (
 class FaultedCommand:
     """A command line that writes into OUT; `before` makes what it overwrites; a resumable one keeps finished work.
 
-    One that `grows` is not run twice: whole parts are kept, and the same folder is refused.
+    One that `grows` is not run twice: whole parts are kept, and the same folder is refused. One that `appends` to
+    .mmw files keeps what they held and whole records, and adds its own once more when it is run again.
     `computes`: "module:function" of long computations that write nothing; each is done once, and every run takes its
     result, which follows from the arguments. `smaller`: what makes others short.
     """
@@ -42,6 +43,7 @@ class FaultedCommand:
     before: str | None = None
     is_resumable: bool = False
     grows: bool = False
+    appends: bool = False
     varying: tuple[str, ...] = VARYING
     computes: tuple[str, ...] = ()
     smaller: Callable[[], contextlib.AbstractContextManager[object]] = contextlib.nullcontext
@@ -84,6 +86,8 @@ def faulted_commands(inputs: Path) -> list[FaultedCommand]:
         FaultedCommand("decompress --overwrite", f"decompress {mmw} -o OUT/radar.npz --quiet --overwrite",
                        before=f"decompress {mmw} -o OUT/radar.npz --quiet --frames 0:1"),
         FaultedCommand("compress", f"compress {walk} -o OUT/a.mmw --bytes 3000 --quiet"),
+        FaultedCommand("compress --append", f"compress {walk} -o OUT/a.mmw --bytes 3000 --quiet --append", appends=True,
+                       before=f"compress {walk} -o OUT/a.mmw --bytes 3000 --quiet"),
         FaultedCommand("compress --lossless", f"compress {samples} -o OUT/a.mmwl --lossless"),
         FaultedCommand("process", f"process {samples} --no-pictures --out OUT/p"),
         FaultedCommand("points", f"points {walk}/points.npz -o OUT/points.npz --quiet"),

@@ -19,6 +19,8 @@ from unittest import mock
 
 import numpy as np
 
+from mmweaver.compression.mmw_codec import read_cube
+from mmweaver.compression.mmw_container import MmwFile
 from studies.trust.fault_injection import (
     HIDDEN_COMMITTED,
     Fault,
@@ -97,6 +99,10 @@ class FaultedRuns:
 
     def _of_second_run(self, out: Path) -> list[str]:
         second, found = self._run(out), []
+        if self.command.appends:
+            return [f"run again: {second.status} {second.stderr[-200:]}"] * (second.status != 0) + self._of_appended(
+                out
+            )
         now = tree(out, self.command.varying)
         if self.command.grows and second.status == 2 and "is not empty" in second.stderr:
             return _of_parts(now, self.expected)
@@ -106,6 +112,19 @@ class FaultedRuns:
         if now != self.expected:
             different = sorted(name for name in {*now, *self.expected} if now.get(name) != self.expected.get(name))
             found.append(f"run again: other files: {different[:4]}")
+        return found
+
+    def _of_appended(self, out: Path) -> list[str]:
+        """What is wrong with files that were appended to, perhaps by both runs."""
+        found = []
+        for old in self.old.rglob("*.mmw"):
+            new = out / old.relative_to(self.old)
+            if not new.read_bytes().startswith(old.read_bytes()):
+                found.append(f"{new.name} no longer begins with what it held")
+                continue
+            held, total = MmwFile(old).num_frames, len(read_cube(new).values)
+            if total not in (2 * held, 3 * held):
+                found.append(f"{new.name} holds {total} frames after appending to {held}")
         return found
 
     def _after_failure(self, outcome: Outcome, out: Path, *, is_interrupted: bool = False) -> list[str]:
@@ -126,7 +145,8 @@ class FaultedRuns:
         if litter:
             found.append(f"left over: {litter[:3]}")
         is_whole = tree(out, self.command.varying) == self.expected  # a name that could not be synced is reported
-        if not (self.command.is_resumable or self.command.grows) and not is_whole and now != self.before:
+        is_kept = self.command.is_resumable or self.command.grows
+        if not is_kept and not is_whole and now != self.before:
             changed = sorted(name for name in {*now, *self.before} if now.get(name) != self.before.get(name))
             found.append(f"half-written: {changed[:4]}")
         return found

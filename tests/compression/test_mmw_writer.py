@@ -60,3 +60,18 @@ def test_what_does_not_fit_is_refused(tmp_path: Path):
     (tmp_path / "b.mmw").write_bytes((Path(__file__).parents[1] / "golden" / "version_1.mmw").read_bytes())
     with pytest.raises(InputError, match="version 1"):
         MmwWriter(tmp_path / "b.mmw", append=True)
+
+
+def test_a_file_of_version_3_is_continued(tmp_path: Path):
+    path = tmp_path / "old.mmw"
+    path.write_bytes((Path(__file__).parents[1] / "golden" / "version_3.mmw").read_bytes())
+    before = read_cube(path)
+    again = replace(
+        before, values=before.values[:1], grid=replace(before.grid, frame_time_s=before.grid.frame_time_s[:1])
+    )
+    with MmwWriter(path, append=True) as writer:
+        writer.append(writer.following(again, 0), num_bytes=1500, effort="fast")
+    after = read_cube(path)
+    np.testing.assert_array_equal(after.values[:-1], before.values)
+    error = np.sum(np.abs(after.values[-1] - before.values[0]) ** 2) / np.sum(np.abs(before.values[0]) ** 2)
+    assert error < 0.1

@@ -15,7 +15,7 @@ from mmweaver.compression.mmw_codec import (
     modes_without,
     scale_of,
 )
-from mmweaver.compression.mmw_container import VERSION, MmwFile, MmwHeader, header_for, pack_header, pack_record
+from mmweaver.compression.mmw_container import LISTED, MmwFile, MmwHeader, header_for, pack_header, pack_record
 from mmweaver.compression.segment import COARSER, SegmentEncoder
 from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import cannot_write
@@ -42,13 +42,14 @@ class MmwWriter:
             if not append:
                 raise InputError(f"{path} exists; choose another name or append to it")
             file = MmwFile(self.path)
-            if file.version < VERSION:
+            if file.version in LISTED:
                 raise InputError(f"{path} is of version {file.version}, which cannot be appended to; compress it again")
             self._header, self._end = file.header, file.num_bytes - file.cut_short
             self._last_s = float(file.records[-1].frame_time_s[-1])
         self._first_end, self._joined_s = self._end, self._last_s
         try:
-            self._stream = self.path.open("r+b" if self._header else "xb")
+            # without a buffer: one that could not be written would be tried again by truncate() and close()
+            self._stream = self.path.open("r+b" if self._header else "xb", buffering=0)
             self._stream.truncate(self._end)
             self._stream.seek(self._end)
         except OSError as error:
@@ -127,8 +128,9 @@ class MmwWriter:
 
     def _write(self, data: bytes) -> None:
         try:
-            self._stream.write(data)
-            self._stream.flush()
+            left = memoryview(data)
+            while left:
+                left = left[self._stream.write(left) :]
             os.fsync(self._stream.fileno())
         except OSError as error:
             raise cannot_write(self.path, error) from None

@@ -52,15 +52,15 @@ def write_radar_npz(path: Path, cube: RadarCube) -> None:
     )
 
 
-def read_radar_npz(path: str | Path, config: RadarConfig | None = None) -> RadarCube:
-    """Reads a radar.npz. `config` defaults to the radar.json in the same folder.
+def read_radar_npz(path: str | Path, config: RadarConfig | None = None, *, mapped: bool = False) -> RadarCube:
+    """Reads a radar.npz. `config` defaults to the radar.json in the same folder; `mapped` leaves the cube on the disk.
 
     Raises InputError where the file is not such an archive, or its shape does not match the radar.
     """
     path = Path(path)
     if config is None:
         config = _radar_of(path)
-    held = _read(path)
+    held = _read(path, mapped=("cube",) if mapped else ())
     cube = held.numbers("cube", ("frame", "range", "doppler", "antenna"), kinds="c", low=-MAX_CUBE, high=MAX_CUBE)
     grid = CubeGrid(
         frame_time_s=held.numbers("frame_time_s", ("frame",), low=-MAX_TIME_S, high=MAX_TIME_S),
@@ -164,7 +164,7 @@ def write_npz(path: Path, **arrays: np.ndarray | np.generic) -> None:
                 np.lib.format.write_array(stream, np.asanyarray(array), allow_pickle=False)
 
 
-def _read(path: Path) -> NpzArrays:
+def _read(path: Path, mapped: tuple[str, ...] = ()) -> NpzArrays:
     """Reads an archive once it was held against the checksums of its folder."""
     check_file(path)
-    return read_npz(path)
+    return read_npz(path, mapped=mapped)

@@ -73,11 +73,14 @@ def read_recording(
     range_m: tuple[float, float] | None = None,
     range_bins: tuple[int, int] | None = None,
     frames: slice = slice(None),
+    mapped: bool = False,
 ) -> Recording:
     """Reads a recording, or a stretch of its `frames`; which kind it is follows from the path.
 
     `range_m` (near, far) or `range_bins` (first, last) choose the range bins of its cube; by default those of a preset,
     or all of a .cfg.
+
+    `mapped` leaves the cube of a radar.npz on the disk, read-only, until its values are used.
 
     `radar`: a preset, a file that describes one, or its configuration; a capture folder brings its own, a radar.npz
     its radar.json, and the arrays of other projects default to the preset of that name. `iq_order` is "iq" (default)
@@ -88,7 +91,8 @@ def read_recording(
     """
     if frames.step not in (None, 1) or (frames.start or 0) < 0:
         raise ValueError("frames are a stretch that begins with a frame of the recording")
-    found = _read(Path(path), radar, layout=layout, axes=axes, iq_order=iq_order, tx_order=tx_order, frames=frames)
+    how = {"layout": layout, "axes": axes, "iq_order": iq_order, "tx_order": tx_order}
+    found = _read(Path(path), radar, frames=frames, mapped=mapped, **how)
     return _with_range(found, range_m, range_bins)
 
 
@@ -101,6 +105,7 @@ def _read(
     iq_order: str | None,
     tx_order: tuple[int, ...] | None,
     frames: slice,
+    mapped: bool,
 ) -> Recording:
     """The recording with the range bins of its radar."""
     if layout is not None and (layout not in LAYOUTS or axes is not None):
@@ -109,11 +114,11 @@ def _read(
         raise InputError(f"{path} does not exist; give a recording or a capture folder")
     if path.is_dir() and layout is None:
         given = {"--radar": radar, "--axes": axes, "--tx-order": tx_order, "--iq-order": iq_order}
-        found = _from_folder(path, radar, [name for name, value in given.items() if value is not None], frames)
+        found = _from_folder(path, radar, [name for name, value in given.items() if value is not None], frames, mapped)
         if found is not None:
             return found
     if path.suffix == ".npz":
-        return _stretch(_from_cube(path, radar), frames)
+        return _stretch(_from_cube(path, radar, mapped), frames)
     if (path.suffix == ".npy" or path.is_dir()) and axes is None:
         layout = layout or detect_layout(path)
     source = radar if radar is not None or layout == "cubelearn" else layout
@@ -184,11 +189,11 @@ def as_config(radar: str | Path | RadarConfig) -> RadarConfig:
 
 
 def _from_folder(
-    path: Path, radar: str | Path | RadarConfig | None, given: list[str], frames: slice
+    path: Path, radar: str | Path | RadarConfig | None, given: list[str], frames: slice, mapped: bool
 ) -> Recording | None:
     """A folder's recording; None for a folder of HuPR's frames. Raises InputError where it is none of them."""
     if (path / CUBE).is_file():
-        return _stretch(_from_cube(path / CUBE, radar), frames)
+        return _stretch(_from_cube(path / CUBE, radar, mapped), frames)
     if is_stream(path):
         cube = read_stream_cube(path, frames)
         return Recording(path=path, files={"recording": path}, config=cube.config, stored_cube=cube)
@@ -202,8 +207,8 @@ def _from_folder(
     )
 
 
-def _from_cube(path: Path, radar: str | Path | RadarConfig | None) -> Recording:
-    cube = read_radar_npz(path, None if radar is None else as_config(radar))
+def _from_cube(path: Path, radar: str | Path | RadarConfig | None, mapped: bool) -> Recording:
+    cube = read_radar_npz(path, None if radar is None else as_config(radar), mapped=mapped)
     source = None if radar is None or isinstance(radar, RadarConfig) else str(radar)
     return Recording(
         path=path, files={"recording": path}, config=cube.config, stored_cube=cube, radar_source=source

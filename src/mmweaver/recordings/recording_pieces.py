@@ -15,8 +15,8 @@ from mmweaver.stream_folder import is_stream, num_frames_of_stream
 class RecordingPieces:
     """The frames of a recording, read when they are asked for.
 
-    An adc_data.bin, a .npy whose first axis is "frame" and a folder of `generate --stream` are read in part; anything
-    else at once, at the first use.
+    An adc_data.bin, a .npy whose first axis is "frame" and a folder of `generate --stream` are read in part, a
+    radar.npz is mapped; anything else is read at once, at the first use.
     """
 
     def __init__(self, path: str | Path, radar: Any = None, **how: Any):
@@ -56,7 +56,7 @@ class RecordingPieces:
 
     @cached_property
     def _whole(self) -> RadarCube:
-        return self._read(slice(None))
+        return read_recording(self.path, self._radar, mapped=True, **self._how).cube
 
     def _is_read_in_part(self, axes: str | None) -> bool:
         if self.path.suffix == ".npy":

@@ -29,6 +29,19 @@ def test_what_numpy_writes_is_read(tmp_path: Path, values: np.ndarray):
     assert list(read_npz(tmp_path / "a.npz", only=("b",))) == ["b"]
 
 
+def test_arrays_of_an_archive_are_left_on_the_disk(tmp_path: Path):
+    np.savez(tmp_path / "a.npz", **{f"array_{index}": values for index, values in enumerate(ARRAYS)})
+    found = read_npz(tmp_path / "a.npz", mapped=[f"array_{index}" for index in range(len(ARRAYS))])
+    for index, values in enumerate(ARRAYS):
+        assert np.array_equal(found[f"array_{index}"], values)
+    assert isinstance(found["array_0"], np.memmap)
+    data = bytearray((tmp_path / "a.npz").read_bytes())
+    data[data.index(np.float64(7.0).tobytes())] ^= 1
+    (tmp_path / "b.npz").write_bytes(data)
+    with pytest.raises(InputError, match="CRC"):
+        read_npz(tmp_path / "b.npz", mapped=["array_0"])
+
+
 def header(shape: str = "(2,)", descr: str = "'<f8'", order: str = "False") -> str:
     return f"{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}"
 

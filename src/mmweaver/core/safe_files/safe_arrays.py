@@ -26,6 +26,7 @@ KINDS = "biufcUS"  # what mmWeaver reads: no objects, dates or records
 INFLATED_BYTES, INFLATED_RATIO = 64 * MEGABYTE, 100
 NO_NPY = "no plain .npy array of numbers ({reason}); save it with numpy.save"
 NO_NPZ = "no plain .npz archive, or it is damaged ({reason}); write it again with numpy.savez"
+ZIP_LOCAL, ZIP_LENGTHS = 30, 26  # bytes of a local header before its name, and before the lengths of name and extra
 _LONG_SUFFIX = re.compile(r"(\d)L\b")  # of Python 2
 
 
@@ -79,10 +80,13 @@ class NpzArrays(Mapping[str, np.ndarray]):
             return tuple(values.tolist())
 
 
-def read_npz(path: Path | str, only: Iterable[str] | None = None, *, skip_unreadable: bool = False) -> NpzArrays:
+def read_npz(
+    path: Path | str, only: Iterable[str] | None = None, *, skip_unreadable: bool = False, mapped: Iterable[str] = ()
+) -> NpzArrays:
     """The arrays of an .npz archive, or those named in `only`.
 
     `skip_unreadable` omits arrays of Python objects and other types that are not read, instead of refusing the archive.
+    Arrays of `mapped` that are not compressed are left on the disk, read-only, once their CRC-32 has been checked.
     Raises InputError where the file is no such archive, is damaged, or would grow out of proportion.
     """
     held = check_regular(path)
@@ -99,7 +103,10 @@ def read_npz(path: Path | str, only: Iterable[str] | None = None, *, skip_unread
                 left -= entry.file_size
                 if left < 0 or (entry.compress_type == zipfile.ZIP_STORED and entry.file_size > held):
                     raise ValueError(f"{held} bytes would grow to more than {INFLATED_RATIO} times as many")
-                array = _entry(archive, entry, skip_unreadable)
+                if name in mapped and entry.compress_type == zipfile.ZIP_STORED:
+                    array = _mapped_entry(archive, entry, file)
+                else:
+                    array = _entry(archive, entry, skip_unreadable)
                 if array is not None:
                     found[name] = array
     return NpzArrays(path, found)
@@ -123,6 +130,23 @@ def read_words(path: Path | str, dtype: str, *, count: int, first: int = 0) -> n
     with open_regular(path) as file, foreign_errors(path, "unreadable ({reason})"):
         file.seek(first * size)
         return _filled(file, np.dtype(dtype), (count,), "C")
+
+
+def _mapped_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, file: Any) -> np.ndarray:
+    with archive.open(entry) as stream:
+        dtype, shape, order = _header(stream)
+        header_bytes = stream.tell()
+        while stream.read(MEGABYTE):  # checks the CRC-32 at the end
+            pass
+    needed = math.prod(shape) * dtype.itemsize
+    if header_bytes + needed != entry.file_size:
+        raise ValueError(f"{entry.filename} says {shape} {dtype}, but has {entry.file_size} bytes")
+    if not needed:
+        return np.empty(shape, dtype)
+    file.seek(entry.header_offset + ZIP_LENGTHS)
+    front = ZIP_LOCAL + sum(struct.unpack("<HH", _exactly(file, 4)))  # name and extra field may differ from the index
+    start = entry.header_offset + front + header_bytes
+    return np.memmap(file, dtype=dtype, mode="r", offset=start, shape=shape, order=order)
 
 
 def _entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, skip_unreadable: bool) -> np.ndarray | None:
