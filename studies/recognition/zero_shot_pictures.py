@@ -21,11 +21,14 @@ SHOWN_MPS = 2.5
 SECONDS = 4.0
 
 
-def draw(real: dict[str, PointRecording], made: dict[str, PointRecording], path: Path) -> None:
-    """One column an activity; above the recording, below the generated window."""
+def draw(
+    real: dict[str, PointRecording], made: dict[str, PointRecording], path: Path, *, seconds: float = SECONDS,
+    ranges_m: tuple[float, float] = (0.8, 3.0), wide: float = 3.0,
+) -> None:  # fmt: skip
+    """One column an activity, `wide` inches; above the recording, below the generated window."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(3.0 * len(real), 5.4), layout="constrained", dpi=110)
+    figure = Figure(figsize=(wide * len(real), 5.4), layout="constrained", dpi=110)
     axes = figure.subplots(2, len(real), sharex=True, sharey=True, squeeze=False)
     shown = None
     for column, label in enumerate(real):
@@ -39,9 +42,9 @@ def draw(real: dict[str, PointRecording], made: dict[str, PointRecording], path:
                 time_s[~still], range_m[~still], s=7, c=cloud.radial_velocity_mps[~still], cmap="coolwarm",
                 vmin=-SHOWN_MPS, vmax=SHOWN_MPS, linewidths=0,
             )  # fmt: skip
-            axis.set_title(f"{label}, {title}", fontsize=10)
-            axis.set_ylim(0.8, 3.0)
-            axis.set_xlim(0.0, SECONDS)
+            axis.set_title(f"{label}, {title}".replace("_", " "), fontsize=10 if wide > 2 else 8)
+            axis.set_ylim(*ranges_m)
+            axis.set_xlim(0.0, seconds)
     for axis in axes[1]:
         axis.set_xlabel("time, s")
     for axis in axes[:, 0]:

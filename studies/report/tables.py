@@ -308,6 +308,11 @@ BLIND = RowTable(
         ("windows outside", "{distance.windows_outside:.2f}"),
     ),
 )  # fmt: skip
+LABELLED = PivotTable(
+    sources=("labelled_recognition/*",),
+    rows=(("task", "{dataset.name}"), ("recordings of each", "{real_recordings_each}")), across="{generated}",
+    cells=CURVE.cells, missing="",
+)  # fmt: skip
 
 FAULTS = RowTable(
     sources=("injected_faults/*",),
@@ -355,7 +360,8 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
-    "blind_recognition": BLIND.render, "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
+    "blind_recognition": BLIND.render, "labelled_recognition": LABELLED.render,
+    "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
     "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
 }  # fmt: skip

@@ -36,6 +36,10 @@ def test_train_score_and_run(model: Path, capsys: pytest.CaptureFixture[str], mo
     assert main(["recognise", "score", str(model), "--recordings", folder, "--json"]) == 0
     scores = json.loads(capsys.readouterr().out)
     assert {"window", "three_windows", "recording", "classes", "chance", "distance", "warning"} <= set(scores)
+    assert main(["evaluate", "zero-shot-activity", "--model", str(model), "--recordings", folder, "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert {name: again[name] for name in scores} == scores
+    assert again["generated_windows"] > 0
     assert main(["recognise", "score", str(model), "--recordings", folder]) == 0
     assert "balanced accuracy" in capsys.readouterr().out
     one = next((model.parent / "people" / "rest").glob("*.npz"))
@@ -53,6 +57,7 @@ def test_train_score_and_run(model: Path, capsys: pytest.CaptureFixture[str], mo
         (["train", "task.toml"], "needs --out"),
         (["score", "model", "--points", "a"], "needs --recordings"),
         (["run", "model", "--points", "a", "--out", "b"], "--out is no option of recognise run"),
+        (["score", "model", "--recordings", "a", "--labelled", "b"], "--labelled is no option of recognise score"),
         (["run", "nowhere", "--points", "a"], "holds no recogniser"),
         (["train", "nowhere.toml", "--out", "b"], "nowhere.toml"),
     ],

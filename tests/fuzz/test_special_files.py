@@ -45,6 +45,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("dataset", "--board"): {"--rooms": None, "--activities": "A", **ROOM},
     ("recognise", "--recordings"): {"action": "score", "--out": None, "place": "MODEL"},
     ("recognise", "--points"): {"action": "run", "--out": None, "place": "MODEL"},
+    ("evaluate", "--model"): {"--recordings": "."},
     ("compare", "--radar"): {"a": "BIN"}, ("compare", "--radar-b"): {"b": "BIN"},
     ("train", "--captures"): {"--data": None, "--from": WEIGHTS},
     ("train", "--from"): {"--data": None, "--captures": "CAPTURE"},

@@ -91,6 +91,34 @@ def test_unlabelled_recordings_and_a_background_are_used(task_file: Path, tmp_pa
     assert load_recogniser(tmp_path / "model").matching is not None
 
 
+@pytest.mark.usefixtures("drawn")
+def test_labelled_recordings_train_along(task_file: Path, tmp_path: Path):
+    """People who move a tenth as far and fast as those who were generated are recognised from some recordings."""
+    settings = read_task(task_file).recordings
+    taught, people = (slowed(drawn_sequences(settings, count, first)) for count, first in ((4, 20), (3, 50)))
+    write_recordings(tmp_path / "taught", taught)
+    model = train_recogniser(task_file, tmp_path / "model", OPTIONS, labelled=tmp_path / "taught")
+    assert model.meta["labelled_windows"] == 16
+    plain = score_recordings(small_recogniser(task_file), people)["window"]["balanced_accuracy"]
+    assert score_recordings(model, people)["window"]["balanced_accuracy"] > max(0.9, plain + 0.3)
+    (tmp_path / "none").mkdir()
+    with pytest.raises(InputError, match="holds no recordings"):
+        train_recogniser(task_file, tmp_path / "other", OPTIONS, labelled=tmp_path / "none")
+
+
+def slowed(recordings: list[PointRecording]) -> list[PointRecording]:
+    moving = [one for one in recordings if one.label == "to_and_fro"]
+    return [
+        replace(
+            one,
+            cloud=replace(
+                one.cloud, radial_velocity_mps=one.cloud.radial_velocity_mps / 10, y_m=2 + (one.cloud.y_m - 2) / 10
+            ),
+        )
+        for one in moving
+    ]
+
+
 @pytest.mark.parametrize("gap_frames", [None, 3])
 def test_live_labels_are_those_of_the_recording(gap_frames: int | None, task_file: Path):
     model = small_recogniser(task_file)

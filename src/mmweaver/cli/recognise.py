@@ -11,6 +11,7 @@ from mmweaver.core.errors import InputError
 
 EXAMPLES = """examples:
   mmweaver recognise train examples/tasks/radhar.toml --out model/
+  mmweaver recognise train TASK.toml --labelled few_recordings/ --out model/
   mmweaver recognise score model/ --recordings recordings/ --json
   mmweaver recognise run model/ --points log.dat
   cat /dev/ttyUSB1 | mmweaver recognise run model/ --points - --json
@@ -35,6 +36,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     train.add_argument("--out", type=Path, metavar="DIR", help="folder of the recogniser; the same command resumes it")
     train.add_argument("--sequences", type=whole, metavar="N", help="people that perform each activity (default 40)")
     train.add_argument("--quick", action="store_true", help="8 people: a first look, less accurate")
+    train.add_argument(
+        "--labelled", type=Path, metavar="DIR", help="labelled recordings that train along, a folder an activity"
+    )
     train.add_argument("--seed", type=whole, default=0, help="of people, rooms and trees (default 0)")
     score = parser.add_argument_group("score")
     score.add_argument("--recordings", type=Path, metavar="DIR", help="labelled recordings, a folder an activity")
@@ -54,6 +58,8 @@ def run_command(arguments: argparse.Namespace) -> int:
     for name in {"out", "recordings", "points"} - {needed}:
         if getattr(arguments, name) is not None:
             raise InputError(f"--{name} is no option of recognise {arguments.action}")
+    if arguments.labelled is not None and arguments.action != "train":
+        raise InputError(f"--labelled is no option of recognise {arguments.action}")
     return {"train": _train, "score": _score, "run": _run}[arguments.action](arguments)
 
 
@@ -70,7 +76,7 @@ def _train(arguments: argparse.Namespace) -> int:
     sequences = usual if arguments.sequences is None else arguments.sequences
     options = TrainingOptions(sequences=sequences, seed=arguments.seed)
     with _Progress(quiet=arguments.quiet) as progress:
-        model = train_recogniser(arguments.place, arguments.out, options, progress)
+        model = train_recogniser(arguments.place, arguments.out, options, progress, arguments.labelled)
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), **model.meta}, indent=2, ensure_ascii=False))
     elif not arguments.quiet:

@@ -16,6 +16,8 @@ def training_lines(model: "Recogniser", out: Path) -> list[str]:
         f"generated people held out: balanced accuracy {expected['balanced_accuracy']:.2f} (chance"
         f" {expected['chance']:.2f}); recordings of people are harder: mmweaver recognise score tells",
     ]
+    if "labelled_windows" in meta:
+        text.append(f"with {meta['labelled_windows']} windows of labelled recordings")
     if "unlabelled_windows" in meta:
         used = meta.get("self_training", {}).get("used")
         text.append(

@@ -28,7 +28,8 @@ from mmweaver.recognition.task_file import Mount
 from mmweaver.recognition.variation import Span, Variation, VariationSample, sample_variation
 
 LEAD_S, LATEST_S = 0.75, 6.0  # a sequence is any part of what a person does, but its beginning
-NOISE_DB = (-3.0, 8.0)  # of the noise figure; copies of windows have less sensitive radars
+NOISE_DB = (-8.0, 6.0)  # of the noise figure; copies of windows have less sensitive radars
+ARMS_DB = (-4.0, 12.0)  # relative to the trunk: a flat hand may face the radar or be turned away
 AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
 HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
 REST_S = (0.2, 0.8)  # before and after a single performance
@@ -49,8 +50,11 @@ class PerformancePrior:
     amplitude_of_performance: float = 0.1
     on_spot: float = 1.05
     on_way: float = 0.85
+    single: float = 1.4
     usual_amplitude: float = 0.9
+    single_amplitude: float = 1.05
     sway_mps: Span = (0.01, 0.25)
+    single_sway_mps: Span = (0.005, 0.1)
     heading_deg: float = 15.0
 
 
@@ -71,7 +75,7 @@ def task_variation(mount: Mount) -> Variation:
     known = Variation(
         distance_m=(near, far), near_m=(max(near - 0.4, 0.5), near + 0.3),
         far_m=(max(far - 0.5, near + 0.6), far + 0.8), radar_height_m=(0.7, 1.6), wall_m=(far + 0.6, far + 3.0),
-        noise_db=NOISE_DB,
+        noise_db=NOISE_DB, arms_db=ARMS_DB,
     )  # fmt: skip
     if mount.height_m is not None:
         known = replace(known, radar_height_m=_around(mount.height_m, HEIGHT_SPREAD_M))
@@ -93,7 +97,7 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
         subject=int(rng.integers(MOST_SUBJECTS)),
         surroundings=sample_variation(variation, rng),
         tempo=float(np.exp(prior.tempo_of_person * tempo)),
-        amplitude=float(prior.usual_amplitude * np.exp(prior.amplitude_of_person * amplitude)),
+        amplitude=float(np.exp(prior.amplitude_of_person * amplitude)),
         heading_rad=float(np.radians(prior.heading_deg) * heading),
     )
 
@@ -118,8 +122,10 @@ def perform(
     moves = any(step.moves for step in plan.steps)
     now, person = who.surroundings, person_of(who.subject, plan.person)
     tempo_own, amplitude_own = rng.normal(size=2).clip(-2, 2)
-    tempo = who.tempo * (prior.on_way if moves else prior.on_spot) * np.exp(prior.tempo_of_performance * tempo_own)
-    amplitude = who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
+    usual = prior.on_way if moves else prior.single if once else prior.on_spot
+    tempo = who.tempo * usual * np.exp(prior.tempo_of_performance * tempo_own)
+    usual_amplitude = prior.single_amplitude if once else prior.usual_amplitude
+    amplitude = usual_amplitude * who.amplitude * np.exp(prior.amplitude_of_performance * amplitude_own)
     lead_s = 0.0 if once else LEAD_S + float(rng.uniform(0.0, LATEST_S))
     needed_s = natural_s(plan) if once else lead_s + (seconds + 0.3) * tempo * 1.1
     scheduled = schedule(plan if once else repeated(plan, needed_s), needed_s)
@@ -135,7 +141,7 @@ def perform(
     if moves and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
         raise InputError("the path ends before the recording does")
     joints_m = scaled_excursion(pose.joints_m, float(amplitude))
-    sway = float(np.exp(rng.uniform(*np.log(prior.sway_mps))))
+    sway = float(np.exp(rng.uniform(*np.log(prior.single_sway_mps if once else prior.sway_mps))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
     time_s = time_warped(pose.time_s - lead_s, float(tempo), now.hurry if moves else 0.0, rng)
     pose = replace(pose, time_s=time_s, joints_m=joints_m)

@@ -50,12 +50,15 @@ class TrainingOptions:
     seed: int = 0
     prior: PerformancePrior = PerformancePrior()  # noqa: RUF009 (frozen)
     copies: int = 4  # disturbed ones of each window
+    astray_share: float = 0.3  # most points of a copy whose direction is wrong
+    ghost_share: float = 0.4  # of copies with an echo of the person behind them
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
     sensitivity: bool = True  # of the board, where there are unlabelled recordings
     matching: bool = False  # of features to the generated ones, by quantiles of unlabelled recordings
     self_training: bool = True
+    labelled_weight: float = 1.0  # of labelled recordings, relative to what was generated
 
     def __post_init__(self) -> None:
         if not 2 <= self.sequences <= 100_000:
@@ -83,11 +86,13 @@ class GeneratedWindows:
 
 
 def train_recogniser(
-    task_file: Path | str, out: Path | str, options: TrainingOptions | None = None, listener: Listener | None = None
-) -> Recogniser:
+    task_file: Path | str, out: Path | str, options: TrainingOptions | None = None, listener: Listener | None = None,
+    labelled: Path | str | None = None,
+) -> Recogniser:  # fmt: skip
     """Trains a recogniser of a task and writes its folder; sequences stay in OUT/sequences, so it may be interrupted.
 
-    `listener` is called with a stage, what is done of it and how much there is. Raises InputError.
+    `labelled`: a folder of recordings that train along, a folder an activity; not every activity needs one. `listener`
+    is called with a stage, what is done of it and how much there is. Raises InputError.
     """
     options, out = options or TrainingOptions(), Path(out)
     task = read_task(task_file)
@@ -97,12 +102,13 @@ def train_recogniser(
     tell = listener or (lambda *_: None)
     background = [] if task.background is None else [read_task_recording(task.background, task.recordings)]
     unlabelled = unlabelled_windows(task)
+    taught = [] if labelled is None else labelled_windows(labelled, task)
     sequences = generate_sequences(
         recipe, options.sequences, out / SEQUENCE_FOLDER, lambda done, of: tell("sequences", done, of)
     )
     made = generated_windows(sequences, task, options, background)
     tell("trees", 0, 1)
-    model = fitted(made, unlabelled, task, options)
+    model = fitted(made, unlabelled, task, options, taught)
     note = {
         "mmweaver": __version__, "options": asdict(options), "task": task_values(task),
         "cpu_seconds": round(time.process_time() - began_s, 1),
@@ -130,6 +136,15 @@ def unlabelled_windows(task: RecognitionTask) -> list[PointRecording]:
     return [window for recording in recordings for window in windows_of(recording, task.recordings)]
 
 
+def labelled_windows(folder: Path | str, task: RecognitionTask) -> list[PointRecording]:
+    """The windows of labelled recordings. Raises InputError where there are none."""
+    recordings = read_task_recordings(folder, task.recordings)
+    windows = [window for recording in recordings for window in windows_of(recording, task.recordings)]
+    if not windows:
+        raise InputError(f"no recording of {folder} lasts {task.recordings.window_s:g} s, which is one window")
+    return windows
+
+
 def generated_windows(
     sequences: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
     background: Sequence[PointRecording] = (),
@@ -141,7 +156,8 @@ def generated_windows(
     how = WindowAugmentation(
         cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
         most_objects=0 if task.firmware.static_removal or background else WindowAugmentation().most_objects,
-        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
+        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB, astray_share=options.astray_share,
+        ghost_share=options.ghost_share,
     )  # fmt: skip
     step_s = task.recordings.window_s / OVERLAP
     windows = [window for sequence in sequences for window in windows_of(sequence, task.recordings, step_s)]
@@ -188,9 +204,13 @@ def _before(window: PointRecording, background: Sequence[PointRecording], rng: n
 
 # fitting ------------------------------------------------------------------------------------------------------------
 def fitted(
-    made: GeneratedWindows, unlabelled: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions
-) -> Recogniser:
-    """Trees on all generated windows, adapted to unlabelled ones, with the accuracy on generated people held out."""
+    made: GeneratedWindows, unlabelled: Sequence[PointRecording], task: RecognitionTask, options: TrainingOptions,
+    labelled: Sequence[PointRecording] = (),
+) -> Recogniser:  # fmt: skip
+    """Trees on all generated windows and the labelled ones, adapted to unlabelled ones.
+
+    With the accuracy on generated people who were held out.
+    """
     own = ~made.is_copy
     generated = quantiles_of(made.features)
     shares = outside_share(made.features, generated)
@@ -201,13 +221,18 @@ def fitted(
     features = recognition_features(unlabelled, made.names) if unlabelled else None
     if features is not None and options.sensitivity:
         made = replace(made, importance=sensitivity_weights(made.features, features, made.names))
-    trees = trees_of(made, options)
     matching = None
+    if features is not None and options.matching:
+        matching = FeatureMatching(recorded=quantiles_of(features), generated=generated)
+        features = matching.apply(features)
+    if labelled:
+        known = recognition_features(labelled, made.names)
+        labels = np.array([task.recordings.labels.index(window.label) for window in labelled])
+        made = with_labelled(made, known if matching is None else matching.apply(known), labels, options)
+        meta["labelled_windows"] = len(labelled)
+    trees = trees_of(made, options)
     if features is not None:
         meta["unlabelled_windows"] = len(unlabelled)
-        if options.matching:
-            matching = FeatureMatching(recorded=quantiles_of(features), generated=generated)
-            features = matching.apply(features)
         if options.self_training:
             from mmweaver.recognition.self_training import self_trained
 
@@ -215,6 +240,22 @@ def fitted(
     return Recogniser(
         settings=task.recordings, names=made.names, trees=trees, generated=generated,
         outside_above=float(np.quantile(shares, INSIDE_SHARE)), matching=matching, meta=meta,
+    )  # fmt: skip
+
+
+def with_labelled(
+    made: GeneratedWindows, features: Float[np.ndarray, "other feature"], labels: Int[np.ndarray, " other"],
+    options: TrainingOptions,
+) -> GeneratedWindows:  # fmt: skip
+    """The generated windows and labelled recorded ones, which weigh `labelled_weight` times as much in each label."""
+    own = np.ones(len(made.label)) if made.importance is None else made.importance
+    classes = int(made.label.max()) + 1
+    of_made, of_real = np.bincount(made.label, own, classes), np.bincount(labels, minlength=classes)
+    weight = options.labelled_weight * of_made[labels] / of_real[labels]
+    return replace(
+        made, features=np.concatenate([made.features, features]), label=np.concatenate([made.label, labels]),
+        person=np.concatenate([made.person, np.full(len(labels), -1)]),
+        is_copy=np.concatenate([made.is_copy, np.zeros(len(labels), bool)]), importance=np.concatenate([own, weight]),
     )  # fmt: skip
 
 

@@ -23,9 +23,11 @@ from mmweaver.motion.animation.step_context import StepContext
 
 Array = np.ndarray
 PerTime = Float[Array, " n"]
-_CHEST = (0.15, 0.03, 0.05)  # of a hand before the chest: ahead, outward and up of spine3, in body heights
-_AHEAD = (0.297, 0.08, 0.07)  # of a hand stretched forward
-_DRAWN_M, _BEFORE_M, _MIDDLE_M = 0.15, 0.29, 0.06  # of drawings in the air: half their size, before and above spine3
+# Places of the wrist from spine3 (ahead, outward, up) and lengths, in body heights.
+_CHEST = (0.09, 0.06, 0.03)  # close before the chest
+_AHEAD = (0.297, 0.08, 0.07)  # stretched forward
+_CIRCLE, _LETTER = 0.20, 0.17  # half the size of what a straight arm draws large in the air
+_MIDDLE, _ARM = (0.09, 0.07), 0.28  # of drawings: outward and up; a straight arm from the shoulder
 
 
 def _once(context: StepContext, slow: float, usual: float, fast: float) -> PerTime:
@@ -59,12 +61,12 @@ def _lifted(context: StepContext, controls: Controls, up: PerTime) -> Controls:
 
 def pushing_hand(context: StepContext, controls: Controls) -> Controls:
     """The hand before the chest, palm forward, is stretched ahead, and the arm stays straight."""
-    return _between(context, controls, _once(context, 1.3, 0.8, 0.5))
+    return _between(context, controls, _once(context, 1.1, 0.6, 0.45))
 
 
 def pulling_hand(context: StepContext, controls: Controls) -> Controls:
     """The arm is straight ahead, and the hand returns to the chest."""
-    return _between(context, controls, 1 - _once(context, 1.3, 0.8, 0.5))
+    return _between(context, controls, 1 - _once(context, 1.1, 0.6, 0.45))
 
 
 def _between(context: StepContext, controls: Controls, out: PerTime) -> Controls:
@@ -73,7 +75,7 @@ def _between(context: StepContext, controls: Controls, out: PerTime) -> Controls
     target = near + out[:, None] * (far - near)
     for side in sides(context):
         hand_to(controls, context.body, side, target, np.ones_like(out), elbow=(-0.2, 0.6, -1.0))
-        controls.spine_rad[:, 2] += (-1 if side == LEFT else 1) * 0.08 * out
+        controls.spine_rad[:, 2] += (-1 if side == LEFT else 1) * 0.3 * out  # the shoulder goes along
     return controls
 
 
@@ -84,7 +86,7 @@ def drawing_circle(context: StepContext, controls: Controls) -> Controls:
     for begin, lasts in repeats(context, context.duration_s / count * 0.9, 0.9, 4.0)[:count]:
         turned += rise((context.time_s - begin) / lasts)
     angle = 2 * np.pi * turned
-    return _drawn(context, controls, np.sin(angle), np.cos(angle))
+    return _drawn(context, controls, np.sin(angle), np.cos(angle), _CIRCLE)
 
 
 def drawing_z(context: StepContext, controls: Controls) -> Controls:
@@ -94,18 +96,17 @@ def drawing_z(context: StepContext, controls: Controls) -> Controls:
     side = -1.0 if sides(context)[0] == LEFT else 1.0
     aside = spline_through(context.time_s, at, [-1.0, 1.0, -1.0, 1.0]) * side
     up = spline_through(context.time_s, at, [1.0, 1.0, -1.0, -1.0])
-    return _drawn(context, controls, aside, up)
+    return _drawn(context, controls, aside, up, _LETTER)
 
 
-def _drawn(context: StepContext, controls: Controls, aside: PerTime, up: PerTime) -> Controls:
-    """The hand at a place of a drawing before the chest: to the person's right and up, from -1 to 1."""
-    size = vary(context, _DRAWN_M, 0.12)
+def _drawn(context: StepContext, controls: Controls, aside: PerTime, up: PerTime, half: float) -> Controls:
+    """The hand of the straight arm at a place of a drawing: to the person's right and up, from -1 to 1 times `half`."""
+    size = vary(context, half, 0.12)
     on = rise((context.time_s - context.start_s + 0.4) / 0.5) if not context.first else np.ones_like(aside)
     for side in sides(context)[:1]:
-        out = -aside if side == LEFT else aside
-        target = place(
-            _BEFORE_M - 0.04 * np.abs(up) - 0.04 * np.abs(out), 0.06 + size * out, _MIDDLE_M + size * up, len(up)
-        )
+        out = size * (-aside if side == LEFT else aside)
+        ahead = np.sqrt(np.maximum(_ARM**2 - out**2 - (size * up) ** 2, 0.1**2))
+        target = place(ahead, _MIDDLE[0] + out, _MIDDLE[1] + size * up, len(up))
         hand_to(controls, context.body, side, target, on, elbow=(-0.2, 0.5, -1.0))
     return controls
 

@@ -1,0 +1,118 @@
+"""What are some labelled recordings worth, with and without what was generated? The tasks of examples/tasks.
+
+    python -m studies run labelled_recognition radhar --recordings RADHAR --sequences FOLDER --people 24
+
+Of every activity 0, 1, 5 and 20 recordings train, sampled anew for each seed, as `mmweaver recognise train --labelled`
+does it; all others are the test set. The baselines are trees on the same recordings alone, and chance. A data set with
+too few recordings has fewer rows.
+"""
+
+import argparse
+import time
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
+from mmweaver.recognition.recogniser import recognition_features
+from mmweaver.recognition.scoring import balanced_accuracy
+from mmweaver.recognition.task_file import read_task
+from mmweaver.recognition.task_recordings import windows_of
+from mmweaver.recognition.train_recogniser import (
+    GeneratedWindows,
+    TrainingOptions,
+    generated_windows,
+    trees_of,
+    with_labelled,
+)
+from studies.manifest import StudyRun, content_of
+from studies.recognition.blind_recognition import TASKS, recordings_of
+from studies.recognition.zero_shot_curve import chosen_recordings
+from studies.schema import metric
+from studies.study import Reads
+
+EACH, SEEDS = (0, 1, 5, 20), (0, 1, 2)
+TREES = 150
+
+
+def alone(features: np.ndarray, labels: np.ndarray, made: GeneratedWindows) -> GeneratedWindows:
+    """Labelled windows as if they were the only ones that train."""
+    whole = np.zeros(len(labels), bool)
+    return GeneratedWindows(
+        features=features, label=labels, person=np.zeros(len(labels), int), is_copy=whole, names=made.names
+    )
+
+
+def accuracy(
+    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, trains: np.ndarray, *, generated: bool
+) -> float:
+    """Balanced accuracy on windows (window, feature) that are not among those that train (window,)."""
+    options = TrainingOptions(trees=TREES)
+    few = features[trains], labels[trains]
+    training = made
+    if trains.any():
+        training = with_labelled(made, *few, options) if generated else alone(*few, made)
+    guess = trees_of(training, options).probabilities(features[~trains]).argmax(axis=1)
+    return balanced_accuracy(labels[~trains], guess)
+
+
+def curve(
+    made: GeneratedWindows, features: np.ndarray, labels: np.ndarray, owner: np.ndarray, kinds: np.ndarray
+) -> list[dict[str, Any]]:
+    """Scores by number of recordings; `owner` (window,) is the recording, `kinds` (recording,) its label."""
+    fewest = int(np.bincount(kinds).min())
+    rows = []
+    for each in (number for number in EACH if number < fewest):
+        for generated in (True, False) if each else (True,):
+            began = time.process_time()
+            seeds = SEEDS if each else SEEDS[:1]
+            scores = [
+                accuracy(made, features, labels, np.isin(owner, chosen_recordings(kinds, each, seed)),
+                         generated=generated)
+                for seed in seeds
+            ]  # fmt: skip
+            rows.append({
+                "real_recordings_each": each, "generated": generated, "seeds": list(seeds), "n": len(scores),
+                "seconds": {"all": round(time.process_time() - began, 1)}, "scores": scores,
+            })  # fmt: skip
+            print(each, generated, scores)
+    return rows
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("task", choices=sorted(path.stem for path in TASKS.glob("*.toml")))
+    parser.add_argument("--recordings", type=Path, action=Reads, required=True)
+    parser.add_argument("--sequences", type=Path, required=True, help="folder of generated sequences; made if missing")
+    parser.add_argument("--people", type=int, default=TrainingOptions().sequences)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    task = read_task(TASKS / f"{options.task}.toml")
+    sequences = generate_sequences(SequenceRecipe.of(task), options.people, options.sequences)
+    made = generated_windows(sequences, task, TrainingOptions())
+    recordings = recordings_of(options.task, options.recordings, task)
+    windows = [windows_of(one, task.recordings) for one in recordings]
+    number = {label: place for place, label in enumerate(task.recordings.labels)}
+    rows = curve(
+        made, recognition_features([window for own in windows for window in own], made.names),
+        np.array([number[window.label] for own in windows for window in own]),
+        np.repeat(np.arange(len(windows)), [len(own) for own in windows]),
+        np.array([number[one.label] for one in recordings]),
+    )  # fmt: skip
+    data = {"name": options.task, "sha256": content_of(options.recordings)["sha256"], "recordings": len(recordings)}
+    settings = asdict(replace(TrainingOptions(), sequences=options.people, trees=TREES))
+    complete = [row_of(row, data, len(number)) for row in rows]
+    run.write("labelled_recognition", options.task, config={"options": settings}, rows=complete)
+
+
+def row_of(row: dict[str, Any], data: dict[str, Any], classes: int) -> dict[str, Any]:
+    """A row of the schema of results."""
+    scores = row.pop("scores")
+    found = metric(
+        float(np.mean(scores)), "share", "balanced accuracy of windows, mean over samples of the recordings that train",
+        baseline={"chance": 1 / classes},
+    )  # fmt: skip
+    spread = {"lowest": round(min(scores), 4), "highest": round(max(scores), 4)}
+    return {"dataset": data, **row, "metrics": {"window": found | spread}}

@@ -1,0 +1,32 @@
+"""The curve with labelled recordings: what trains is no test, and without generated windows it trains alone."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sklearn")
+
+from mmweaver.recognition.train_recogniser import GeneratedWindows
+from studies.recognition import labelled_recognition
+from studies.recognition.labelled_recognition import curve, row_of
+from studies.schema import _row_violations
+
+
+def test_a_curve_begins_with_what_was_generated_alone(monkeypatch: pytest.MonkeyPatch):
+    """One feature; what was generated is shifted, so labelled recordings help, and the more the better."""
+    monkeypatch.setattr(labelled_recognition, "TREES", 5)
+    rng = np.random.default_rng(0)
+    kinds = np.repeat([0, 1], 7)
+    owner, labels = np.repeat(np.arange(14), 4), np.repeat(kinds, 4)
+    features = (labels + rng.normal(0, 0.1, 56))[:, None]
+    made = GeneratedWindows(
+        features=np.repeat([[1.2], [2.2]], 40, axis=0) + rng.normal(0, 0.1, (80, 1)), label=np.repeat([0, 1], 40),
+        person=np.arange(80), is_copy=np.zeros(80, bool), names=("one",),
+    )  # fmt: skip
+    rows = [row_of(row, {"name": "drawn", "sha256": "0"}, 2) for row in curve(made, features, labels, owner, kinds)]
+    assert [(row["real_recordings_each"], row["generated"]) for row in rows] == [
+        (0, True), (1, True), (1, False), (5, True), (5, False)
+    ]  # fmt: skip
+    values = [row["metrics"]["window"]["value"] for row in rows]
+    assert values[0] < 0.8 < values[3]
+    assert values[4] > 0.9
+    assert not [line for row in rows for line in _row_violations(row)]
