@@ -1,12 +1,11 @@
 """Whether samples and settings of a recording fit each other, and the likelier reading where they do not.
 
-Real echoes have a positive beat frequency, chirps of one transmitter resemble each other, a static cell's antennas see
-a plane wave, and what comes nearer has a negative radial velocity. Each check looks at a few frames only.
+Real echoes have a positive beat frequency, chirps of one transmitter resemble each other, transmitters see static
+echoes as their neighbours do, and what comes nearer has a negative radial velocity. Each check looks at a few frames only.
 """
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import permutations
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +13,9 @@ import numpy as np
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.dsp.cube import remove_static
-from mmweaver.dsp.plane_waves import best_wave_share, plane_waves
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.dsp.windows import hann
+from mmweaver.recordings.transmitter_order import agreements
 
 FRAMES_LOOKED_AT = 8
 PROBE_BYTES = 1 << 16
@@ -24,8 +23,7 @@ CLIPPED_SHARE = 1e-3
 MIRRORED_DB = 8.0  # more energy in the last quarter of the beat frequencies than in the first
 LEAST_LIKENESS = 0.4  # of chirps one loop apart
 BETTER_LIKENESS = 0.25  # that another layout must have more
-BETTER_WAVE = 0.06  # of the share of the best plane wave that another order of transmitters must have more
-CELLS = 40
+BETTER_ORDER = 0.06  # that another order of transmitters must fit static echoes better
 FEWEST_MOVING_FRAMES = 6
 
 
@@ -129,34 +127,15 @@ def _likeness(flat: np.ndarray, lag: int) -> float:
 
 
 def _transmitters(cube: RadarCube) -> Iterator[str]:
-    """Another order of transmitters that makes static cells better plane waves."""
-    config = cube.config
-    if config.is_coded or config.num_tx < 2:
-        return
-    still = cube.values[:FRAMES_LOOKED_AT, :, config.num_loops // 2].mean(axis=0)  # (range, antenna)
-    strongest = np.argsort(-(np.abs(still) ** 2).sum(axis=1))[:CELLS]
-    signal = still[strongest].reshape(-1, config.num_tx, config.num_rx)
-    waves = plane_waves(config)
-    fired = np.array(config.tx_order)
-    shares = {}
-    for order in permutations(range(config.num_tx)):
-        # the slot that was taken for transmitter tx_order[s] would be transmitter order[s]
-        moved = np.empty_like(signal)
-        moved[:, list(order)] = signal[:, fired]
-        shares[order] = _wave_share(moved.reshape(len(signal), -1), waves)
-    best = max(shares, key=lambda order: shares[order])
-    if shares[best] > shares[config.tx_order] + BETTER_WAVE:
+    """Another order of transmitters that fits the static echoes better."""
+    own = cube.config.tx_order
+    found = agreements(replace(cube, values=cube.values[:FRAMES_LOOKED_AT]))
+    best = max(found, key=lambda order: found[order], default=own)
+    if found and found[best] > found[own] + BETTER_ORDER:
         yield (
-            f"with the transmitters in the order {','.join(map(str, best))} static cells see plane waves to"
-            f" {shares[best]:.2f}, in the order {','.join(map(str, config.tx_order))} only to"
-            f" {shares[config.tx_order]:.2f}; try --tx-order {','.join(map(str, best))}"
+            f"the transmitters fit the static echoes to {found[own]:.2f} in the order {','.join(map(str, own))}, to"
+            f" {found[best]:.2f} in the order {','.join(map(str, best))}; try --tx-order {','.join(map(str, best))}"
         )
-
-
-def _wave_share(signal: np.ndarray, waves: np.ndarray) -> float:
-    """Share of the energy of cells (cell, antenna) in their best plane wave, weighted by amplitude."""
-    weight = np.linalg.norm(signal, axis=1)
-    return float((weight * best_wave_share(signal, waves)).sum() / max(float(weight.sum()), 1e-300))
 
 
 def _velocity_sign(cube: RadarCube) -> Iterator[str]:

@@ -1,0 +1,81 @@
+"""In which order the transmitters of a TDM-MIMO recording fired, from its static echoes.
+
+Receivers of one transmitter are sampled in the same chirp, so their correlation at each horizontal distance is right
+whatever the order. Antennas of two transmitters at the same distance must be correlated alike, cell by cell, up to a
+phase that all cells share (channel errors, elevation); in a wrong order they are not. Many scatterers in a cell do not
+matter, as they would to a plane wave. Reference: decision 166.
+"""
+
+from itertools import permutations
+
+import numpy as np
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.records import RadarCube
+
+CLEAR = 30.0  # times the power at the other velocities: cells that are static echoes
+FEWEST_CELLS = 12
+Baseline = tuple[float, float]  # across and up, in half wavelengths
+
+
+def agreements(cube: RadarCube) -> dict[tuple[int, ...], float]:
+    """How well the transmitters fit the receivers, 0 to 1, in each possible firing order.
+
+    Empty where nothing can be said: one transmitter, decoded ones, or too few static cells.
+    """
+    config = cube.config
+    still = _static_cells(cube)
+    if config.is_coded or config.num_tx < 2 or len(still) < FEWEST_CELLS:
+        return {}
+    signal = still.reshape(-1, config.num_tx, config.num_rx)
+    fired, found = list(config.tx_order), {}
+    for order in permutations(range(config.num_tx)):
+        moved = np.empty_like(signal)
+        moved[:, list(order)] = signal[:, fired]  # the slot of transmitter fired[s] would be that of order[s]
+        found[order] = _agreement(moved, config)
+    return found
+
+
+def _static_cells(cube: RadarCube) -> np.ndarray:
+    """Cells (cell, antenna) of unit norm: each counts alike."""
+    middle = cube.config.num_loops // 2
+    still = cube.values[:, :, middle].mean(axis=0)
+    power = (np.abs(still) ** 2).sum(axis=1)
+    others = np.median((np.abs(cube.values) ** 2).sum(axis=3).mean(axis=0), axis=1)
+    chosen = power > (CLEAR * others if cube.config.num_loops >= 8 else 0)
+    return still[chosen] / np.sqrt(power[chosen])[:, None]
+
+
+def _agreement(signal: np.ndarray, config: RadarConfig) -> float:
+    """Of cells (cell, transmitter, receiver): the coherence of what two transmitters see with what one sees."""
+    place = (2 * config.antenna_position_m / config.wavelength_m).reshape(*signal.shape[1:], 3)[..., [0, 2]]
+    within = _correlations(signal, place, [(tx, tx) for tx in range(config.num_tx)])
+    agreed = possible = 0.0
+    for tx in range(config.num_tx):
+        for other in range(tx):
+            sums: dict[float, tuple[complex, float]] = {}
+            for (across, up), value in _correlations(signal, place, [(tx, other)]).items():
+                own = within.get((across, up))
+                left_up = up if own is None else 0.0  # a height that no receivers of one chirp have
+                own = within.get((across, 0.0)) if own is None else own
+                if own is not None:
+                    so_far, most = sums.get(left_up, (0j, 0.0))
+                    size = np.linalg.norm(value) * np.linalg.norm(own)
+                    sums[left_up] = so_far + np.vdot(own, value), most + float(size)
+            agreed += sum(abs(value) for value, _ in sums.values())
+            possible += sum(most for _, most in sums.values())
+    return float(agreed / max(possible, 1e-300))
+
+
+def _correlations(
+    signal: np.ndarray, place: np.ndarray, pairs: list[tuple[int, int]]
+) -> dict[Baseline, np.ndarray]:
+    """Products of antennas (cell,) by their distance, mean over all receivers of pairs of transmitters."""
+    found: dict[Baseline, list[np.ndarray]] = {}
+    for tx, other in pairs:
+        for one in range(signal.shape[2]):
+            for two in range(signal.shape[2]):
+                across, up = np.round(place[tx, one] - place[other, two], 1) + 0.0
+                product = signal[:, tx, one] * signal[:, other, two].conj()
+                found.setdefault((float(across), float(up)), []).append(product)
+    return {baseline: np.mean(products, axis=0) for baseline, products in found.items()}
