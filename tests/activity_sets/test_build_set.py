@@ -11,7 +11,8 @@ import pytest
 from mmweaver.activity_sets.build_set import PARTS, SetOptions, split_of
 from mmweaver.core.errors import InputError
 from mmweaver.core.skeleton import joint
-from mmweaver.datasets.activity_store import read_activity_set
+from mmweaver.datasets.activity_store import bytes_of_signals, read_activity_set
+from mmweaver.datasets.zarr_arrays import SHARD_BYTES
 from tests.activity_sets.conftest import ACTIVITIES, OPTIONS, builder
 
 
@@ -37,8 +38,10 @@ def test_people_start_where_they_were_asked_to(activity_set: Path):
 def test_no_leak_is_found_and_inherent_ones_are_named(activity_set: Path):
     report = json.loads((activity_set / "leaks.json").read_text())
     assert report["verdict"] == "leaks: none found"
-    assert {"start_place", "heading", "person", "duration", "file_size", "order"} <= set(report["of"])
+    assert {"start_place", "heading", "person", "duration", "tempo", "file_size", "order"} <= set(report["of"])
     assert "cannot_be_avoided" in report["of"]["energy"]
+    assert report["of"]["start_posture"]["leaks"]
+    assert "start_posture" in report["inherent"]
 
 
 def test_a_forest_does_not_tell_the_label_from_where_it_begins(activity_set: Path):
@@ -54,12 +57,13 @@ def test_a_forest_does_not_tell_the_label_from_where_it_begins(activity_set: Pat
     assert np.mean(right) < 1 / 3 + 3 * np.sqrt(2 / 9 / len(right))
 
 
-def test_sizes_say_nothing(activity_set: Path):
-    sizes = {
-        sum(f.stat().st_size for f in (activity_set / "sequences.zarr/iq/c" / str(n)).rglob("*") if f.is_file())
-        for n in range(18)
-    }
-    assert len(sizes) == 1
+def test_signals_lie_in_shards_of_sequences_of_one_size(activity_set: Path):
+    stored = read_activity_set(activity_set)
+    sizes = bytes_of_signals(activity_set, len(stored))
+    shards = sorted(file.stat().st_size for file in (activity_set / "sequences.zarr/iq/c").rglob("*") if file.is_file())
+    assert sizes == [shards[1]] * 17 + [shards[0]]
+    assert shards[1] <= SHARD_BYTES + 2**12
+    assert abs(shards[1] - 17 * shards[0]) < 2**13  # but their indices
 
 
 def test_a_stopped_run_goes_on_with_the_same_bits(activity_set: Path, tmp_path: Path):
@@ -106,7 +110,7 @@ def test_an_activity_without_a_place_is_named(tmp_path: Path):
         made.make()
 
 
-@pytest.mark.parametrize("wrong", [{"each": 0}, {"subjects": 0}, {"split_by": "frame"}, {"seed": -1}])
+@pytest.mark.parametrize("wrong", [{"each": 0}, {"subjects": 0}, {"split_by": "frame"}, {"seed": -1}, {"iq": "int8"}])
 def test_impossible_options_are_refused(wrong: dict):
     with pytest.raises(InputError):
         SetOptions(**wrong)

@@ -18,7 +18,7 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
     shutil.copytree(SAMPLE, room)
     (tmp_path / "a.toml").write_text(ACTIVITIES)
     arguments = ["dataset", str(tmp_path / "set"), "--room", str(room), "--activities", str(tmp_path / "a.toml")]
-    assert main([*arguments, "--each", "1", "--seconds", "2", "--no-iq", "--json", "--quiet"]) == 0
+    assert main([*arguments, "--each", "1", "--seconds", "2", "--iq", "none", "--json", "--quiet"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["leaks"]["verdict"].startswith("leaks")
     stored = read_activity_set(tmp_path / "set")
@@ -29,7 +29,7 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
 
 @pytest.mark.parametrize(
     "options",
-    [["--each", "3"], ["--no-iq"], ["--activities", "missing.toml"], ["--activities", "a.toml"],
+    [["--each", "3"], ["--iq", "none"], ["--activities", "missing.toml"], ["--activities", "a.toml"],
      ["--activities", "a.toml", "--room", "missing"], ["--activities", "a.toml", "--rgb", "rgb.png"]],
 )  # fmt: skip
 def test_what_is_missing_is_said(

@@ -10,7 +10,7 @@ from mmweaver.datasets.activity_store import read_activity_set
 from tests.activity_sets.conftest import activity_set  # noqa: F401  (a fixture)
 
 STORE = "sequences.zarr"
-VICTIMS = [f"{STORE}/label/c/0", f"{STORE}/joints/c/0/0/0/0", "leaks.json", f"{STORE}/zarr.json"]
+VICTIMS = [f"{STORE}/label/c/0", f"{STORE}/joints_m/c/0/0/0/0", "leaks.json", f"{STORE}/zarr.json"]
 
 
 @pytest.mark.parametrize("victim", VICTIMS)
@@ -27,12 +27,12 @@ def test_damage_is_refused_when_opened(activity_set: Path, tmp_path: Path, victi
 def test_a_damaged_signal_is_refused_when_read(activity_set: Path, tmp_path: Path, how: str):  # noqa: F811
     copy = tmp_path / "set"
     shutil.copytree(activity_set, copy)
-    chunk = next(file for file in sorted((copy / "sequences.zarr/iq/c/2").rglob("*")) if file.is_file())
+    chunk = next(file for file in sorted((copy / "sequences.zarr/iq/c/1").rglob("*")) if file.is_file())
     _damage(chunk, how)
     stored = read_activity_set(copy)
     assert stored.cube(1).values.any()
     with pytest.raises(InputError, match="make it anew with"):
-        stored.cube(2)
+        stored.cube(17)  # in the second shard
 
 
 def test_another_folder_is_no_set(tmp_path: Path):

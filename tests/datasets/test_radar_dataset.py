@@ -105,13 +105,13 @@ def test_a_data_set_of_rooms_has_the_same_reader(tiny_signals: Path):
 def test_rooms_have_coordinates_and_texts_for_xarray(tiny_signals: Path):
     xarray = pytest.importorskip("xarray")
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Object at")  # plan.json and the like in the root are no arrays
-        tree = xarray.open_datatree(tiny_signals, engine="zarr", consolidated=False)
+        warnings.simplefilter("error")
+        tree = xarray.open_datatree(tiny_signals, engine="zarr")
     rooms = [room for room in tree.children.values() if "iq" in room]
     near = rooms[0].iq.sel(range=2.0, method="nearest")
     assert abs(float(near.range) - 2.0) < 0.05
     assert near.dims == ("sequence", "frame_time", "radial_velocity", "antenna", "part")
-    for name in ("label", "label_name", "text", "split", "person"):
+    for name in ("label", "label_name", "text", "split", "subject"):
         assert rooms[0][name].dims == ("sequence",)
     tree.close()
 

@@ -136,13 +136,12 @@ def _write_labelled(folder: Path, config: RadarConfig) -> None:
     columns: dict[str, Any] = {name: ["a", "b", "c"] for name in activity_store.STRINGS}
     columns |= {name: [0, 1, 0] for name in activity_store.NUMBERS}
     arrays = {
-        "joints": rng.normal(size=(3, 2, 22, 3)).astype("f4"), "points": rng.normal(size=(4, 5)).astype("f4"),
+        "joints_m": rng.normal(size=(3, 2, 22, 3)).astype("f4"), "points": rng.normal(size=(4, 5)).astype("f4"),
         "point_sequence": np.array([0, 0, 1, 2], "i4"), "point_frame": np.array([0, 1, 0, 0], "i4"),
         "iq_scale": np.ones(3, "f4"),
     }  # fmt: skip
-    activity_store.write_set(folder, config, ("waving", "walking"), columns, arrays)
-    iq = activity_store.create_iq(folder, 3, config, 2)
-    iq[...] = rng.normal(size=(3, *CubeGrid.of(config, 2).shape, 2)).astype("f2")
+    signals = rng.normal(size=(3, *CubeGrid.of(config, 2).shape, 2)).astype("f2")
+    activity_store.write_set(folder, config, ("waving", "walking"), columns, arrays, signals, "float16")
     (folder / activity_store.SET_FILE).write_text(json.dumps({"command": "mmweaver dataset set"}))
     (folder / SUMS).write_text("# mmweaver; check with: mmweaver verify DIR, or sha256sum -c SHA256SUMS\n")
 

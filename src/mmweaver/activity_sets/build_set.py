@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.activity_sets.activity_list import ActivityList
-from mmweaver.activity_sets.leak_report import leak_report
+from mmweaver.activity_sets.leak_report import circumstances, leak_report
 from mmweaver.activity_sets.matched_draws import Draw, PlannedSequence, matched_draws, places_of, shuffled
 from mmweaver.activity_sets.sentence_draws import GivenPlacing
 from mmweaver.core.atomic_files import atomic_file, create_once, staged_folder
@@ -23,21 +23,20 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import check_output_folder, is_empty
 from mmweaver.core.safe_files.safe_text import parse_json, read_json
 from mmweaver.core.seeding import stream
-from mmweaver.core.skeleton import joint
 from mmweaver.core.staging import remove
 from mmweaver.datasets.activity_store import (
     ACTIVITIES_FILE,
+    IQ_KINDS,
     LEAKS_FILE,
     SCHEMA_VERSION,
     SET_FILE,
     SPLIT_KEYS,
     SPLITS,
     STORE,
-    create_iq,
-    packed_iq,
+    bytes_of_signals,
     write_set,
 )
-from mmweaver.datasets.zarr_arrays import consolidate
+from mmweaver.datasets.zarr_arrays import packed_iq
 from mmweaver.features import point_table
 from mmweaver.formats.npz_files import read_npz, write_npz
 from mmweaver.generate import Weaver, compose_request
@@ -58,7 +57,7 @@ class SetOptions:
     places: int = 12  # a room
     split_by: str = "subject"
     seed: int = 0
-    with_iq: bool = True
+    iq: str = "float16"  # of IQ_KINDS
     board: str = "typical"  # of all sequences; sampled by the seed
 
     def __post_init__(self) -> None:
@@ -67,6 +66,8 @@ class SetOptions:
                 raise InputError(f"{name} must be 1 to {most}, not {getattr(self, name)}")
         if self.split_by not in SPLIT_KEYS:
             raise InputError(f"splits are by {', '.join(SPLIT_KEYS)}, not {self.split_by!r}")
+        if self.iq not in IQ_KINDS:
+            raise InputError(f"signals are stored as {', '.join(IQ_KINDS)}, not {self.iq!r}")
         if self.seed < 0:
             raise InputError(f"the seed must be 0 or above, not {self.seed}")
 
@@ -166,44 +167,38 @@ class SetBuilder:
         if file.is_file():
             return
         made = self.weaver.carry_out(self._request(one), self.rooms[one.draw.room])
-        iq, iq_scale = packed_iq(made.cube)
+        iq, iq_scale = packed_iq(made.cube, self.options.iq)
         power = float(np.mean(np.abs(made.cube.values) ** 2)) * made.cube.scale**2
-        end_m = made.pose.joints_m[-1, 0, :2]
         arrays = {
             "joints": made.pose.joints_m.astype(np.float32), "points": point_table(made.points),
             "point_frame": made.points.frame.astype(np.int32), "iq_scale": np.float64(iq_scale),
             "height": np.float64(made.pose.height_m), "energy_db": np.float64(10 * np.log10(max(power, 1e-300))),
-            "end_m": np.asarray(end_m, np.float64),
-        } | ({"iq": iq} if self.options.with_iq else {})  # fmt: skip
+            "pace": np.float64(np.mean([step.pace for step in made.meta["plan"].steps])),
+        } | ({} if self.options.iq == "none" else {"iq": iq})  # fmt: skip
         with atomic_file(file) as temporary:
             write_npz(temporary, **arrays)
 
     # the store -------------------------------------------------------------------------------------------------------
     def _assemble(self) -> None:
-        small = ("joints", "points", "point_frame", "iq_scale", "height", "energy_db", "end_m")
+        small = ("joints", "points", "point_frame", "iq_scale", "height", "energy_db", "pace")
         parts = [
             {name: np.asarray(stored[name]) for name in small}
             for stored in (read_npz(self._part_file(number)) for number in range(len(self.plan)))
         ]
         columns = self._columns(parts)
         arrays = {
-            "joints": np.stack([part["joints"] for part in parts]),
+            "joints_m": np.stack([part["joints"] for part in parts]),
             "points": np.concatenate([part["points"] for part in parts]).astype(np.float32),
             "point_frame": np.concatenate([part["point_frame"] for part in parts]).astype(np.int32),
             "point_sequence": np.repeat(np.arange(len(parts)), [len(part["points"]) for part in parts]).astype(
                 np.int32
             ),
+            "iq_scale": np.array([float(part["iq_scale"]) for part in parts]),
         }
-        if self.options.with_iq:
-            arrays["iq_scale"] = np.array([float(part["iq_scale"]) for part in parts])
         config = self._request(self.plan[0]).config
         with staged_folder(self.out, overwrite=True) as stage:
-            write_set(stage, config, self.activities.labels, columns, arrays)
-            if self.options.with_iq:
-                iq = create_iq(stage, len(parts), config, arrays["joints"].shape[1])
-                for number in range(len(parts)):
-                    iq[number] = read_npz(self._part_file(number))["iq"]
-            consolidate(stage / STORE)
+            signals = (np.asarray(read_npz(self._part_file(number))["iq"]) for number in range(len(parts)))
+            write_set(stage, config, self.activities.labels, columns, arrays, signals, self.options.iq)
             report = self._leaks(columns, parts, stage)
             (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
             (stage / ACTIVITIES_FILE).write_text(self.activities_text, encoding="utf-8")
@@ -229,23 +224,17 @@ class SetBuilder:
         }  # fmt: skip
 
     def _leaks(self, columns: dict[str, Any], parts: list[dict[str, np.ndarray]], stage: Path) -> dict[str, Any]:
-        first_m = np.stack([part["joints"][0] for part in parts])
-        start = np.concatenate([first_m[:, joint("pelvis"), :2], np.array(columns["room"])[:, None]], axis=1)
-        across = first_m[:, joint("right_hip"), :2] - first_m[:, joint("left_hip"), :2]
-        facing = across / np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-9)
-        sizes = [sum(file.stat().st_size for file in (stage / STORE / "iq" / "c" / str(n)).rglob("*") if file.is_file())
-                 for n in range(len(parts))]  # fmt: skip
-        circumstances = {
-            "start_place": start, "heading": facing, "person": [(one.draw.subject,) for one in self.plan],
-            "height": [(value,) for value in columns["height"]],
-            "duration": [(len(part["joints"]),) for part in parts], "file_size": [(size,) for size in sizes],
-            "order": [(number,) for number in range(len(parts))],
-            "order_in_cycle": [(number % len(self.activities.labels),) for number in range(len(parts))],
-            "end_place": [tuple(part["end_m"]) for part in parts],
-            "energy": [(float(part["energy_db"]),) for part in parts],
+        plan, label = self.plan, np.asarray(columns["label"])
+        more = {
+            "person": [one.draw.subject for one in plan], "room": columns["room"], "height": columns["height"],
+            "tempo": [float(part["pace"]) for part in parts],
+            "energy": [float(part["energy_db"]) for part in parts],
         }  # fmt: skip
-        values = {name: np.asarray(rows, np.float64) for name, rows in circumstances.items()}
-        return leak_report(values, np.asarray(columns["label"]), np.asarray(columns["draw"]))
+        if sizes := bytes_of_signals(stage, len(parts)):
+            more["file_size"] = sizes
+        found = circumstances([part["joints"] for part in parts], label, **more)
+        found["start_place"] = np.concatenate([found["start_place"], found["room"]], axis=1)
+        return leak_report(found, label, np.asarray(columns["draw"]))
 
 
 def split_of(groups: Sequence[Any], key: str, seed: int) -> list[str]:

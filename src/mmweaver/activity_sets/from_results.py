@@ -13,7 +13,7 @@ import numpy as np
 
 from mmweaver.activity_sets.activity_list import ActivityList
 from mmweaver.activity_sets.build_set import split_of
-from mmweaver.activity_sets.leak_report import leak_report
+from mmweaver.activity_sets.leak_report import circumstances, leak_report
 from mmweaver.core.atomic_files import staged_folder
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_text import parse_json
@@ -24,12 +24,9 @@ from mmweaver.datasets.activity_store import (
     SCHEMA_VERSION,
     SET_FILE,
     SPLIT_KEYS,
-    STORE,
-    create_iq,
-    packed_iq,
     write_set,
 )
-from mmweaver.datasets.zarr_arrays import consolidate
+from mmweaver.datasets.zarr_arrays import packed_iq
 from mmweaver.features import point_table
 from mmweaver.stored_result import StoredResult, read_result
 
@@ -87,16 +84,15 @@ def set_of_results(
         }  # fmt: skip
         splits = {f"split_{key}": split_of(groups[key], key, seed) for key in SPLIT_KEYS}
         every |= splits | {"split": splits[f"split_{split_by}"]}
+        signals = (packed_iq(read_result(folder).cube)[0] for folder in folders)  # one cube at a time in memory
         write_set(stage, config, names, every, {
-            "joints": np.stack(joints), "points": np.concatenate(points).astype(np.float32),
+            "joints_m": np.stack(joints), "points": np.concatenate(points).astype(np.float32),
             "point_frame": np.concatenate(point_frame), "iq_scale": np.array(scales),
             "point_sequence": np.repeat(np.arange(len(folders)), counts).astype(np.int32),
-        })  # fmt: skip
-        iq = create_iq(stage, len(folders), config, shape[0])
-        for number, folder in enumerate(folders):  # read again, so that one cube at a time is in memory
-            iq[number] = packed_iq(read_result(folder).cube)[0]
-        consolidate(stage / STORE)
-        report = _leaks(every, joints, start_m)
+        }, signals, "float16")  # fmt: skip
+        label = np.asarray(every["label"])
+        more = {"person": numbers["subject"].tolist(), "height": numbers["height"].tolist()}
+        report = leak_report(circumstances(joints, label, **more), label, numbers["draw"])
         (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
         _describe(stage, names, every, config, command)
     return report
@@ -159,18 +155,6 @@ def _heading(joints_m: np.ndarray) -> float:
     """Where the hips face at first, from +x towards +y."""
     across = joints_m[0, joint("right_hip"), :2] - joints_m[0, joint("left_hip"), :2]
     return float(np.arctan2(across[0], -across[1]))
-
-
-def _leaks(every: dict[str, Any], joints: list[np.ndarray], start_m: np.ndarray) -> dict[str, Any]:
-    facing = np.array([(np.cos(angle), np.sin(angle)) for angle in map(_heading, joints)])
-    order = np.arange(len(joints), dtype=float)[:, None]
-    values = {
-        "start_place": start_m, "heading": facing, "person": np.asarray(every["subject"], float)[:, None],
-        "height": np.asarray(every["height"], float)[:, None], "order": order,
-        "order_in_cycle": order % len(set(every["label"])),
-        "end_place": np.stack([one[-1, joint("pelvis"), :2] for one in joints]).astype(float),
-    }  # fmt: skip
-    return leak_report(values, np.asarray(every["label"]), np.asarray(every["draw"]))
 
 
 def _describe(stage: Path, names: tuple[str, ...], every: dict[str, Any], config: Any, command: str) -> None:

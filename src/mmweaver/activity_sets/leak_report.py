@@ -1,10 +1,11 @@
 """What a classifier knows without looking at the radar signal: leaks.json.
 
 One-nearest-neighbour classifiers see one circumstance each (start place, person, duration ...) and are tested on people
-that they have not seen. With matched draws they are at chance. What cannot be equal between activities, such as energy
-or where a walk ends, is reported separately: it is part of what the radar sees.
+that they have not seen. With matched draws they are at chance. What cannot be equal between activities, such as energy,
+posture or where a walk ends, is reported separately: it is part of what the radar sees.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +13,11 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from mmweaver.core.shapes import Array
+from mmweaver.core.skeleton import joint
 
 Z_99 = 2.576
 INHERENT = {
+    "start_posture": "a sequence shows the activity from its first frame on, so its first posture is part of it",
     "end_place": "where a person ends is part of what is done: a walk leads elsewhere",
     "energy": "how much a body moves is part of what is done",
 }
@@ -56,7 +59,43 @@ def leak_report(
         for name, leak in found.items()
     }  # fmt: skip
     verdict = f"leaks: {', '.join(avoidable)}" if avoidable else "leaks: none found"
-    return {"schema_version": 1, "verdict": verdict, "classifier": "1-nearest neighbour, unseen groups", "of": rows}
+    shown = [f"{name} {leak.accuracy:.2f}" for name, leak in found.items() if leak.leaks and name in INHERENT]
+    chance = next(iter(found.values())).chance
+    part = f"part of the activities themselves: {', '.join(shown)} (chance {chance:.2f})" if shown else ""
+    return {
+        "schema_version": 2, "verdict": verdict, "inherent": part, "classifier": "1-nearest neighbour, unseen groups",
+        "of": rows,
+    }  # fmt: skip
+
+
+def said(report: dict[str, Any]) -> str:
+    """The verdict with what belongs to the activities, for people."""
+    return "; ".join(filter(None, (report["verdict"], report["inherent"])))
+
+
+def circumstances(
+    joints_m: Sequence[Float[Array, "frame 22 3"]], label: Int[Array, " sequence"], **more: Sequence[Any]
+) -> dict[str, Float[Array, "sequence column"]]:
+    """What is known of sequences from their joints and their place in the set; `more`: further rows by name."""
+    first_m, order = np.stack([one[0] for one in joints_m]), np.arange(len(joints_m))
+    facing = np.stack([_facing(one) for one in first_m])
+    body = first_m - first_m[:, :1]
+    forward = np.stack([facing[:, 0], facing[:, 1]], axis=1)[:, None] * body[..., :2]
+    aside = np.stack([-facing[:, 1], facing[:, 0]], axis=1)[:, None] * body[..., :2]
+    posture = np.stack([forward.sum(axis=-1), aside.sum(axis=-1), body[..., 2]], axis=-1)
+    rows = {
+        "start_place": first_m[:, joint("pelvis"), :2], "heading": facing, "duration": [len(one) for one in joints_m],
+        "order": order, "order_in_cycle": order % len(set(label.tolist())), **more,
+        "start_posture": posture.reshape(len(posture), -1),
+        "end_place": [one[-1, joint("pelvis"), :2] for one in joints_m],
+    }  # fmt: skip
+    return {name: np.asarray(values, np.float64).reshape(len(joints_m), -1) for name, values in rows.items()}
+
+
+def _facing(joints_m: Float[Array, "22 3"]) -> Float[Array, "2"]:
+    """The direction from the left to the right hip."""
+    across = joints_m[joint("right_hip"), :2] - joints_m[joint("left_hip"), :2]
+    return across / max(float(np.linalg.norm(across)), 1e-9)
 
 
 def _score(values: Float[Array, "sequence column"], label: Array, group: Array) -> Leak:

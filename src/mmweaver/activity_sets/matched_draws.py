@@ -1,7 +1,8 @@
 """Matched draws: each place, heading, person and seed is used once for every label, so that none of them tells it.
 
 A draw that one label cannot be carried out with is replaced for all labels. Who knows where and by whom a sequence is
-done then knows nothing of what is done (decision 210).
+done then knows nothing of what is done (decision 210). No two draws start at exactly the same point: a stance that
+moves the hips by centimetres (boxing: 6 cm) would else tell the label at a place that was seen before.
 """
 
 from collections.abc import Callable, Iterator
@@ -16,6 +17,7 @@ from mmweaver.geometry.body_capsules import REFERENCE_HEIGHT_M
 from mmweaver.motion.planning.floor_map import FloorMap
 
 MOST_ATTEMPTS = 60  # places and headings that are tried for a draw
+AROUND_PLACE_M = 0.25  # either way: how far from a place its draws start
 MOST_SUBJECTS = 10_000  # people that the motion library has
 
 
@@ -77,8 +79,9 @@ def matched_draws(
         why = ""
         for _ in range(MOST_ATTEMPTS):
             place = int(rng.integers(len(places[room])))
+            x_m, y_m = np.array(places[room][place]) + rng.uniform(-AROUND_PLACE_M, AROUND_PLACE_M, 2)
             draw = Draw(
-                index=index, room=room, place=place, start_m=places[room][place],
+                index=index, room=room, place=place, start_m=(round(float(x_m), 3), round(float(y_m), 3)),
                 heading_rad=round(float(rng.uniform(-np.pi, np.pi)), 4),
                 subject=int(people[(index // len(places)) % len(people)]), seed=int(rng.integers(2**31)),
             )  # fmt: skip

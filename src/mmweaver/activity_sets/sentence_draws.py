@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from mmweaver.activity_sets.leak_report import leak_report
+from mmweaver.activity_sets.leak_report import circumstances, leak_report
 from mmweaver.activity_sets.matched_draws import Draw, matched_draws, places_of
 from mmweaver.core.errors import InputError
-from mmweaver.core.records import PoseSequence, Scene
+from mmweaver.core.records import Scene
 from mmweaver.core.seeding import stream
-from mmweaver.core.skeleton import joint
 from mmweaver.formats.npz_files import read_poses_npz
 from mmweaver.generate import compose_request
 from mmweaver.request import Request
@@ -117,23 +116,10 @@ def order_of(texts: Sequence[str], draw: int, seed: int) -> list[str]:
 def folder_leaks(folders: Sequence[Path], labels: Sequence[int], draws: Sequence[Draw]) -> dict[str, Any]:
     """The leak report of result folders: what tells the sentence (`labels`) without a look at the radar signal."""
     poses = [read_poses_npz(folder / "pose.npz")[0] for folder in folders]
-    per_draw = len(set(labels))
-    circumstances = {
-        "start_place": [pose.joints_m[0, joint("pelvis"), :2] for pose in poses],
-        "heading": [_facing(pose) for pose in poses],
-        "person": [(draw.subject,) for draw in draws],
-        "height": [(pose.height_m,) for pose in poses],
-        "duration": [(len(pose.time_s),) for pose in poses],
-        "file_size": [((folder / "radar.npz").stat().st_size,) for folder in folders],
-        "order": [(number,) for number in range(len(folders))],
-        "order_in_cycle": [(number % per_draw,) for number in range(len(folders))],
-        "end_place": [pose.joints_m[-1, joint("pelvis"), :2] for pose in poses],
-    }
-    values = {name: np.asarray(rows, np.float64) for name, rows in circumstances.items()}
-    return leak_report(values, np.asarray(labels), np.asarray([draw.index for draw in draws]))
-
-
-def _facing(pose: PoseSequence) -> np.ndarray:
-    """The direction from the left to the right hip at first."""
-    across = pose.joints_m[0, joint("right_hip"), :2] - pose.joints_m[0, joint("left_hip"), :2]
-    return across / max(float(np.linalg.norm(across)), 1e-9)
+    label = np.asarray(labels)
+    more = {
+        "person": [draw.subject for draw in draws], "height": [pose.height_m for pose in poses],
+        "file_size": [(folder / "radar.npz").stat().st_size for folder in folders],
+    }  # fmt: skip
+    found = circumstances([pose.joints_m for pose in poses], label, **more)
+    return leak_report(found, label, np.asarray([draw.index for draw in draws]))

@@ -13,7 +13,7 @@ from mmweaver.core.errors import InputError
 if TYPE_CHECKING:
     from mmweaver.activity_sets.build_set import SetBuilder
 
-NEEDS_ACTIVITIES = ("room", "rgb", "depth", "camera", "each", "seconds", "subjects", "split_by", "method")
+NEEDS_ACTIVITIES = ("room", "rgb", "depth", "camera", "each", "seconds", "subjects", "split_by", "method", "iq")
 
 
 def add_activity_options(group: Options) -> None:
@@ -44,7 +44,10 @@ def add_activity_options(group: Options) -> None:
         help="what is held out for tests (default subject)",
     )
     group.add_argument("--method", help="weaver, the network (default), or physics")
-    group.add_argument("--no-iq", action="store_true", help="store joints and points, but no signals")
+    group.add_argument(
+        "--iq", choices=("float16", "float32", "none"),
+        help="how signals are stored (default float16, an error below 0.05 %%); none: joints and points alone",
+    )  # fmt: skip
 
 
 def is_activity_set_asked(arguments: argparse.Namespace) -> bool:
@@ -52,9 +55,8 @@ def is_activity_set_asked(arguments: argparse.Namespace) -> bool:
     if arguments.activities is not None or arguments.from_results is not None:
         return True
     given = [name for name in NEEDS_ACTIVITIES if getattr(arguments, name) is not None]
-    if given or arguments.no_iq:
-        name = given[0].replace("_", "-") if given else "no-iq"
-        raise InputError(f"--{name} is for labelled sets; give --activities, too")
+    if given:
+        raise InputError(f"--{given[0].replace('_', '-')} is for labelled sets; give --activities, too")
     return False
 
 
@@ -64,15 +66,16 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
         return _run_from_results(arguments)
     from mmweaver.activity_sets.activity_list import read_activities
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
+    from mmweaver.activity_sets.leak_report import said
     from mmweaver.core.range_window import chosen_range
     from mmweaver.core.safe_files.safe_text import read_text
     from mmweaver.formats.radar_file import load_radar
     from mmweaver.generate import Weaver
 
     activities = read_activities(arguments.activities)
-    given = {name: getattr(arguments, name) for name in ("each", "seconds", "subjects", "split_by")}
+    given = {name: getattr(arguments, name) for name in ("each", "seconds", "subjects", "split_by", "iq")}
     options = SetOptions(
-        seed=arguments.seed, with_iq=not arguments.no_iq, board=arguments.board or "typical",
+        seed=arguments.seed, board=arguments.board or "typical",
         **{name: value for name, value in given.items() if value is not None},
     )  # fmt: skip
     config = chosen_range(load_radar(radar_of(arguments) or "awr1843"), arguments.range_m, arguments.range_bins)
@@ -85,7 +88,7 @@ def run_activity_set(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), "leaks": report}))
     elif not arguments.quiet:
-        print(f"{len(activities.labels)} labels x {options.each} sequences in {arguments.out}; {report['verdict']}")
+        print(f"{len(activities.labels)} labels x {options.each} sequences in {arguments.out}; {said(report)}")
     return 0
 
 
@@ -93,12 +96,12 @@ def _run_from_results(arguments: argparse.Namespace) -> int:
     """Result folders as one set."""
     from mmweaver.activity_sets.activity_list import read_activities
     from mmweaver.activity_sets.from_results import set_of_results
+    from mmweaver.activity_sets.leak_report import said
     from mmweaver.core.output_checks import check_output_folder
 
     given = [name for name in NEEDS_ACTIVITIES if name != "split_by" and getattr(arguments, name) is not None]
-    if given or arguments.no_iq:
-        name = given[0].replace("_", "-") if given else "no-iq"
-        raise InputError(f"--from-results takes sequences as they are; leave out --{name}")
+    if given:
+        raise InputError(f"--from-results takes sequences as they are; leave out --{given[0].replace('_', '-')}")
     check_output_folder(arguments.out, overwrite=False, inputs=[arguments.from_results])
     activities = None if arguments.activities is None else read_activities(arguments.activities)
     report = set_of_results(
@@ -108,7 +111,7 @@ def _run_from_results(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"out": str(arguments.out), "leaks": report}))
     elif not arguments.quiet:
-        print(f"{report['of']['order']['sequences']} sequences in {arguments.out}; {report['verdict']}")
+        print(f"{report['of']['order']['sequences']} sequences in {arguments.out}; {said(report)}")
     return 0
 
 

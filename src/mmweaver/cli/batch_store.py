@@ -41,6 +41,7 @@ def run_store(
 
     from mmweaver.activity_sets.activity_list import ActivityList
     from mmweaver.activity_sets.build_set import SetBuilder, SetOptions
+    from mmweaver.activity_sets.leak_report import said
     from mmweaver.activity_sets.sentence_draws import without_place
     from mmweaver.cli.activity_set import make_with_bar
 
@@ -62,7 +63,7 @@ def run_store(
     if arguments.json:
         print(json.dumps({"out": str(out), "leaks": report, "refused": left_out}, ensure_ascii=False))
     elif not arguments.quiet:
-        print(f"{len(kept)} sentences x {arguments.repeat} sequences in {out}; {report['verdict']}")
+        print(f"{len(kept)} sentences x {arguments.repeat} sequences in {out}; {said(report)}")
         for one in left_out:
             print(f"left out {one['text']!r}: {one['why']}")
     return 0

@@ -5,8 +5,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from mmweaver.core.checksums import SUMS_FILE, damage_of_file, read_sums
 from mmweaver.core.errors import InputError
+from mmweaver.core.safe_files.safe_zarr import ZarrFolder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,3 +55,18 @@ class CheckedFolder:
         except Exception as error:  # Zarr and its codecs raise some twenty kinds
             reason = " ".join(str(error).split())[:120] or type(error).__name__
             raise self.damaged(f"{self.folder} is damaged ({reason})") from error
+
+
+def stored_iq(
+    files: CheckedFolder, arrays: ZarrFolder, below: str, index: int, shape: tuple[int, ...], scale: float
+) -> np.ndarray:
+    """The signals of one sequence of a group of sequences, complex64 (frame, range, doppler, antenna), in sqrt(mW).
+
+    `below`: where the group lies in the folder, ending in "/"; only the shard that holds the sequence is checked and
+    read. Raises InputError where it is damaged.
+    """
+    files.check(f"{below}iq/zarr.json")
+    with files.reading():
+        files.check(f"{below}iq/c/{index // arrays.rows_a_file('iq')}/")
+        pairs = arrays.row("iq", index, (*shape, 2), kinds="f").astype(np.float32)
+    return np.ascontiguousarray(pairs * np.float32(scale)).view(np.complex64)[..., 0]

@@ -5,7 +5,7 @@
         iq          (sequence, frame, range, doppler, antenna, part)  float16; times iq_scale: sqrt(mW)
         iq_scale    (sequence,)
         joints_m, joint_velocity_mps   (sequence, frame, joint, axis)
-        person, seed, activity, text, split    (sequence,)
+        subject, seed, label, label_name, text, split    (sequence,)
         photo_rgb, photo_depth_m, photo_class  (row, column[, colour])
         empty_iq    (range, antenna, part)  static clutter of the room
         SHA256SUMS  of all files of the room; the root has one too, of its own files
@@ -30,7 +30,7 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import CameraIntrinsics, ClassMask, CubeGrid, RadarCube, RgbdPhoto
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
-from mmweaver.datasets.checked_folder import CheckedFolder
+from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, check_plan, command_of, room_name
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
 from mmweaver.scene.photo.camera_file import camera_numbers
@@ -105,13 +105,8 @@ class StoredRoom:
             return self._arrays.numbers("iq_scale", (len(self.seed),), kinds="f", low=0)
 
     def _stored(self, index: int) -> np.ndarray:
-        self.files.check("iq/zarr.json")
         grid = CubeGrid.of(self.config, self.joints_m.shape[1])
-        with self.files.reading():
-            shard = index // self._arrays.rows_a_file("iq")
-            self.files.check(f"iq/c/{shard}/")
-            pairs = self._arrays.row("iq", index, (*grid.shape, 2), kinds="f").astype(np.float32)
-        return np.ascontiguousarray(pairs * np.float32(self._iq_scale[index])).view(np.complex64)[..., 0]
+        return stored_iq(self.files, self._arrays, "", index, grid.shape, float(self._iq_scale[index]))
 
 
 def read_rooms(folder: Path, *, device: str = "cpu") -> list[StoredRoom]:
@@ -172,6 +167,7 @@ def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, d
     joints_m = group.numbers("joints_m", pose, kinds="f", low=-FARTHEST_M, high=FARTHEST_M)
     static_shape = (len(config.range_m), len(config.antenna_position_m), 2)
     static = group.numbers("empty_iq", static_shape, kinds="f")
+    people = "subject" if "subject" in group else "person"  # as it was called before 1.0
     words = {name: group.words(name) for name in ("activity", "text", "split")}
     for name, values in words.items():
         group.check_shape(name, (len(values),), one_each)
@@ -180,7 +176,7 @@ def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, d
         lighting=group.attr("lighting", str), photo=_photo(group),
         static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64), joints_m=joints_m,
         joint_velocity_mps=group.numbers("joint_velocity_mps", pose, kinds="f", low=-FASTEST_MPS, high=FASTEST_MPS),
-        person=group.numbers("person", one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1), **words,
+        person=group.numbers(people, one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1), **words,
         seed=group.numbers("seed", one_each, kinds="iu", low=0), config=config,
         geometry=StoredGeometry(files=files, config=config) if group.has_group(GEOMETRY) else None, device=device,
     )  # fmt: skip

@@ -5,7 +5,6 @@ follows from plan.json, which the first process creates; each completes what is 
 """
 
 import hashlib
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -26,13 +25,13 @@ from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
 from mmweaver.datasets.geometry_store import write_geometry
 from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, TracedSequence
-from mmweaver.datasets.zarr_arrays import put_array, put_texts, zarr_module
+from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_texts, write_iq, zarr_module
 
-SEQUENCES_A_SHARD = 8
 LARGEST_ROOT_FILE = 64 * MEGABYTE
 # dimensions and coordinates of one name: xarray.open_datatree hands those of the root down to the rooms
 COORDINATES = {"frame_time": "frame_time_s", "range": "range_m", "radial_velocity": "radial_velocity_mps"}
-ROOT_NAMES = (PLAN_FILE, RADAR_FILE, "zarr.json", *COORDINATES, "antenna_position_m", SUMS_FILE)
+AXES = (*COORDINATES, "antenna_position_m")
+ROOT_NAMES = (PLAN_FILE, RADAR_FILE, "zarr.json", *AXES, SUMS_FILE)
 
 
 def open_dataset(folder: Path, plan: DatasetPlan, config: RadarConfig) -> None:
@@ -158,19 +157,18 @@ def write_room(folder: Path, generated: GeneratedRoom) -> None:
 def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
     sequences = generated.sequences
     traced = tuple(s for s in sequences if isinstance(s, TracedSequence))
-    signals = [s.cube.values for s in sequences if isinstance(s, GeneratedSequence)]
+    signals = [s.cube for s in sequences if isinstance(s, GeneratedSequence)]
     if signals:
-        iq, scale = _packed(signals)
-        axes = ("sequence", "frame_time", "range", "radial_velocity", "antenna", "part")
-        put_array(group, "iq", iq, axes, sequences=SEQUENCES_A_SHARD)
-        put_array(group, "iq_scale", scale, ("sequence",))
+        packed = [packed_iq(cube) for cube in signals]
+        write_iq(group, "float16", (len(packed), *packed[0][0].shape), (pairs for pairs, _ in packed))
+        put_array(group, "iq_scale", np.array([scale for _, scale in packed]), ("sequence",))
     if generated.geometry is not None:
         write_geometry(group, generated.geometry, traced)
     if sequences:
         pose = ("sequence", "frame_time", "joint", "axis")
         put_array(group, "joints_m", np.stack([s.joints_m for s in sequences]), pose)
         put_array(group, "joint_velocity_mps", np.stack([s.joint_velocity_mps for s in sequences]), pose)
-        put_array(group, "person", np.array([s.spec.person for s in sequences]), ("sequence",))
+        put_array(group, "subject", np.array([s.spec.person for s in sequences], np.int32), ("sequence",))
         put_array(group, "seed", np.array([s.spec.seed for s in sequences]), ("sequence",))
         labels = np.array([list(ACTIVITIES).index(s.spec.activity) for s in sequences], np.int32)
         put_array(group, "label", labels, ("sequence",))
@@ -198,15 +196,3 @@ def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
         "camera": asdict(photo.intrinsics),
         "class_names": list(photo.classes.names) if photo.classes else [],
     }  # fmt: skip
-
-
-def _packed(cubes: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Cubes as float16 pairs (cube, ..., part) and the scale of each (cube,): relative error below 5e-4."""
-    out = np.empty((len(cubes), *cubes[0].shape, 2), np.float16)
-    scale = np.empty(len(cubes), np.float32)
-    for index, values in enumerate(cubes):  # one at a time: 120 sequences would fill gigabytes
-        scale[index] = max(np.abs(values).max(), 1e-30)
-        unit = values / scale[index]
-        # float16 loses precision below 6e-5, where the cell noise lies: 1.0 is stored as 1024
-        out[index] = np.stack([unit.real, unit.imag], axis=-1) * 1024
-    return out, scale / np.float32(1024)

@@ -11,9 +11,10 @@ from mmweaver.core.errors import InputError
 from mmweaver.core.output_checks import resolved
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.staging import sweep
+from mmweaver.datasets.consolidated_rooms import consolidate_rooms
 from mmweaver.datasets.dataset_plan import DatasetPlan, RoomSpec, check_for_leaks
 from mmweaver.datasets.dataset_store import is_done
-from mmweaver.datasets.dataset_writer import open_dataset, remove_damaged, write_room
+from mmweaver.datasets.dataset_writer import AXES, open_dataset, remove_damaged, write_room
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +58,9 @@ def generate_dataset(
                 reports.append(report)
                 if listener is not None:
                     listener(report)
+        names = [room.name for room in rooms]
+        if all(is_done(folder, name) for name in names):
+            consolidate_rooms(resolved(folder), names, AXES)
     finally:
         sweep(resolved(folder), again=True)
     return reports

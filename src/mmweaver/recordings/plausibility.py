@@ -1,7 +1,7 @@
 """Whether samples and settings of a recording fit each other, and the likelier reading where they do not.
 
 Real echoes have a positive beat frequency, chirps of one transmitter resemble each other, transmitters see static
-echoes as their neighbours do, and what comes nearer has a negative radial velocity. Each check looks at a few frames only.
+echoes as their neighbours do, and what comes nearer has a negative radial velocity. Each check looks at a few frames.
 """
 
 from collections.abc import Iterator

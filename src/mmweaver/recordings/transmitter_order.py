@@ -67,9 +67,7 @@ def _agreement(signal: np.ndarray, config: RadarConfig) -> float:
     return float(agreed / max(possible, 1e-300))
 
 
-def _correlations(
-    signal: np.ndarray, place: np.ndarray, pairs: list[tuple[int, int]]
-) -> dict[Baseline, np.ndarray]:
+def _correlations(signal: np.ndarray, place: np.ndarray, pairs: list[tuple[int, int]]) -> dict[Baseline, np.ndarray]:
     """Products of antennas (cell,) by their distance, mean over all receivers of pairs of transmitters."""
     found: dict[Baseline, list[np.ndarray]] = {}
     for tx, other in pairs:
