@@ -32,7 +32,7 @@ from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
 from mmweaver.datasets.dataset_plan import shell_words
-from mmweaver.datasets.zarr_arrays import consolidate, put_array, put_texts, write_iq, zarr_module
+from mmweaver.datasets.zarr_arrays import IQ_DIMENSIONS, consolidate, put_array, put_texts, write_iq, zarr_module
 from mmweaver.formats.npz_files import POINT_COLUMNS
 
 SET_FILE, LEAKS_FILE, ACTIVITIES_FILE, STORE = "set.json", "leaks.json", "activities.toml", "sequences.zarr"
@@ -88,12 +88,11 @@ def write_set(
 
 def bytes_of_signals(folder: Path, sequences: int) -> list[int]:
     """How large the file is that holds the signals of each sequence of a store in the folder; empty without signals."""
-    group: Any = zarr_module().open_group(folder / STORE, mode="r")
-    if "iq" not in group:
+    store = open_zarr(folder / STORE)
+    if "iq" not in store:
         return []
-    rest = "/".join(["0"] * (len(group["iq"].shape) - 1))
-    chunks = folder / STORE / "iq" / "c"
-    return [(chunks / str(n // group["iq"].shards[0]) / rest).stat().st_size for n in range(sequences)]
+    rows, rest = store.rows_a_file("iq"), "/".join("0" for _ in IQ_DIMENSIONS[1:])
+    return [(folder / STORE / "iq" / "c" / str(n // rows) / rest).stat().st_size for n in range(sequences)]
 
 
 @dataclass(frozen=True, kw_only=True)
