@@ -184,9 +184,9 @@ class Learned:
         self, scene: Scene, config: RadarConfig, background: RadarCube | None, board: Board | None
     ) -> "LearnedRoom":
         from mmweaver.models.learned_paths import LearnedRoom
-        from mmweaver.models.weights import load_weights, shipped_weights
+        from mmweaver.models.weights import load_network, shipped_weights
 
-        network, _ = load_weights(self.weights or shipped_weights())
+        network, _ = load_network(self.weights or shipped_weights())
         return LearnedRoom(network, scene, config, background=background, board=board)
 
 

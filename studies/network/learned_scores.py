@@ -3,14 +3,15 @@
     python -m studies run learned_scores --data DATASET --weights FILE
     python -m studies run learned_scores --data DATASET --weights FILE --split test_person --most 40
     python -m studies run learned_scores --data DATASET --weights FILE --paper PAPER/weights.safetensors
+    python -m studies run learned_scores --data DATASET --power weights/paper_power.safetensors --called paper_power
     python -m studies run learned_scores --data OF_ANOTHER_RADAR --other-radar hupr
 
 Ground truth is the simulator in the true room, and every method is given the exact joints. `realization` is the same
 simulator with other surface micro-phases of room and person: the oracle for methods that cannot know them.
 `realization_skin` knows those of the room, and `weaver_with_background` was given a recording of the room without the
 person. `static_mean` is that of the ground truth itself, `training_mean` that of the rooms trained on. `paper` is the
-paper's own network (study `train_paper`); `energy_db`, the energy of a cube over that of the ground truth, shows
-whether it has collapsed. Intervals: bootstrap over rooms.
+paper's own network (study `train_paper`), `paper_power` the same idea with power as its target; `energy_db`, the energy
+of a cube over that of the ground truth, shows whether it has collapsed. Intervals: bootstrap over rooms.
 """
 
 import argparse
@@ -32,9 +33,9 @@ from mmweaver.datasets.dataset_store import StoredRoom, read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.metrics.scorecard import METRICS, scorecard
+from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
-from mmweaver.models.network import WeaverNetwork
-from mmweaver.models.weights import load_weights, read_card, shipped_weights
+from mmweaver.models.weights import load_network, load_weights, read_card, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import AS_PUBLISHED
 from mmweaver.scene.procedural.procedural_room import make_room
@@ -98,7 +99,7 @@ def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: i
     return method
 
 
-def learned(network: WeaverNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
+def learned(network: EchoNetwork, room_of: Callable[[Case], StoredRoom], *, recorded: bool = False) -> Method:
     """The network with a photo, and with `recorded` as many frames of background recording as the sequence has."""
 
     def method(case: Case) -> RadarCube:
@@ -231,10 +232,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
     parser.add_argument("--paper", type=Path, action=Reads, help="of recipe paper, for a row of its own")
+    parser.add_argument("--power", type=Path, action=Reads, help="of recipe paper_power, for a row of its own")
     parser.add_argument("--split", default="test_room")
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
     parser.add_argument("--only", nargs="*", help="rows (default: all)")
+    parser.add_argument("--called", metavar="NAME", help="the result's name (default: the split)")
     parser.add_argument("--other-radar", metavar="NAME", help="data of another radar or length: a result of this name")
 
 
@@ -260,6 +263,10 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     if options.paper is not None:
         methods["paper"] = paper_method(options.paper)
         about["paper"] = read_card(options.paper).__dict__
+    if options.power is not None:
+        power, power_card = load_network(options.power)
+        methods["paper_power"] = learned(power, lambda case: case.room)
+        about["paper_power"] = power_card.__dict__
     if options.only:
         methods = {name: methods[name] for name in options.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
@@ -270,7 +277,7 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         unknown={"seconds": "metric cpu_s has those of each method"},
     )  # fmt: skip
     folder = "other_radars" if options.other_radar else "learned_scores"
-    run.write(folder, options.other_radar or options.split, config=about, rows=rows)
+    run.write(folder, options.other_radar or options.called or options.split, config=about, rows=rows)
     for row in rows:
         values = (f"{name} {metric['value']:.3f}" for name, metric in row["metrics"].items())
         print(f"{row['method']:30}", *values, flush=True)

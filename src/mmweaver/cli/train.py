@@ -26,6 +26,7 @@ EXAMPLES = """examples:
   mmweaver train weaver --from run/ --captures take1/ take2/ take3/ --out tuned/
   torchrun --nproc-per-node 4 -m mmweaver train weaver --data data/ --out run/ --batch 12
   mmweaver train activity --data data/ --out activity/
+  mmweaver train paper_power --data light/ --out power/            # light/: of mmweaver dataset --geometry-only
   mmweaver train activity --data my_set/ --out recogniser/          # of mmweaver dataset --activities
   mmweaver generate --demo --weights run/ --out woven/
 """
@@ -42,8 +43,9 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "every validation OUT/pictures compares what it has learned with the ground truth.",
     )
     parser.add_argument(
-        "recipe", choices=("weaver", "activity"),
-        help="what is trained: the network, or a recogniser of the activities of the data",
+        "recipe", choices=("weaver", "activity", "paper_power"),
+        help="what is trained: the network; a recogniser of the activities of the data; or the paper's hypernetwork "
+        "with fields of power as its target",
     )  # fmt: skip
     parser.add_argument(
         "--data", type=Path, metavar="DIR",
@@ -164,8 +166,10 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
-    if arguments.recipe != "weaver":
+    if arguments.recipe == "activity":
         return _activity_on_data(arguments, place, is_quiet)
+    if arguments.recipe == "paper_power":
+        return _power_on_data(arguments, place, is_quiet)
     from mmweaver.training.network_training import TrainingRecipe, train, write_weights
 
     start, card = (None, None) if arguments.start is None else _start(arguments.start)
@@ -191,6 +195,19 @@ def _activity_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_
     scores = activity_scores(arguments.data, trainer)
     file = write_activity_weights(arguments.out, arguments.data, trainer, scores)
     return {"weights": str(file), **summary, "scores": scores}
+
+
+def _power_on_data(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
+    from mmweaver.training.power_training import PowerRecipe, train_power, write_power_weights
+
+    recipe = PowerRecipe(**_given(arguments))
+    start = None if arguments.start is None else train_recipes.power_start(arguments.start)
+    with _bar(recipe.steps, is_quiet) as listener:
+        trainer = train_power(
+            arguments.data, arguments.out, recipe, start=start, listener=listener, compute=place, **_options(arguments)
+        )
+    file = write_power_weights(arguments.out, arguments.data, trainer) if place.is_first else None
+    return {"weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value}
 
 
 def _on_captures(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:

@@ -21,13 +21,14 @@ from mmweaver.fields.scatterers.fit_window import FitWindow
 from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
-from mmweaver.models.network import SceneEncoding, WeaverNetwork
+from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
 from mmweaver.paths.apparent_paths import signal_points
 from mmweaver.paths.background import BackgroundRecording, check_recording
 from mmweaver.paths.board_effects import BoardEffects
+from mmweaver.paths.cell_echoes import CellEchoes
 from mmweaver.paths.cube_rendering import CubeRenderer
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.mean_echoes import MeanEchoes
@@ -35,7 +36,7 @@ from mmweaver.paths.mean_power import MeanPower
 from mmweaver.paths.occlusion import occluded
 from mmweaver.paths.paths import Paths, ScenePaths
 from mmweaver.paths.radar_equation import points_of
-from mmweaver.paths.random_phases import place_of, sample_moving, sample_moving_segments, sample_static
+from mmweaver.paths.random_phases import place_of, sample_cells, sample_moving, sample_moving_segments, sample_static
 from mmweaver.paths.receiver import quantise
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
@@ -101,7 +102,7 @@ class LearnedRoom:
 
     def __init__(
         self,
-        network: WeaverNetwork,
+        network: EchoNetwork,
         scene: Scene | SceneTensors,
         config: RadarConfig,
         *,
@@ -125,7 +126,7 @@ class LearnedRoom:
             at_range = self.board.noise_gain(share).astype(np.float32)
             self._noise_factor = at_range[:, None, None] * self._noise_factor
         with torch.inference_mode(), one_thread():
-            self.code: SceneEncoding = network.encode_room(view[None].to(device))
+            self.code = network.encode_for(view[None].to(device), config)
             echoes = self.code.static[0].to("cpu")
             self.static = sample_static(echoes, config, room_seed)
             size = self.static.amplitude.abs()
@@ -154,9 +155,9 @@ class LearnedRoom:
         with torch.inference_mode(), one_thread():
             return self._paths(motions)
 
-    def _paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
+    def _paths(self, motions: Sequence[FrameMotion], first_frame: int = 0) -> ScenePaths:
         moving = Paths.cat(
-            [self._moving(motion, [one for one in motions if one is not motion]) for motion in motions], 1
+            [self._moving(motion, [one for one in motions if one is not motion], first_frame) for motion in motions], 1
         )
         noticed_m = self.static.departure_vertex_m[: self._num_noticed]
         by_each = [occluded(noticed_m, motion.middle_joints_m) for motion in motions]
@@ -164,7 +165,7 @@ class LearnedRoom:
         hidden[:, : self._num_noticed] = torch.stack(by_each).any(dim=0)
         return ScenePaths(static=self.static, moving=moving, occluded=hidden)
 
-    def _moving(self, motion: FrameMotion, others: list[FrameMotion]) -> Paths:
+    def _moving(self, motion: FrameMotion, others: list[FrameMotion], first_frame: int) -> Paths:
         """One person's paths (frame * segment, path), less those that others occlude."""
         clock = self.renderer.clock
         joints, velocity = motion.segments(clock)
@@ -185,6 +186,10 @@ class LearnedRoom:
             for index, one in enumerate(each)
         ]
         echoes = replace(echoes, cross_section_m2=echoes.cross_section_m2 * torch.stack(shown, 1))
+        if isinstance(echoes, CellEchoes):
+            frame_s = (first_frame + torch.arange(len(joints)).double()) * self.config.frame_period_s
+            time_s = frame_s[:, None] + torch.from_numpy(clock.middle_s)
+            return sample_cells(echoes, time_s, self.config, motion.subject)
         sight = aspect(joints.flatten(0, 1)).unflatten(0, (-1, count))
         if count == 1:
             paths = sample_moving(echoes[:, 0], sight[:, 0], self.config, motion.subject)
@@ -197,9 +202,10 @@ class LearnedRoom:
 
         A ghost is lost where its joint is occluded: its departure or its arrival leads straight there.
         """
-        place_m = place_of(echoes).float()[:, :NUM_ANCHORS]
-        reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
-        ends_m = torch.cat([place_m, reflected_m], dim=1)
+        ends_m = place_of(echoes).float()
+        if not isinstance(echoes, CellEchoes):
+            reflected_m = joints_m[:, MIRRORED].repeat(1, NUM_GHOSTS // len(MIRRORED), 1)
+            ends_m = torch.cat([ends_m[:, :NUM_ANCHORS], reflected_m], dim=1)
         hidden = torch.zeros(ends_m.shape[:2], dtype=torch.bool)
         for other_m in others_m:
             hidden |= occluded(ends_m, other_m)
@@ -243,7 +249,7 @@ class LearnedRoom:
         `first_frame`: where in a longer signal this part begins; each part has noise of its own.
         """
         with torch.inference_mode(), one_thread():
-            paths = self._paths(motions)
+            paths = self._paths(motions, first_frame)
             grid = CubeGrid.of(self.nominal, len(paths.occluded), first_frame)
             frames, layer = first_frame + np.arange(len(paths.occluded)), self.layer
             if self.board is not None:

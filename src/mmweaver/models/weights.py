@@ -19,6 +19,7 @@ from mmweaver.core.safe_files.safe_text import parse_json
 from mmweaver.core.tensor_files import read_tensors, write_tensors
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
 from mmweaver.models.network import WeaverNetwork
+from mmweaver.models.power_network import RECIPE, PowerNetwork
 
 FORMAT = "mmweaver weights"
 FORMAT_VERSION = 1
@@ -57,8 +58,19 @@ def save_weights(file: Path, network: nn.Module, card: WeightsCard, *, half: boo
 
 def load_weights(file: Path) -> tuple[WeaverNetwork, WeightsCard]:
     """Reads a weaver, ready to use. Raises InputError for files that are damaged, foreign or of another version."""
+    network, card = load_network(file)
+    if not isinstance(network, WeaverNetwork):
+        raise InputError(f"{file} holds weights of recipe {card.recipe!r}; give those of: mmweaver train weaver")
+    return network, card
+
+
+def load_network(file: Path) -> tuple[WeaverNetwork | PowerNetwork, WeightsCard]:
+    """The same for every recipe that generates signals."""
     card, tensors = _read(file)
-    network = WeaverNetwork(encoder=card.settings.get("encoder", DEFAULT_ENCODER))
+    if card.recipe == RECIPE:
+        network = PowerNetwork(is_anchored=bool(card.settings.get("is_anchored", True)))
+    else:
+        network = WeaverNetwork(encoder=card.settings.get("encoder", DEFAULT_ENCODER))
     _fill(network, file, tensors)
     return network, card
 

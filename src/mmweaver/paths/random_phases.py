@@ -15,6 +15,7 @@ from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.seeding import stream
 from mmweaver.dsp.point_response import PointResponse
+from mmweaver.paths.cell_echoes import CellEchoes
 from mmweaver.paths.mean_echoes import MeanEchoes
 from mmweaver.paths.paths import ApparentPoint, Interaction, Paths, StaticPaths
 from mmweaver.paths.radar_equation import carrier, points_of
@@ -69,6 +70,29 @@ def sample_moving_segments(
     return Paths.direct(amplitude, _scatterers(spots, range_m, velocity_mps, acceleration)).map(
         lambda tensor: tensor.flatten(0, 1).flatten(1, 2)
     )
+
+
+def sample_cells(cells: CellEchoes, time_s: Tensor, config: RadarConfig, subject: int) -> Paths:
+    """Cells (frame, segment, cell) with sampled phases at times (frame, segment), paths (frame * segment, cell).
+
+    A cell is one scatterer at its place that moves with its velocity. It has one random phase, which turns with that
+    velocity from frame to frame as it does from chirp to chirp; at rest it stays.
+    """
+    amplitude = points_of(cells, PointResponse(config)).amplitude
+    turned = carrier(cells.velocity_mps.double() * time_s[..., None], config)
+    place = _scatterers(cells, cells.range_m, cells.velocity_mps, 0 * cells.range_m)
+    return Paths.direct(amplitude * turned * _cell_phases(cells.cell, subject), place).map(
+        lambda tensor: tensor.flatten(0, 1)
+    )
+
+
+def _cell_phases(cell: Tensor, subject: int) -> Tensor:
+    """exp(j phase) of each cell's number; a hash, for most cells of a room are never looked at (splitmix64)."""
+    mixed = cell.numpy().astype(np.uint64) + stream(subject, "power field", "cells").integers(2**63, dtype=np.uint64)
+    for shift, factor in ((30, 0xBF58476D1CE4E5B9), (27, 0x94D049BB133111EB)):
+        mixed = (mixed ^ (mixed >> np.uint64(shift))) * np.uint64(factor)
+    share = torch.from_numpy(((mixed ^ (mixed >> np.uint64(31))) >> np.uint64(40)).astype(np.float32) / 2**24)
+    return torch.polar(torch.ones_like(share), 2 * math.pi * share)
 
 
 def place_of(echoes: MeanEchoes) -> Tensor:

@@ -42,14 +42,18 @@ class Targets:
 
 
 def itakura_saito(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:
-    """Mean over cells of p/m - log(p/m) - 1, both raised by `least` (broadcast).
+    """Mean over cells of p/m - log(p/m) - 1, both raised by `least` (broadcast)."""
+    return speckle_divergence((power + least).log() - (mean + least).log()).mean()
+
+
+def speckle_divergence(log_ratio: Tensor) -> Tensor:
+    """p/m - log(p/m) - 1 of each cell, of log(p/m).
 
     Beyond p = STEEPEST m it continues linearly in decibels, so that a single unpredicted specular lobe does not
     dominate the loss.
     """
-    log_ratio = (power + least).log() - (mean + least).log()
     bounded = log_ratio.clamp(max=math.log(STEEPEST))
-    return (bounded.exp() - bounded - 1 + (STEEPEST - 1) * (log_ratio - bounded)).mean()
+    return bounded.exp() - bounded - 1 + (STEEPEST - 1) * (log_ratio - bounded)
 
 
 def difference(mean: Tensor, power: Tensor, least: Tensor) -> Tensor:

@@ -13,8 +13,9 @@ from mmweaver.core.atomic_files import atomic_file
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.version import __version__
 from mmweaver.datasets.dataset_store import plan_text, read_plan
+from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.environment_encoder import DEFAULT_ENCODER
-from mmweaver.models.network import SceneEncoding, WeaverNetwork
+from mmweaver.models.network import WeaverNetwork
 from mmweaver.models.precision import exactly
 from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
 from mmweaver.paths.mean_echoes import MeanEchoes
@@ -46,7 +47,12 @@ class TrainingRecipe(LoopRecipe):
 class NetworkLearner(Learner):
     """The network with the radar that turns its echoes into maps; `shown` returns the sequences to plot."""
 
-    def __init__(self, network: WeaverNetwork, config: RadarConfig, shown: Callable[[], NetworkBatch] | None = None):
+    def __init__(
+        self,
+        network: EchoNetwork,
+        config: RadarConfig,
+        shown: Callable[[], NetworkBatch] | None = None,
+    ):
         super().__init__()
         self.network = network
         self.radar = MeanPower(config)
@@ -68,7 +74,7 @@ class NetworkLearner(Learner):
         with exactly(batch.joints_m):
             return weaver_loss(self.radar, code.static, moving, batch.targets)
 
-    def moving(self, code: SceneEncoding, batch: NetworkBatch) -> MeanEchoes:
+    def moving(self, code: Any, batch: NetworkBatch) -> MeanEchoes:
         """Mean echoes of the people in a batch."""
         return self.network.moving(code, batch.joints_m, batch.velocity_mps, batch.frames)
 

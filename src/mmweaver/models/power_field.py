@@ -1,0 +1,68 @@
+"""An implicit neural representation of log power, written by a hypernetwork as modulations of a shared network.
+
+    coordinates -> sines and cosines -> 4 wide layers, each x (1 + gamma) + shift -> logarithm of a cross section
+
+The wide layers are the same for all rooms and motions and are trained; 256 numbers a field (or a frame) move them, as
+many as the paper's gamma and beta, and 16 compose the second layer out of matrices of rank one. Predicting all weights
+instead, as the paper does, starts with outputs seven times too large. Reference: decision 237; Perez et al., 2018.
+"""
+
+import math
+
+import torch
+from torch import Tensor, nn
+
+WIDTH, LAYERS = 128, 4
+CODE, RANK = 64, 16  # numbers that modulate a layer, and that compose the second one
+NUM_WRITTEN = LAYERS * CODE + RANK  # by the hypernetwork for each field
+FAINTEST_LOG = -9.0  # of a natural logarithm of square metres: where an untrained field stands
+
+
+def octaves(values: Tensor, count: int) -> Tensor:
+    """Coordinates (...) in [-1, 1] as themselves and sines and cosines of `count` octaves from half a turn on."""
+    turns = values[..., None] * (0.5 * math.pi * 2.0 ** torch.arange(count, device=values.device))
+    return torch.cat([values[..., None], turns.sin(), turns.cos()], dim=-1)
+
+
+def octave_size(counts: tuple[int, ...]) -> int:
+    """How many values `octaves` gives for axes of so many octaves."""
+    return sum(1 + 2 * count for count in counts)
+
+
+class PowerField(nn.Module):
+    """Encoded coordinates (field, point, size), what was written (field, NUM_WRITTEN) -> logarithms (field, point)."""
+
+    def __init__(self, size: int) -> None:
+        super().__init__()
+        self.layers = nn.ModuleList(nn.Linear(size if index == 0 else WIDTH, WIDTH) for index in range(LAYERS))
+        self.expand = nn.ModuleList(nn.Linear(CODE, 2 * WIDTH, bias=False) for _ in range(LAYERS))
+        self.narrow, self.widen = nn.Linear(WIDTH, RANK, bias=False), nn.Linear(RANK, WIDTH, bias=False)
+        self.norm, self.out = nn.LayerNorm(WIDTH), nn.Linear(WIDTH, 1)
+        nn.init.constant_(self.out.bias, FAINTEST_LOG)
+
+    def forward(self, encoded: Tensor, written: Tensor) -> Tensor:
+        *codes, composed = written.split([CODE] * LAYERS + [RANK], dim=-1)
+        h = encoded
+        for index, (layer, expand, code) in enumerate(zip(self.layers, self.expand, codes, strict=True)):
+            z = layer(h)
+            if index == 1:
+                z = z + self.widen(self.narrow(h) * composed[:, None])
+            gamma, shift = expand(code)[:, None].chunk(2, dim=-1)
+            h = nn.functional.gelu(z * (1 + gamma) + shift)
+        return self.out(self.norm(h))[..., 0]
+
+
+class FieldWriter(nn.Module):
+    """The hypernetwork: codes (..., size) -> the numbers of a field (..., NUM_WRITTEN), near zero before training."""
+
+    def __init__(self, size: int, width: int = 512) -> None:
+        super().__init__()
+        self.trunk = nn.Sequential(
+            nn.Linear(size, width), nn.GELU(), nn.Linear(width, width), nn.GELU(), nn.LayerNorm(width)
+        )
+        self.head = nn.Linear(width, NUM_WRITTEN)
+        nn.init.normal_(self.head.weight, std=0.3 / math.sqrt(width))
+        nn.init.zeros_(self.head.bias)
+
+    def forward(self, code: Tensor) -> Tensor:
+        return self.head(self.trunk(code))

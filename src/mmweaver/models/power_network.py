@@ -1,0 +1,226 @@
+"""The paper's idea with a target that can be learnt: a hypernetwork that writes fields of log power.
+
+    picture --EnvironmentEncoder--> z_env --+--> 272 numbers --> field of the room over (r, azimuth, elevation)
+                                            |
+    joints ---PoseEncoder---------> z_pose -+--> 272 a frame --> field of the person over (r, d, azimuth, elevation)
+
+Fields give the radar cross section of cells (`power_cells`); each cell that matters becomes one scatterer of unknown
+phase, and the radar's own response makes the signal of them (`paths.random_phases`). Coordinates are those of the
+radar and, next to them, counted from what photo and joints show: from the photographed surface in that direction, and
+from the pelvis. Reference: paper, section "Generalization via Hypernetworks"; decision 237.
+"""
+
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor, nn
+
+from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.skeleton import joint
+from mmweaver.geometry.pinhole import pixel_coordinates
+from mmweaver.models.echo_network import EchoNetwork
+from mmweaver.models.environment_encoder import Z_ENV, EnvironmentEncoder
+from mmweaver.models.pose_encoder import Z_POSE, PoseEncoder
+from mmweaver.models.power_cells import REACH, WIDEST, CellSizes
+from mmweaver.models.power_field import FieldWriter, PowerField, octave_size, octaves
+from mmweaver.models.precision import in_full_precision
+from mmweaver.models.scene_tensors import SceneTensors
+from mmweaver.paths.cell_echoes import CellEchoes
+from mmweaver.paths.mean_echoes import MeanEchoes
+
+RECIPE = "paper_power"
+ROOM_OCTAVES, PERSON_OCTAVES = (7, 6, 4, 4), (6, 6, 4, 4)
+SURFACE_FEATURES, PERSON_FEATURES = 4, 2
+MIDDLE_M = 2.2  # of the ranges that a field is read at
+SURFACE_REACH_M = 1.0  # before and behind the photographed surface
+MOST_MOVING = 1024  # cells of a frame, the strongest
+BLOCK = (2, 2, 2, 2)  # cells that are first looked at together
+LIKELY_BLOCKS = 384  # of a frame, whose cells are looked at one by one
+LARGEST_LOG = 6.0
+EDGE_PIXELS = 2  # to either side, over which a surface's normal is measured
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerEncoding:
+    """A room that has been encoded: what the photo shows, its code, its field, and its cells at rest."""
+
+    view: SceneTensors
+    z_env: Tensor  # (room, 512)
+    surface: Tensor  # (room, 3, row, column): distance of the surface, cosine of incidence, whether it is known
+    written: Tensor  # (room, NUM_WRITTEN)
+    sizes: CellSizes
+    static: MeanEchoes  # (room, cell)
+
+
+class PowerNetwork(EchoNetwork):
+    """Rooms and motions -> mean echoes of cells; `encode_room` once a room, then `moving` for each motion.
+
+    Without `anchored`, coordinates are those of the radar alone, as in the paper.
+    """
+
+    def __init__(self, *, is_anchored: bool = True) -> None:
+        super().__init__()
+        self.is_anchored = is_anchored
+        self.environment, self.pose = EnvironmentEncoder(), PoseEncoder()
+        self.room_writer, self.person_writer = FieldWriter(Z_ENV), FieldWriter(Z_ENV + Z_POSE)
+        self.room = PowerField(octave_size(ROOM_OCTAVES) + SURFACE_FEATURES)
+        self.person = PowerField(octave_size(PERSON_OCTAVES) + PERSON_FEATURES)
+
+    def code_of(self, view: SceneTensors, sizes: CellSizes | None = None) -> PowerEncoding:
+        """Rooms (room, ...) -> their code, without echoes; `sizes`: of the cells that will be looked at."""
+        z_env, _ = self.environment(view.image)
+        return PowerEncoding(
+            view=view, z_env=z_env, surface=_surfaces(view), written=self.room_writer(z_env),
+            sizes=sizes or CellSizes(), static=_no_echoes(z_env),
+        )  # fmt: skip
+
+    def encode_room(self, view: SceneTensors, sizes: CellSizes | None = None) -> PowerEncoding:
+        """The same with echoes of all cells at rest (room, cell)."""
+        code = self.code_of(view, sizes)
+        cells = code.sizes.room_cells().to(code.z_env.device)[None].expand(len(code.z_env), -1, -1)
+        level = self.room_level(code, cells)
+        static = MeanEchoes(
+            range_m=cells[..., 0], velocity_mps=torch.zeros_like(level), direction=cells[..., 1:],
+            cross_section_m2=level.exp() * code.sizes.room_share,
+        )  # fmt: skip
+        return replace(code, static=static)
+
+    def encode_for(self, view: SceneTensors, config: RadarConfig) -> PowerEncoding:
+        return self.encode_room(view, CellSizes.of(config))
+
+    def room_level(self, code: PowerEncoding, at: Tensor) -> Tensor:
+        """Logarithm of the cross section (m2) of reference cells at rest at (room, place, 3) -> (room, place)."""
+        return _bounded(self.room(self._room_coordinates(code, at), code.written))
+
+    def write_person(self, code: PowerEncoding, joints_m: Tensor, velocity_mps: Tensor) -> Tensor:
+        """What the hypernetwork writes of a motion (room, frame, 22, 3): (room, frame, NUM_WRITTEN)."""
+        z_pose = self.pose(torch.cat([joints_m / 2, velocity_mps / 2], dim=-1))
+        z_env = code.z_env[:, None].expand(-1, z_pose.shape[1], -1)
+        return self.person_writer(torch.cat([z_env, z_pose], dim=-1))
+
+    def person_level(self, written: Tensor, pelvis: Tensor, at: Tensor) -> Tensor:
+        """Logarithm of the cross section (m2) of reference cells at (field, place, 4) -> (field, place).
+
+        `pelvis` (field, 4): its range, radial velocity and direction cosines.
+        """
+        return _bounded(self.person(self._person_coordinates(pelvis, at), written))
+
+    def moving(
+        self, code: PowerEncoding, joints_m: Tensor, velocity_mps: Tensor, frames: Tensor | None = None
+    ) -> CellEchoes:
+        """Joints and velocities (room, frame, 22, 3), one motion for each room -> the strongest cells (room, frame,
+        cell). `frames` (room, chosen) picks the frames whose echoes are wanted; the pose encoder sees all.
+        """
+        written = self.write_person(code, joints_m, velocity_mps)
+        pelvis = pelvis_of(joints_m, velocity_mps)
+        if frames is not None:
+            written, pelvis = (chosen_frames(part, frames) for part in (written, pelvis))
+        fields = zip(written.flatten(0, 1), pelvis.flatten(0, 1), strict=True)
+        each = [self._cells(code.sizes, *field) for field in fields]
+        return CellEchoes.stack(each).map(lambda tensor: tensor.unflatten(0, written.shape[:2]))
+
+    def _cells(self, sizes: CellSizes, written: Tensor, pelvis: Tensor) -> CellEchoes:
+        """The strongest cells (cell,) of one field: blocks first, then the cells of the likely ones."""
+        blocks, inside = (part.to(pelvis.device) for part in sizes.boxes(pelvis.cpu(), BLOCK))
+        with torch.no_grad():
+            likely = _strength(self.person_level(written[None], pelvis[None], blocks[None])[0], blocks)
+        likely = likely.topk(min(LIKELY_BLOCKS, len(likely))).indices
+        cells = (blocks[likely][:, None] + inside).flatten(0, 1)
+        level = self.person_level(written[None], pelvis[None], cells[None])[0]
+        best = _strength(level, cells).topk(min(MOST_MOVING, len(cells))).indices
+        cells, there = cells[best], _is_ahead(cells[best])
+        return CellEchoes(
+            range_m=cells[:, 0].clamp(min=0.1), velocity_mps=cells[:, 1],
+            direction=cells[:, 2:] * there[:, None], cell=sizes.numbers(cells),
+            cross_section_m2=level[best].exp() * there * sizes.moving_share,
+        )  # fmt: skip
+
+    def _room_coordinates(self, code: PowerEncoding, at: Tensor) -> Tensor:
+        distance, cosine, known = _seen(code, at[..., 1:]).unbind(1)
+        if not self.is_anchored:
+            distance, cosine, known = (0 * part for part in (distance, cosine, known))
+        behind = ((at[..., 0] - distance) / SURFACE_REACH_M).clamp(-1, 1) * known
+        axes = ((at[..., 0] - MIDDLE_M) / MIDDLE_M, behind, at[..., 1], at[..., 2])
+        flash = (10 * cosine - 9).clamp(min=0)  # a surface that faces the radar
+        parts = [octaves(axis, count) for axis, count in zip(axes, ROOM_OCTAVES, strict=True)]
+        return torch.cat([*parts, torch.stack([known, distance / 4, cosine, flash], -1)], -1)
+
+    def _person_coordinates(self, pelvis: Tensor, at: Tensor) -> Tensor:
+        distance, speed, x, _ = pelvis[:, None].unbind(-1)
+        range_m, velocity, cosine_x, cosine_z = at.unbind(-1)
+        if self.is_anchored:
+            axes = [(range_m - distance) / REACH[0], (velocity - speed) / REACH[1], (cosine_x - x) / REACH[2], cosine_z]
+        else:
+            axes = [(range_m - MIDDLE_M) / MIDDLE_M, velocity / REACH[1], cosine_x, cosine_z]
+        parts = [octaves(axis, count) for axis, count in zip(axes, PERSON_OCTAVES, strict=True)]
+        return torch.cat([*parts, torch.stack([range_m / 4, cosine_x], -1)], -1)
+
+
+def pelvis_of(joints_m: Tensor, velocity_mps: Tensor) -> Tensor:
+    """Range, radial velocity and direction cosines (..., 4) of the pelvis."""
+    place, velocity = (part[..., joint("pelvis"), :] for part in (joints_m, velocity_mps))
+    distance = place.norm(dim=-1, keepdim=True).clamp(min=0.1)
+    unit = place / distance
+    return torch.cat([distance, (unit * velocity).sum(-1, keepdim=True), unit[..., [0, 2]]], dim=-1)
+
+
+def chosen_frames(values: Tensor, frames: Tensor) -> Tensor:
+    """Of values (room, frame, size) those at indices (room, chosen)."""
+    return values.gather(1, frames[..., None].expand(-1, -1, values.shape[-1]))
+
+
+def _surfaces(view: SceneTensors) -> Tensor:
+    """Of each pixel (room, 3, row, column): distance of its surface, cosine of incidence, and whether it is known."""
+    rows, columns = view.depth_m.shape[-2:]
+    fx, fy, cx, cy = view.camera[:, :, None, None].unbind(1)
+    x = (torch.arange(columns, device=fx.device) - cx) / fx
+    y = (torch.arange(rows, device=fx.device)[:, None] - cy) / fy
+    ray = torch.stack([x.expand(-1, rows, -1), y.expand(-1, -1, columns), torch.ones_like(view.depth_m)], 1)
+    point = ray * view.depth_m[:, None]
+    wide = nn.functional.pad(point, [EDGE_PIXELS] * 4, mode="replicate")
+    step = slice(EDGE_PIXELS, -EDGE_PIXELS)
+    across = wide[:, :, step, 2 * EDGE_PIXELS :] - wide[:, :, step, : -2 * EDGE_PIXELS]
+    down = wide[:, :, 2 * EDGE_PIXELS :, step] - wide[:, :, : -2 * EDGE_PIXELS, step]
+    normal = nn.functional.normalize(torch.linalg.cross(across, down, dim=1), dim=1)
+    distance = point.norm(dim=1)
+    cosine = (normal * point).sum(1).abs() / distance.clamp(min=0.05)
+    return torch.stack([distance, cosine, (view.depth_m > 0).float()], 1)
+
+
+@in_full_precision
+def _looked_up(surface: Tensor, direction: Tensor, camera_from_radar: Tensor, camera: Tensor) -> Tensor:
+    """Values (room, 3, place) of the surface in directions (room, place, 2); zeros beyond the picture."""
+    ahead = (1 - direction.square().sum(-1)).clamp(min=0.0).sqrt()
+    unit = torch.stack([direction[..., 0], ahead, direction[..., 1]], -1)
+    seen = unit @ camera_from_radar.transpose(-1, -2)
+    depth = seen[..., 2].clamp(min=0.05)
+    column, row = pixel_coordinates(seen[..., 0], seen[..., 1], depth, *camera[:, None].unbind(-1))
+    rows, columns = surface.shape[-2:]
+    grid = torch.stack([(2 * column + 1) / columns - 1, (2 * row + 1) / rows - 1], dim=-1).clamp(-3, 3)
+    found = nn.functional.grid_sample(surface, grid[:, None], mode="nearest", align_corners=False)[:, :, 0]
+    return found * (seen[..., 2] > 0.05)[:, None]
+
+
+def _seen(code: PowerEncoding, direction: Tensor) -> Tensor:
+    return _looked_up(code.surface, direction, code.view.camera_from_radar, code.view.camera)
+
+
+def _is_ahead(cells: Tensor) -> Tensor:
+    """Whether cells (cell, 4) lie where an antenna hears anything."""
+    return (cells[:, 2:].square().sum(-1) < WIDEST) & (cells[:, 0] > 0.1)
+
+
+def _strength(level: Tensor, cells: Tensor) -> Tensor:
+    """How strong cells (cell, 4) are received, up to a constant, as a logarithm."""
+    return torch.where(_is_ahead(cells), level - 4 * cells[:, 0].clamp(min=0.1).log(), -torch.inf)
+
+
+def _bounded(level: Tensor) -> Tensor:
+    return level.clamp(-LARGEST_LOG * 5, LARGEST_LOG)
+
+
+def _no_echoes(like: Tensor) -> MeanEchoes:
+    none = like.new_zeros((len(like), 0))
+    return MeanEchoes(
+        range_m=none, velocity_mps=none, direction=like.new_zeros((len(like), 0, 2)), cross_section_m2=none
+    )
