@@ -88,7 +88,7 @@ def cube_of(signal: Tensor) -> np.ndarray:
 
 def unit_of(rooms: list[DiffusionRoom], most: int = 24) -> Tensor:
     """Root mean square of each range bin over some training frames, (range,)."""
-    frames = torch.cat([one.signal(one.indices[0], np.array([0, 10])) for one in rooms[:most]])
+    frames = torch.cat([one.signal(one.indices[0], np.array([0])) for one in rooms[:most]])
     return frames.abs().square().mean(dim=(0, 1, 3)).sqrt().clamp(min=1e-30)
 
 

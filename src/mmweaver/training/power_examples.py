@@ -123,7 +123,7 @@ def room_targets(echoes: MeanEchoes, radar: MeanPower, rng: np.random.Generator)
     received = points_of(echoes, radar.response).amplitude.square()
     ranges, size = radar.config.range_m, np.array(REFERENCE)[[0, 2, 3]]
     low = np.array([float(ranges[0]) - size[0], -1.0, -1.0]) + size / 2 * rng.random(3)
-    shape = tuple(np.ceil((np.array([float(ranges[-1]) + size[0], 1.0, 1.0]) - low) / (size / 2)).astype(int))
+    shape = tuple(np.ceil((np.array([float(ranges[-1]) + size[0], 1.0, 1.0]) - low) / (size / 2)).astype(int).tolist())
     place = torch.stack([echoes.range_m, *echoes.direction.unbind(-1)], -1).double().numpy()
     values = np.stack([echoes.cross_section_m2.double().numpy(), received.double().numpy() ** CHOICE])
     section, near = raster_density(place, values, low, size, shape)
