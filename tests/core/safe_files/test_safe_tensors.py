@@ -27,6 +27,16 @@ class Attack:
         return os.mkdir, (str(self.place),)
 
 
+def test_a_header_whose_length_begins_as_a_pickle_does_is_read(tmp_path: Path):
+    """A length of 128 modulo 256 is stored as a first byte of 0x80, with which pickles begin, too."""
+    lengths = set()
+    for size in range(0, 256, 8):
+        save_file(TENSORS, tmp_path / "t.safetensors", {"note": "x" * size})
+        lengths.add((tmp_path / "t.safetensors").read_bytes()[0])
+        assert read_tensors(tmp_path / "t.safetensors")[1] == {"note": "x" * size}
+    assert 0x80 in lengths
+
+
 def test_tensors_and_metadata_come_back(tmp_path: Path):
     file = tmp_path / "a.safetensors"
     save_file(TENSORS, file, {"card": "{}"})

@@ -53,12 +53,13 @@ def check_header(path: Path | str) -> dict[str, Any]:
     size = check_regular(path)
     with open_regular(path) as file, foreign_errors(path, NO_TENSORS):
         start = file.read(8)
-        if start.startswith(PICKLE):
-            raise InputError(
-                f"{path} holds pickled objects, which can run any program; mmweaver reads only safetensors"
-            )
         length = struct.unpack("<Q", start)[0] if len(start) == 8 else 0
         if not 2 <= length <= min(size - 8, MAX_HEADER_BYTES):
+            # only now: the length of one header in 32 begins as a pickle does
+            if start.startswith(PICKLE):
+                raise InputError(
+                    f"{path} holds pickled objects, which can run any program; mmweaver reads only safetensors"
+                )
             raise ValueError("its header does not fit")
         text = file.read(length)
     header = parse_json(text, f"the header of {path}")
