@@ -3,7 +3,7 @@
 Noise is added in slow time while a window closes over the chirps, which blurs their spectrum; a network restores the
 signal of one frame, (loop, range, antenna), from that, the person's joints and the photo. Written from the paper's
 equations (Chi et al., MobiCom 2024); its code is GPL and was not taken. Its network is a transformer of 75 million
-parameters, this one has convolutions over the loops and 1.7 million. Range and antenna are channels.
+parameters, this one has convolutions over the loops and two million. Range and antenna are channels.
 """
 
 import math
@@ -14,7 +14,7 @@ from torch import Tensor, nn
 
 from mmweaver.core.radar_config import RadarConfig
 
-WIDTH, BLOCKS = 256, 4
+WIDTH, BLOCKS = 256, 3
 JOINT_VALUES, PICTURE = 22 * 6, (5, 12, 16)
 CLOSING = 1.5  # how many standard deviations of the window the frame is long when all is noise
 SAMPLING_STEPS = 25
