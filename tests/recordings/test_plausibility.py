@@ -74,6 +74,16 @@ def test_the_order_of_the_transmitters(recording: Path):
     assert found[0].endswith("--tx-order 0,2,1")
 
 
+@pytest.mark.parametrize("lanes", [2, 4])
+def test_the_other_layout_of_the_lanes(tmp_path: Path, lanes: int):
+    written = replace(RADAR, lvds_lanes=lanes)
+    write_bin(tmp_path / "adc_data.bin", replace(room(RADAR, 2), config=written), counts_per_unit=1.0)
+    assert read(tmp_path / "adc_data.bin", written) == []
+    found = read(tmp_path / "adc_data.bin", replace(RADAR, lvds_lanes=6 - lanes))
+    assert len(found) == 1
+    assert f"try --lanes {lanes}" in found[0]
+
+
 def test_another_radars_layout(recording: Path):
     """Twice the samples, half the loops: the file has the right size."""
     other = replace(RADAR, num_samples=128, num_loops=8, sample_rate_hz=2.26e6, num_range_bins=128)

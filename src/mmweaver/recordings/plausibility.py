@@ -15,6 +15,7 @@ from mmweaver.core.safe_files.regular_files import open_regular
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.dsp.windows import hann
+from mmweaver.formats.dca1000 import LANES, read_bin
 from mmweaver.recordings.transmitter_order import agreements
 
 FRAMES_LOOKED_AT = 8
@@ -23,6 +24,8 @@ CLIPPED_SHARE = 1e-3
 MIRRORED_DB = 8.0  # more energy in the last quarter of the beat frequencies than in the first
 LEAST_LIKENESS = 0.4  # of chirps one loop apart
 BETTER_LIKENESS = 0.25  # that another layout must have more
+SCATTERED = 0.6  # times the ranges that echoes fill in another layout of the lanes, at which that is likelier
+LEAST_ORDER = 0.3  # how well static echoes must fit an order of transmitters to be evidence
 BETTER_ORDER = 0.06  # that another order of transmitters must fit static echoes better
 FEWEST_MOVING_FRAMES = 6
 
@@ -36,7 +39,9 @@ def implausible(adc: AdcCube, cube: RadarCube, path: Path | None = None) -> list
     found = [*_number_type(path), *_values(adc)]
     if any("constant" in text or "numbers of" in text for text in found):
         return found  # too little to check more
-    found += [*_beat_sign(few), *_layout(few)]
+    found += [*_lanes(few, path)]
+    if not found:
+        found += [*_beat_sign(few), *_layout(few)]
     if not found:
         found += [*_transmitters(cube), *_velocity_sign(cube)]
     return found
@@ -72,6 +77,27 @@ def _values(adc: AdcCube) -> Iterator[str]:
     clipped = float((np.abs(parts) >= 32767).mean()) if is_counts else 0.0
     if clipped > CLIPPED_SHARE:
         yield f"{100 * clipped:.1f} % of the samples are clipped at full scale; record with less receiver gain"
+
+
+def _lanes(adc: AdcCube, path: Path | None) -> Iterator[str]:
+    """Words of two lanes read as four, or the other way round: the spectrum of each chirp is scattered."""
+    config = adc.config
+    if path is None or path.suffix.lower() != ".bin" or config.num_rx != LANES or not config.complex_samples:
+        return
+    other = 2 if config.lvds_lanes == LANES else LANES
+    again = read_bin(path, replace(config, lvds_lanes=other), frames=slice(0, 2))
+    if _occupied(again) < SCATTERED * _occupied(replace(adc, samples=adc.samples[:2])):
+        yield (
+            f"read as {other} lanes the echoes of a chirp gather at fewer ranges than as {config.lvds_lanes}; try"
+            f" --lanes {other}, or another --radar"
+        )
+
+
+def _occupied(adc: AdcCube) -> float:
+    """The share of the range bins that the energy of a chirp fills, mean over chirps."""
+    power = np.abs(np.fft.fft(adc.samples * hann(adc.config.num_samples), axis=-1)) ** 2
+    power = power.reshape(-1, power.shape[-1])
+    return float((power.sum(axis=1) ** 2 / np.maximum((power**2).sum(axis=1), 1e-300)).mean() / power.shape[1])
 
 
 def _beat_sign(adc: AdcCube) -> Iterator[str]:
@@ -131,10 +157,11 @@ def _transmitters(cube: RadarCube) -> Iterator[str]:
     own = cube.config.tx_order
     found = agreements(replace(cube, values=cube.values[:FRAMES_LOOKED_AT]))
     best = max(found, key=lambda order: found[order], default=own)
-    if found and found[best] > found[own] + BETTER_ORDER:
+    if found and found[best] > max(found[own] + BETTER_ORDER, LEAST_ORDER):
         yield (
             f"the transmitters fit the static echoes to {found[own]:.2f} in the order {','.join(map(str, own))}, to"
-            f" {found[best]:.2f} in the order {','.join(map(str, best))}; try --tx-order {','.join(map(str, best))}"
+            f" {found[best]:.2f} in the order {','.join(map(str, best))}; try another --radar or --tx-order"
+            f" {','.join(map(str, best))}"
         )
 
 

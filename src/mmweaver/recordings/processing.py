@@ -209,7 +209,7 @@ def _assumptions(recording: Recording) -> list[str]:
     if recording.packets is None:
         return [f"{every} the radar's configuration says"]
     report = recording.packets.report
-    sentences = [f"{every} radar.cfg says; frame_clock_s holds when their first packets came"]
+    sentences = [f"{every} the radar's configuration says; frame_clock_s holds when their first packets came"]
     if report.lost_bytes:
         sentences.append(f"{report.lost} packets were lost: {report.lost_bytes} bytes of samples are zero")
     if report.bytes_after_last_frame:
