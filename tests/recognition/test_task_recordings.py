@@ -62,6 +62,8 @@ def test_a_short_performance_is_a_window_with_empty_frames():
     assert [(one.first_frame, one.num_frames) for one in found] == [(3, 10), (20, 10), (30, 10)]
     seldom = replace(SETTINGS, gap_frames=50)  # takes that lie far apart: nothing is filled up
     assert [one.num_frames for one in windows_of(recording(*range(15), num_frames=15), seldom)] == [10]
+    assert windows_of(recording(num_frames=25), single) == []
+    assert len(windows_of(recording(num_frames=25), seldom)) == 2  # an empty place
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ from mmweaver.recognition.variation import Span, Variation, VariationSample, sam
 
 LEAD_S, LATEST_S = 0.75, 6.0  # a sequence is any part of what a person does, but its beginning
 NOISE_DB = (-8.0, 6.0)  # of the noise figure; copies of windows have less sensitive radars
-ARMS_DB = (-4.0, 12.0)  # relative to the trunk: a flat hand may face the radar or be turned away
+ARMS_DB = (-3.0, 14.0)  # relative to the trunk: a flat hand may face the radar or be turned away
 AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
 HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
 REST_S = (0.2, 0.8)  # before and after a single performance
@@ -54,7 +54,7 @@ class PerformancePrior:
     usual_amplitude: float = 0.9
     single_amplitude: float = 1.05
     sway_mps: Span = (0.01, 0.25)
-    single_sway_mps: Span = (0.005, 0.1)
+    single_sway_mps: Span = (0.003, 0.04)
     heading_deg: float = 15.0
 
 

@@ -114,10 +114,14 @@ def windows_of(
 ) -> list[PointRecording]:
     """Consecutive windows of each sample; one that is shorter than a window is a window with empty frames at its end.
 
-    Where recordings are never cut, what is left over at the end is dropped. `step_s`: every so often a window begins.
+    Where recordings are never cut, what is left over at the end is dropped. A recording without any point, of an empty
+    place, is one sample, unless samples are single performances. `step_s`: every so often a window begins.
     """
     windows: list[PointRecording] = []
-    for sample in samples_of(recording, settings.gap_frames):
+    samples = samples_of(recording, settings.gap_frames)
+    if not samples and not settings.has_single_performances:
+        samples = [recording]
+    for sample in samples:
         whole = sample.windows(settings.window_s, step_s)
         if not whole and settings.has_single_performances:
             whole = [sample.part(0, settings.window_frames)]

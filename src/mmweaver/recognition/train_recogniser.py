@@ -55,7 +55,7 @@ class TrainingOptions:
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
-    sensitivity: bool = True  # of the board, where there are unlabelled recordings
+    sensitivity: bool = False  # of the board weighed, where there are unlabelled recordings
     matching: bool = False  # of features to the generated ones, by quantiles of unlabelled recordings
     self_training: bool = True
     labelled_weight: float = 1.0  # of labelled recordings, relative to what was generated

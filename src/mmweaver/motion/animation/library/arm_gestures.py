@@ -26,7 +26,8 @@ PerTime = Float[Array, " n"]
 # Places of the wrist from spine3 (ahead, outward, up) and lengths, in body heights.
 _CHEST = (0.09, 0.06, 0.03)  # close before the chest
 _AHEAD = (0.297, 0.08, 0.07)  # stretched forward
-_CIRCLE, _LETTER = 0.20, 0.17  # half the size of what a straight arm draws large in the air
+_CIRCLE, _LETTER = 0.25, 0.17  # half the size of what a straight arm draws large in the air
+_ACROSS = 0.08  # farther ahead where the arm is across the body
 _MIDDLE, _ARM = (0.09, 0.07), 0.28  # of drawings: outward and up; a straight arm from the shoulder
 
 
@@ -80,13 +81,13 @@ def _between(context: StepContext, controls: Controls, out: PerTime) -> Controls
 
 
 def drawing_circle(context: StepContext, controls: Controls) -> Controls:
-    """The straight arm draws large circles before the body, clockwise for the person."""
+    """The straight arm draws large circles, clockwise for the person: from hanging across the body, up and round."""
     count = context.step.count or max(1, round(context.duration_s / 2.5))
     turned = np.zeros_like(context.time_s)
     for begin, lasts in repeats(context, context.duration_s / count * 0.9, 0.9, 4.0)[:count]:
         turned += rise((context.time_s - begin) / lasts)
     angle = 2 * np.pi * turned
-    return _drawn(context, controls, np.sin(angle), np.cos(angle), _CIRCLE)
+    return _drawn(context, controls, -np.sin(angle), -np.cos(angle), _CIRCLE)
 
 
 def drawing_z(context: StepContext, controls: Controls) -> Controls:
@@ -100,13 +101,16 @@ def drawing_z(context: StepContext, controls: Controls) -> Controls:
 
 
 def _drawn(context: StepContext, controls: Controls, aside: PerTime, up: PerTime, half: float) -> Controls:
-    """The hand of the straight arm at a place of a drawing: to the person's right and up, from -1 to 1 times `half`."""
+    """The hand of the straight arm at a place of a drawing: to the person's right and up, from -1 to 1 times `half`.
+
+    Across the body the arm passes before it.
+    """
     size = vary(context, half, 0.12)
     on = rise((context.time_s - context.start_s + 0.4) / 0.5) if not context.first else np.ones_like(aside)
     for side in sides(context)[:1]:
-        out = size * (-aside if side == LEFT else aside)
-        ahead = np.sqrt(np.maximum(_ARM**2 - out**2 - (size * up) ** 2, 0.1**2))
-        target = place(ahead, _MIDDLE[0] + out, _MIDDLE[1] + size * up, len(up))
+        out = -aside if side == LEFT else aside
+        ahead = np.sqrt(np.maximum(_ARM**2 - size**2 * (out**2 + up**2), 0.06**2)) + _ACROSS * np.maximum(-out, 0.0)
+        target = place(ahead, _MIDDLE[0] + size * out, _MIDDLE[1] + size * up, len(up))
         hand_to(controls, context.body, side, target, on, elbow=(-0.2, 0.5, -1.0))
     return controls
 
