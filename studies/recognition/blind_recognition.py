@@ -4,10 +4,11 @@
     python -m studies run blind_recognition mars_exercises --role development --recordings MARS/subject1 ...
     python -m studies run blind_recognition mhomeges --role blind --recordings MHOMEGES ...
 
-`role`: a data set on which the general method was developed, or one that was scored once, after a commit had frozen the
-method. Each is scored alone, with no recording at all, and adapted, when the same recordings served as `unlabelled`.
-MARS's recordings are cut into exercises as in `mars_exercises`. Persons or places are held out of nothing: no
-recorded label trains anything.
+`role`: a data set on which the general method was developed; `blind`, one that was scored once after a commit had fixed
+the method and never before; `frozen`, one that was scored once after such a commit, though earlier methods had seen it.
+Each is scored alone, with no recording at all, and adapted, when the same recordings served as `unlabelled`. MARS's
+recordings are cut into exercises as in `mars_exercises`. Persons or places are held out of nothing: no recorded label
+trains anything.
 """
 
 import argparse
@@ -102,7 +103,7 @@ def result_row(scores: dict[str, Any], data: dict[str, Any], how: str, role: str
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("task", choices=sorted(path.stem for path in TASKS.glob("*.toml")))
-    parser.add_argument("--role", choices=("development", "blind"), required=True)
+    parser.add_argument("--role", choices=("development", "frozen", "blind"), required=True)
     parser.add_argument("--recordings", type=Path, action=Reads, required=True)
     parser.add_argument("--sequences", type=Path, required=True, help="folder of generated sequences; made if missing")
     parser.add_argument("--people", type=int, default=TrainingOptions().sequences)

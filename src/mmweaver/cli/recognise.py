@@ -34,7 +34,10 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     parser.add_argument("place", type=Path, metavar="TASK.toml|MODEL", help="train: the task; else the trained folder")
     train = parser.add_argument_group("train")
     train.add_argument("--out", type=Path, metavar="DIR", help="folder of the recogniser; the same command resumes it")
-    train.add_argument("--sequences", type=whole, metavar="N", help="people that perform each activity (default 40)")
+    train.add_argument(
+        "--sequences", type=whole, metavar="N",
+        help="people that perform each activity (default 40, of gestures that are done once 100)",
+    )  # fmt: skip
     train.add_argument("--quick", action="store_true", help="8 people: a first look, less accurate")
     train.add_argument(
         "--labelled", type=Path, metavar="DIR", help="labelled recordings that train along, a folder an activity"
@@ -65,14 +68,15 @@ def run_command(arguments: argparse.Namespace) -> int:
 
 def _train(arguments: argparse.Namespace) -> int:
     from mmweaver.cli.recognise_text import training_lines
+    from mmweaver.recognition.task_file import read_task
     from mmweaver.recognition.train_recogniser import (
         QUICK_SEQUENCES,
-        SEQUENCES,
         TrainingOptions,
         train_recogniser,
+        usual_sequences,
     )
 
-    usual = QUICK_SEQUENCES if arguments.quick else SEQUENCES
+    usual = QUICK_SEQUENCES if arguments.quick else usual_sequences(read_task(arguments.place))
     sequences = usual if arguments.sequences is None else arguments.sequences
     options = TrainingOptions(sequences=sequences, seed=arguments.seed)
     with _Progress(quiet=arguments.quiet) as progress:

@@ -32,6 +32,7 @@ NOISE_DB = (-8.0, 6.0)  # of the noise figure; copies of windows have less sensi
 ARMS_DB = (-3.0, 14.0)  # relative to the trunk: a flat hand may face the radar or be turned away
 AROUND_M = (0.9, 1.2)  # how much nearer and farther than they stand people may move on the spot
 HEIGHT_SPREAD_M, TILT_SPREAD_DEG = 0.05, 2.0  # about what is known of the mount
+HELD = ("stand", "sit", "kneel", "lie", "lie_on_seat", "recline")  # postures in which people do not step to and fro
 REST_S = (0.2, 0.8)  # before and after a single performance
 
 
@@ -40,8 +41,9 @@ class PerformancePrior:
     """How people differ, and how one person differs between performances; spreads are of logarithms where relative.
 
     `on_spot` and `on_way`: the usual tempo of what is done in place, and of walks and runs in a room, relative to the
-    motion library. `sway_mps`: speed of slow shifts of the whole body, log-uniform. `heading_deg`: standard deviation
-    from facing the radar.
+    motion library; `single` that of a single performance, which people repeat briskly and widely. `sway_mps`: speed of
+    slow shifts of the whole body, log-uniform; `calm_sway_mps` of who holds still but for one gesture, or altogether.
+    `heading_deg`: standard deviation from facing the radar.
     """
 
     tempo_of_person: float = 0.2
@@ -54,7 +56,7 @@ class PerformancePrior:
     usual_amplitude: float = 0.9
     single_amplitude: float = 1.05
     sway_mps: Span = (0.01, 0.25)
-    single_sway_mps: Span = (0.003, 0.04)
+    calm_sway_mps: Span = (0.003, 0.04)
     heading_deg: float = 15.0
 
 
@@ -141,7 +143,8 @@ def perform(
     if moves and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
         raise InputError("the path ends before the recording does")
     joints_m = scaled_excursion(pose.joints_m, float(amplitude))
-    sway = float(np.exp(rng.uniform(*np.log(prior.single_sway_mps if once else prior.sway_mps))))
+    is_calm = once or all(step.lower in HELD and not step.upper for step in plan.steps)
+    sway = float(np.exp(rng.uniform(*np.log(prior.calm_sway_mps if is_calm else prior.sway_mps))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
     time_s = time_warped(pose.time_s - lead_s, float(tempo), now.hurry if moves else 0.0, rng)
     pose = replace(pose, time_s=time_s, joints_m=joints_m)

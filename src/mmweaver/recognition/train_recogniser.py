@@ -34,6 +34,7 @@ from mmweaver.recognition.tree_ensemble import TreeEnsemble, grow_trees
 from mmweaver.recognition.window_augmentation import WindowAugmentation, augmented
 
 SEQUENCES, QUICK_SEQUENCES = 40, 8  # people an activity
+SINGLE_SEQUENCES = 100  # of single performances, which give one window each
 SEQUENCE_FOLDER = "sequences"
 HELD_OUT = 4  # one person in so many is held out to test on generated people
 SNR_CUT_DB = 18.0  # of copies: how much less sensitive a board may be
@@ -117,6 +118,11 @@ def train_recogniser(
     save_recogniser(out, model)
     tell("trees", 1, 1)
     return model
+
+
+def usual_sequences(task: RecognitionTask) -> int:
+    """How many people perform each activity if nobody says."""
+    return SINGLE_SEQUENCES if task.recordings.has_single_performances else SEQUENCES
 
 
 def task_values(task: RecognitionTask) -> dict[str, Any]:
