@@ -51,8 +51,6 @@ class TrainingOptions:
     seed: int = 0
     prior: PerformancePrior = PerformancePrior()  # noqa: RUF009 (frozen)
     copies: int = 4  # disturbed ones of each window
-    astray_share: float = 0.3  # most points of a copy whose direction is wrong
-    ghost_share: float = 0.4  # of copies with an echo of the person behind them
     trees: int = 300
     leaf_size: int = 3
     feature_share: float = 0.15
@@ -162,8 +160,7 @@ def generated_windows(
     how = WindowAugmentation(
         cell_m=task.radar.range_resolution_m, velocity_step_mps=task.radar.velocity_resolution_mps,
         most_objects=0 if task.firmware.static_removal or background else WindowAugmentation().most_objects,
-        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB, astray_share=options.astray_share,
-        ghost_share=options.ghost_share,
+        reversed_share=0.0, reflected_share=0.0, snr_cut_db=SNR_CUT_DB,
     )  # fmt: skip
     step_s = task.recordings.window_s / OVERLAP
     windows = [window for sequence in sequences for window in windows_of(sequence, task.recordings, step_s)]

@@ -22,9 +22,7 @@ class WindowAugmentation:
     neighbouring range cells each, detected always or intermittently; `false_points` is the largest mean number of
     moving false alarms. Points less than up to `snr_cut_db` above the weakest are dropped, as a less sensitive radar
     drops them. `reversed_share` of the copies are reversed in time (with the sign of velocity),
-    `reflected_share` are reflected left-right: by default half, 0 where order or sides matter. Up to `astray_share` of
-    the points have a direction of their own, as where several echoes share a cell; behind `ghost_share` of the copies a
-    fainter one of the body appears, as walls and furniture make it.
+    `reflected_share` are reflected left-right: by default half, 0 where order or sides matter.
     """
 
     least_moving: float = 0.35
@@ -39,12 +37,7 @@ class WindowAugmentation:
     snr_cut_db: float = 0.0
     reversed_share: float = 0.5
     reflected_share: float = 0.5
-    astray_share: float = 0.0
-    ghost_share: float = 0.0
 
-
-ASTRAY_RAD, MOST_RAD = 0.5, 1.4  # how far directions go astray, and from straight ahead at most
-BEHIND_M, GHOST_POINTS = (0.3, 1.5), (0.05, 0.5)  # of ghosts: how far behind, and the share of the body's points
 
 Points = tuple[np.ndarray, np.ndarray]  # frame (point,), columns (point, 4): x, y, z, radial velocity
 
@@ -62,10 +55,6 @@ def augmented(
         columns = np.stack([cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps], axis=1)
     body = _thinned(cloud.frame.astype(int), columns, frames, how, rng)
     body = _reversed(body, frames, how, rng)
-    if how.ghost_share and rng.random() < how.ghost_share:
-        body = _with_ghost(body, rng)
-    if how.astray_share:
-        body = _astray(body, rng.uniform(0, how.astray_share), rng)
     parts = [body, *_static_objects(frames, how, rng), _false_points(frames, how, rng)]
     frame, columns = np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
     order = np.argsort(frame, kind="stable")
@@ -101,33 +90,6 @@ def _reversed(points: Points, frames: int, how: WindowAugmentation, rng: np.rand
     backwards, reflected = rng.random(2) < (how.reversed_share, how.reflected_share)
     columns = columns * np.array([-1.0 if reflected else 1.0, 1.0, 1.0, -1.0 if backwards else 1.0])
     return (frames - 1 - frame if backwards else frame), columns
-
-
-def _with_ghost(points: Points, rng: np.random.Generator) -> Points:
-    """The points, and some of them once more farther away."""
-    frame, columns = points
-    again = rng.random(len(frame)) < rng.uniform(*GHOST_POINTS)
-    near_m = np.maximum(np.linalg.norm(columns[again, :3], axis=1, keepdims=True), 0.1)
-    farther = columns[again].copy()
-    farther[:, :3] *= 1 + rng.uniform(*BEHIND_M) / near_m
-    farther[:, 0] += rng.normal(0, 0.3)
-    return np.concatenate([frame, frame[again]]), np.concatenate([columns, farther])
-
-
-def _astray(points: Points, share: float, rng: np.random.Generator) -> Points:
-    """A share of the points in directions of their own, at their range."""
-    frame, columns = points
-    which = rng.random(len(frame)) < share
-    x, y, z = columns[which, :3].T
-    range_m = np.sqrt(x**2 + y**2 + z**2)
-    azimuth = np.arctan2(x, y) + rng.normal(0, ASTRAY_RAD, len(x))
-    elevation = np.arcsin(np.clip(z / np.maximum(range_m, 1e-9), -1, 1)) + rng.normal(0, ASTRAY_RAD, len(x))
-    azimuth, elevation = (np.clip(angle, -MOST_RAD, MOST_RAD) for angle in (azimuth, elevation))
-    columns = columns.copy()
-    columns[which, 0] = range_m * np.cos(elevation) * np.sin(azimuth)
-    columns[which, 1] = range_m * np.cos(elevation) * np.cos(azimuth)
-    columns[which, 2] = range_m * np.sin(elevation)
-    return frame, columns
 
 
 def _static_objects(frames: int, how: WindowAugmentation, rng: np.random.Generator) -> list[Points]:
