@@ -30,7 +30,8 @@ def test_a_room_and_a_list_become_a_set(tmp_path: Path, capsys: pytest.CaptureFi
 @pytest.mark.parametrize(
     "options",
     [["--each", "3"], ["--iq", "none"], ["--activities", "missing.toml"], ["--activities", "a.toml"],
-     ["--activities", "a.toml", "--room", "missing"], ["--activities", "a.toml", "--rgb", "rgb.png"]],
+     ["--activities", "a.toml", "--room", "missing"], ["--activities", "a.toml", "--rgb", "rgb.png"],
+     ["--activities", "a.toml", "--geometry-only"], ["--from-results", "results", "--layouts", "3"]],
 )  # fmt: skip
 def test_what_is_missing_is_said(
     options: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -14,6 +14,17 @@ if TYPE_CHECKING:
     from mmweaver.activity_sets.build_set import SetBuilder
 
 NEEDS_ACTIVITIES = ("room", "rgb", "depth", "camera", "each", "seconds", "subjects", "split_by", "method", "iq")
+OF_ROOM_SETS = {
+    "rooms": None,
+    "layouts": 10,
+    "sequences": 120,
+    "frames": 20,
+    "geometry_only": False,
+    "workers": 1,
+    "ray_address": None,
+    "repair": False,
+    "dry_run": False,
+}  # options of other data sets, with their defaults
 
 
 def add_activity_options(group: Options) -> None:
@@ -52,9 +63,14 @@ def add_activity_options(group: Options) -> None:
 
 def is_activity_set_asked(arguments: argparse.Namespace) -> bool:
     """Whether --activities or --from-results is given. Raises InputError for one of their options without them."""
-    if arguments.activities is not None or arguments.from_results is not None:
-        return True
     given = [name for name in NEEDS_ACTIVITIES if getattr(arguments, name) is not None]
+    if arguments.activities is not None or arguments.from_results is not None:
+        for name, default in OF_ROOM_SETS.items():
+            if getattr(arguments, name) != default:
+                raise InputError(
+                    f"--{name.replace('_', '-')} is for data sets of rooms; leave it out of a labelled set"
+                )
+        return True
     if given:
         raise InputError(f"--{given[0].replace('_', '-')} is for labelled sets; give --activities, too")
     return False

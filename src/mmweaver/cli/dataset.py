@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from mmweaver.cli.activity_set import add_activity_options, is_activity_set_asked, run_activity_set
+from mmweaver.cli.activity_set import OF_ROOM_SETS, add_activity_options, is_activity_set_asked, run_activity_set
 from mmweaver.cli.arguments import add_board_option, add_board_options, add_range_options, radar_of, source, whole
 from mmweaver.cli.config_file import write_request
 from mmweaver.core.errors import InputError
@@ -35,9 +35,15 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     add_activity_options(parser.add_argument_group("labelled activities in your own rooms"))
     content = parser.add_argument_group("content")
     content.add_argument("--rooms", metavar="KIND,...", help="kinds of rooms (default: all)")
-    content.add_argument("--layouts", type=whole, default=10, help="furniture layouts of each kind (default 10)")
-    content.add_argument("--sequences", type=whole, default=120, help="sequences in each room (default 120)")
-    content.add_argument("--frames", type=whole, default=20, help="radar frames of each sequence (default 20)")
+    content.add_argument(
+        "--layouts", type=whole, default=OF_ROOM_SETS["layouts"], help="furniture layouts of each kind (default 10)"
+    )
+    content.add_argument(
+        "--sequences", type=whole, default=OF_ROOM_SETS["sequences"], help="sequences in each room (default 120)"
+    )
+    content.add_argument(
+        "--frames", type=whole, default=OF_ROOM_SETS["frames"], help="radar frames of each sequence (default 20)"
+    )
     content.add_argument(
         "--radar", type=source, default="awr1843", metavar="NAME|FILE", help="preset, TI .cfg or radar.json"
     )
