@@ -73,7 +73,13 @@ def test_recordings_that_lie_outside_are_warned_of(task_file: Path):
     noisy = [
         replace(one, cloud=replace(one.cloud, radial_velocity_mps=one.cloud.radial_velocity_mps * 8)) for one in people
     ]
-    assert "outside what was generated" in score_recordings(model, noisy)["warning"]
+    scores = score_recordings(model, noisy)
+    assert "outside what was generated" in scores["warning"]
+    outside = scores["distance"]["outside_per_feature"]
+    assert outside.keys() == scores["distance"]["per_feature"].keys()
+    assert outside["speed_mean"] > 0.5
+    plain = score_recordings(model, people)["distance"]["outside_per_feature"]
+    assert 0 <= np.mean(list(plain.values())) < 0.1
     assert any(found.is_outside for found in model.recognise(noisy[1]))
 
 

@@ -50,6 +50,17 @@ class FeatureMatching:
         return matched
 
 
+def outside_per_feature(features: Features, generated: Quantiles) -> Float[np.ndarray, " feature"]:
+    """The share of the windows that know a feature in which it lies beyond the outer quantiles; nan if none does.
+
+    Of generated windows this is 0.01.
+    """
+    known = np.isfinite(features) & np.isfinite(generated[0])
+    with np.errstate(invalid="ignore"):
+        out = ((features < generated[0]) | (features > generated[-1])) & known
+    return np.where(known.any(axis=0), out.sum(axis=0) / np.maximum(known.sum(axis=0), 1), np.nan)
+
+
 def outside_share(features: Features, generated: Quantiles) -> Float[np.ndarray, " window"]:
     """The share of each window's known features that lie beyond the outer quantiles of generated windows."""
     known = np.isfinite(features) & np.isfinite(generated[0])

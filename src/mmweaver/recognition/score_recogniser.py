@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.errors import InputError
-from mmweaver.recognition.feature_matching import FAR, MOST_FAR, MOST_OUTSIDE, feature_distances
+from mmweaver.recognition.feature_matching import FAR, MOST_FAR, MOST_OUTSIDE, feature_distances, outside_per_feature
 from mmweaver.recognition.point_recording import PointRecording
 from mmweaver.recognition.recogniser import Recogniser
 from mmweaver.recognition.scoring import Evaluation, report
@@ -50,12 +50,14 @@ def distance(model: Recogniser, features: np.ndarray) -> dict[str, Any]:
     """How far features of recorded windows (window, feature), before matching, lie from those of generated ones."""
     far = feature_distances(features, model.generated, model.names)
     values = np.array(list(far.values()) or [0.0])
+    outside = dict(zip(model.names, map(float, outside_per_feature(features, model.generated)), strict=True))
     order = sorted(far, key=lambda name: -far[name])
     return {
         "features": len(far), "mean": round(float(values.mean()), 4),
         "features_far": round(float((values > FAR).mean()), 4),
         "is_matched": model.matching is not None,
         "per_feature": {name: round(far[name], 4) for name in order},
+        "outside_per_feature": {name: round(outside[name], 4) for name in order},
         "largest": order[:LISTED],
     }  # fmt: skip
 
