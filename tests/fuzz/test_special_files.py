@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from mmweaver.cli.main import _parser_and_commands, main
+from mmweaver.models.pose_network import PoseNetwork
+from mmweaver.models.weights import WeightsCard, save_weights
 from mmweaver.recognition.recogniser import save_recogniser
 from tests.fuzz.set_readers import GOLDEN
 from tests.recognition.small_recogniser import small_recogniser
@@ -21,7 +23,7 @@ ROOM = {name: str(SAMPLE / file) for name, file in
 WEIGHTS = str(SAMPLE.parent / "weights" / "weaver.safetensors")
 WRITTEN = {"--out", "-o", "--html", "--picture", "out"}
 # What a command needs besides the option that is tried.
-NEEDED: dict[str, dict[str, str]] = {
+NEEDED: dict[str, dict[str, str | None]] = {
     "generate": {**ROOM, "--text": "a person waves", "--out": "OUT"},
     "export": {"--to": "mat", "--out": "OUT"}, "process": {"file": "BIN", "--radar": "awr1843", "--out": "OUT"},
     "compare": {"a": "CAPTURE", "b": "CAPTURE"},
@@ -30,7 +32,8 @@ NEEDED: dict[str, dict[str, str]] = {
     "calibrate": {"recordings": "BIN", "--radar": "awr1843", "--out": "OUT"},
     "recognise": {"action": "train", "place": "A", "--out": "OUT"},
     "evaluate": {"task": "zero-shot-activity"}, "motion": {"text": "a person waves"},
-    "dataset": {"out": "OUT", "--rooms": "office"}, "train": {"recipe": "weaver", "--data": "DATA", "--out": "OUT"},
+    "dataset": {"out": "OUT", "--rooms": "office"}, "pose": {"model": "POSE", "--points": "BIN", "--out": "OUT"},
+    "train": {"recipe": "weaver", "task": None, "--data": "DATA", "--out": "OUT"},
 }  # fmt: skip
 # Other options that an option needs (a word) or does not go with (None).
 WITH: dict[tuple[str, str], dict[str, str | None]] = {
@@ -47,6 +50,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("recognise", "--points"): {"action": "run", "--out": None, "place": "MODEL"},
     ("evaluate", "--model"): {"--recordings": "."},
     ("compare", "--radar"): {"a": "BIN"}, ("compare", "--radar-b"): {"b": "BIN"},
+    ("train", "task"): {"recipe": "pose", "--data": None},
     ("train", "--captures"): {"--data": None, "--from": WEIGHTS},
     ("train", "--from"): {"--data": None, "--captures": "CAPTURE"},
     **{("dataset", name): {"--rooms": None, "--activities": "A", **ROOM} for name in ROOM},
@@ -73,12 +77,18 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     (folder / "a.toml").write_text('radar = "iwr1443_mars"\n[activities]\na = "a person waves"\nb = "a person walks"\n')
     np.savez(folder / "m.npz", poses=np.zeros((4, 66)), trans=np.zeros((4, 3)), mocap_framerate=60.0)
     save_recogniser(folder / "model", small_recogniser(folder / "a.toml"))
+    card = WeightsCard(
+        recipe="pose", licence="MIT", dataset_sha256="", radar="awr1843", steps=0, seed=0, validation_loss=0.0,
+        mmweaver_version="0", settings={"window_s": 1.0, "frame_rate_hz": 10.0},
+    )  # fmt: skip
+    save_weights(folder / "pose.safetensors", PoseNetwork(), card)
     with zipfile.ZipFile(GOLDEN) as archive:
         archive.extractall(folder)
     os.mkfifo(folder / "fifo")
     return {"BIN": str(folder / "a.bin"), "A": str(folder / "a.toml"), "MOTION": str(folder / "m.npz"),
             "CAPTURE": str(folder / "results"), "DATA": str(folder),
-            "MODEL": str(folder / "model"), "FIFO": str(folder / "fifo")}  # fmt: skip
+            "MODEL": str(folder / "model"), "POSE": str(folder / "pose.safetensors"),
+            "FIFO": str(folder / "fifo")}  # fmt: skip
 
 
 @pytest.mark.parametrize("special", ["FIFO", "/dev/zero"])

@@ -1,4 +1,4 @@
-"""mmweaver train: the network's weights from a data set, or from recordings of one's own room."""
+"""mmweaver train: weights from a data set, from recordings of one's own room, or from the sentences of a task."""
 
 import argparse
 from collections.abc import Iterator
@@ -28,6 +28,7 @@ EXAMPLES = """examples:
   mmweaver train activity --data data/ --out activity/
   mmweaver train paper_power --data light/ --out power/            # light/: of mmweaver dataset --geometry-only
   mmweaver train activity --data my_set/ --out recogniser/          # of mmweaver dataset --activities
+  mmweaver train pose examples/tasks/mars_poses.toml --out model/   # then: mmweaver pose model/ --points log.dat
   mmweaver generate --demo --weights run/ --out woven/
 """
 
@@ -43,10 +44,11 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
         "every validation OUT/pictures compares what it has learned with the ground truth.",
     )
     parser.add_argument(
-        "recipe", choices=("weaver", "activity", "paper_power"),
-        help="what is trained: the network; a recogniser of the activities of the data; or the paper's hypernetwork "
-        "with fields of power as its target",
+        "recipe", choices=("weaver", "activity", "paper_power", "pose"),
+        help="what is trained: the network; a recogniser of the activities of the data; the paper's hypernetwork with "
+        "fields of power as its target; or poses from points",
     )  # fmt: skip
+    parser.add_argument("task", type=Path, nargs="?", metavar="TASK.toml", help="of recipe pose: docs/pose.md")
     parser.add_argument(
         "--data", type=Path, metavar="DIR",
         help="a data set of mmweaver dataset; for recipe activity also a labelled set of your own room",
@@ -70,16 +72,17 @@ def add_command(commands: Any) -> argparse.ArgumentParser:
     own.add_argument("--depth", type=Path, metavar="FILE", help="its depth")
     own.add_argument("--camera", type=Path, metavar="JSON", help="its fx, fy, cx, cy")
     loop = parser.add_argument_group("optimisation")
-    loop.add_argument("--steps", type=whole, help="steps in all (default 6000; activity 800, captures 300)")
+    loop.add_argument("--sequences", type=whole, metavar="N", help="recipe pose: people an activity (default 40)")
+    loop.add_argument("--steps", type=whole, help="steps in all (default 6000; activity 800, pose 2000, captures 300)")
     loop.add_argument(
         "--batch",
         type=whole,
-        help="sequences a step, of all processes together (default 3; activity 16, captures 2)",
+        help="sequences a step, of all processes together (default 3; activity and pose 16, captures 2)",
     )
     loop.add_argument(
         "--learning-rate",
         type=number,
-        help="of Adam, at its highest (default 1e-3; activity 2e-3, captures 2e-4, without joints 5e-3)",
+        help="of Adam, at its highest (default 1e-3; activity and pose 2e-3, captures 2e-4, without joints 5e-3)",
     )
     loop.add_argument("--seed", type=whole, default=0, help="of the first weights and of the batches (default 0)")
     loop.add_argument("--validate-every", type=whole, metavar="STEPS", help="(default 250; activity 100, captures 25)")
@@ -128,7 +131,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _trained(arguments: argparse.Namespace, place: "ComputeDevice", is_quiet: bool) -> dict[str, Any]:
-    summary = _on_captures(arguments, place, is_quiet) if arguments.captures else _on_data(arguments, place, is_quiet)
+    if arguments.recipe == "pose":
+        with _bar(arguments.steps or train_recipes.pose_steps(), is_quiet) as listener:
+            summary = train_recipes.train_on_task(arguments, _given(arguments), listener, place, _options(arguments))
+    elif arguments.captures:
+        summary = _on_captures(arguments, place, is_quiet)
+    else:
+        summary = _on_data(arguments, place, is_quiet)
     if place.is_first:
         write_request(arguments.out, arguments)
     return summary
@@ -146,9 +155,8 @@ def _kept(out: Path) -> str:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    if arguments.recipe != "weaver":
-        train_recipes.check(arguments)
-    if (arguments.data is None) == (arguments.captures is None):
+    train_recipes.check(arguments)
+    if arguments.recipe != "pose" and (arguments.data is None) == (arguments.captures is None):
         raise InputError(
             "what to train on? give --data, a data set of mmweaver dataset, or --captures, your recordings"
         )

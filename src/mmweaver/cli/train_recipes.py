@@ -1,4 +1,4 @@
-"""mmweaver train activity and paper_power: what differs from mmweaver train weaver."""
+"""mmweaver train activity, paper_power and pose: what differs from mmweaver train weaver."""
 
 import argparse
 from typing import TYPE_CHECKING, Any
@@ -13,9 +13,42 @@ if TYPE_CHECKING:
 
 
 def check(arguments: argparse.Namespace) -> None:
-    """Raises InputError for what these recipes cannot do."""
-    if arguments.captures is not None:
+    """Raises InputError for what a recipe cannot do."""
+    is_pose = arguments.recipe == "pose"
+    if is_pose and arguments.task is None:
+        raise InputError("train pose needs a task: mmweaver train pose TASK.toml --out model/")
+    if not is_pose and (arguments.task is not None or arguments.sequences is not None):
+        raise InputError(f"a task and --sequences are for recipe pose; recipe {arguments.recipe} is trained on --data")
+    if is_pose and any(one is not None for one in (arguments.data, arguments.captures, arguments.start)):
+        raise InputError("recipe pose is trained on the sentences of its task: without --data, --captures and --from")
+    if arguments.recipe != "weaver" and arguments.captures is not None:
         raise InputError(f"--captures is for recipe weaver; recipe {arguments.recipe} is trained on --data")
+
+
+def pose_steps() -> int:
+    """Steps of recipe `pose`."""
+    from mmweaver.training.pose_training import PoseRecipe
+
+    return PoseRecipe().steps
+
+
+def train_on_task(
+    arguments: argparse.Namespace, given: dict[str, Any], listener: "Listener", place: "ComputeDevice",
+    options: dict[str, Any],
+) -> dict[str, Any]:  # fmt: skip
+    """Trains recipe `pose` and writes its weights; a summary. Raises InputError."""
+    from mmweaver.recognition.train_pose import SEQUENCES, PoseTraining, train_pose_of_task
+    from mmweaver.training.pose_training import PoseRecipe
+
+    sequences = SEQUENCES if arguments.sequences is None else arguments.sequences
+    training = PoseTraining(sequences=sequences, recipe=PoseRecipe(**given))
+    file, trainer = train_pose_of_task(
+        arguments.task, arguments.out, training, listener=listener, compute=place, **options
+    )
+    return {
+        "weights": str(file), "steps": trainer.step, "validation_loss": trainer.best.value,
+        "evaluated_on": "generated people held out",
+    }  # fmt: skip
 
 
 def train_on_data(

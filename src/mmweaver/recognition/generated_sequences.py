@@ -35,7 +35,7 @@ WINDOWS_A_SEQUENCE, SHORTEST_S, LONGEST_S = 2, 4.0, 20.0
 TRIES, UNSEEN_TRIES = 12, 2
 REACH_M, SEEN_SHARE = 0.6, 0.3  # of the body about the pelvis; of frames in which it is detected
 SKIN_POINTS = 1000
-VERSION = 4  # of how sequences are made; part of what a folder of them must agree in
+VERSION = 5  # of how sequences are made; part of what a folder of them must agree in
 COLUMNS = ("x_m", "y_m", "z_m", "radial_velocity_mps", "snr_db")
 
 
@@ -109,9 +109,18 @@ def _sequence(
     frames = max(int(did.lasts_s * rate_hz), 1)
     cloud = observed_cloud(recipe.board, did.surroundings, did.pose, frames, int(rng.integers(2**31)))
     recording = PointRecording(
-        name=f"{label}_{index}", cloud=cloud, num_frames=frames, frame_rate_hz=rate_hz, label=label
-    )
+        name=f"{label}_{index}", cloud=cloud, num_frames=frames, frame_rate_hz=rate_hz, label=label,
+        joints_m=joints_at(did.pose, np.arange(frames) / rate_hz),
+    )  # fmt: skip
     return recording, _is_seen(recording, did.pose)
+
+
+def joints_at(pose: PoseSequence, time_s: np.ndarray) -> np.ndarray:
+    """Joints (time, 22, 3) of a motion at these times."""
+    before = np.searchsorted(pose.time_s, time_s).clip(1, len(pose.time_s) - 1)
+    early_s, late_s = pose.time_s[before - 1], pose.time_s[before]
+    share = ((time_s - early_s) / (late_s - early_s)).clip(0, 1)[:, None, None]
+    return (1 - share) * pose.joints_m[before - 1] + share * pose.joints_m[before]
 
 
 def _empty_place(recipe: SequenceRecipe, who: Performer, label: str, index: int) -> PointRecording:
@@ -166,9 +175,14 @@ def _asked(task: RecognitionTask, each: int) -> Iterator[tuple[str, int]]:
 def _write(place: Path, sequence: PointRecording) -> None:
     cloud = sequence.cloud
     columns = np.stack([getattr(cloud, name) for name in COLUMNS], axis=1).astype(np.float32)
+    arrays: dict[str, Any] = {} if sequence.joints_m is None else {"joints_m": sequence.joints_m.astype(np.float32)}
     with atomic_file(place) as temporary, temporary.open("wb") as file:
         np.savez_compressed(
-            file, frame=cloud.frame.astype(np.int32), columns=columns, num_frames=np.int64(sequence.num_frames)
+            file,
+            frame=cloud.frame.astype(np.int32),
+            columns=columns,
+            num_frames=np.int64(sequence.num_frames),
+            **arrays,
         )
 
 
@@ -177,7 +191,8 @@ def _read(place: Path, task: RecognitionTask, label: str, index: int) -> PointRe
     frames = int(held.numbers("num_frames", (), low=1, high=1e6))
     frame = held.numbers("frame", ("point",), kinds="iu", low=0, high=frames - 1).astype(int)
     columns = held.numbers("columns", ("point", len(COLUMNS)), nan=True).astype(float)
+    joints_m = held.numbers("joints_m", (frames, 22, 3)).astype(float) if "joints_m" in held else None
     return PointRecording(
         name=f"{label}_{index}", cloud=PointCloud(frame=frame, **dict(zip(COLUMNS, columns.T, strict=True))),
-        num_frames=frames, frame_rate_hz=task.recordings.frame_rate_hz, label=label,
+        num_frames=frames, frame_rate_hz=task.recordings.frame_rate_hz, label=label, joints_m=joints_m,
     )  # fmt: skip

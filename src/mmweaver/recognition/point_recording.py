@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+from jaxtyping import Float
+
 from mmweaver.core.records import PointCloud
 
 
@@ -15,6 +18,7 @@ class PointRecording:
     frame_rate_hz: float
     label: str = ""  # the activity, if known
     first_frame: int = 0  # in the recording that this is a part of
+    joints_m: Float[np.ndarray, "frame 22 3"] | None = None  # of one person in the radar's level axes, if known
 
     @property
     def duration_s(self) -> float:
@@ -33,4 +37,5 @@ class PointRecording:
         return replace(
             self, cloud=replace(cloud, frame=cloud.frame - first), num_frames=num_frames,
             first_frame=self.first_frame + first,
+            joints_m=None if self.joints_m is None else self.joints_m[first : first + num_frames],
         )  # fmt: skip

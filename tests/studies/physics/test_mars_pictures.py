@@ -5,10 +5,10 @@ from pathlib import Path
 
 from PIL import Image
 
+from mmweaver.recognition.mars_data import cut, read_mars
 from studies.physics.mars import Clouds, Setup
-from studies.physics.mars_data import cut, read_mars
 from studies.physics.mars_pictures import draw, setup_of
-from tests.studies.physics.test_mars_data import write_split
+from tests.recognition.test_mars_data import write_split
 
 
 def test_a_picture_is_drawn(tmp_path: Path):

@@ -12,8 +12,11 @@ from jaxtyping import Float, Int
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PointCloud, PoseSequence
+from mmweaver.core.safe_files.regular_files import MEGABYTE
+from mmweaver.core.safe_files.safe_text import read_text
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.dsp.firmware import FirmwareCloud
+from mmweaver.recognition.point_recording import PointRecording
 
 FRAME_S = 0.1
 # The published clouds end sharply here (validate: 868 points in the highest 10 cm below 1 m, none above): whoever made
@@ -22,6 +25,7 @@ ASIDE_M, UP_M, AHEAD_M = 1.0, 1.0, 3.0
 LONGEST_GAP = 3  # frames; joints are interpolated over shorter gaps, a longer one begins another recording
 Cloud = TypeVar("Cloud", bound=PointCloud)
 RADAR_COLUMNS, KINECT_COLUMNS = 8, 75
+MOST_BYTES = 200 * MEGABYTE
 CROWN_OVER_HEAD_M = 0.11  # the Kinect's head is the middle of the head
 
 # Our joints as mixtures of the Kinect's: (joint, joint, share of the second).
@@ -88,6 +92,31 @@ def as_published(cloud: Cloud) -> Cloud:
     return type(cloud)(**{field.name: getattr(cloud, field.name)[kept] for field in fields(cloud)})
 
 
+def posed_recordings(folder: Path | str, split: str) -> list[PointRecording]:
+    """The stretches of a split as recordings with joints, nan in frames that were not recorded.
+
+    Joints lie in the Kinect's axes, points in the radar's; strength is the intensity in dB.
+    """
+    return [_posed(stretch, f"{split} {number}") for number, stretch in enumerate(read_mars(folder, split))]
+
+
+def _posed(stretch: MarsStretch, name: str) -> PointRecording:
+    frames = int(stretch.frame[-1]) + 1
+    joints_m = np.full((frames, len(JOINT_NAMES), 3), np.nan)
+    joints_m[stretch.frame] = stretch.joints_m
+    clouds = stretch.clouds
+    columns = {
+        column: np.concatenate([getattr(cloud, column) for cloud in clouds])
+        for column in ("x_m", "y_m", "z_m", "radial_velocity_mps")
+    }
+    intensity = np.concatenate([cloud.intensity for cloud in clouds])
+    frame = np.repeat(stretch.frame, [len(cloud.x_m) for cloud in clouds])
+    return PointRecording(
+        name=name, cloud=PointCloud(frame=frame, snr_db=20 * np.log10(np.maximum(intensity, 1.0)), **columns),
+        num_frames=frames, frame_rate_hz=1 / FRAME_S, joints_m=joints_m,
+    )  # fmt: skip
+
+
 def cut(stretches: list[MarsStretch], length: int, most: int) -> list[MarsStretch]:
     """Up to `most` pieces of `length` consecutive frames, spread evenly."""
     pieces = []
@@ -137,12 +166,13 @@ def cloud_of(rows: Float[np.ndarray, "point 8"]) -> FirmwareCloud:
 
 
 def _table(path: Path, columns: int) -> Float[np.ndarray, "row column"]:
+    if not path.is_file():
+        raise InputError(f"cannot read {path}; give the folder of a MARS subject")
+    rows = [line.split(",") for line in read_text(path, max_bytes=MOST_BYTES).splitlines()[1:] if line.strip()]
     try:
-        values = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}; give the folder of a MARS subject") from None
+        values = np.array(rows, float).reshape(len(rows), -1)
     except ValueError as error:
         raise InputError(f"{path} is no table of numbers ({error})") from None
-    if values.shape[1] != columns or not len(values):
-        raise InputError(f"{path} has {values.shape[1]} columns, {columns} are needed")
+    if not len(rows) or values.shape[1] != columns:
+        raise InputError(f"{path} has {values.shape[1] if rows else 0} columns, {columns} are needed")
     return values

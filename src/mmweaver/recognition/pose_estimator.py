@@ -1,0 +1,112 @@
+"""Poses from point clouds: weights of `mmweaver train pose` applied to recordings.
+
+estimator = load_estimator("model/")
+pose = estimator.estimate(cloud, num_frames)  # a PoseSequence, one pose a frame
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from jaxtyping import Float
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import PointCloud, PoseSequence
+from mmweaver.core.skeleton import NUM_JOINTS
+from mmweaver.models.point_frames import PointFrames, point_frames
+from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard
+from mmweaver.recognition.recorded_columns import RecordedColumns
+from mmweaver.recognition.task_file import RecordingSettings
+
+if TYPE_CHECKING:
+    from mmweaver.models.pose_network import PoseNetwork
+
+STEPS_A_WINDOW = 4  # windows overlap by three quarters, and their poses are averaged
+AT_ONCE = 64
+CROWN_OVER_HEAD_M = 0.11
+MIRROR = np.array([-1.0, 1.0, 1.0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoseEstimator:
+    """One or several networks, whose poses are averaged, and how recordings are read for them."""
+
+    networks: Sequence["PoseNetwork"]
+    settings: RecordingSettings
+
+    def estimate(self, cloud: PointCloud, num_frames: int) -> PoseSequence:
+        """Poses of frames 0 to num_frames - 1 of a cloud, recorded or generated, in the radar's level axes.
+
+        Raises InputError for fewer frames than a window has.
+        """
+        joints_m = self.joints_m(point_frames(cloud, num_frames))
+        height_m = float(np.median(np.ptp(joints_m[..., 2], axis=1))) + CROWN_OVER_HEAD_M
+        return PoseSequence(
+            time_s=np.arange(num_frames) / self.settings.frame_rate_hz, joints_m=joints_m, height_m=height_m
+        )
+
+    @property
+    def mean_pose_m(self) -> Float[np.ndarray, "22 3"]:
+        """The mean pose of the people that the networks were trained on, relative to the pelvis."""
+        return np.mean([network.mean_m.numpy() for network in self.networks], axis=0)
+
+    def joints_m(self, frames: PointFrames) -> Float[np.ndarray, "frame 22 3"]:
+        """Joints of every frame: the weighted mean over the windows that hold it, those in its middle first."""
+        length, num_frames = self.settings.window_frames, len(frames.values)
+        if num_frames < length:
+            raise InputError(f"{num_frames} frames are fewer than a window of {length}; give a longer recording")
+        first = np.unique([*range(0, num_frames - length, max(length // STEPS_A_WINDOW, 1)), num_frames - length])
+        weight = np.hanning(length + 2)[1:-1]
+        total, weights = np.zeros((num_frames, NUM_JOINTS, 3)), np.zeros(num_frames)
+        for begin in range(0, len(first), AT_ONCE):
+            starts = first[begin : begin + AT_ONCE]
+            for start, joints in zip(
+                starts, self._windows([frames.part(int(one), length) for one in starts]), strict=True
+            ):
+                total[start : start + length] += weight[:, None, None] * joints
+                weights[start : start + length] += weight
+        return total / weights[:, None, None]
+
+    def _windows(self, windows: Sequence[PointFrames]) -> Float[np.ndarray, "window frame 22 3"]:
+        import torch
+
+        from mmweaver.training.pose_examples import MIRRORED, batch_of
+
+        nothing = np.zeros((self.settings.window_frames, NUM_JOINTS, 3))
+        found = []
+        for mirror in (MIRROR, np.ones(3)):  # a person in a mirror has the mirrored pose: the mean of both is better
+            seen = [replace(one, values=one.values * np.array([*mirror, 1.0, 1.0], np.float32)) for one in windows]
+            batch = batch_of([(window, nothing) for window in seen])
+            with torch.inference_mode():
+                poses = [network(batch.values, batch.is_there, batch.middle_m) for network in self.networks]
+            joints_m = np.mean([(joints + pelvis[:, :, None]).numpy() for joints, pelvis in poses], axis=0) * mirror
+            found.append(joints_m[:, :, MIRRORED] if mirror is MIRROR else joints_m)
+        return np.mean(found, axis=0)
+
+
+def load_estimator(place: Path | str) -> PoseEstimator:
+    """Reads a weights file of recipe `pose`, or the folder of `mmweaver train pose`. Raises InputError."""
+    from mmweaver.models.pose_network import load_pose
+
+    place = Path(place)
+    file = place / WEIGHTS_FILE if place.is_dir() else place
+    if not file.is_file():
+        raise InputError(f"{place} holds no weights; mmweaver train pose TASK.toml --out {place} makes them")
+    network, card = load_pose(file)
+    return PoseEstimator(networks=[network], settings=_settings(card, file))
+
+
+def _settings(card: WeightsCard, file: Path) -> RecordingSettings:
+    """How recordings are read, from the header of the weights."""
+    held = card.settings
+    window_s, rate_hz, columns = (held.get(name) for name in ("window_s", "frame_rate_hz", "columns"))
+    if not all(isinstance(value, float) and 0 < value < 1000 for value in (window_s, rate_hz)):
+        raise InputError(f"{file} does not say for which recordings it was trained; train it again")
+    assert isinstance(window_s, float)
+    assert isinstance(rate_hz, float)
+    return RecordingSettings(
+        labels=(), window_s=window_s, frame_rate_hz=rate_hz,
+        columns=None if columns is None else RecordedColumns.of(columns, str(file)),
+    )  # fmt: skip

@@ -1,0 +1,114 @@
+"""From a task file to a pose network: people perform its sentences before its radar; their joints are known."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.version import __version__
+from mmweaver.models.point_frames import point_frames
+from mmweaver.models.pose_network import PoseNetwork
+from mmweaver.models.weights import WEIGHTS_FILE, WeightsCard, save_weights
+from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
+from mmweaver.recognition.performance import PerformancePrior
+from mmweaver.recognition.point_recording import PointRecording
+from mmweaver.recognition.task_file import RecognitionTask, read_task
+from mmweaver.training.pose_examples import PosedFrames, PoseWindows
+from mmweaver.training.pose_training import PoseRecipe, train_pose
+from mmweaver.training.trainer import Listener, Trainer
+
+SEQUENCES, SEQUENCE_FOLDER = 40, "sequences"
+HELD_OUT = 8  # one person in so many
+# Amplitudes of the motion library; those of recognisers are smaller (decision 231), but joints are learned here.
+POSE_PRIOR = PerformancePrior(usual_amplitude=1.0, amplitude_of_person=0.1, amplitude_of_performance=0.05)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PoseTraining:
+    """How a pose network is trained; the same for every task."""
+
+    sequences: int = SEQUENCES  # people who do each activity
+    recipe: PoseRecipe = PoseRecipe()  # noqa: RUF009 (frozen)
+
+    def __post_init__(self) -> None:
+        if not 2 <= self.sequences <= 100_000:
+            raise InputError(f"sequences must be 2 to 100000 of each activity, not {self.sequences}")
+
+
+def posed_frames(recording: PointRecording) -> PosedFrames:
+    """A recording with joints as the network reads it; joints are interpolated where they were not measured."""
+    assert recording.joints_m is not None, "a recording with joints"
+    joints_m = recording.joints_m.copy()
+    measured = np.flatnonzero(np.isfinite(joints_m).all(axis=(1, 2)))
+    flat = joints_m.reshape(len(joints_m), -1)
+    for column in flat.T:
+        column[:] = np.interp(np.arange(len(column)), measured, column[measured])
+    return PosedFrames(frames=point_frames(recording.cloud, recording.num_frames), joints_m=joints_m)
+
+
+def generated_frames(
+    task: RecognitionTask, sequences: int, seed: int, folder: Path | None,
+    listener: Callable[[int, int], object] | None = None,
+) -> list[PointRecording]:  # fmt: skip
+    """Sequences of a task with joints; one after the other, all activities of a person in turn."""
+    everything = generate_sequences(SequenceRecipe.of(task, POSE_PRIOR, seed), sequences, folder, listener)
+    posed = [one for one in everything if one.joints_m is not None]
+    if not posed:
+        raise InputError("the task has nobody in it: a pose network needs an activity that people do")
+    return posed
+
+
+def split_people(recordings: Sequence[PointRecording], window_frames: int) -> tuple[PoseWindows, PoseWindows]:
+    """Windows of generated people to train on, and of those held out, undisturbed."""
+    held = [(int(one.name.rpartition("_")[2]) % HELD_OUT == HELD_OUT - 1) for one in recordings]
+    if not any(held):
+        last = max(int(one.name.rpartition("_")[2]) for one in recordings)
+        held = [int(one.name.rpartition("_")[2]) == last for one in recordings]
+    frames = [posed_frames(one) for one in recordings]
+    trained = [one for one, is_held in zip(frames, held, strict=True) if not is_held]
+    unseen = [one for one, is_held in zip(frames, held, strict=True) if is_held]
+    return (
+        PoseWindows(recordings=trained, window_frames=window_frames),
+        PoseWindows(recordings=unseen, window_frames=window_frames, disturbance=None),
+    )
+
+
+def train_pose_of_task(
+    task_file: Path | str, out: Path | str, training: PoseTraining | None = None, *,
+    tell: Callable[[int, int], object] | None = None, listener: Listener | None = None, **options: Any,
+) -> tuple[Path, Trainer]:  # fmt: skip
+    """Trains a pose network on people who carry out the sentences of a task; writes `out`/weights.safetensors.
+
+    Sequences stay in `out`/sequences, so a run may be interrupted. `tell` hears how many sequences are done, `listener`
+    of each step. Raises InputError.
+    """
+    training, out, task = training or PoseTraining(), Path(out), read_task(task_file)
+    recipe = training.recipe
+    made = generated_frames(task, training.sequences, recipe.seed, out / SEQUENCE_FOLDER, tell)
+    trained, unseen = split_people(made, task.recordings.window_frames)
+    trainer = train_pose(trained, unseen, out, recipe, listener=listener, **options)
+    return write_pose_weights(out / WEIGHTS_FILE, task, trainer), trainer
+
+
+def write_pose_weights(file: Path, task: RecognitionTask, trainer: Trainer) -> Path:
+    """Writes the best network with what one must know to apply it."""
+    columns = task.recordings.columns
+    settings = asdict(trainer.recipe) | {
+        "window_s": float(task.recordings.window_s), "frame_rate_hz": float(task.recordings.frame_rate_hz),
+        "columns": None if columns is None else list(columns.names),
+        "activities": {label: list(said) for label, said in task.activities.items()},
+    }  # fmt: skip
+    recipe = SequenceRecipe.of(task, POSE_PRIOR, trainer.recipe.seed)
+    card = WeightsCard(
+        recipe=trainer.recipe.name, licence="MIT", dataset_sha256=hashlib.sha256(recipe.as_json().encode()).hexdigest(),
+        radar=task.radar.name, steps=trainer.step, seed=trainer.recipe.seed, validation_loss=trainer.best.value,
+        mmweaver_version=__version__, settings=settings,
+    )  # fmt: skip
+    network = getattr(trainer.learner, "network", None)
+    assert isinstance(network, PoseNetwork), "a trainer of train_pose"
+    save_weights(file, network, card)
+    return file

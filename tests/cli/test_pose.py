@@ -1,0 +1,63 @@
+"""mmweaver train pose, mmweaver pose and mmweaver evaluate zero-shot-pose, from a task file to a picture."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mmweaver.cli.main import main
+from mmweaver.recognition import train_pose
+from tests.recognition.test_mars_data import write_split
+from tests.training.moving_arm import moving_arm
+
+TASK = 'radar = "iwr1443_mars"\nwindow_s = 0.8\n[activities]\narm = ["a person raises the left arm"]\n'
+TASK += 'other = ["a person raises the right arm"]\n'
+
+
+@pytest.fixture
+def model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Trained for two steps on drawn sequences."""
+    monkeypatch.setattr(train_pose, "generate_sequences", lambda _, each, *__: [moving_arm(k) for k in range(each)])
+    (tmp_path / "task.toml").write_text(TASK)
+    words = ["train", "pose", str(tmp_path / "task.toml"), "--out", str(tmp_path / "model"), "--sequences", "3"]
+    assert main([*words, "--steps", "2", "--batch", "2", "--quiet"]) == 0
+    return tmp_path / "model"
+
+
+def test_from_a_task_to_poses_and_scores(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    write_split(tmp_path, "validate", list(range(20)))
+    write_split(tmp_path, "test", list(range(20)), moving=0.1)
+    cloud = moving_arm(9, frames=20).cloud
+    columns = (cloud.frame, cloud.x_m, cloud.y_m, cloud.z_m, cloud.radial_velocity_mps)
+    points = str(tmp_path / "points.csv")
+    np.savetxt(points, np.stack(columns, axis=1), delimiter=",", header="Frame,X,Y,Z,Doppler", comments="")
+    assert main(["pose", str(model), "--points", points, "--out", str(tmp_path / "poses"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["frames"] == 20
+    with np.load(tmp_path / "poses" / "pose.npz") as held:
+        assert held["joints_m"].shape == (20, 22, 3)
+    assert (tmp_path / "poses" / "pose.png").stat().st_size > 5000
+    words = ["evaluate", "zero-shot-pose", "--recordings", str(tmp_path), "--model", str(model)]
+    assert main([*words, "--json"]) == 0
+    scores = json.loads(capsys.readouterr().out)
+    assert set(scores["mean"]) == {"network", "generated_mean_pose", "real_mean_pose", "network_calibrated"}
+    assert scores["mean"]["real_mean_pose"]["root"]["all"] < 1e-3 < scores["mean"]["network"]["root"]["all"]
+    assert main(words) == 0
+    assert "generated mean pose" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["train", "pose", "--out", "b"], "needs a task"),
+        (["train", "pose", "t.toml", "--data", "a", "--out", "b"], "sentences of its task"),
+        (["train", "activity", "t.toml", "--data", "a", "--out", "b"], "are for recipe pose"),
+        (["pose", "nowhere", "--points", "a", "--out", "b"], "nowhere holds no weights"),
+        (["evaluate", "zero-shot-activity", "--recordings", "a", "--split", "test"], "is for zero-shot-pose"),
+    ],
+)
+def test_mistakes_are_one_line(words: list[str], message: str, capsys: pytest.CaptureFixture[str]):
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
