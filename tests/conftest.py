@@ -81,9 +81,9 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
     That saves 0.7 CPU seconds in each of many tests. Tests of the reconstruction and of the network themselves call
     `reconstruct` and `LearnedRoom`, which stay as they are.
     """
-    from mmweaver import generate
     from mmweaver.methods import Learned
     from mmweaver.scene.reconstruction import reconstruct
+    from mmweaver.scene.whole_room import reconstruct_together
 
     scenes: dict[str, Scene] = {}
 
@@ -110,7 +110,7 @@ def rooms_are_reconstructed_once() -> Iterator[None]:
         return encoded[key][1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(generate, "reconstruct", once)
+        patch.setattr(reconstruct_together, "reconstruct", once)
         patch.setattr(Learned, "_encode", encoded_once)
         yield
 

@@ -24,7 +24,7 @@ from mmweaver.core.firmware_settings import FirmwareSettings
 from mmweaver.core.presets import PRESETS
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.radar_pose import AT_CAMERA, RadarPose
-from mmweaver.core.records import PoseSequence, RgbdPhoto, Scene
+from mmweaver.core.records import PoseSequence, Scene
 from mmweaver.core.skeleton import joint
 from mmweaver.core.stages import Stages
 from mmweaver.core.version import __version__
@@ -43,14 +43,8 @@ from mmweaver.motion.multi_person import Place, compose_people
 from mmweaver.motion.people import subject_of
 from mmweaver.request import Request, parse_request
 from mmweaver.result_folder import META_VERSION, file_digest, radar_meta
+from mmweaver.room_reader import RoomReader
 from mmweaver.scene.moved_radar import people_seen_from, scene_seen_from, unseen_notes
-from mmweaver.scene.photo.capture_photo import read_capture_photo
-from mmweaver.scene.photo.estimated_depth import scale_note
-from mmweaver.scene.read_photo import classes_of, read_photo
-from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
-from mmweaver.scene.reconstruction import reconstruct
-from mmweaver.scene.sample_photo import sample_photo
-from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
 from mmweaver.streaming import (
     CHUNK_FRAMES,
     StreamChunk,
@@ -64,7 +58,7 @@ from mmweaver.streaming import (
 BY_PHYSICS = "the network has only seen radars at the camera; the signals of radars elsewhere are those of physics"
 
 
-class Weaver:
+class Weaver(RoomReader):
     """Generates radar signals with one method and one radar.
 
     `method` is an object that follows `methods.Method`, or a name in METHODS: "weaver", the network (the default, also
@@ -110,7 +104,7 @@ class Weaver:
         self.radar = radar if isinstance(radar, RadarConfig) else load_radar(str(radar))
         is_named = not isinstance(radar, RadarConfig)
         self.calibration = read_ti_calibration(str(radar)) if calibration is None and is_named else calibration
-        self._listener = listener
+        super().__init__(listener)
         self._background_board = BackgroundBoard()
         check_points(points, self.radar)
         self.points = points
@@ -135,73 +129,6 @@ class Weaver:
         trained_for = read_card(file).radar
         return cls("weaver", radar or (trained_for if trained_for in PRESETS else "awr1843"), weights=file, **options)
 
-    def read_room(
-        self, rgb: str | Path, depth: str | Path | None = None, camera: str | Path | None = None, **seen: Any
-    ) -> Room:
-        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON.
-
-        `seen`: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or `segmenter` and
-        `sam` (models) give the class of each pixel, from which materials follow. See `scene.read_photo.read_photo`.
-        """
-        stages = Stages(self._listener)
-        with stages("read the photo"):
-            photo, assumptions = read_photo(rgb, depth, camera, **seen)
-            files = {"rgb": rgb, "depth": depth, "camera": camera, "classes": seen.get("classes")}
-            inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
-            models = ("depth_model", "segmenter", "sam")
-            inputs |= {name: str(seen[name]) for name in models if seen.get(name) is not None}
-        room = self._reconstruct(photo, assumptions, inputs, stages)
-        note = scale_note(-room.scene.floor_z_m) if depth is None else None
-        if note is None:
-            return room
-        return replace(room, scene=replace(room.scene, assumptions=(*room.scene.assumptions, note)))
-
-    def read_capture(self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None, **seen: Any) -> Room:
-        """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
-
-        Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a RealSense's .bag.
-
-        `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `seen`:
-        `classes`, `segmenter` and `sam` as in `read_room`.
-        """
-        stages = Stages(self._listener)
-        with stages("read the photo"):
-            if is_bag(Path(capture)) and rgb is None:
-                found = read_bag_photo(Path(capture), photo)
-            elif scan_kind(Path(capture)) is not None and rgb is None:
-                found = read_scan_photo(Path(capture), photo)
-            else:
-                found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
-            inputs = {"photo": photo, **{name: file_digest(path) for name, path in found.files.items()}}
-            inputs |= {name: str(source) for name, source in seen.items() if source is not None}
-            whole = replace(found.photo, classes=classes_of(found.photo, **seen))
-        return self._reconstruct(whole, found.assumptions, inputs, stages)
-
-    def read_mesh(self, mesh: str | Path, **how: Any) -> Room:
-        """The room of a scan or model: a GLB, PLY or OBJ with triangles. Needs the extra 'mesh'.
-
-        `how`: `eye` and `look_deg`, the radar's place and direction in the mesh, chosen where they are not given;
-        `unit` and `up`, where the file does not say them; `materials`, a JSON of names and classes. See
-        `scene.scanned_mesh.mesh_photo.read_mesh_photo`.
-        """
-        from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo
-
-        stages = Stages(self._listener)
-        with stages("read the mesh"):
-            found = read_mesh_photo(Path(mesh), **how)
-            files = {"mesh": mesh, "materials": how.get("materials")}
-            inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
-            settings = ("eye", "look_deg", "unit", "up")
-            inputs |= {name: how[name] for name in settings if how.get(name) is not None}
-        return self._reconstruct(found.photo, found.assumptions, inputs, stages)
-
-    def sample_room(self) -> Room:
-        """The bundled sample room."""
-        stages = Stages(self._listener)
-        with stages("read the photo"):
-            photo, assumptions = sample_photo()
-        return self._reconstruct(photo, assumptions, {"sample": "the bundled room"}, stages)
-
     @staticmethod
     def read_motion(
         path: str | Path,
@@ -214,12 +141,6 @@ class Weaver:
     ) -> MotionClip:
         """A recorded motion for `generate`: BVH, AMASS/SMPL, HumanML3D, CMU or joints; see docs/motion_files.md."""
         return read_motion(path, fps=fps, unit=unit, up=up, clip=clip, body_model=body_model)
-
-    @staticmethod
-    def _reconstruct(photo: RgbdPhoto, assumptions: tuple[str, ...], inputs: dict[str, Any], stages: Stages) -> Room:
-        with stages("reconstruct the room"):
-            scene = reconstruct(photo, assumptions=assumptions)
-        return Room(scene=scene, inputs=inputs, seconds=stages.seconds)
 
     def request(self, text: str | Sequence[str] | None = None, **asked: Any) -> Request:
         """A checked and parsed request, with the arguments of `generate`. Cheap: no room is needed.

@@ -37,7 +37,7 @@ from mmweaver.models.echo_network import EchoNetwork
 from mmweaver.models.learned_paths import FrameMotion, LearnedRoom
 from mmweaver.models.weights import load_network, load_weights, read_card, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
-from mmweaver.paths.static_paths import AS_PUBLISHED
+from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
@@ -84,11 +84,13 @@ class Case:
 Method = Callable[[Case], RadarCube]
 
 
-def simulated(scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0) -> Method:
+def simulated(
+    scene_of: Callable[[Case], Scene], *, skin: int = 0, micro_seed: int = 0, propagation: Propagation = AS_PUBLISHED
+) -> Method:
     """The simulator in some room, always with another noise seed than the ground truth."""
 
     def method(case: Case) -> RadarCube:
-        simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed, propagation=AS_PUBLISHED)
+        simulator = Simulator(scene_of(case), case.room.config, micro_seed=micro_seed, propagation=propagation)
         spec, frames = case.spec, len(case.joints[0])
         subject, noise = spec.person + skin, spec.seed + OTHER
         made = generate_sequence(spec, case.true_scene, simulator, frames, subject=subject, noise_seed=noise)

@@ -45,6 +45,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("generate", "--motion-model"): {"--motion-model-for": "all"},
     ("generate", "--sam"): {"--segmenter": "builtin"},
     **{("generate", name): {**dict.fromkeys(ROOM), "--mesh": "room.ply"} for name in ("--mesh", "--mesh-materials")},
+    ("generate", "--views"): dict.fromkeys(ROOM),
     ("dataset", "--board"): {"--rooms": None, "--activities": "A", **ROOM},
     ("recognise", "--recordings"): {"action": "score", "--out": None, "place": "MODEL"},
     ("recognise", "--points"): {"action": "run", "--out": None, "place": "MODEL"},

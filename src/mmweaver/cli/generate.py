@@ -38,6 +38,8 @@ EXAMPLES = """examples:
       --text "a person walks towards the radar, then waves with the left hand" --out walk/ --seed 0
   mmweaver generate --rgb rgb.png --depth depth.npy --text "a person sits down and drinks" \\
       --seconds 8 --radar mmmesh --out drink/ --bin
+  mmweaver generate --views views.json --text "a person walks" --out walk/    # several photos: the whole room
+  mmweaver generate --capture scan/ --further-photos auto --text "a person walks" --out walk/
   mmweaver generate --demo --method physics --out traced/
   mmweaver generate --demo --board ideal --out ideal/               # no errors of a board; --board board.json: of yours
   mmweaver generate --demo --radar-pose 0,0,0,0,0 --radar-pose 1.5,1.5,0,-60,0 --out both/   # two radars at a time
@@ -247,7 +249,7 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
     """The texts (None: those of the demo, or a recorded motion alone) and the output folder, if the room is clear."""
     pictures = (
         arguments.rgb, arguments.depth, arguments.camera, arguments.capture, arguments.depth_model, arguments.classes,
-        arguments.segmenter, arguments.sam, arguments.mesh,
+        arguments.segmenter, arguments.sam, arguments.views, arguments.mesh,
     )  # fmt: skip
     if arguments.demo:
         if any(picture is not None for picture in pictures):
@@ -256,15 +258,8 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
                 " or leave out --demo"
             )
         return arguments.text, arguments.out or Path(DEMO_OUT)
-    if arguments.mesh is not None:
-        if any(picture is not None for picture in pictures[:-1]):
-            raise InputError("--mesh brings the whole room; leave out --rgb, --depth, --camera and all else that does")
-        return _text_and_out(arguments)
-    if any(getattr(arguments, f"mesh_{name}") is not None for name in ("eye", "look", "unit", "up", "materials")):
-        raise InputError("options of a mesh need --mesh FILE")
-    if arguments.capture is not None:
-        if any(given is not None for given in (arguments.depth, arguments.camera, arguments.depth_model)):
-            raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")
+    _check_room(arguments, pictures)
+    if any(given is not None for given in (arguments.mesh, arguments.views, arguments.capture)):
         return _text_and_out(arguments)
     if arguments.rgb is None and arguments.depth is None:
         raise InputError("which room? give --rgb and --depth, or try --demo")
@@ -276,6 +271,25 @@ def _check_inputs(arguments: argparse.Namespace) -> tuple[list[str] | None, Path
     if arguments.rgb is None:
         raise InputError("--depth needs --rgb too: the colour picture of the same view")
     return _text_and_out(arguments)
+
+
+def _check_room(arguments: argparse.Namespace, pictures: tuple[Any, ...]) -> None:
+    """Raises InputError where a mesh, several photos or a capture come with what describes another room."""
+    is_of_mesh = any(
+        getattr(arguments, f"mesh_{name}") is not None for name in ("eye", "look", "unit", "up", "materials")
+    )
+    if arguments.mesh is not None:
+        if any(picture is not None for picture in pictures[:-1]):
+            raise InputError("--mesh brings the whole room; leave out --rgb, --depth, --camera and all else that does")
+    elif is_of_mesh:
+        raise InputError("options of a mesh need --mesh FILE")
+    if arguments.further_photos is not None and arguments.capture is None:
+        raise InputError("--further-photos are those of a scan; give --capture, or --views for photos of your own")
+    if arguments.views is not None and any(given is not None for given in (*pictures[:6], arguments.sam)):
+        raise InputError("--views names its own photos; leave out --rgb, --depth, --camera and all else that does")
+    brought = (arguments.depth, arguments.camera, arguments.depth_model)
+    if arguments.capture is not None and any(given is not None for given in brought):
+        raise InputError("--capture brings its own depth and camera; leave out --depth, --camera and --depth-model")
 
 
 def _text_and_out(arguments: argparse.Namespace) -> tuple[list[str] | None, Path]:
@@ -303,6 +317,15 @@ def _background(arguments: argparse.Namespace) -> "RadarCube | None":
     return read_recording(arguments.background, range_m=arguments.range_m, range_bins=arguments.range_bins).cube
 
 
+def _further(words: str | None) -> list[int] | str:
+    if words is None or words == "auto":
+        return words or []
+    numbers = words.split(",")
+    if not all(number.strip().isdigit() for number in numbers):
+        raise InputError(f"--further-photos {words[:40]!r} are no numbers of photos; write 60,120,180, or auto")
+    return [int(number) for number in numbers]
+
+
 def _photographed_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room":
     if arguments.demo:
         return weaver.sample_room()
@@ -313,7 +336,12 @@ def _photographed_room(weaver: "Weaver", arguments: argparse.Namespace) -> "Room
         )  # fmt: skip
     labels = {"classes": arguments.classes, "segmenter": arguments.segmenter, "sam": arguments.sam}
     if arguments.capture is not None:
-        return weaver.read_capture(arguments.capture, photo=arguments.photo, rgb=arguments.rgb, **labels)
+        return weaver.read_capture(
+            arguments.capture, photo=arguments.photo, rgb=arguments.rgb, further=_further(arguments.further_photos),
+            **labels,
+        )  # fmt: skip
+    if arguments.views is not None:
+        return weaver.read_views(arguments.views, segmenter=arguments.segmenter)
     return weaver.read_room(
         arguments.rgb, arguments.depth, arguments.camera, depth_model=arguments.depth_model, **labels
     )

@@ -105,7 +105,15 @@ def _add_input_options(room: Options) -> None:
     room.add_argument(
         "--photo", type=whole, default=0, metavar="N", help=Rare("which photo of the capture (default 0)")
     )
-
+    room.add_argument(
+        "--further-photos", metavar="N,N..|auto",
+        help=Rare("further photos of a scan, joined to --photo by its poses, so that walls beside and behind the radar"
+        " are known: numbers, or auto for up to five that show the most"),
+    )  # fmt: skip
+    room.add_argument(
+        "--views", type=Path, metavar="JSON",
+        help="instead of --rgb: several photos with depth, and roughly where each was taken (docs/photos.md)",
+    )  # fmt: skip
     room.add_argument(
         "--mesh", type=Path, metavar="FILE",
         help=Rare("instead of --rgb: the room as a scan or model (.glb, .ply, .obj), with more than a photo shows"),

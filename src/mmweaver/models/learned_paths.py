@@ -38,6 +38,7 @@ from mmweaver.paths.paths import Paths, ScenePaths
 from mmweaver.paths.radar_equation import points_of
 from mmweaver.paths.random_phases import place_of, sample_cells, sample_moving, sample_moving_segments, sample_static
 from mmweaver.paths.receiver import quantise
+from mmweaver.paths.static_paths import FIRST_ORDER, RayTracedRoom
 
 NOTICED = 4e-3  # of the strongest static path's amplitude: whether a fainter one is occluded goes unnoticed
 ADC_FRAMES_AT_ONCE = 20
@@ -92,6 +93,11 @@ class FrameMotion:
         return torch.from_numpy(middle_m[self.num_before :]).float()
 
 
+def given_room(scene: Scene, config: RadarConfig) -> RayTracedRoom:
+    """The paths of a photographed room that the network starts from."""
+    return RayTracedRoom(scene, config, propagation=FIRST_ORDER)
+
+
 class LearnedRoom:
     """A room that the network has encoded for one radar; `paths`, `cube` and `signal` may be asked for many motions.
 
@@ -113,7 +119,7 @@ class LearnedRoom:
     ):
         self.network, self.nominal, self.device = network.to(device), config, device
         self.board = None if board is None or board.is_ideal else BoardEffects(board, config)
-        view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config)
+        view = scene if isinstance(scene, SceneTensors) else SceneTensors.of(scene, config, given_room(scene, config))
         config = config if self.board is None else self.board.radar
         self.config = config
         self.radar, self.renderer = MeanPower(config), CubeRenderer(config, self.board)

@@ -1,13 +1,16 @@
 """Edges of furniture: where the room's mesh ends before something farther away."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from mmweaver.core.records import Scene
 from mmweaver.geometry.ray_caster import RayCaster
 
 SEGMENT_M = 0.065  # about 1.1 sqrt(wavelength . distance / 2): what of an edge adds up in phase
+NEIGHBOURHOOD_M = 0.15  # about a piece, whose edges say where it runs
+LINE_WIDTH, LINE_REACH_M = 0.1, 0.04  # edges on a line: variance across over along; standard deviation along, at least
 STEP_OVER_M = 0.10  # the ground behind an edge lies at least so much farther
 
 
@@ -21,8 +24,12 @@ class Edges:
     material: np.ndarray  # (edge,) index into the scene's material_names
 
 
-def find_edges(scene: Scene, caster: RayCaster) -> Edges:
-    """Free edges of the mesh that the radar sees before a farther background, in pieces of SEGMENT_M."""
+def find_edges(scene: Scene, caster: RayCaster, *, straight: bool = True) -> Edges:
+    """Free edges of the mesh that the radar sees before a farther background, in pieces of SEGMENT_M.
+
+    `straight`: a piece runs as the edge's wider neighbourhood does. The mesh of a photo ends in steps of its cells,
+    whose own directions say little.
+    """
     ends, opposite, face = _free_edges(scene.faces)
     vertices = scene.vertices_m.astype(float)
     middle = vertices[ends].mean(axis=1)
@@ -35,7 +42,26 @@ def find_edges(scene: Scene, caster: RayCaster) -> Edges:
     distance = np.linalg.norm(middle, axis=1)
     step = np.isfinite(behind) & (behind > distance + STEP_OVER_M) & (np.abs(seen - distance) < 0.05)
     step &= length < 0.3  # longer ones are rims of completed planes, not furniture
-    return _in_pieces(middle[step], along[step], length[step], scene.face_material[face[step]])
+    pieces = _in_pieces(middle[step], along[step], length[step], scene.face_material[face[step]])
+    return _straightened(pieces, middle[step], length[step]) if straight and len(pieces.length_m) else pieces
+
+
+def _straightened(pieces: Edges, middle_m: np.ndarray, length_m: np.ndarray) -> Edges:
+    """Pieces along the line through all edges (edge, 3) near them, where these lie on a line."""
+    near = KDTree(pieces.place_m).sparse_distance_matrix(KDTree(middle_m), NEIGHBOURHOOD_M, output_type="coo_matrix")
+    piece, edge, count = near.row, near.col, len(pieces.length_m)
+    weight = np.bincount(piece, length_m[edge], minlength=count)
+    mean = np.stack([np.bincount(piece, length_m[edge] * middle_m[edge, i], minlength=count) for i in range(3)], 1)
+    off = middle_m[edge] - (mean / np.maximum(weight, 1e-9)[:, None])[piece]
+    moments = [
+        [np.bincount(piece, length_m[edge] * off[:, i] * off[:, j], minlength=count) for j in range(3)]
+        for i in range(3)
+    ]
+    values, vectors = np.linalg.eigh(np.array(moments).transpose(2, 0, 1))
+    is_line = (values[:, 1] < LINE_WIDTH * values[:, 2]) & (values[:, 2] > weight * LINE_REACH_M**2)
+    direction = np.where(is_line[:, None], vectors[:, :, 2], pieces.direction)
+    length = np.where(is_line, SEGMENT_M / np.abs(direction).max(axis=1), pieces.length_m)
+    return replace(pieces, direction=direction, length_m=np.minimum(length, SEGMENT_M))
 
 
 def _free_edges(faces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -31,10 +31,13 @@ class Propagation:
     bounces: int = 2  # 1: off rough surfaces once, off the body once; 2: body and room, room and room, body-radar-body
     clutter: bool = False  # whether there is static clutter that photo and mesh do not resolve
     slab_echoes: int = SLAB_ECHOES  # of each face; 1: reflection as at the band's centre, for all of the band
+    straight_edges: bool = True  # whether pieces of edge run as their neighbourhood does
 
 
+# What the network is given of a room: of the orders that it has learned.
+FIRST_ORDER = Propagation(bounces=1, slab_echoes=1)
 # What the network has learned from, and what studies published before there was a second order were computed with.
-AS_PUBLISHED = Propagation(bounces=1, slab_echoes=1)
+AS_PUBLISHED = Propagation(bounces=1, slab_echoes=1, straight_edges=False)
 
 
 class PreparedRoom:
@@ -170,7 +173,7 @@ class RayTracedRoom(PreparedRoom):
 
     def _edges(self, scene: Scene) -> StaticPaths:
         """One path for each piece of rim or leg; sigma = k a L^2 |Gamma|^2 where it lies across the line of sight."""
-        edges = find_edges(scene, self.caster)
+        edges = find_edges(scene, self.caster, straight=self.propagation.straight_edges)
         rng = stream(self.micro_seed, "room", "edges")
         distance = np.maximum(np.linalg.norm(edges.place_m, axis=1), 1e-6)
         cos = np.abs((edges.direction * edges.place_m).sum(axis=1)) / distance

@@ -1,10 +1,13 @@
-"""One photo with depth of a scan: folders of Stray Scanner, Record3D, Polycam (raw data), ScanNet and TUM RGB-D.
+"""One photo with depth of a scan, or several joined by its poses.
+
+Folders of Stray Scanner, Record3D, Polycam (raw data), ScanNet and TUM RGB-D.
 
 The depth of phones is coarse; colours are resampled to it as `read_photo` does. Phones store pictures as the sensor
 lies; the recorded pose says which side is up, and the photo is rotated upright.
 Facts of the formats: their publishers' documentation (Stray Robots, Polycam, ScanNet, TUM Computer Vision Group).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,15 +15,18 @@ import numpy as np
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import CameraIntrinsics, RgbdPhoto
-from mmweaver.core.safe_files.safe_text import read_json, read_text
+from mmweaver.core.safe_files.safe_text import read_json
 from mmweaver.core.shapes import DepthPixels, RgbPixels
 from mmweaver.geometry.pinhole import resized, rotated_clockwise
 from mmweaver.scene.photo.capture_photo import CapturedPhoto
 from mmweaver.scene.photo.lzfse import read_lzfse
+from mmweaver.scene.photo.number_table import number_table
 from mmweaver.scene.photo.picture_files import read_depth, read_rgb
+from mmweaver.scene.photo.posed_photo import Pose, PosedPhoto
 from mmweaver.scene.photo.sparse_depth import fill_scattered_holes
 from mmweaver.scene.photo.video_frame import read_video_frame
 from mmweaver.scene.read_photo import to_common_size
+from mmweaver.scene.whole_room.scan_poses import scan_pose, spread_out
 
 MILLIMETRE, TUM_UNIT_M = 0.001, 0.0002
 TUM_APART_S = 0.03  # colour and depth farther apart are of other moments
@@ -62,27 +68,69 @@ def scan_kind(folder: Path) -> str | None:
     return None
 
 
-def read_scan_photo(folder: Path, index: int = 0) -> CapturedPhoto:
-    """Photo `index` of a scan, in the order of its frames.
+def read_scan_photo(folder: Path, index: int = 0, further: Sequence[int] | str = ()) -> CapturedPhoto:
+    """Photo `index` of a scan, in the order of its frames, and further ones that show more of the room.
 
-    Raises InputError where the folder is of no known kind, has no such photo, or a file is missing or damaged.
+    `further`: their numbers, or "auto" for up to five whose cameras stand and look differently, by the scan's poses.
+    Raises InputError where the folder is of no known kind, has no such photo or no poses, or a file is missing or
+    damaged.
     """
     kind = scan_kind(folder)
     if kind is None:
         raise InputError(f"{folder} is no scan of Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D")
+    photo, files, notes, turns = _upright_photo(folder, kind, index)
+    others: list[PosedPhoto] = []
+    if further:
+        pictures = _pictures(folder, kind)
+        first = _pose_of(folder, kind, pictures, index, turns)
+        if further == "auto":
+            further = spread_out([scan_pose(folder, kind, one) for one in pictures], index)
+        for number in further:
+            other, other_files, _, other_turns = _upright_photo(folder, kind, int(number))
+            pose = np.linalg.inv(first) @ _pose_of(folder, kind, pictures, int(number), other_turns)
+            others.append(PosedPhoto(photo=other, pose=pose))
+            files = files | {f"{name} {number}": file for name, file in other_files.items()}
+        notes = (f"Photos {', '.join(map(str, further))} of the scan were joined to it by its poses.", *notes)
+    notes = (f"Photo {index} of the {kind} scan was used.", *notes)
+    return CapturedPhoto(photo=photo, folder=folder, files=files, assumptions=notes, others=tuple(others))
+
+
+def _upright_photo(folder: Path, kind: str, index: int) -> tuple[RgbdPhoto, dict[str, Path], tuple[str, ...], int]:
+    """The photo turned upright, its files, what was assumed, and by how many quarters it was turned."""
     frame = _READERS[kind](folder, index)
-    rgb, depth_m, camera = _upright(frame)
+    rgb, depth_m, camera, turns = _upright(frame)
     depth_m, fill_notes = fill_scattered_holes(depth_m)
     rgb, depth_m, size_notes = to_common_size(rgb, depth_m)
     photo = RgbdPhoto(rgb=rgb, depth_m=depth_m, intrinsics=resized(camera, depth_m.shape[1], depth_m.shape[0]))
-    notes = (f"Photo {index} of the {kind} scan was used.", *frame.notes, *fill_notes, *size_notes)
-    return CapturedPhoto(photo=photo, folder=folder, files=frame.files, assumptions=notes)
+    return photo, frame.files, (*frame.notes, *fill_notes, *size_notes), turns
+
+
+def _pictures(folder: Path, kind: str) -> list[Path]:
+    """The pictures by whose names frames are known, in order."""
+    where, endings = {
+        "Stray Scanner": ("depth", (".png",)), "Record3D": ("rgbd", (".jpg",)), "ScanNet": ("color", (".jpg", ".png")),
+        "TUM RGB-D": ("rgb", (".png", ".jpg")),
+        "Polycam": ("keyframes/corrected_images" if (folder / "keyframes" / "corrected_images").is_dir()
+                    else "keyframes/images", (".jpg",)),
+    }[kind]  # fmt: skip
+    return _in_order(folder / where, *endings)
+
+
+def _pose_of(folder: Path, kind: str, pictures: Sequence[Path], index: int, turns: int) -> Pose:
+    """From the upright picture's camera to the world. Raises InputError where the scan does not say it."""
+    if not 0 <= index < len(pictures):
+        raise InputError(f"{folder} holds {len(pictures)} pictures; there is no photo {index}")
+    pose = scan_pose(folder, kind, pictures[index])
+    if pose is None:
+        raise InputError(f"{folder}: the scan says no pose for photo {index}; photos are joined by their poses")
+    quarter = np.array([[0.0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])  # counterclockwise
+    return pose @ np.linalg.matrix_power(quarter, turns).T
 
 
 def _stray(folder: Path, index: int) -> _Frame:
     """rgb.mp4, depth/000000.png in millimetres, camera_matrix.csv of the video, odometry.csv with the poses."""
     depth = _chosen(folder / "depth", index, ".png")
-    matrix = _table(folder / "camera_matrix.csv")
+    matrix = number_table(folder / "camera_matrix.csv")
     if matrix.shape != (3, 3):
         raise InputError(f"{folder / 'camera_matrix.csv'} holds {matrix.shape} numbers; it must be 3 x 3")
     video = folder / "rgb.mp4"
@@ -91,7 +139,7 @@ def _stray(folder: Path, index: int) -> _Frame:
     up, notes = (0.0, 1.0), ("No odometry.csv: the picture was taken as upright.",)
     odometry = folder / "odometry.csv"
     if odometry.is_file():
-        rows = _table(odometry, header=True)
+        rows = number_table(odometry)
         chosen = rows[rows[:, 1] == number] if rows.shape[1] >= 9 else rows[:0]
         if len(chosen):
             up, notes = _up_of_quaternion(chosen[0, 5:9]), ()
@@ -144,13 +192,13 @@ def _polycam(folder: Path, index: int) -> _Frame:
 def _scannet(folder: Path, index: int) -> _Frame:
     """color/0.jpg, depth/0.png in millimetres, intrinsic/intrinsic_color.txt, pose/0.txt (camera to world, z up)."""
     colour = _chosen(folder / "color", index, ".jpg", ".png")
-    depth, matrix = folder / "depth" / f"{colour.stem}.png", _table(folder / "intrinsic" / "intrinsic_color.txt")
+    depth, matrix = folder / "depth" / f"{colour.stem}.png", number_table(folder / "intrinsic" / "intrinsic_color.txt")
     if matrix.shape[0] < 3 or matrix.shape[1] < 3:
         raise InputError(f"{folder / 'intrinsic' / 'intrinsic_color.txt'} holds no 4 x 4 matrix")
     rgb, up = read_rgb(colour)[0], (0.0, 1.0)
     pose = folder / "pose" / f"{colour.stem}.txt"
     if pose.is_file():
-        world = _table(pose)
+        world = number_table(pose, allow_infinite=True)
         if world.shape == (4, 4) and np.isfinite(world).all():
             up = float(world[2, 0]), -float(world[2, 1])
     files = {"rgb": colour, "depth": depth}
@@ -180,23 +228,15 @@ _READERS = {"Stray Scanner": _stray, "Record3D": _record3d, "Polycam": _polycam,
 
 
 def _chosen(folder: Path, index: int, *endings: str) -> Path:
-    files = [file for file in folder.iterdir() if file.suffix.lower() in endings] if folder.is_dir() else []
-    files.sort(key=lambda file: (len(file.stem), file.stem) if file.stem.isdigit() else (0, file.stem))
+    files = _in_order(folder, *endings)
     if not 0 <= index < len(files):
         raise InputError(f"{folder} holds {len(files)} pictures ({', '.join(endings)}); there is no photo {index}")
     return files[index]
 
 
-def _table(path: Path, *, header: bool = False) -> np.ndarray:
-    """Rows of numbers between commas or spaces."""
-    lines = [line for line in read_text(path).splitlines() if line.strip()][1 if header else 0 :]
-    try:
-        rows = np.array([[float(word) for word in line.replace(",", " ").split()] for line in lines])
-    except ValueError:
-        raise InputError(f"{path} holds no table of numbers") from None
-    if rows.ndim != 2 or not np.isfinite(rows).all():
-        raise InputError(f"{path} holds no table of numbers")
-    return rows
+def _in_order(folder: Path, *endings: str) -> list[Path]:
+    files = [file for file in folder.iterdir() if file.suffix.lower() in endings] if folder.is_dir() else []
+    return sorted(files, key=lambda file: (len(file.stem), file.stem) if file.stem.isdigit() else (0, file.stem))
 
 
 def _seconds(file: Path) -> float:
@@ -219,11 +259,11 @@ def _up_of_quaternion(xyzw: np.ndarray) -> tuple[float, float]:
     return float(2 * (x * y + w * z)), -float(1 - 2 * (x * x + z * z))
 
 
-def _upright(frame: _Frame) -> tuple[RgbPixels, DepthPixels, CameraIntrinsics]:
-    """The pictures turned by quarters so that the upward direction points to their top."""
+def _upright(frame: _Frame) -> tuple[RgbPixels, DepthPixels, CameraIntrinsics, int]:
+    """The pictures turned counterclockwise by so many quarters that the upward direction points to their top."""
     right, top = frame.up
     turns = int(np.rint(np.arctan2(right, top) / (np.pi / 2))) % 4  # counterclockwise, 90 degrees each
     camera = frame.camera
     for _ in range((4 - turns) % 4):
         camera = rotated_clockwise(camera)
-    return np.rot90(frame.rgb, turns).copy(), np.rot90(frame.depth_m, turns).copy(), camera
+    return np.rot90(frame.rgb, turns).copy(), np.rot90(frame.depth_m, turns).copy(), camera, turns

@@ -19,20 +19,25 @@ class AlignedRoom:
     surfaces: tuple[Surface, ...]
 
 
-def align_room(grid: DepthGrid) -> AlignedRoom:
-    """Estimates gravity from the floor, refines it by the walls found with that estimate, and aligns the grid.
+def align_room(grid: DepthGrid, gravity: Gravity | None = None) -> AlignedRoom:
+    """Aligns the grid with gravity, by default that of `room_gravity`. Raises InputError where it shows no surfaces."""
+    gravity = room_gravity(grid) if gravity is None else gravity
+    radar_from_camera = level_from_camera(gravity.up_camera)
+    aligned = _aligned(grid, radar_from_camera, gravity.floor_z_m)
+    return AlignedRoom(
+        gravity=gravity, radar_from_camera=radar_from_camera, grid=aligned, surfaces=find_surfaces(aligned)
+    )
+
+
+def room_gravity(grid: DepthGrid) -> Gravity:
+    """Gravity by the floor, refined by the walls found with that estimate.
 
     Raises InputError where the depth shows no surfaces.
     """
     gravity = find_gravity(grid)
     first = _aligned(grid, level_from_camera(gravity.up_camera), gravity.floor_z_m)
     walls = [surface.cells for surface in find_surfaces(first) if surface.plane.kind == "wall"]
-    gravity = refined_by_walls(gravity, grid, floor_cells(first), walls)
-    radar_from_camera = level_from_camera(gravity.up_camera)
-    aligned = _aligned(grid, radar_from_camera, gravity.floor_z_m)
-    return AlignedRoom(
-        gravity=gravity, radar_from_camera=radar_from_camera, grid=aligned, surfaces=find_surfaces(aligned)
-    )
+    return refined_by_walls(gravity, grid, floor_cells(first), walls)
 
 
 def _aligned(grid: DepthGrid, radar_from_camera: Rotation, floor_z_m: float) -> AlignedGrid:

@@ -5,13 +5,13 @@ perpendicular, which for the side walls lies outside the picture. Reference: dec
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mmweaver.core.assumptions import UsualAssumption
 from mmweaver.core.records import Plane
-from mmweaver.core.shapes import Faces, PerPoint, Points, Vec3, Vertices
+from mmweaver.core.shapes import Faces, PerPoint, Vec3, Vertices
 from mmweaver.scene.layout.surfaces import UP, AlignedGrid
 from mmweaver.scene.photo.depth_grid import GridBool
 
@@ -28,6 +28,7 @@ _BEFORE_FRONT_M = 0.08
 _MIN_WALL_TOP_M = 1.2  # above the floor: the visible part of a wall reaches at least this high
 _MAX_BEYOND = 0.04  # share of all points that may lie behind a wall (seen through a window or doorway)
 _MIN_DISTANCE_M = 0.3
+_NEAREST_BACK_M = 0.05  # a radar may stand close before a wall
 _MIN_AGREEMENT = 0.8  # share of the vertical area that is parallel or perpendicular to the room's axes
 _TRIANGLES = ((0, 1, 2), (0, 2, 3))  # of a rectangle's corners
 _SET_BACK_M = 0.03  # of the extended walls, so that the measured surface lies before them
@@ -50,11 +51,14 @@ class _Wall:
     distance_m: float
 
 
-def estimate_layout(grid: AlignedGrid, planes: Sequence[Plane], is_wall: GridBool | None = None) -> RoomLayout:
+def estimate_layout(
+    grid: AlignedGrid, planes: Sequence[Plane], is_wall: GridBool | None = None, *, is_whole: bool = False
+) -> RoomLayout:
     """Extends the visible walls until they meet, reach the ceiling, and pass the radar.
 
     `planes` are the room's planes except the floor; `is_wall` marks the cells that a class mask labels as wall. Rooms
-    that are not rectangular, and walls of which too little is visible, are left unchanged.
+    that are not rectangular, and walls of which too little is visible, are left unchanged. `is_whole`: the grid shows
+    the room all around, so there may be a wall behind the radar, and a ceiling reaches from wall to wall.
     """
     front = _front_normal(planes)
     unchanged = RoomLayout(planes=tuple(planes), extended=(), assumptions=())
@@ -62,12 +66,33 @@ def estimate_layout(grid: AlignedGrid, planes: Sequence[Plane], is_wall: GridBoo
         return unchanged
     right = np.cross(UP, front)  # of the room, seen from the radar
     found = _find_walls(grid, front, is_wall)
+    back = _find_wall(grid, -front, is_wall, nearest_m=_NEAREST_BACK_M) if is_whole else None
+    found |= {} if back is None else {"back": back}
     if not found:
         return unchanged
     walls = _rectangles(found, grid, -front, right, _ceiling_m(grid, planes), _wall_material(planes))
+    seen_ceilings = [plane for plane in planes if plane.kind == "ceiling"]
+    ceiling: tuple[Plane, ...] = ()
+    if is_whole and seen_ceilings:
+        largest = max(seen_ceilings, key=lambda plane: plane.half_size_m[0] * plane.half_size_m[1])
+        ceiling = (_from_wall_to_wall(largest, walls),)
+        planes = [plane for plane in planes if plane.kind != "ceiling"]
     kept = tuple(plane for plane in planes if not any(_is_part_of(plane, wall) for wall in walls))
     note = UsualAssumption(f"Walls ({', '.join(found)}) were extended until they meet, and past the radar.")
-    return RoomLayout(planes=(*walls, *kept), extended=walls, assumptions=(note,))
+    return RoomLayout(planes=(*walls, *ceiling, *kept), extended=(*walls, *ceiling), assumptions=(note,))
+
+
+def _from_wall_to_wall(ceiling: Plane, walls: Sequence[Plane]) -> Plane:
+    """A ceiling that covers all that the walls enclose; of them it takes the axes."""
+    u, v = walls[0].axis_u, np.cross(ceiling.normal, walls[0].axis_u)
+    ends = [wall.centre_m + side * wall.half_size_m[0] * wall.axis_u for wall in walls for side in (-1, 1)]
+    along = np.array(ends) @ np.stack([u, v], axis=1)
+    low, high = along.min(axis=0), along.max(axis=0)
+    middle = (low + high) / 2
+    return replace(
+        ceiling, centre_m=middle[0] * u + middle[1] * v + ceiling.centre_m[2] * UP, axis_u=u, axis_v=v,
+        half_size_m=(float(high[0] - low[0]) / 2, float(high[1] - low[1]) / 2),
+    )  # fmt: skip
 
 
 def wall_faces(walls: Sequence[Plane]) -> tuple[Vertices, Faces]:
@@ -82,10 +107,17 @@ def wall_faces(walls: Sequence[Plane]) -> tuple[Vertices, Faces]:
 
 
 def _front_normal(planes: Sequence[Plane]) -> Vec3 | None:
-    """Normal of the wall opposite the radar: of the room's four axes the one that points most nearly at the radar.
+    """Normal of the wall opposite the radar: of the room's four axes the one that points most nearly at the radar."""
+    azimuth = room_azimuth_rad(planes)
+    if azimuth is None:
+        return None
+    axes = azimuth + np.arange(4) * np.pi / 2
+    facing = axes[np.argmin(np.sin(axes))]  # most nearly -y
+    return np.array([np.cos(facing), np.sin(facing), 0.0])
 
-    The axes are the robust mean azimuth, modulo 90 degrees, of the vertical planes; None where these disagree.
-    """
+
+def room_azimuth_rad(planes: Sequence[Plane]) -> float | None:
+    """The robust mean azimuth of the vertical planes, modulo 90 degrees; None where they disagree."""
     vertical = [plane for plane in planes if plane.kind in ("wall", "panel")]
     if not vertical:
         return None
@@ -99,9 +131,7 @@ def _front_normal(planes: Sequence[Plane]) -> Vec3 | None:
         if weight[near].sum() < _MIN_AGREEMENT * weight.sum() * 0.6:
             return None
         mean = np.angle((weight[near] * np.exp(4j * angle[near])).sum()) / 4
-    axes = mean + np.arange(4) * np.pi / 2
-    facing = axes[np.argmin(np.sin(axes))]  # most nearly -y
-    return np.array([np.cos(facing), np.sin(facing), 0.0])
+    return float(mean)
 
 
 def _find_walls(grid: AlignedGrid, front: Vec3, is_wall: GridBool | None) -> dict[str, _Wall]:
@@ -119,13 +149,18 @@ def _find_walls(grid: AlignedGrid, front: Vec3, is_wall: GridBool | None) -> dic
 
 
 def _find_wall(
-    grid: AlignedGrid, normal: Vec3, is_wall: GridBool | None, *, check_normals: bool = True
+    grid: AlignedGrid,
+    normal: Vec3,
+    is_wall: GridBool | None,
+    *,
+    check_normals: bool = True,
+    nearest_m: float = _MIN_DISTANCE_M,
 ) -> _Wall | None:
-    """The farthest plane of that normal with enough visible area and hardly any point behind it."""
+    """The farthest plane of that normal with enough visible area and hardly any point behind it."""  # fmt: skip
     is_cell = np.isfinite(grid.depth_m)
     points = grid.points_m[is_cell]
     distance_m = -(points @ normal)
-    usable = distance_m > _MIN_DISTANCE_M
+    usable = distance_m > nearest_m
     if check_normals:
         usable &= grid.normals[is_cell] @ normal > _SAME_FACING
     if is_wall is not None:
@@ -133,7 +168,7 @@ def _find_wall(
     if not usable.any():
         return None
     height_m = points[:, 2] - grid.floor_z_m
-    area_m2 = _cell_area_m2(points, normal, grid.focal_cells)
+    area_m2 = _cell_area_m2(grid, is_cell, normal)
     distance_bin = np.floor(distance_m / _BIN_M).astype(int)
     num_bins = int(distance_bin[usable].max()) + 2
     visible_m2 = np.bincount(distance_bin[usable], area_m2[usable], minlength=num_bins)
@@ -156,11 +191,13 @@ def _is_tall(height_m: PerPoint) -> bool:
     return bool(high >= _MIN_WALL_TOP_M and high - low >= 0.4)
 
 
-def _cell_area_m2(points_m: Points, normal: Vec3, focal_cells: float) -> PerPoint:
-    """The area that each cell covers of a surface with that normal, m2."""
-    distance_m = np.linalg.norm(points_m, axis=-1)
-    normal_distance_m = np.maximum(np.abs(points_m @ normal), 0.05 * distance_m)
-    return distance_m**3 / (normal_distance_m * focal_cells**2)
+def _cell_area_m2(grid: AlignedGrid, is_cell: GridBool, normal: Vec3) -> PerPoint:
+    """The area that each of some cells covers of a surface with that normal, m2."""
+    seen_m = (grid.points_m - grid.eye_m)[is_cell]
+    focal = np.broadcast_to(grid.focal_cells, is_cell.shape)[is_cell]
+    distance_m = np.linalg.norm(seen_m, axis=-1)
+    normal_distance_m = np.maximum(np.abs(seen_m @ normal), 0.05 * distance_m)
+    return distance_m**3 / (normal_distance_m * focal**2)
 
 
 def _wall_material(planes: Sequence[Plane]) -> str:
@@ -200,10 +237,12 @@ def _rectangles(
     far_m = found["front"].distance_m if "front" in found else float(np.percentile(points @ ahead, 99))
     left_m = -found["left"].distance_m if "left" in found else min(float(seen_left), -_MIN_DISTANCE_M)
     right_m = found["right"].distance_m if "right" in found else max(float(seen_right), _MIN_DISTANCE_M)
+    behind_m = found["back"].distance_m if "back" in found else BEHIND_M
     corners = {
         "front": (left_m * right + far_m * ahead, right_m * right + far_m * ahead),
-        "left": (left_m * right - BEHIND_M * ahead, left_m * right + far_m * ahead),
-        "right": (right_m * right + far_m * ahead, right_m * right - BEHIND_M * ahead),
+        "left": (left_m * right - behind_m * ahead, left_m * right + far_m * ahead),
+        "right": (right_m * right + far_m * ahead, right_m * right - behind_m * ahead),
+        "back": (right_m * right - behind_m * ahead, left_m * right - behind_m * ahead),
     }
     walls = []
     height_m = top_m - grid.floor_z_m

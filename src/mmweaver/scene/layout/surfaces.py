@@ -1,6 +1,6 @@
 """Segments the planar surfaces of a room: floor, ceiling, walls, table tops, furniture fronts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -36,7 +36,8 @@ class AlignedGrid:
     normals: GridVectors  # unit, towards the radar
     depth_m: GridFloat  # along the optical axis
     floor_z_m: float
-    focal_cells: float  # focal length in cells
+    focal_cells: float | GridFloat  # focal length in cells
+    eye_m: Vec3 | GridVectors = field(default_factory=lambda: np.zeros(3))  # of the camera that measured a cell
 
     @property
     def tolerance_m(self) -> GridFloat:

@@ -20,6 +20,7 @@ from mmweaver.core.safe_files.safe_text import read_json, read_toml
 from mmweaver.core.shapes import Array, DepthPixels, PerFrame, RgbPixels
 from mmweaver.geometry.pinhole import project, rotated_clockwise, unproject
 from mmweaver.scene.photo.picture_files import read_rgb
+from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.photo.video_frame import read_video_frame
 
 DEPTH, COLOUR = "depth.zst", "color.avi"
@@ -29,12 +30,13 @@ MAX_BYTES = 8_000_000_000
 
 @dataclass(frozen=True, kw_only=True)
 class CapturedPhoto:
-    """One photo of a capture, its folder, and the assumptions made in reading it."""
+    """One photo of a capture, or several of one room, their folder, and the assumptions made in reading them."""
 
     photo: RgbdPhoto
     folder: Path
     files: dict[str, Path]  # by what they hold: rgb, depth, camera
     assumptions: tuple[str, ...]
+    others: tuple[PosedPhoto, ...] = ()  # further photos of the room
 
 
 def photo_folder(path: Path | str) -> Path | None:

@@ -4,11 +4,13 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from jaxtyping import Float
 
 from mmweaver.core.errors import InputError
+from mmweaver.core.radar_pose import RadarPose
 from mmweaver.core.records import CameraIntrinsics, FreeSpace, Landmark, Plane, RgbdPhoto, Scene, Seat
 from mmweaver.core.seeding import stream
-from mmweaver.core.shapes import DepthPixels, Faces, PerFace, Rotation, Vertices
+from mmweaver.core.shapes import Array, DepthPixels, Faces, PerFace, Rotation, Vec3, Vertices
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.layout.surface_materials import MATERIAL_NAMES
 from mmweaver.scene.photo.camera_file import d455_intrinsics
@@ -68,23 +70,43 @@ class ProceduralRoom:
 
         Raises InputError for a lighting that is not in LIGHTINGS.
         """
+        photo_seed = int(stream(self.seed, "procedural", self.kind, self.layout, "photo").integers(2**31))
+        return self._rendered(self._view, np.array(self.shell.radar_m), lighting, photo_seed, noise, self._colours)
+
+    def further_photo(
+        self, stand: RadarPose, lighting: str = "day", noise: bool = False, *, number: int = 1
+    ) -> tuple[RgbdPhoto, Float[Array, "4 4"]]:
+        """The photo of a camera elsewhere, `stand` in the radar's frame, and its pose.
+
+        The pose moves points of this camera into that of `photo`, metres. `number` makes its noise another.
+        Raises InputError for a lighting that is not in LIGHTINGS.
+        """
+        frame = RadarFrame(self.shell)
+        right, ahead, up = stand.from_level
+        own = np.stack([right, -up, ahead], axis=1)  # radar from this camera: x right, y down, z forward
+        eye_m = frame.room_from_radar @ stand.position_m + frame.origin_m
+        view = cast_view(self.mesh, self._caster, self.intrinsics, frame.room_from_radar @ own, eye_m)
+        seed = int(stream(self.seed, "procedural", self.kind, self.layout, "photo", number).integers(2**31))
+        pose = np.eye(4)
+        pose[:3, :3] = self.radar_from_camera.T @ own
+        pose[:3, 3] = self.radar_from_camera.T @ stand.position_m
+        return self._rendered(view, eye_m, lighting, seed, noise, {}), pose
+
+    def _rendered(
+        self, view: CameraView, eye_m: Vec3, lighting: str, photo_seed: int, noise: bool, colours: dict[str, np.ndarray]
+    ) -> RgbdPhoto:
         if lighting not in LIGHTINGS:
             raise InputError(f"unknown lighting {lighting!r}; known: {', '.join(LIGHTINGS)}")
-        view, mesh, colours = self._view, self.mesh, self._colours
-        photo_seed = int(stream(self.seed, "procedural", self.kind, self.layout, "photo").integers(2**31))
-        depth_m = view.depth_m
+        mesh, depth_m = self.mesh, view.depth_m
         if noise:
             is_glass = np.array([appearance.is_glass for appearance in mesh.appearances])[mesh.appearance[view.face]]
-            offset = view.points_m - np.array(self.shell.radar_m)
+            offset = view.points_m - eye_m
             cos_view = np.abs((offset * view.normals).sum(axis=-1)) / np.linalg.norm(offset, axis=-1)
             depth_m = measured_depth(depth_m, self.intrinsics.fx, is_glass, cos_view, photo_seed)
         if lighting not in colours:
             colours[lighting] = render_rgb(mesh, self._caster, view, self.pieces, lighting, photo_seed)
         return RgbdPhoto(
-            rgb=colours[lighting],
-            depth_m=depth_m,
-            intrinsics=self.intrinsics,
-            classes=render_classes(mesh, view),
+            rgb=colours[lighting], depth_m=depth_m, intrinsics=self.intrinsics, classes=render_classes(mesh, view)
         )
 
     def scene(self, lighting: str = "day") -> Scene:

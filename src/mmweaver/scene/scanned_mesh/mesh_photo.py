@@ -1,6 +1,7 @@
-"""A wide photo with depth and classes of a mesh, taken where the radar stands; from it the room is reconstructed.
+"""Wide photos with depth and classes of a mesh, taken where the radar stands; from them the room is reconstructed.
 
-The picture spans 100 degrees, so what a phone's photo leaves out beside it is in it: nearly all that the radar sees.
+Each picture spans 100 degrees, and there is one for each quarter of the horizon: walls beside and behind the radar
+return its strongest echoes.
 """
 
 from collections.abc import Sequence
@@ -16,11 +17,14 @@ from mmweaver.geometry.pinhole import viewing_rays
 from mmweaver.geometry.ray_caster import RayCaster
 from mmweaver.scene.coco_stuff import MATERIAL, NAMES, UNLABELED, coco_class
 from mmweaver.scene.photo.capture_photo import CapturedPhoto
+from mmweaver.scene.photo.posed_photo import PosedPhoto
 from mmweaver.scene.scanned_mesh.read_mesh import ColouredMesh, read_mesh
 from mmweaver.scene.scanned_mesh.upright import upright
 from mmweaver.scene.scanned_mesh.viewpoint import Viewpoint, find_viewpoint
 
 WIDTH, HEIGHT, VIEW_DEG = 640, 480, 100.0
+UPWARDS_RAD = np.deg2rad(40.0)
+FEWEST_SEEN = 0.2  # share of a picture's pixels
 TILT_RAD = np.deg2rad(-8.0)  # a little down, so that the floor is seen from nearer
 # of the classes that imply a material, the one that says least else
 CLASS_OF_MATERIAL = {
@@ -39,7 +43,7 @@ def read_mesh_photo(
     up: str | None = None,
     materials: Path | None = None,
 ) -> CapturedPhoto:
-    """The photo of a mesh (GLB, PLY, OBJ).
+    """The photos of a mesh (GLB, PLY, OBJ): one ahead of the radar, others all around and up.
 
     `eye` is the radar's place in the mesh's own axes and unit, `look_deg` the direction it looks in, in degrees from
     the mesh's x axis, counterclockwise as seen from above; both are chosen where they are not given. `unit` (m, cm,
@@ -55,7 +59,14 @@ def read_mesh_photo(
     if look_deg is not None:
         view = Viewpoint(eye_m=view.eye_m, azimuth_rad=float(np.deg2rad(look_deg)))
     classes = _classes(mesh, given)
-    photo = _photo(path, mesh, caster, view, classes)
+    first_axes = _camera_axes(view.azimuth_rad)
+    photo, share = _photo(mesh, caster, view.eye_m, first_axes, classes)
+    if share < FEWEST_SEEN:
+        raise InputError(f"{path}: from the radar's place hardly anything of the mesh is seen; give another place")
+    around = [(axes, *_photo(mesh, caster, view.eye_m, axes, classes)) for axes in _axes_around(view.azimuth_rad)]
+    others = [
+        PosedPhoto(photo=one, pose=_pose(first_axes, axes)) for axes, one, share in around if share >= FEWEST_SEEN
+    ]
     place = ", ".join(f"{value:.2f}" for value in view.eye_m)
     chosen = "given" if eye is not None else "chosen"
     notes = (
@@ -64,20 +75,36 @@ def read_mesh_photo(
         *found.assumptions,
         *(() if mesh.has_colours else ("The mesh has no colours: materials follow from names and geometry alone.",)),
     )
-    return CapturedPhoto(photo=photo, folder=path.parent, files={"mesh": path}, assumptions=notes)
+    return CapturedPhoto(
+        photo=photo, folder=path.parent, files={"mesh": path}, assumptions=notes, others=tuple(others)
+    )  # fmt: skip
 
 
-def _photo(path: Path, mesh: ColouredMesh, caster: RayCaster, view: Viewpoint, classes: np.ndarray | None) -> RgbdPhoto:
+def _axes_around(azimuth_rad: float) -> list[np.ndarray]:
+    """Axes of cameras that look to the other three quarters of the horizon, and ahead at the ceiling."""
+    quarters = [_camera_axes(azimuth_rad + quarter * np.pi / 2) for quarter in (1, 2, 3)]
+    return [*quarters, _camera_axes(azimuth_rad, UPWARDS_RAD)]
+
+
+def _pose(first_axes: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """(4, 4) from another camera at the same place into the first."""
+    pose = np.eye(4)
+    pose[:3, :3] = first_axes @ axes.T
+    return pose
+
+
+def _photo(
+    mesh: ColouredMesh, caster: RayCaster, eye_m: np.ndarray, axes: np.ndarray, classes: np.ndarray | None
+) -> tuple[RgbdPhoto, float]:
+    """The picture from a place, and the share of its pixels that show anything."""
     focal = WIDTH / 2 / np.tan(np.deg2rad(VIEW_DEG) / 2)
     camera = CameraIntrinsics(
         fx=focal, fy=focal, cx=(WIDTH - 1) / 2, cy=(HEIGHT - 1) / 2, width=WIDTH, height=HEIGHT
     )  # fmt: skip
-    rays = viewing_rays(camera).reshape(-1, 3) @ _camera_axes(view.azimuth_rad)
+    rays = viewing_rays(camera).reshape(-1, 3) @ axes
     length = np.linalg.norm(rays, axis=1)
-    distance_m, face = caster.first_hit(np.broadcast_to(view.eye_m, rays.shape), rays / length[:, None])
+    distance_m, face = caster.first_hit(np.broadcast_to(eye_m, rays.shape), rays / length[:, None])
     is_hit = face >= 0
-    if is_hit.mean() < 0.2:
-        raise InputError(f"{path}: from the radar's place hardly anything of the mesh is seen; give another place")
     rgb = np.where(is_hit[:, None], mesh.rgb[np.maximum(face, 0)], 0).astype(np.uint8)
     depth_m = np.where(is_hit, distance_m / length, np.nan)
     mask = None
@@ -85,14 +112,15 @@ def _photo(path: Path, mesh: ColouredMesh, caster: RayCaster, view: Viewpoint, c
         index = np.where(is_hit, classes[mesh.name[np.maximum(face, 0)]], 0)
         mask = ClassMask(index=index.reshape(HEIGHT, WIDTH).astype(np.uint8), names=NAMES)
     shape = (HEIGHT, WIDTH)
-    return RgbdPhoto(rgb=rgb.reshape(*shape, 3), depth_m=depth_m.reshape(shape), intrinsics=camera, classes=mask)
+    photo = RgbdPhoto(rgb=rgb.reshape(*shape, 3), depth_m=depth_m.reshape(shape), intrinsics=camera, classes=mask)
+    return photo, float(is_hit.mean())
 
 
-def _camera_axes(azimuth_rad: float) -> np.ndarray:
+def _camera_axes(azimuth_rad: float, tilt_rad: float = TILT_RAD) -> np.ndarray:
     """Rows: the camera's x (right), y (down) and z (ahead) in the mesh's upright frame."""
     ahead = np.array([np.cos(azimuth_rad), np.sin(azimuth_rad), 0.0])
     right = np.array([ahead[1], -ahead[0], 0.0])
-    looking = np.cos(TILT_RAD) * ahead + np.sin(TILT_RAD) * np.array([0.0, 0.0, 1.0])
+    looking = np.cos(tilt_rad) * ahead + np.sin(tilt_rad) * np.array([0.0, 0.0, 1.0])
     return np.stack([right, np.cross(looking, right), looking])
 
 
@@ -104,6 +132,8 @@ def _classes(mesh: ColouredMesh, given: dict[str, str]) -> np.ndarray | None:
 
 def _class_in(name: str) -> str:
     """The class that a name of a mesh mentions, such as "Sofa.001" or "wall_north"."""
+    if (whole := coco_class(name.rstrip(".0123456789"))) is not None:
+        return whole
     words = "".join(one if one.isalpha() else " " for one in name.lower()).split()
     pairs = [" ".join(words[at : at + 2]) for at in range(len(words) - 1)]
     return next((found for word in (*pairs, *words) if (found := coco_class(word)) is not None), UNLABELED)

@@ -1,0 +1,127 @@
+"""Where a room comes from: a photo, several photos, a scan, a mesh, or the bundled sample; all become a `Room`."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.records import RgbdPhoto
+from mmweaver.core.stages import Stages
+from mmweaver.generation import Room
+from mmweaver.result_folder import file_digest
+from mmweaver.scene.photo.capture_photo import read_capture_photo
+from mmweaver.scene.photo.estimated_depth import scale_note
+from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.read_photo import classes_of, read_photo
+from mmweaver.scene.realsense_bag import is_bag, read_bag_photo
+from mmweaver.scene.sample_photo import sample_photo
+from mmweaver.scene.scan_folders import read_scan_photo, scan_kind
+from mmweaver.scene.whole_room.reconstruct_together import reconstruct_together
+from mmweaver.scene.whole_room.view_file import read_views
+
+
+class RoomReader:
+    """Reads rooms and reconstructs them. `listener` is called with the name of each stage as it begins."""
+
+    def __init__(self, listener: Callable[[str], object] | None = None):
+        self._listener = listener
+
+    def read_room(
+        self, rgb: str | Path, depth: str | Path | None = None, camera: str | Path | None = None, **seen: Any
+    ) -> Room:
+        """The room of a photo: a colour picture, its depth (16-bit PNG or .npy in metres) and the camera's JSON.
+
+        `seen`: `depth_model` estimates a missing depth; `classes` (a picture of class numbers) or `segmenter` and
+        `sam` (models) give the class of each pixel, from which materials follow. See `scene.read_photo.read_photo`.
+        """
+        stages = Stages(self._listener)
+        with stages("read the photo"):
+            photo, assumptions = read_photo(rgb, depth, camera, **seen)
+            files = {"rgb": rgb, "depth": depth, "camera": camera, "classes": seen.get("classes")}
+            inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
+            models = ("depth_model", "segmenter", "sam")
+            inputs |= {name: str(seen[name]) for name in models if seen.get(name) is not None}
+        room = self._reconstruct(photo, assumptions, inputs, stages)
+        note = scale_note(-room.scene.floor_z_m) if depth is None else None
+        if note is None:
+            return room
+        return replace(room, scene=replace(room.scene, assumptions=(*room.scene.assumptions, note)))
+
+    def read_views(self, views: str | Path, *, segmenter: str | None = None) -> Room:
+        """The room of several photos with depth, which views.json names with where each was taken.
+
+        The radar stands at the first; see `scene.whole_room.view_file`. `segmenter` as in `read_room`.
+        """
+        stages = Stages(self._listener)
+        with stages("read the photos"):
+            found = read_views(Path(views), segmenter=segmenter)
+            inputs: dict[str, Any] = {name: file_digest(path) for name, path in found.files.items()}
+            inputs |= {} if segmenter is None else {"segmenter": segmenter}
+        return self._reconstruct(found.photo, found.assumptions, inputs, stages, found.others)
+
+    def read_capture(
+        self, capture: str | Path, *, photo: int = 0, rgb: str | Path | None = None,
+        further: Sequence[int] | str = (), **seen: Any,
+    ) -> Room:  # fmt: skip
+        """The room of one photo of a capture folder (mmwave-capture-std: a RealSense's color.avi and depth.zst).
+
+        Or of a scan by Stray Scanner, Record3D, Polycam (raw data), ScanNet or TUM RGB-D, or of a RealSense's .bag.
+
+        `rgb`: a picture to use instead of the frame of color.avi, where that cannot be decoded. `further`: numbers of
+        further photos of a scan that show more of the room, or "auto". `seen`: `classes`, `segmenter` and `sam` as in
+        `read_room`.
+        """
+        if further and (scan_kind(Path(capture)) is None or rgb is not None):
+            raise InputError("only scans with poses are joined of several photos: Stray Scanner, Record3D, Polycam, "
+                             "ScanNet, TUM RGB-D")  # fmt: skip
+        stages = Stages(self._listener)
+        with stages("read the photo"):
+            if is_bag(Path(capture)) and rgb is None:
+                found = read_bag_photo(Path(capture), photo)
+            elif scan_kind(Path(capture)) is not None and rgb is None:
+                found = read_scan_photo(Path(capture), photo, further)
+            else:
+                found = read_capture_photo(capture, photo, None if rgb is None else Path(rgb))
+            inputs = {"photo": photo, **{name: file_digest(path) for name, path in found.files.items()}}
+            inputs |= {name: str(source) for name, source in seen.items() if source is not None}
+            whole = replace(found.photo, classes=classes_of(found.photo, **seen))
+            models = {name: seen.get(name) for name in ("segmenter", "sam")}
+            others = [
+                replace(one, photo=replace(one.photo, classes=classes_of(one.photo, **models))) for one in found.others
+            ]
+        return self._reconstruct(whole, found.assumptions, inputs, stages, others)
+
+    def read_mesh(self, mesh: str | Path, **how: Any) -> Room:
+        """The room of a scan or model: a GLB, PLY or OBJ with triangles. Needs the extra 'mesh'.
+
+        `how`: `eye` and `look_deg`, the radar's place and direction in the mesh, chosen where they are not given;
+        `unit` and `up`, where the file does not say them; `materials`, a JSON of names and classes. See
+        `scene.scanned_mesh.mesh_photo.read_mesh_photo`.
+        """
+        from mmweaver.scene.scanned_mesh.mesh_photo import read_mesh_photo
+
+        stages = Stages(self._listener)
+        with stages("read the mesh"):
+            found = read_mesh_photo(Path(mesh), **how)
+            files = {"mesh": mesh, "materials": how.get("materials")}
+            inputs: dict[str, Any] = {name: file_digest(path) for name, path in files.items() if path is not None}
+            settings = ("eye", "look_deg", "unit", "up")
+            inputs |= {name: how[name] for name in settings if how.get(name) is not None}
+        return self._reconstruct(found.photo, found.assumptions, inputs, stages, found.others)
+
+    def sample_room(self) -> Room:
+        """The bundled sample room."""
+        stages = Stages(self._listener)
+        with stages("read the photo"):
+            photo, assumptions = sample_photo()
+        return self._reconstruct(photo, assumptions, {"sample": "the bundled room"}, stages)
+
+    @staticmethod
+    def _reconstruct(
+        photo: RgbdPhoto, assumptions: tuple[str, ...], inputs: dict[str, Any], stages: Stages,
+        others: Sequence[PosedPhoto] = (),
+    ) -> Room:  # fmt: skip
+        with stages("reconstruct the room"):
+            scene = reconstruct_together(photo, others, assumptions=assumptions)
+        return Room(scene=scene, inputs=inputs, seconds=stages.seconds)

@@ -1,0 +1,98 @@
+"""What one photo shows of a room, in the level frame of its own camera: geometry, places and materials."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mmweaver.core.records import FreeSpace, Plane, RgbdPhoto, Seat
+from mmweaver.core.shapes import Faces, PerFace, Vertices
+from mmweaver.geometry.aligned_photo import AlignedPhoto
+from mmweaver.geometry.pinhole import viewing_rays
+from mmweaver.scene.affordances.free_space import find_free_space
+from mmweaver.scene.affordances.seats import find_seats
+from mmweaver.scene.coco_stuff import ROUGH, WALLS
+from mmweaver.scene.layout.class_evidence import cells_of, seat_evidence
+from mmweaver.scene.layout.gravity import Gravity
+from mmweaver.scene.layout.gravity_alignment import AlignedRoom, align_room
+from mmweaver.scene.layout.height_map import HeightMap, make_height_map
+from mmweaver.scene.layout.mesh import make_mesh
+from mmweaver.scene.layout.surface_materials import (
+    MATERIAL_NAMES,
+    cell_materials,
+    with_class_materials,
+    with_material,
+)
+from mmweaver.scene.layout.surfaces import Surface, floor_cells
+from mmweaver.scene.layout.transparent_surfaces import with_transparent_surfaces
+from mmweaver.scene.photo.depth_grid import DepthGrid, GridBool, GridInt, make_grid
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeenRoom:
+    """A photo aligned with gravity, its surfaces with their materials, and the places for people that it shows."""
+
+    view: AlignedPhoto
+    grid: DepthGrid
+    room: AlignedRoom
+    is_floor: GridBool
+    height_map: HeightMap
+    free_space: FreeSpace
+    seats: tuple[Seat, ...]
+    material: GridInt  # index into MATERIAL_NAMES
+    planes: tuple[Plane, ...]  # of room.surfaces
+    assumptions: tuple[str, ...]
+
+    @property
+    def floor_material(self) -> str | None:
+        """The name of the floor's material; None where no floor is seen."""
+        return MATERIAL_NAMES[self.material[self.is_floor][0]] if self.is_floor.any() else None
+
+    @property
+    def smooth_planes(self) -> list[Plane]:
+        """The planes that are not mostly of something rough, such as curtains."""
+        is_rough = cells_of(self.grid, self.view.photo, ROUGH)
+        pairs = zip(self.planes, self.room.surfaces, strict=True)
+        return [plane for plane, surface in pairs if not _is_mostly(surface, is_rough)]
+
+    @property
+    def is_wall(self) -> GridBool | None:
+        """The cells that a class mask labels as wall; None without a mask."""
+        return cells_of(self.grid, self.view.photo, WALLS)
+
+    def mesh(self) -> tuple[Vertices, Faces, PerFace]:
+        """What was seen as triangles, the floor excepted: metres, indices, material of each face."""
+        rays = viewing_rays(self.grid.intrinsics) @ self.room.radar_from_camera.T
+        return make_mesh(self.room.grid, rays, self.room.surfaces, self.is_floor, self.material)
+
+
+def see(photo: RgbdPhoto, gravity: Gravity | None = None) -> SeenRoom:
+    """Finds surfaces, places and materials in a photo; `gravity` where it is known better than this photo shows.
+
+    Raises InputError where the depth shows no surfaces.
+    """
+    photo, pane_assumptions = with_transparent_surfaces(photo)
+    grid = make_grid(photo)
+    room = align_room(grid, gravity)
+    gravity, aligned, surfaces = room.gravity, room.grid, room.surfaces
+    view = AlignedPhoto(photo=photo, radar_from_camera=room.radar_from_camera, floor_z_m=gravity.floor_z_m)
+    is_floor = floor_cells(aligned) if gravity.has_floor else np.zeros(grid.depth_m.shape, bool)
+
+    height_map = make_height_map(view)
+    free_space = find_free_space(height_map)
+    seats = find_seats(height_map, seat_evidence(view))
+
+    # Materials, from geometry and colour, then from the class mask.
+    material, surface_names = cell_materials(aligned, grid.rgb, surfaces, is_floor, seats)
+    if grid.class_index is not None and photo.classes is not None:
+        material, surface_names = with_class_materials(
+            material, surface_names, grid.class_index, photo.classes.names, surfaces, is_floor
+        )
+    planes = tuple(with_material(surface.plane, name) for surface, name in zip(surfaces, surface_names, strict=True))
+    return SeenRoom(
+        view=view, grid=grid, room=room, is_floor=is_floor, height_map=height_map, free_space=free_space, seats=seats,
+        material=material, planes=planes, assumptions=(*pane_assumptions, *gravity.assumptions),
+    )  # fmt: skip
+
+
+def _is_mostly(surface: Surface, cells: GridBool | None) -> bool:
+    return cells is not None and bool((surface.cells & cells).sum() > 0.5 * surface.cells.sum())

@@ -1,0 +1,1 @@
+"""Several photos of one room, or a scan of it, joined to the whole room."""

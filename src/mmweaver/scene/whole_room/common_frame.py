@@ -1,0 +1,141 @@
+"""Brings several photos of a room into the level frame of the first: gravity of all, poses, corrected by the walls."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mmweaver.core.errors import InputError
+from mmweaver.core.radar_pose import RadarPose
+from mmweaver.core.records import Plane
+from mmweaver.core.shapes import Vec3
+from mmweaver.geometry.rotations import level_from_camera
+from mmweaver.scene.layout.gravity import Gravity
+from mmweaver.scene.layout.room_layout import room_azimuth_rad
+from mmweaver.scene.photo.posed_photo import PosedPhoto
+from mmweaver.scene.whole_room.level_pose import LevelPose, about_vertical
+
+SAME_UP = np.cos(np.deg2rad(3.0))  # upward directions of photos that agree
+MOST_TURN_RAD = {True: np.deg2rad(20.0), False: np.deg2rad(3.0)}  # by which walls correct a pose, by its being rough
+SPREAD_M = {True: 0.15, False: 0.03}  # standard deviation of a pose's place, by its being rough
+PARALLEL = np.cos(np.deg2rad(6.0))
+SAME_PLANE_M, STEP_M = 0.03, 0.01
+GAP_M = 0.5  # between planes that may be parts of one wall
+MIN_AREA_M2 = 0.2  # of planes that must agree on a shift
+
+
+def common_gravity(
+    own: Sequence[Gravity], others: Sequence[PosedPhoto]
+) -> tuple[tuple[Gravity, ...], tuple[LevelPose, ...]]:
+    """Gravity for every photo, the first's first, and the level poses of the others.
+
+    `own`: what each photo says by itself. The floors of all say together where up is and how high the floor lies.
+    """
+    exact = {index + 1: one.pose for index, one in enumerate(others) if not isinstance(one.pose, RadarPose)}
+    rotations = {0: np.eye(3), **{index: pose[:3, :3] for index, pose in exact.items()}}
+    seen = {index: rotations[index] @ own[index].up_camera for index in rotations if own[index].has_floor}
+    up = _agreed(list(seen.values())) if seen else own[0].up_camera
+    level = level_from_camera(up)
+    places: dict[int, Vec3] = {0: np.zeros(3)} | {index: level @ pose[:3, 3] for index, pose in exact.items()}
+    floors = [places[index][2] + own[index].floor_z_m for index in seen]
+    floor_z_m = float(np.median(floors)) if floors else own[0].floor_z_m
+    has_floor = bool(floors)
+    first = replace(
+        own[0], up_camera=up, floor_z_m=floor_z_m, has_floor=has_floor, assumptions=() if floors else own[0].assumptions
+    )
+    gravities, poses = [first], []
+    for index, one in enumerate(others, 1):
+        if isinstance(one.pose, RadarPose):
+            gravity, pose = _of_rough(own[index], one.pose, first)
+        else:
+            own_up = rotations[index].T @ up
+            turn = level @ rotations[index] @ level_from_camera(own_up).T
+            gravity = Gravity(
+                up_camera=own_up, floor_z_m=floor_z_m - float(places[index][2]), has_floor=has_floor, assumptions=()
+            )
+            pose = LevelPose(turn=turn, position_m=places[index])
+        if gravity.floor_z_m > -0.05:
+            raise InputError(f"photo {index + 1} was taken below the floor, by its pose; are the poses in metres?")
+        gravities.append(gravity)
+        poses.append(pose)
+    return tuple(gravities), tuple(poses)
+
+
+def _agreed(ups: list[Vec3]) -> Vec3:
+    """The mean of the upward directions that agree with most others."""
+    all_of_them = np.array(ups)
+    agree = all_of_them @ all_of_them.T > SAME_UP
+    mean = all_of_them[agree[int(np.argmax(agree.sum(axis=1)))]].mean(axis=0)
+    return mean / np.linalg.norm(mean)
+
+
+def _of_rough(own: Gravity, given: RadarPose, first: Gravity) -> tuple[Gravity, LevelPose]:
+    """Gravity and level pose where only place and turn are known: heights follow from the floors."""
+    both = own.has_floor and first.has_floor
+    height_m = first.floor_z_m - own.floor_z_m if both else given.z_m
+    floor_z_m = own.floor_z_m if both else first.floor_z_m - given.z_m
+    position_m = np.array([given.x_m, given.y_m, height_m])
+    turn = about_vertical(-np.deg2rad(given.yaw_deg))  # to the right is clockwise
+    gravity = replace(own, floor_z_m=floor_z_m, has_floor=own.has_floor or first.has_floor)
+    return gravity, LevelPose(turn=turn, position_m=position_m)
+
+
+def turned_by_walls(pose: LevelPose, planes: Sequence[Plane], known: Sequence[Plane], *, is_rough: bool) -> LevelPose:
+    """A pose turned so that a photo's vertical planes are parallel or perpendicular to those already known.
+
+    `planes` in the photo's own level frame, `known` in the first's. Unchanged where either disagree among themselves,
+    or the turn would be more than a pose's error.
+    """
+    known_rad = room_azimuth_rad(known)
+    own_rad = room_azimuth_rad([pose.plane(one) for one in planes])
+    if own_rad is None or known_rad is None:
+        return pose
+    turn_rad = float(np.angle(np.exp(4j * (known_rad - own_rad)))) / 4
+    return pose.turned(turn_rad) if abs(turn_rad) < MOST_TURN_RAD[is_rough] else pose
+
+
+def moved_by_walls(pose: LevelPose, planes: Sequence[Plane], known: Sequence[Plane], *, is_rough: bool) -> LevelPose:
+    """A pose with which a photo's vertical planes lie on those already known, as far as they are alike.
+
+    Planes that nearly coincide vote for the shift along each of the room's two axes.
+    """
+    known_rad = room_azimuth_rad(known)
+    if known_rad is None:
+        return pose
+    placed, shift_m = [pose.plane(one) for one in planes], np.zeros(3)
+    for axis in about_vertical(known_rad).T[:2]:
+        shift_m += _shift_m(placed, known, axis, SPREAD_M[is_rough]) * axis
+    return pose.moved(shift_m)
+
+
+def _shift_m(planes: Sequence[Plane], known: Sequence[Plane], axis: Vec3, spread_m: float) -> float:
+    """The shift along an axis for which most area of planes lies on that of known ones, metres."""
+    gaps_m, area_m2 = [], []
+    for plane in planes:
+        if abs(plane.normal @ axis) < PARALLEL:
+            continue
+        for other in known:
+            gap_m = float((other.centre_m - plane.centre_m) @ axis)
+            if other.normal @ plane.normal > PARALLEL and abs(gap_m) < 3 * spread_m and _overlap(plane, other, axis):
+                gaps_m.append(gap_m)
+                area_m2.append(min(_area_m2(plane), _area_m2(other)))
+    shift_m = np.arange(-3 * spread_m, 3 * spread_m, STEP_M)
+    if not gaps_m:
+        return 0.0
+    votes = np.exp(-(((shift_m[:, None] - np.array(gaps_m)) / SAME_PLANE_M) ** 2) / 2) @ np.array(area_m2)
+    votes *= np.exp(-((shift_m / spread_m) ** 2) / 2)
+    return float(shift_m[int(np.argmax(votes))]) if votes.max() > MIN_AREA_M2 else 0.0
+
+
+def _overlap(plane: Plane, other: Plane, axis: Vec3) -> bool:
+    """Whether two upright planes across an axis lie before one another, or nearly."""
+    along = np.cross((0.0, 0.0, 1.0), axis)
+    reach_m = sum(
+        abs(one.axis_u @ along) * one.half_size_m[0] + abs(one.axis_v @ along) * one.half_size_m[1]
+        for one in (plane, other)
+    )
+    return bool(abs((other.centre_m - plane.centre_m) @ along) < reach_m + GAP_M)
+
+
+def _area_m2(plane: Plane) -> float:
+    return 4 * plane.half_size_m[0] * plane.half_size_m[1]

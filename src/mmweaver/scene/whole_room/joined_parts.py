@@ -1,0 +1,111 @@
+"""Joins what several photos show of one room: planes, floor, seats, landmarks."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
+from mmweaver.scene.layout.surfaces import AlignedGrid
+from mmweaver.scene.seen_room import SeenRoom
+from mmweaver.scene.whole_room.level_pose import LevelPose
+
+SAME_PLANE_M, SAME_NORMAL = 0.1, np.cos(np.deg2rad(10))
+GAP_M = 0.15  # between two parts of one plane
+SAME_SEAT_M, SAME_LANDMARK_M = 0.4, 0.8
+
+
+def joined_grid(seen: Sequence[SeenRoom], poses: Sequence[LevelPose]) -> AlignedGrid:
+    """The cells of all photos in one row, (1, cell), in the first camera's level frame."""
+
+    def one_row(parts: list[np.ndarray]) -> np.ndarray:
+        return np.concatenate([part.reshape(-1, *part.shape[2:]) for part in parts])[None]
+
+    grids = [one.room.grid for one in seen]
+    pairs = list(zip(grids, poses, strict=True))
+    return AlignedGrid(
+        points_m=one_row([pose.points(grid.points_m) for grid, pose in pairs]),
+        normals=one_row([pose.directions(grid.normals) for grid, pose in pairs]),
+        depth_m=one_row([grid.depth_m for grid in grids]),
+        floor_z_m=seen[0].view.floor_z_m,
+        focal_cells=one_row([np.full(grid.depth_m.shape, grid.focal_cells) for grid in grids]),
+        eye_m=one_row([np.broadcast_to(pose.position_m, grid.points_m.shape) for grid, pose in pairs]),
+    )
+
+
+def joined_planes(planes: Sequence[Plane]) -> tuple[Plane, ...]:
+    """The planes, those that are parts of one joined; the larger says kind, material and axes."""
+    joined: list[Plane] = []
+    for plane in sorted(planes, key=lambda one: -one.half_size_m[0] * one.half_size_m[1]):
+        at = next((index for index, one in enumerate(joined) if _is_one(one, plane)), None)
+        if at is None:
+            joined.append(plane)
+        else:
+            joined[at] = _around(joined[at], plane)
+    return tuple(joined)
+
+
+def _is_one(large: Plane, small: Plane) -> bool:
+    """Whether two planes coincide and touch."""
+    if (
+        large.normal @ small.normal < SAME_NORMAL
+        or abs((small.centre_m - large.centre_m) @ large.normal) > SAME_PLANE_M
+    ):
+        return False
+    low, high = _extent(large, small)
+    half = np.array(large.half_size_m) + GAP_M
+    return bool((low < half).all() and (high > -half).all())
+
+
+def _extent(large: Plane, small: Plane) -> tuple[np.ndarray, np.ndarray]:
+    """Where the corners of the smaller one lie along the axes of the larger, from its centre."""
+    corners = [
+        small.centre_m + u * small.half_size_m[0] * small.axis_u + v * small.half_size_m[1] * small.axis_v
+        for u in (-1, 1) for v in (-1, 1)
+    ]  # fmt: skip
+    local = (np.array(corners) - large.centre_m) @ np.stack([large.axis_u, large.axis_v], axis=1)
+    return local.min(axis=0), local.max(axis=0)
+
+
+def _around(large: Plane, small: Plane) -> Plane:
+    low, high = _extent(large, small)
+    half = np.array(large.half_size_m)
+    low, high = np.minimum(low, -half), np.maximum(high, half)
+    middle = (low + high) / 2
+    return replace(
+        large, centre_m=large.centre_m + middle[0] * large.axis_u + middle[1] * large.axis_v,
+        half_size_m=(float(high[0] - low[0]) / 2, float(high[1] - low[1]) / 2),
+    )  # fmt: skip
+
+
+def joined_free_space(seen: Sequence[SeenRoom], poses: Sequence[LevelPose]) -> FreeSpace:
+    """The first camera's map, with the floor that any photo shows free and none shows blocked."""
+    first = seen[0].free_space
+    is_free, is_seen = np.zeros_like(first.is_free), np.zeros_like(first.is_free)
+    is_blocked = np.zeros_like(first.is_free)
+    for one, pose in zip(seen, poses, strict=True):
+        own = one.free_space
+        is_seen |= pose.looked_up(own.is_seen, own, first.x_m, first.y_m)
+        is_free |= pose.looked_up(own.is_free, own, first.x_m, first.y_m)
+        is_blocked |= pose.looked_up(one.height_map.is_blocked, own, first.x_m, first.y_m)
+    is_free &= ~is_blocked | first.is_seen
+    return FreeSpace(x_m=first.x_m, y_m=first.y_m, is_free=is_free, is_seen=is_seen & is_free)
+
+
+def joined_seats(seats: Sequence[Seat]) -> tuple[Seat, ...]:
+    """The seats, each once."""
+    kept: list[Seat] = []
+    for seat in seats:
+        if all(np.linalg.norm((seat.position_m - one.position_m)[:2]) > SAME_SEAT_M for one in kept):
+            kept.append(seat)
+    return tuple(kept)
+
+
+def joined_landmarks(landmarks: Sequence[Landmark]) -> tuple[Landmark, ...]:
+    """The landmarks, each once."""
+    kept: list[Landmark] = []
+    for landmark in landmarks:
+        same = (one for one in kept if one.kind == landmark.kind)
+        if all(np.linalg.norm((landmark.position_m - one.position_m)[:2]) > SAME_LANDMARK_M for one in same):
+            kept.append(landmark)
+    return tuple(kept)
