@@ -57,14 +57,16 @@ def pose_of(stand: RadarPose, *, wrong_deg: float = 0.0) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    "pose", [pose_of(SECOND, wrong_deg=2.0), RadarPose(x_m=1.2, y_m=3.9, yaw_deg=188.0)], ids=["tracked", "rough"]
+    ("pose", "off_m"),
+    [(pose_of(SECOND, wrong_deg=2.0), 0.03), (RadarPose(x_m=1.2, y_m=3.9, yaw_deg=188.0), 0.07)],
+    ids=["tracked", "rough"],
 )
-def test_walls_behind_the_radar_are_those_of_the_room(pose: np.ndarray | RadarPose):
+def test_walls_behind_the_radar_are_those_of_the_room(pose: np.ndarray | RadarPose, off_m: float):
     scene = reconstruct_together(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose)])
     walls = {tuple(np.rint(plane.normal).astype(int)): plane for plane in scene.planes if plane.kind == "wall"}
     for normal, distance_m in {(1, 0, 0): -LEFT, (-1, 0, 0): RIGHT, (0, 1, 0): -BACK, (0, -1, 0): FRONT}.items():
         wall = walls[normal]
-        assert -wall.centre_m @ wall.normal == pytest.approx(distance_m, abs=0.04)
+        assert -wall.centre_m @ wall.normal == pytest.approx(distance_m, abs=off_m)
         assert wall.normal @ np.array(normal) > np.cos(np.deg2rad(0.7))
     ceiling = next(plane for plane in scene.planes if plane.kind == "ceiling")
     assert ceiling.centre_m[2] == pytest.approx(HEIGHT - EYE_M, abs=0.03)
@@ -73,15 +75,11 @@ def test_walls_behind_the_radar_are_those_of_the_room(pose: np.ndarray | RadarPo
 
 
 def test_floor_that_the_first_photo_cannot_see_is_free():
-    free = [
-        scene.free_space.is_free & scene.free_space.is_seen
-        for scene in (
-            reconstruct(photo(FIRST)),
-            reconstruct_together(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose_of(SECOND))]),
-        )
-    ]
-    x_m, y_m = (np.arange(-3, 3, 0.05) + 0.025), (np.arange(0, 5, 0.05) + 0.025)
-    behind_table = (np.abs(x_m)[None] < 0.3) & (np.abs(y_m - 2.9)[:, None] < 0.2)
-    on_table = (np.abs(x_m)[None] < 0.3) & (np.abs(y_m - 2.0)[:, None] < 0.2)
-    assert free[0][behind_table].mean() < 0.2 < 0.9 < free[1][behind_table].mean()
-    assert not free[1][on_table].any()
+    alone = reconstruct(photo(FIRST)).free_space
+    free = reconstruct_together(photo(FIRST), [PosedPhoto(photo=photo(SECOND), pose=pose_of(SECOND))]).free_space
+    x_m, y_m = alone.x_m[None], alone.y_m[:, None]
+    aside = (np.abs(x_m + 1.3) < 0.2) & (np.abs(y_m - 0.4) < 0.2)  # outside the first picture
+    on_table = (np.abs(x_m - 0.1) < 0.25) & (np.abs(y_m - 2.0) < 0.2)
+    assert not alone.is_free[aside].any()
+    assert free.is_free[aside].all()
+    assert not free.is_free[on_table | (np.hypot(x_m, y_m) < 0.5)].any()

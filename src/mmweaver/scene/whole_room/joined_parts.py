@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from mmweaver.core.records import FreeSpace, Landmark, Plane, Seat
+from mmweaver.scene.affordances.free_space import MIN_DISTANCE_M
 from mmweaver.scene.layout.surfaces import AlignedGrid
 from mmweaver.scene.seen_room import SeenRoom
 from mmweaver.scene.whole_room.level_pose import LevelPose
@@ -89,6 +90,7 @@ def joined_free_space(seen: Sequence[SeenRoom], poses: Sequence[LevelPose]) -> F
         is_free |= pose.looked_up(own.is_free, own, first.x_m, first.y_m)
         is_blocked |= pose.looked_up(one.height_map.is_blocked, own, first.x_m, first.y_m)
     is_free &= ~is_blocked | first.is_seen
+    is_free &= np.hypot(first.x_m[None], first.y_m[:, None]) >= MIN_DISTANCE_M
     return FreeSpace(x_m=first.x_m, y_m=first.y_m, is_free=is_free, is_seen=is_seen & is_free)
 
 
