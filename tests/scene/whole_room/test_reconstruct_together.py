@@ -13,7 +13,7 @@ from mmweaver.scene.whole_room.reconstruct_together import reconstruct_together
 
 LEFT, RIGHT, BACK, FRONT, HEIGHT = -1.8, 2.4, -0.6, 4.4, 2.5
 EYE_M = 1.2  # of the first camera, above the floor
-CAMERA = CameraIntrinsics(fx=110.0, fy=110.0, cx=79.5, cy=59.5, width=160, height=120)
+CAMERA = CameraIntrinsics(fx=220.0, fy=220.0, cx=159.5, cy=119.5, width=320, height=240)
 SECOND = RadarPose(x_m=1.2, y_m=3.9, z_m=0.3, yaw_deg=195.0, pitch_deg=-12.0)
 
 
