@@ -342,6 +342,28 @@ DAMAGED_SETS = RowTable(
              ("refused in one line", "{metrics.refused:.0f}"), ("accepted", "{metrics.accepted:.0f}")),
 )  # fmt: skip
 
+BOARD_LEFT_OUT = RowTable(
+    sources=("board_left_out/physics",),
+    labels={
+        f"{condition}, {board} left out": f"{text}: {board}"
+        for condition, text in (("before", "first order, ideal board"), ("after", "as generated"))
+        for board in ("openradar_two_people", "iwr6843_hall", "bgt60_breathing")
+    },
+    columns=(("physics: board left out", "{label}"), ("units", "{n}"), ("accuracy", "{metrics.accuracy:interval.2}")),
+)  # fmt: skip
+HALO_ROWS = (
+    ("behind_body_near", "0.6 to 1 m behind a body, dB"), ("behind_body_far", "1 to 2 m behind, dB"),
+    ("clutter_peak_over_median", "clutter's peak over its median, dB"), ("plane_wave_share", "best plane wave"),
+    ("antenna_spread", "spread over antennas, dB"),
+)  # fmt: skip
+ROOMS_WITHIN = MetricTable(
+    sources=("board_left_out/physics_rooms",),
+    columns=(
+        ("row", "{label}"), ("physics", "{method}"), ("median of six rooms", "{metric:number}"),
+        ("rooms within what was recorded", "{metric.within}"),
+    ),
+    lines=HALO_ROWS,
+)  # fmt: skip
 TABLES: dict[str, Callable[[Path], str]] = {
     "paper": paper_table, "sampling_radius": SAMPLING_RADIUS.render,
     "field_fidelity": FIDELITY.render, "super_resolution": SUPER_RESOLUTION.render,
@@ -351,6 +373,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "codec_limits": CODEC_LIMITS.render,
     "board_match": BOARD_MATCH.render,
     "codec_seconds": CODEC_SECONDS.render,
+    "board_left_out": BOARD_LEFT_OUT.render, "rooms_within": ROOMS_WITHIN.render,
     "physics": PHYSICS.render, "dataset_cost": DATASET_COST.render,
     "checksums_cost": CHECKSUMS_COST.render,
     "real_rooms": REAL_ROOMS.render, "real_placements": REAL_PLACEMENTS.render, "affordances": AFFORDANCES.render,

@@ -122,7 +122,7 @@ class BodyPaths:
         self.visible = self._visible()
         self.gain = scatterer_gain(self.config)
         self.parts = [self._direct()]
-        direct = self.parts[0].power()
+        direct = self.direct_power = self.parts[0].power()  # (frame,) mW
         for index in range(len(room.reflectors)):
             self.parts += self._ghosts(index, direct)
         self.second: BodyRoomPaths | None = None

@@ -71,18 +71,18 @@ class BodyRoomPaths:
         self._of_part = one_hot
         self._chosen, self._of_chosen = chosen, one_hot[:, chosen]
         self._area_m2 = self.of.body.area_m2 * self.of.body.brightness[chosen] * count / len(chosen)
-        self._phase = self.of.body.micro_phase[one_hot.argmax(axis=1)]
+        self.phase = self.of.body.micro_phase[one_hot.argmax(axis=1)]
         rng = stream(self.room.micro_seed, "room", "second bounces")
         self._patch_luck = rng.random(len(self.patches))
         self._pair_luck = rng.random((len(one_hot), len(self.patches)))
-        self._patch_gain = pattern(_unit(self.patches.place_m), self.room.config)
+        self._patch_gain = pattern(unit(self.patches.place_m), self.room.config)
         self._patch_m = np.linalg.norm(self.patches.place_m, axis=1)
         self.pairs = [self._pairs(frame, direct_power[frame]) for frame in range(self.of.num_frames)]
         self.twice = [self._body_radar_body(frame, direct_power[frame]) for frame in range(self.of.num_frames)]
 
     def paths(self, frame: int, motion: np.ndarray) -> list[Paths]:
         """Paths (path,) of one time segment of a frame; `motion` (point, 3, 3) is that of all skin points."""
-        parts = np.tensordot(self._members[frame], motion, axes=1)  # (part, 3, 3)
+        parts = self.parts(frame, motion)
         pairs, twice = self.pairs[frame], self.twice[frame]
         there = np.flatnonzero(twice)
         return [
@@ -91,6 +91,14 @@ class BodyRoomPaths:
             ),
             self._record(twice[there], 2 * parts[there], 2 * parts[there], Interaction.BODY_RADAR_BODY),
         ]
+
+    def parts(self, frame: int, motion: np.ndarray) -> np.ndarray:
+        """Motion (part, 3, 3) of the parts, of that of all skin points (point, 3, 3)."""
+        return np.tensordot(self._members[frame], motion, axes=1)
+
+    def middles_m(self, frame: int) -> np.ndarray:
+        """Places (part, 3) of the parts at the middle of a frame."""
+        return self._members[frame] @ self.of.posed.place_m[frame]
 
     def _over(self, body: np.ndarray, patch: np.ndarray) -> np.ndarray:
         """Apparent motion (pair, 3, 3) of the end that leads over a patch: its direction, and as far as the body."""
@@ -101,7 +109,7 @@ class BodyRoomPaths:
         rate = (along * body[:, 1]).sum(axis=1)
         across2 = (body[:, 1] ** 2).sum(axis=1) - rate**2
         radial = np.stack([self._patch_m[patch] + leg_m, rate, (along * body[:, 2]).sum(axis=1) + across2 / leg_m], 1)
-        return radial[:, :, None] * _unit(place)[:, None]
+        return radial[:, :, None] * unit(place)[:, None]
 
     def _record(self, amplitude: np.ndarray, departure: np.ndarray, arrival: np.ndarray, kind: Interaction) -> Paths:
         return Paths(
@@ -115,7 +123,7 @@ class BodyRoomPaths:
     def _pairs(self, frame: int, direct_power: float) -> _Pairs:
         """Those of one frame, chosen."""
         of = self.of
-        parts_m = self._members[frame] @ of.posed.place_m[frame]
+        parts_m = self.middles_m(frame)
         middle_m = of.posed.place_m[frame].mean(axis=0)
         gap_m = np.maximum(np.linalg.norm(self.patches.place_m - middle_m, axis=1), 2 * NEAREST_M)
         level = self.patches.cross_section_m2 * (self._patch_gain / (self._patch_m * gap_m)) ** 2
@@ -125,8 +133,8 @@ class BodyRoomPaths:
         near, some, standing_for = near[clear], some[clear], standing_for[clear]
         leg = some.place_m - parts_m[:, None]  # (part, patch, 3)
         leg_m = np.maximum(np.linalg.norm(leg, axis=2), NEAREST_M)
-        sigma = self._bistatic(frame, some.place_m)  # (part, patch)
-        power = of.gain**2 * (of.pattern(_unit(parts_m))[:, None] * self._patch_gain[near]) ** 2 * sigma
+        sigma = self.bistatic(frame, some.place_m)  # (part, patch)
+        power = of.gain**2 * (of.pattern(unit(parts_m))[:, None] * self._patch_gain[near]) ** 2 * sigma
         power = power * some.into(-leg / leg_m[..., None]) / (4 * np.pi)
         power *= standing_for / (np.linalg.norm(parts_m, axis=1)[:, None] * leg_m * self._patch_m[near]) ** 2
         total = power.sum()
@@ -136,17 +144,15 @@ class BodyRoomPaths:
         pair, standing_for = roulette(power.ravel(), self._pair_luck[:, near].ravel(), MOST_PAIRS)
         part, patch = np.unravel_index(pair, power.shape)
         size = np.sqrt(power.ravel()[pair] * standing_for)
-        return _Pairs(
-            part=part, patch=near[patch], amplitude=size * self._phase[part] * self.patches.phase[near[patch]]
-        )
+        return _Pairs(part=part, patch=near[patch], amplitude=size * self.phase[part] * self.patches.phase[near[patch]])
 
-    def _bistatic(self, frame: int, place_m: np.ndarray) -> np.ndarray:
+    def bistatic(self, frame: int, place_m: np.ndarray) -> np.ndarray:
         """Cross sections (part, patch) of the body's parts from the radar's direction into those of places."""
         of, chosen = self.of, self._chosen
         seen = chosen[of.visible[frame, chosen]]
         own = of.visible[frame, chosen]
         towards, normal = of.towards[frame, seen], of.posed.normal[frame, seen]
-        out = _unit(place_m - of.posed.place_m[frame, seen][:, None])  # (point, patch, 3)
+        out = unit(place_m - of.posed.place_m[frame, seen][:, None])  # (point, patch, 3)
         cos_out = np.einsum("pqi,pi->pq", out, normal)
         cos_in = of.cos[frame, seen]
         # |towards + out|^2 = 2 + 2 towards . out
@@ -161,12 +167,13 @@ class BodyRoomPaths:
         # skin as near as it is: within arm's reach the parts' middles would be half as strong
         sigma = body.echo.back(of.cos[frame]) * body.area_m2 * body.brightness * of.visible[frame]
         each = self._of_part @ (sigma / of.distance_m[frame] ** 4)
-        towards = _unit(self._members[frame] @ of.posed.place_m[frame])
+        towards = unit(self.middles_m(frame))
         board = 4 * BOARD_REFLECTIVITY * BOARD_AREA_M2 * np.maximum(towards[:, 1], 0.0) ** 2
         level = of.gain * of.pattern(towards) ** 2
-        amplitude = level * np.sqrt(each * each.sum() * board) / (4 * np.pi) * self._phase**2
+        amplitude = level * np.sqrt(each * each.sum() * board) / (4 * np.pi) * self.phase**2
         return np.where(np.abs(amplitude) ** 2 > FAINTEST_OF_DIRECT * direct_power, amplitude, 0.0)
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Vectors (..., 3) of length 1."""
     return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-9)

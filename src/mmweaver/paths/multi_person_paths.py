@@ -1,11 +1,14 @@
 """Several people at once: each occludes the others, their ghosts and the room as a body occludes itself.
 
-Paths from one person over another to the radar are not modelled; see docs/several_people.md.
+Paths from one person over another to the radar are of second order: `body_body_paths`; see docs/several_people.md.
 """
+
+from itertools import combinations
 
 import numpy as np
 import torch
 
+from mmweaver.paths.body_body_paths import BodyBodyPaths
 from mmweaver.paths.body_model import ScatteringBody
 from mmweaver.paths.body_paths import BodyPaths, hulls_of, occluded_by
 from mmweaver.paths.frame_clock import FrameClock
@@ -38,6 +41,8 @@ class PeoplePaths:
             BodyPaths(room, body, clock, own, chest, self.hulls or None)
             for body, own, chest in zip(bodies, joints_m, chests, strict=True)
         ]
+        pairs = combinations(range(len(bodies)), 2) if mutual and room.propagation.bounces > 1 else ()
+        self.between = {(a, b): BodyBodyPaths(self.each[a], self.each[b]) for a, b in pairs}
 
     def scene(self, num_frames: int) -> ScenePaths:
         """The paths of the room and of all people in so many frames."""
@@ -49,6 +54,9 @@ class PeoplePaths:
     def paths(self, frame: int) -> list[Paths]:
         """All paths over people in one frame, a record (path,) for each time segment."""
         each = [one.paths(frame) for one in self.each]
+        for (a, b), between in self.between.items():
+            motions = zip(self.each[a].posed.motion[frame], self.each[b].posed.motion[frame], strict=True)
+            each.append([between.paths(frame, *both) for both in motions])
         return [Paths.cat(parts) for parts in zip(*each, strict=True)] if each else [Paths.none()] * self.num_segments
 
     def occlusions(self, frame: int) -> np.ndarray:

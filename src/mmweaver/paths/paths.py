@@ -27,6 +27,7 @@ class Interaction(IntEnum):
     BODY_RADAR_BODY = 7  # the body, the radar itself, and the body again
     ROOM_ROOM = 8  # two surfaces of the room, at least one of them rough
     CLUTTER = 9  # something in the room that photo and mesh do not resolve
+    BODY_BODY = 10  # two people, one after the other
 
 
 STATIC_KINDS = (Interaction.DIFFUSE, Interaction.SPECULAR, Interaction.EDGE)  # of first order, as a room has them

@@ -44,7 +44,7 @@ _SENTENCES = (
 )
 ASSUMPTIONS = tuple(map(UsualAssumption, _SENTENCES))
 SEVERAL_PEOPLE = (
-    "people occlude each other, but there are no paths from one person over another to the radar"
+    "people occlude each other; paths from one person over another to the radar are there in the second order alone"
     " (see docs/several_people.md)"
 )
 

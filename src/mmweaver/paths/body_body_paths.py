@@ -1,0 +1,88 @@
+"""Second-order paths between two people: radar -> part of one -> part of the other -> radar, in either order.
+
+Power of one order gain^2 sigma_a sigma_b / (4 pi (d_a d_ab d_b)^2) with bistatic cross sections; both are coherent. It
+is the equation of `body_room_paths` with a second body for the patch. Reference: docs/radar_primer.md, section 5;
+decision 246.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import torch
+
+from mmweaver.core.seeding import stream
+from mmweaver.paths.body_room_paths import FAINTEST_OF_DIRECT, NEAREST_M, ROOM_MARGIN_M, unit
+from mmweaver.paths.paths import ApparentPoint, Interaction, Paths
+from mmweaver.paths.room_patches import roulette
+
+if TYPE_CHECKING:
+    from mmweaver.paths.body_paths import BodyPaths
+
+MOST_PAIRS = 32  # of parts in a frame
+
+
+@dataclass(frozen=True, kw_only=True)
+class _PartPairs:
+    """The chosen pairs of one frame."""
+
+    first: np.ndarray  # (pair,) part of the one person
+    second: np.ndarray  # (pair,) of the other
+    amplitude: np.ndarray  # (pair,) complex
+
+
+class BodyBodyPaths:
+    """Paths over two people, frame by frame."""
+
+    def __init__(self, first: "BodyPaths", second: "BodyPaths"):
+        assert first.second is not None, "paths of second order are asked for"
+        assert second.second is not None, "paths of second order are asked for"
+        self.first, self.second, self._parts = first, second, (first.second, second.second)
+        rng = stream(first.traced.micro_seed, "room", "between people")
+        self._luck = rng.random(len(first.second.phase) * len(second.second.phase))
+        self.pairs = [self._pairs(frame) for frame in range(first.num_frames)]
+
+    def paths(self, frame: int, first_motion: np.ndarray, second_motion: np.ndarray) -> Paths:
+        """Paths (path,) of one time segment of a frame; motions (point, 3, 3) of each person's skin."""
+        pairs = self.pairs[frame]
+        a = self._parts[0].parts(frame, first_motion)[pairs.first]
+        b = self._parts[1].parts(frame, second_motion)[pairs.second]
+        count = len(pairs.amplitude)
+        return Paths(
+            amplitude=torch.from_numpy(pairs.amplitude.astype(np.complex64)),
+            departure=ApparentPoint.of(a),
+            arrival=ApparentPoint.of(_radial(b, b - a)[:, :, None] * unit(b[:, 0])[:, None]),
+            is_reciprocal=torch.ones(count, dtype=torch.bool),
+            interaction=torch.full((count,), int(Interaction.BODY_BODY), dtype=torch.uint8),
+        )
+
+    def _pairs(self, frame: int) -> _PartPairs:
+        (one, other), (own, others) = (self.first, self.second), self._parts
+        a_m, b_m = own.middles_m(frame), others.middles_m(frame)
+        leg_m = np.maximum(np.linalg.norm(a_m[:, None] - b_m, axis=2), NEAREST_M)
+        sigma = own.bistatic(frame, b_m) * others.bistatic(frame, a_m).T
+        level = one.gain * np.outer(one.pattern(unit(a_m)), other.pattern(unit(b_m)))
+        distance_m = np.outer(np.linalg.norm(a_m, axis=1), np.linalg.norm(b_m, axis=1)) * leg_m
+        power = level**2 * sigma / (4 * np.pi * distance_m**2)
+        power *= one.traced.is_clear(a_m[:, None], b_m[None], ROOM_MARGIN_M)
+        if power.sum() < FAINTEST_OF_DIRECT * (one.direct_power[frame] + other.direct_power[frame]):
+            power = np.zeros_like(power)
+        pair, standing_for = roulette(power.ravel(), self._luck, MOST_PAIRS)
+        first, second = np.unravel_index(pair, power.shape)
+        size = np.sqrt(power.ravel()[pair] * standing_for)
+        return _PartPairs(first=first, second=second, amplitude=size * own.phase[first] * others.phase[second])
+
+
+def _radial(part: np.ndarray, leg: np.ndarray) -> np.ndarray:
+    """Length, rate and acceleration (pair, 3) of the way from one person over the other's part to the radar.
+
+    `part` (pair, 3, 3) is the other's motion, `leg` that relative to the one's.
+    """
+    total = np.zeros((len(part), 3))
+    for way in (part, leg):
+        length_m = np.maximum(np.linalg.norm(way[:, 0], axis=1), 1e-6)
+        along = way[:, 0] / length_m[:, None]
+        rate = (along * way[:, 1]).sum(axis=1)
+        across2 = (way[:, 1] ** 2).sum(axis=1) - rate**2
+        total += np.stack([length_m, rate, (along * way[:, 2]).sum(axis=1) + across2 / length_m], axis=1)
+    return total
