@@ -15,6 +15,7 @@ and as the truth is computed, whose edges are those of its furniture. Intervals:
 import argparse
 import tempfile
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +47,7 @@ from studies.network.learned_scores import (
     scored,
     simulated,
 )
+from studies.network.room_cache import RoomCache, digest
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
 
@@ -165,16 +167,54 @@ def learned(
     return method
 
 
+def _figures(case: Case, methods: dict[str, Method]) -> dict[str, dict[str, float]]:
+    """{method: {column: value}} of one room, baselines too."""
+    table = scored([case], methods)
+    return {name: {column: float(value[0]) for column, value in row.items()} for name, row in table.items()}
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True)
     parser.add_argument("--weights", type=Path, action=Reads, help="of recipe weaver (default: those included)")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all)")
+    parser.add_argument("--only", nargs="*", help="rows (default: all)")
+    parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
+    parser.add_argument("--backwards", action="store_true", help="the last room first, for a second process")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    network, card = load_weights(options.weights or shipped_weights())
+    weights = options.weights or shipped_weights()
+    network, card = load_weights(weights)
     rooms, plan = read_rooms(options.data), read_plan(options.data)
     cases = cases_of(rooms, SPLIT, 1, plan, 0, options.most)
+    generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
+    generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
+    methods = methods_of(network, generic_scene)
+    methods = {name: methods[name] for name in options.only or methods}
+    cache = RoomCache(options.runs, {"data_plan": plan, "weights": digest(weights), "rows": sorted(methods)})
+    each = {}
+    for case in reversed(cases) if options.backwards else cases:
+        name = f"{case.room.kind}_{case.room.layout}"
+        each[name] = cache.figures(name, partial(_figures, case, methods))
+    names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
+    table = {
+        method: {column: np.array([each[name][method][column] for name in names]) for column in columns}
+        for method, columns in each[names[0]].items()
+    }
+    rows = [_row(name, values, names, SPLIT) for name, values in table.items()]
+    rows = complete_rows(
+        rows, dataset=dataset_of(options.data), seeds=[0], baselines=[name for name in BASELINES if name in table],
+        oracles=[name for name in ORACLES if name in table],
+        unknown={"seconds": "metric cpu_s has those of each method"},
+    )  # fmt: skip
+    run.write("whole_room", SPLIT, config={"weights": card.__dict__, "data_plan": plan}, rows=rows)
+    for row in rows:
+        shown = {name: row["metrics"][name]["value"] for name in ("ra_ssim", "rd_ssim", "chamfer_m", "cpu_s")}
+        print(f"{row['method']:34}", *(f"{name} {value:.3f}" for name, value in shown.items() if value), flush=True)
+
+
+def methods_of(network: WeaverNetwork, generic_scene: Scene) -> dict[str, Method]:
+    """The rows: network and physics by what is known of the room, a baseline and the oracle."""
     scenes: dict[str, Callable[[Case], Scene]] = {
         "one photo": lambda case: reconstruct(case.room.photo),
         "four photos": four_photos,
@@ -189,17 +229,6 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
         if name == "one photo":
             methods[f"weaver, {name}, {STEPPED}"] = learned(network, scene_of, AS_PUBLISHED)
             methods[f"physics, {name}, {STEPPED}"] = simulated(scene_of, skin=OTHER, micro_seed=1)
-    generic = next(room for room in rooms if room.kind == "office" and room.layout == 0)
-    generic_scene = make_room(generic.kind, generic.layout, plan["seed"]).scene(generic.lighting)
     methods[BASELINES[1]] = simulated(lambda case: generic_scene, skin=OTHER, micro_seed=1)
     methods[ORACLES[0]] = simulated(lambda case: case.true_scene, skin=OTHER, micro_seed=1)
-    names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
-    rows = [_row(name, values, names, SPLIT) for name, values in scored(cases, methods).items()]
-    rows = complete_rows(
-        rows, dataset=dataset_of(options.data), seeds=[0], baselines=BASELINES, oracles=ORACLES,
-        unknown={"seconds": "metric cpu_s has those of each method"},
-    )  # fmt: skip
-    run.write("whole_room", SPLIT, config={"weights": card.__dict__, "data_plan": plan}, rows=rows)
-    for row in rows:
-        shown = {name: row["metrics"][name]["value"] for name in ("ra_ssim", "rd_ssim", "chamfer_m", "cpu_s")}
-        print(f"{row['method']:34}", *(f"{name} {value:.3f}" for name, value in shown.items() if value), flush=True)
+    return methods
