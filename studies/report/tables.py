@@ -263,7 +263,8 @@ KITML = MetricTable(
         ("wrong_fourth_sample", "wrong by hand, fourth sample (grammar before the freeze)"),
         ("wrong_fifth_sample", "wrong by hand, fifth sample (grammar before the development draw)"),
         ("wrong_sixth_sample", "wrong by hand, sixth sample (faults mended since)"),
-        ("wrong", "wrong by hand without a word, understood ones of the 300 in no earlier sample (this grammar)"),
+        ("wrong_seventh_sample", "wrong by hand, seventh sample (faults mended since)"),
+        ("wrong", "wrong by hand without a word, understood ones of the last 300 (grammar of the freeze, mended since)"),
         ("said", "shown otherwise or in part, which is said, of the same"),
     ),
 )  # fmt: skip
