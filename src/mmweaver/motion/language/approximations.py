@@ -51,6 +51,8 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (rf"\b(?:stretch|put|mov|tak|hold|reach)(?:s|es|ing|ting)? (?:out )?{_OWN}({_SIDE} )?(?:hands?|arms?) (?:to|behind|on|at) {_OWN}back\b", "stands", "a hand at the back is not shown"),
         (r"\bswim(?:s|ming)?(?: (?:in |with )?(?:the |a )?(?:front )?(?:crawl|backstroke|breast-?stroke|butterfly)(?: style)?)?\b", "circles the arms", f"{_AS} circling the arms, standing"),
         (rf"\btouch(?:es|ing) (?:the )?(?:floor|ground)(?: with {_OWN}(?:{_SIDE} )?(?:hands?|fingers?))?", "picks something up from the floor", "touching the floor is shown as picking something up from it"),
+        (r"\bas (?:if|though) (?:(?:he|she|it|they) (?:is |was |were )?)?being (?!(?:push|shov|hit|drunk))[a-z]+ed\b", "", "what it looks like is not shown"),
+        (r"\b(?:with an? )?(?:(?:little|short|small) )?(?:break|pause) after (?:the )?(?:step \d+|(?:first|second|third) step)\b", "", "the pause is not shown"),
         (r"\b(?:performs?|makes?|does|doing|performing) (?:an? )?(?:front )?crawl(?:ing)? (?:movement|motion|stroke)s?\b(?: with (?:his|her|its|the|both) (?:arms|hands))?", "circles the arms", f"{_AS} circling the arms"),
         (rf"\bbounc(?:es|ing) {_OWN}({_SIDE} )?(hands?|arms?)(?: up and down)?", r"knocks with the \1 \2", f"{_AS} a hand beating"),
         (r"\b(?:evad|dodg|avoid|sidestepp?)(?:es|s|ing) (?:it|him|her|them|(?:an? |the |some )?(?:obstacle|object|person|ball)s?)\b(?! to (?:the|its|his))", "sidesteps", f"{_AS} a step aside"),

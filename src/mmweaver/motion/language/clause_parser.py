@@ -285,6 +285,8 @@ def _is_noun(words: list[Word], i: int, found: list[int]) -> bool:
         return True
     if word.lemma in ("drink", "stop") and before in ("a", "the", "his", "her", "their"):
         return bool(found)
+    if word.lemma == "step" and found and "with" in [other.text for other in words[max(i - 4, 0) : i]]:
+        return True  # "jumps onto it with one large step"
     if word.lemma == "step" and word.form in ("base", "s") and any(words[k].lemma in STEPPING for k in found):
         return not any(other.is_verb and not other.is_activity for other in words[found[-1] + 1 : i])
     same = any(ACTIVITY_OF_LEMMA.get(words[k].lemma, ("walk", "")) == ACTIVITY_OF_LEMMA[word.lemma] for k in found)

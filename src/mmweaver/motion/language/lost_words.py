@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from mmweaver.motion.language.activities import BY_KEY
-from mmweaver.motion.language.lexicon import ARMS, TIMES
+from mmweaver.motion.language.lexicon import ARMS, NUMBERS, TIMES
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.verbs import words_in
 from mmweaver.motion.language.words import Word
@@ -45,6 +45,9 @@ def lost_words(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
         lost.append("the side is not shown")
     if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")
+    paces = {"step", "steps"} & set(texts) and any(text in NUMBERS or text.isdigit() for text in texts)
+    if paces and all(step.upper for step in steps if step.moves) and any(step.moves for step in steps):
+        lost.append("the number of steps is not kept")
     handed = [step for step in steps if step.hand and (step.upper or step.lower in ("pick_up", "put_down"))]
     if any(step.hand in _SIDES for step in steps) and all(step.upper in _WITHOUT_ONE_HAND for step in handed):
         lost.append("which hand or foot it is is not shown")

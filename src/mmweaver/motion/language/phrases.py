@@ -34,7 +34,7 @@ ACTIVITY_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\bto the back\b", " backwards "),
     (r"\bloses? (?:his |her |its |their |the )?balance\b|\bstumbling\b|\bstumbels?\b|\bstrumbles?\b|\btrips\b",
      " stumbles "),
-    (r"\b(left|right)-hand(?:ed)? side\b", r" \1 side "),
+    (r"\b(left|right)[- ]hand(?:ed)? side\b", r" \1 side "),
     (r"\bas if (?:[a-z]+ +){0,5}pushed|\b(?:due to|because of|caused by|after|following) (?:an? |the )?(?:[a-z]+ )?(?:push|shove|hit)\b", " like "),
     (r"\bfrom (?:in )?front of (?:him|her|it|them|the person)\b|\bfrom in front\b|\bfrom the frontside\b", " from_front "),
     (r"\bfrom (?:the|one|a) side\b", " from_side "),

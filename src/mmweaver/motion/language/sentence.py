@@ -27,6 +27,7 @@ LONGEST_TEXT = 1000
 MOST_STEPS = 24
 _LONG_NUMBER = re.compile(r"\d{10}")
 ARMS_TAKEN = {"jumping_jacks", "pick_up", "put_down", "throw", "fall", "lie_down", "get_up", "stumble", "leap", "jump"}
+JUMPING = ("jump", "leap", "hop")
 LOWERING = {"lower", "lowers", "lowering", "lowered", "drops", "drop", "down", "sink"}
 
 
@@ -53,7 +54,7 @@ def parse(text: str) -> MotionPlan:
     try:
         return _parsed(with_approximations(text, only_always=True), text)
     except InputError as error:
-        normal, similar = in_normal_form(text), with_approximations(in_normal_form(text))
+        normal, similar = (with_approximations(in_normal_form(text), only_always=only) for only in (True, False))
         for other, leave_out in ((normal, False), (similar, False), (normal, True), (similar, True)):
             try:
                 return _parsed(other, given_text, leave_out=leave_out)
@@ -91,6 +92,8 @@ def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPla
     for number, (before, step) in enumerate(pairwise(sequence), start=1):
         if step.lower in ("lie", "lie_down") and before.seat and not step.style:
             sequence[number] = replace(step, lower="recline", seat=before.seat)
+        if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
+            sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(sequence))
     _note_lost_words(parsed_clauses, steps, records, notes)
     if len(steps) > MOST_STEPS:
@@ -194,7 +197,9 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
         return before.upper == "raise" and now.lower == "put_down" and len(parsed.steps) == 1
     if (before.lower, now.lower) == ("stumble", "stumble") and (now.direction or now.style) and not before.direction:
         parsed_clauses[-1].steps[-1] = replace(before, direction=now.direction, style=now.style)
-    return (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
+    again = before.lower in JUMPING and now.lower in JUMPING and parsed.link == "comma" and parsed.form == "ing"
+    described = again and not (now.direction or now.count or now.foot)  # "jumps to the left, jumping off both feet"
+    return described or (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
 
 
 def _check_turning_jumps(text: str, words: list[Word]) -> None:
@@ -314,7 +319,8 @@ def overlay(one: Step, other: Step) -> Step:
         lower,
         upper=upper.upper,
         hand=upper.hand,
-        count=upper.count if upper.upper else lower.count,
+        count=upper.count or (0 if lower.moves else lower.count),
+        direction=lower.direction or (upper.direction if upper.upper == "arms_out" and not lower.moves else ""),
         speed=lower.speed or upper.speed,
         seconds=lower.seconds or upper.seconds,
         facing=lower.facing or upper.facing,

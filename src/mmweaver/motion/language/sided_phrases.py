@@ -26,7 +26,13 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:recovers?|recovering) from (?:the|this|that) (?:push|shove|hit|kick|punch|blow)\b", "recovers"),
     (r"\b(?:counterbalanc|compensat|balanc)(?:es|ing|e) (?:for )?(?:the |this |an? )?(?:push|shove|hit|kick|punch|blow)\b", "recovers"),
     (r"\b(?:absorb|tak|receiv)(?:s|es|ing) (?:an? |the )?(?:punch|blow|hit|shove)\b", "is pushed"),
+    (r"\b(is|are|gets|was|being) push(?= (?:from|to|by|on|backwards?|forwards?|aside|away)\b| *$)", r"\1 pushed"),
+    (r"\b(?:moves?|goes|walks?) ((?:[a-z]+ ){0,2})(?:in|at) an? ((?:[a-z]+ )?)(jog|run|trot|sprint)\b", r"\3s \1 \2"),
+    (r"\b(look(?:s|ing)?) (?:suspiciously )?(?:to )?(?:the |his |her )?(?:left and (?:to )?(?:the |his |her )?right|right and (?:to )?(?:the |his |her )?left)\b",
+     " look_around "),
     # with which hand
+    (r"\bby using (his|her|its|their|the) (left|right) (hand|arm|foot|leg)\b", r"with \1 \2 \3"),
+    (r"\b(left|right)[- ]handed (?:boxing )?(throw|punch|jab|wave|uppercut|hook)\b", r"\2 with the \1 hand"),
     (r"\b(left|right)[- ]handed\b(?! (?:person|man|woman|human|boxing|throw|punch|jab|wave))", r"with the \1 hand"),
     (r"\b(?:both|two)[- ]handed\b", "with both hands"),
     (rf"\b(quarter|quater|half|full|complete|small|big|narrow|tight|wide|large|little)(?: of an?)?,? ({_CLOCK}) circles?\b",
