@@ -264,7 +264,7 @@ KITML = MetricTable(
         ("wrong_fifth_sample", "wrong by hand, fifth sample (grammar before the development draw)"),
         ("wrong_sixth_sample", "wrong by hand, sixth sample (faults mended since)"),
         ("wrong_seventh_sample", "wrong by hand, seventh sample (faults mended since)"),
-        ("wrong", "wrong by hand without a word, understood ones of the last 300 (grammar of the freeze, mended since)"),
+        ("wrong", "wrong by hand without a word, understood ones of the last 300 (frozen grammar; mended since)"),
         ("said", "shown otherwise or in part, which is said, of the same"),
     ),
 )  # fmt: skip
