@@ -14,7 +14,7 @@ _WITH_ARMS = words_in(
     """
     crawl push_ups plank downward_dog jumping_jacks limb_extension fall pick_up put_down dance kneel_down kneel_up kneel
     get_up stand_up stretch sit_down one_leg golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
-    bow stairs
+    bow stairs side_lunge lunge
     """
 )
 
@@ -68,7 +68,8 @@ def _side_of_a_limb(texts: list[str]) -> bool:
 
 def _has_side(step: Step) -> bool:
     """Whether a step goes, turns, looks or is done to one side, or with one hand or foot."""
-    sides = {step.direction, step.style, step.facing, step.hand, step.foot}
+    directed = step.moves or step.lower in ("turn", "stumble", "leap", "sidestep", "walk", "jog")
+    sides = {step.direction if directed else "", step.style, step.facing, step.hand, step.foot}
     signed = (step.arc_deg and step.style != "either") or (step.turn_deg and step.style != "either")
     placed = step.place is not None or step.target
     return bool(sides & {"left", "right", "both", "side", "seat"} or signed or placed or step.lower == "sidestep")

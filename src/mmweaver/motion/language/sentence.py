@@ -151,6 +151,11 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
         other = _other_limb(found[-1].steps[-1], parsed)
         if other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
             found[-1].go_on(parsed)
+        elif other is None and _once_more(found[-1].steps[-1], parsed):
+            found[-1].steps.append(
+                replace(found[-1].steps[-1], direction=parsed.about.direction, clauses=(parsed.number,))
+            )
+            found[-1].forms.append("s")
         elif other is None:
             found[-1].absorb(parsed)
         else:
@@ -172,6 +177,12 @@ def _other_limb(last: Step, parsed: ParsedClause) -> Step | None:
     if last.lower == "raise_leg" and not last.upper and about.hand:
         return replace(about, lower="stand", upper="raise", foot="")
     return None
+
+
+def _once_more(last: Step, parsed: ParsedClause) -> bool:
+    """Whether a clause without a verb does the last movement again to a side: 'bows to the left, then to the right'."""
+    on_the_spot = not last.moves and last.lower not in ("stand", "sit", "kneel", "lie") and not last.upper
+    return parsed.link == "then" and on_the_spot and parsed.about.direction in OPPOSITE
 
 
 def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:

@@ -22,6 +22,14 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
      r"walks in a \1 degree \2"),
     (r"\b(?:walk|go|mov|run)(s|es|ing)?( around)? on (?:his |her |its |the )?(?:hands and knees|knees and hands|hands and feet)\b", r"crawls\2"),
     (r"\b(\w+) and (?:a )?half steps\b", r"\1 steps"),
+    # where a walk comes from, a rest, more of the same
+    (rf"\b({_GAIT})((?: [a-z]+ly)?) (?:in )?from (?:the |his |her )?left(?: side)?(?! to)\b", r"\1\2 to the right"),
+    (r"\b(?:comes?|coming|steps|enters)((?: [a-z]+ly)?) (?:in |the room )?from (?:the |his |her )?left(?: side)?(?! to)\b", r"walks\1 to the right"),
+    (rf"\b({_GAIT})((?: [a-z]+ly)?) (?:in )?from (?:the |his |her )?right(?: side)?(?! to)\b", r"\1\2 to the left"),
+    (r"\b(?:comes?|coming|steps|enters)((?: [a-z]+ly)?) (?:in |the room )?from (?:the |his |her )?right(?: side)?(?! to)\b", r"walks\1 to the left"),
+    (r"\b(?:rests?|resting|takes? an? (?:break|rest)|relaxes) (?=for \w+ seconds?)", "waits "),
+    (r"\b(push-?ups|squats|lunges|jumping jacks|jumps|claps|bows|kicks|punches|steps)\b([^.;]*?)\b(does|makes|takes) (\w+) more\b(?! \w+s\b)",
+     r"\1\2\3 \4 \1"),
     # a push that is received
     (r"\b(?:recovers?|recovering) from (?:the|this|that) (?:push|shove|hit|kick|punch|blow)\b", "recovers"),
     (r"\b(?:counterbalanc|compensat|balanc)(?:es|ing|e) (?:for )?(?:the |this |an? )?(?:push|shove|hit|kick|punch|blow)\b", "recovers"),

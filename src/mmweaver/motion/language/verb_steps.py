@@ -74,6 +74,7 @@ def _in_place(step: Step, words: list[Word]) -> Step:
     facing = _facing(words)
     if step.upper in AIMED:
         facing = step.facing or (step.direction if step.direction in SIDES else "")
+        facing = facing or ("towards" if step.upper == "point" and {w.text for w in words} & RADAR else "")
         if step.upper == "point" and {"up", "upwards", "down", "behind", "backwards"} & {w.text for w in words}:
             raise InputError(f"{step.clause!r}: pointing is known to the left, to the right and ahead only")
     ahead = step.upper == "arms_out" and step.direction in ("forwards",)

@@ -105,7 +105,7 @@ class CandidateSampler:
                 sitting = target.sitting if target and following and following.lower == "sit_down" else None
             elif step.lower == "turn" and step.turn_deg:
                 turn_by(trajectory, step)
-            elif step.lower == "turn" or (step.facing and step.upper not in ("point", "look_around")):
+            elif step.lower == "turn" or (step.facing and _turns_the_body(step)):
                 _lay_turn(trajectory, step, first=k == 0)
             check_floor_space(trajectory, step, self.body)
             trajectory.from_seat = trajectory.from_seat or step.lower == "stand_up"
@@ -203,7 +203,7 @@ class CandidateSampler:
             facing = float(np.arctan2(-spot[1], -spot[0])) + self.off_radar_rad
         if any(step.posture in ("floor", "knees") for step in self.plan.steps):
             facing = float(self.rng.uniform(-np.pi, np.pi))  # wherever the floor is free
-        if first.facing and first.upper not in ("point", "look_around"):
+        if first.facing and _turns_the_body(first):
             facing = _facing_rad(first.facing, spot) + float(self.rng.normal(0, 0.05))
         if self.heading_rad is not None:
             facing = self.heading_rad
@@ -301,6 +301,11 @@ class CandidateSampler:
             notes=notes,
         )  # fmt: skip
         return trajectory, sitting
+
+
+def _turns_the_body(step: Step) -> bool:
+    """Whether the body faces where the step says; an arm that points aside and a look leave the body as it is."""
+    return step.upper not in ("point", "look_around") or step.facing == "towards"
 
 
 def _changes_place(step: Step) -> bool:

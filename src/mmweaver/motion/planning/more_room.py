@@ -61,7 +61,11 @@ def on_the_spot(plan: MotionPlan) -> tuple[MotionPlan, tuple[str, ...]]:
         step for step in plan.steps if step.moves and step.lower in _ON_THE_SPOT and not step.target
         and step.direction != "seat" and step.place is None and not step.route_m
     ]  # fmt: skip
-    notes = tuple(f"there is no room for {step.clause or step.name!r}: the person walks on the spot" for step in walks)
+    gaits = {"jog": "runs"}
+    notes = tuple(
+        f"there is no room for {step.clause or step.name!r}: the person {gaits.get(step.lower, 'walks')} on the spot"
+        for step in walks
+    )
     steps = tuple(
         replace(step, lower="jog" if step.lower == "jog" else "march", direction="spot", count=0, arc_deg=0.0)
         if step in walks else step
