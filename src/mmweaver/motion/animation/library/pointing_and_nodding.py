@@ -30,7 +30,7 @@ def pointing(context: StepContext, controls: Controls) -> Controls:
     side = one_side(context)
     goal = {"left": np.pi, "right": 0.0, "forwards": None, "": None}.get(context.step.facing or context.step.direction)
     if goal is None:
-        aside = float(rng.uniform(-0.5, 0.1))
+        aside = 0.0 if context.step.facing == "towards" else float(rng.uniform(-0.5, 0.1))
     else:  # the angle to the body's left
         left = (goal - float(np.median(controls.heading_rad)) + np.pi) % (2 * np.pi) - np.pi
         if not context.step.hand:
