@@ -57,7 +57,7 @@ class TrainingOptions:
     sensitivity: bool = False  # of the board weighed, where there are unlabelled recordings
     matching: bool = False  # of features to the generated ones, by quantiles of unlabelled recordings
     self_training: bool = True
-    labelled_weight: float = 1.0  # of labelled recordings, relative to what was generated
+    labelled_weight: float = 25.0  # of labelled recordings, relative to what was generated
 
     def __post_init__(self) -> None:
         if not 2 <= self.sequences <= 100_000:
