@@ -1,14 +1,14 @@
 """How near do other generators come to the ground truth in unseen rooms, and does clutter matter?
 
-    mmweaver dataset rooms/ --rooms living_room,classroom,workshop --layouts 16 --sequences 1 --board ideal
-    python -m studies run peer_scores --data rooms/ --runs build/peers --most 48
+    mmweaver dataset rooms/ --rooms living_room,classroom,workshop --layouts 24 --sequences 16 --geometry-only
+    python -m studies run peer_scores --data rooms/ --runs build/peers
 
-The deciding comparison of `learned_scores` with RF-Genesis on the same joints: ground truth is the simulator in the
-true room, SSIM of range-azimuth and range-Doppler maps in decibels over cells that show something. RF-Genesis has no
-scale, so each of its sequences is given the gain that fits the ground truth best, an oracle's. Rows: as released,
-repaired with the body alone, with a generic room, with our photographed room. `zeros` and `generic_room_physics` are
-the baselines, `realization`, the true room with other phases, the oracle. Rooms are cached one by one, so a stopped run
-goes on.
+The deciding comparison of `learned_scores`, on its 48 rooms and sequences, with RF-Genesis on the same joints: ground
+truth is the simulator in the true room, SSIM of range-azimuth and range-Doppler maps in decibels over cells that show
+something. RF-Genesis has no scale, so each of its sequences is given the gain that fits the ground truth best, an
+oracle's. Rows: as released, repaired with the body alone, with a generic room, with our photographed room. `zeros` and
+`generic_room_physics` are the baselines, `realization`, the true room with other phases, the oracle. Each row of a room
+is cached, so a stopped run goes on, and another row costs its own time alone.
 
 `clutter` groups the rooms into thirds by the share of the floor within the radar's range that furniture covers.
 """
@@ -23,7 +23,6 @@ from typing import Any
 import numpy as np
 
 from mmweaver.core.records import RadarCube, Scene
-from mmweaver.core.seeding import stream
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence, pose_of
@@ -45,7 +44,10 @@ BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
 ROOM_PIXELS = 64  # of RF-Genesis with a room: every pixel of it is an echo
 CLUTTER = ("low", "medium", "high")
 LEAST_ROOMS_BY_CLUTTER = 12
-CLUTTER_ROWS = ("zeros", "weaver", "physics_in_photographed_room", "realization")
+CLUTTER_ROWS = (
+    "zeros", "generic_room_physics", "rf_genesis_repaired_photographed_room", "weaver", "physics_in_photographed_room",
+    "realization",
+)  # fmt: skip
 Scores = dict[str, dict[str, float]]
 
 
@@ -83,6 +85,7 @@ def methods_of(network: Any, generic: Scene) -> dict[str, Method]:
     """Every row by name."""
     repaired = RfGenesis(repaired=True, has_environment=False)
     return {
+        "zeros": all_zeros,
         "weaver": learned(network, lambda case: case.room),
         "physics_in_photographed_room": lambda case: simulated(reconstruct(case.room.photo), case, 1),
         "generic_room_physics": lambda case: simulated(generic, case, 1),
@@ -94,18 +97,20 @@ def methods_of(network: Any, generic: Scene) -> dict[str, Method]:
     }  # fmt: skip
 
 
-def scores_of(case: Case, methods: dict[str, Method]) -> Scores:
-    """{row: {column: value}} of one room, with all zeros and the CPU seconds of each."""
+def all_zeros(case: Case) -> RadarCube:
+    """The baseline that hears nothing."""
     truth = case.room.cube(case.index)
-    found: Scores = {}
-    for name, method in methods.items():
-        began = time.process_time()
-        cube = method(case)
-        seconds = time.process_time() - began
-        card = scorecard(with_best_gain(cube, truth) if name.startswith("rf_genesis") else cube, truth)
-        found[name] = {**{column: card.prediction[column] for column in COLUMNS}, "cpu_s": seconds}
-        found["zeros"] = {**{column: card.baselines["zeros"][column] for column in COLUMNS}, "cpu_s": 0.0}
-    return found
+    return replace(truth, values=np.zeros_like(truth.values))
+
+
+def scores_of(case: Case, name: str, method: Method) -> dict[str, float]:
+    """{column: value} of one row in one room, with its CPU seconds."""
+    truth = case.room.cube(case.index)
+    began = time.process_time()
+    cube = method(case)
+    seconds = time.process_time() - began
+    card = scorecard(with_best_gain(cube, truth) if name.startswith("rf_genesis") else cube, truth)
+    return {**{column: card.prediction[column] for column in COLUMNS}, "cpu_s": seconds}
 
 
 def clutter_of(case: Case) -> float:
@@ -126,17 +131,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     plan = read_plan(options.data)
-    cases = cases_of(read_rooms(options.data), options.split, 1, plan, 0)
-    order = stream(0, "order of rooms").permutation(len(cases))
-    cases = [cases[index] for index in order[: options.most]]
+    cases = cases_of(read_rooms(options.data), options.split, 1, plan, 0, options.most)
     network, card = load_weights(shipped_weights())
     methods = methods_of(network, make_room("office", 0, plan["seed"]).scene("day"))
     about = {"data_plan": plan, "weights": digest(shipped_weights()), "columns": COLUMNS}
     cache = RoomCache(options.runs, about)
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
-    each = []
+    each: list[Scores] = []
     for name, case in zip(names, cases, strict=True):
-        each.append(cache.figures(name, partial(scores_of, case, methods)))
+        each.append(
+            {
+                row: cache.figures(f"{name}_{row}", partial(scores_of, case, row, method))
+                for row, method in methods.items()
+            }
+        )
         print(name, {row: round(values["ra_ssim"], 2) for row, values in each[-1].items()}, flush=True)
     settings = {"weights": card.__dict__, "data_plan": plan}
     rows = [_row(name, each, names) for name in each[0]]
@@ -157,12 +165,12 @@ def _clutter_rows(
     rows = [_row(name, [each[i] for i in third], [names[i] for i in third]) for name in CLUTTER_ROWS]
     covered = [float(clutter[third].min()), float(clutter[third].max())]
     rows = [{**row, "clutter": level, "share_of_floor_covered": covered} for row in rows]
-    return _complete(rows, data, baselines=("zeros",))
+    return _complete(rows, data)
 
 
-def _complete(rows: list[dict[str, Any]], data: Path, baselines: tuple[str, ...] = BASELINES) -> list[dict[str, Any]]:
+def _complete(rows: list[dict[str, Any]], data: Path) -> list[dict[str, Any]]:
     return complete_rows(
-        rows, dataset=dataset_of(data), seeds=[0], baselines=baselines, oracles=ORACLES,
+        rows, dataset=dataset_of(data), seeds=[0], baselines=BASELINES, oracles=ORACLES,
         unknown={"seconds": "metric cpu_s has those of each method"},
     )  # fmt: skip
 

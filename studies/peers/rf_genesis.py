@@ -49,30 +49,35 @@ class RfGenesis:
 
     def cube(self, pose: PoseSequence, config: RadarConfig, num_frames: int) -> RadarCube:
         """The cube of a person, without noise and of unknown scale."""
-        pictures = self._pictures(pose, config, num_frames)
-        chirps = _Chirps(config)
-        shape = (num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples)
-        samples = np.zeros(shape, np.complex64)
-        environment = _environment() if self.has_environment else None
-        rough = np.exp(2j * np.pi * stream(1, "pixels").random(self.pixels**2)) if self.repaired else None
-        for frame in range(num_frames):
-            for loop in range(config.num_loops):
-                begin_s = frame * config.frame_period_s
-                if self.repaired:
-                    places_m, amplitude = _at_turns(pictures, config, begin_s + loop * config.loop_period_s, rough)
-                else:
-                    begin_s += loop / config.num_loops * config.frame_period_s
-                    places_m, amplitude = _at_once(pictures, config, begin_s, environment)
-                samples[frame, loop] = chirps.samples(places_m, amplitude)
-        return radar_cube(AdcCube(samples=samples, config=config, scale=1.0))
+        return radar_cube(self.adc(pose, config, num_frames))
 
-    def _pictures(self, pose: PoseSequence, config: RadarConfig, num_frames: int) -> list["BodyPicture"]:
-        count = int(np.ceil(num_frames * config.frame_period_s * MOTION_RATE_HZ)) + 2
-        time_s = np.clip(np.arange(count) / MOTION_RATE_HZ, pose.time_s[0], pose.time_s[-1])
+    def adc(self, pose: PoseSequence, config: RadarConfig, num_frames: int) -> AdcCube:
+        """The samples of a person, without noise and of unknown scale."""
+        spread_s = config.loop_period_s if self.repaired else config.frame_period_s / config.num_loops
+        frame_s = np.arange(num_frames)[:, None] * config.frame_period_s
+        time_s = frame_s + np.arange(config.num_loops) * spread_s  # (frame, loop) of the first chirp
+        pictures = self._pictures(pose, time_s)
+        chirps = _Chirps(config)
+        echoes = (
+            _RepairedEchoes(pictures, chirps, self.pixels)
+            if self.repaired
+            else _ReleasedEchoes(pictures, chirps, self.has_environment)
+        )
+        shape = (num_frames, config.num_loops, config.num_tx, config.num_rx, config.num_samples)
+        samples = np.empty(shape, np.complex64)
+        for index in np.ndindex(*time_s.shape):
+            samples[index] = echoes.samples(float(time_s[index]))
+        return AdcCube(samples=samples, config=config, scale=1.0)
+
+    def _pictures(self, pose: PoseSequence, wanted_s: np.ndarray) -> "Pictures":
+        """The pictures that the wanted times lie between, by number."""
+        first = np.unique((wanted_s * MOTION_RATE_HZ).astype(int))
+        numbers = np.union1d(first, first + 1)
+        time_s = np.clip(numbers / MOTION_RATE_HZ, pose.time_s[0], pose.time_s[-1])
         flat = pose.joints_m.reshape(len(pose.time_s), -1)
-        joints_m = np.stack([np.interp(time_s, pose.time_s, one) for one in flat.T], -1).reshape(count, 22, 3)
+        joints_m = np.stack([np.interp(time_s, pose.time_s, one) for one in flat.T], -1).reshape(len(time_s), 22, 3)
         mesh = capsule_mesh(ScatteringBody(0, pose.height_m), joints_m)
-        return list(_Camera(self, mesh).pictures(mesh))
+        return dict(zip(map(int, numbers), _Camera(self, mesh).pictures(mesh), strict=True))
 
 
 @dataclass
@@ -80,7 +85,7 @@ class BodyPicture:
     """One motion frame's picture, a row each pixel; distance and brightness are 0 where a ray meets nothing."""
 
     distance_m: np.ndarray
-    brightness: np.ndarray
+    brightness: np.ndarray  # needed as released alone, and empty otherwise
     place_m: np.ndarray  # (pixel, 3)
     cos: np.ndarray  # of the angle between ray and surface
 
@@ -93,6 +98,9 @@ class BodyPicture:
     @property
     def _columns(self) -> tuple[np.ndarray, ...]:
         return self.distance_m, self.brightness, self.place_m
+
+
+Pictures = dict[int, BodyPicture]
 
 
 class _Camera:
@@ -121,7 +129,7 @@ class _Camera:
         }  # fmt: skip
         if settings.room is not None:
             scene["room"] = _mesh(*settings.room)
-        self._scene, self._pixels = mi.load_dict(scene), pixels
+        self._scene, self._pixels, self._has_light = mi.load_dict(scene), pixels, not settings.repaired
         self._parameters = mi.traverse(self._scene)
         self._vertices = next(
             key for key, _ in self._parameters.items() if key.startswith("body") and "positions" in key
@@ -142,10 +150,15 @@ class _Camera:
             place = np.where(is_met[:, None], np.array(met.p, float).T, 0.0)
             yield BodyPicture(
                 distance_m=np.where(is_met, distance_m, 0.0),
-                brightness=np.array(mi.render(self._scene, spp=32), float)[:, :, 0].ravel(),
+                brightness=self._brightness(),
                 place_m=np.stack([place[:, 0], -place[:, 2], place[:, 1]], -1),
                 cos=np.abs((np.array(met.n).T * np.array(rays.d).T).sum(-1)),
             )
+
+    def _brightness(self) -> np.ndarray:
+        if not self._has_light:
+            return np.empty(0)
+        return np.array(mi.render(self._scene, spp=32), float)[:, :, 0].ravel()
 
 
 def _mesh(vertices_m: np.ndarray, faces: np.ndarray) -> "mi.Mesh":
@@ -176,44 +189,62 @@ def _environment() -> tuple[np.ndarray, np.ndarray]:
     ), picture.ravel()
 
 
-def _pair(pictures: list[BodyPicture], time_s: float) -> tuple[BodyPicture, BodyPicture, float]:
+def _pair(pictures: Pictures, time_s: float) -> tuple[BodyPicture, BodyPicture, float]:
     """The pictures before and after a time, and how far it lies between them."""
-    place = min(time_s * MOTION_RATE_HZ, len(pictures) - 1.001)
+    place = time_s * MOTION_RATE_HZ
     return pictures[int(place)], pictures[int(place) + 1], place - int(place)
 
 
-def _at_once(
-    pictures: list[BodyPicture], config: RadarConfig, time_s: float, environment: tuple[np.ndarray, np.ndarray] | None
-) -> tuple[np.ndarray, np.ndarray]:
-    """As released: places (tx, point, 3), the same for all transmitters, and amplitudes (point,), the distances."""
-    before, after, share = _pair(pictures, time_s)
-    before.fill_from(after)
-    after.fill_from(before)
-    distance_m = before.distance_m + share * (after.distance_m - before.distance_m)
-    brightness = before.brightness + share * (after.brightness - before.brightness)
-    kept = (distance_m > FAINTEST) & (brightness > FAINTEST)
-    places_m = (before.place_m + share * (after.place_m - before.place_m))[kept]
-    amplitude = distance_m[kept]
-    if environment is not None:
-        places_m, amplitude = np.concatenate([environment[0], places_m]), np.concatenate([environment[1], amplitude])
-    return np.repeat(places_m[None], config.num_tx, 0), amplitude
+class _ReleasedEchoes:
+    """All transmitters at once; a pixel's distance is its amplitude."""
+
+    def __init__(self, pictures: Pictures, chirps: "_Chirps", has_environment: bool):
+        self._pictures, self._chirps = pictures, chirps
+        self._environment = chirps.samples(*_environment()) if has_environment else 0.0  # never moves
+
+    def samples(self, time_s: float) -> np.ndarray:
+        """(tx, rx, sample) of one chirp."""
+        before, after, share = _pair(self._pictures, time_s)
+        before.fill_from(after)
+        after.fill_from(before)
+        distance_m = before.distance_m + share * (after.distance_m - before.distance_m)
+        brightness = before.brightness + share * (after.brightness - before.brightness)
+        kept = (distance_m > FAINTEST) & (brightness > FAINTEST)
+        places_m = (before.place_m + share * (after.place_m - before.place_m))[kept]
+        return self._chirps.samples(places_m, distance_m[kept]) + self._environment
 
 
-def _at_turns(
-    pictures: list[BodyPicture], config: RadarConfig, loop_s: float, rough: np.ndarray | None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Repaired: places (tx, point, 3) at each transmitter's turn of one loop, and amplitudes (point,)."""
-    before, after, share = _pair(pictures, loop_s)
-    kept = (before.distance_m > FAINTEST) & (after.distance_m > FAINTEST)
-    kept &= np.abs(before.distance_m - after.distance_m) < SAME_SURFACE_M
-    begin_m, step_m = before.place_m[kept], (after.place_m - before.place_m)[kept]
-    turn_share = config.loop_period_s / len(config.tx_order) * MOTION_RATE_HZ
-    places_m = np.empty((config.num_tx, len(begin_m), 3))
-    for turn, transmitter in enumerate(config.tx_order):
-        places_m[transmitter] = begin_m + (share + turn * turn_share) * step_m
-    # a pixel's area is distance^2 / cos, what it scatters back falls as cos^2, and the path loss divides by distance^2
-    amplitude = np.sqrt(np.maximum(before.cos[kept], 1e-3)) * before.distance_m[kept]
-    return places_m, amplitude if rough is None else amplitude * rough[kept]
+class _RepairedEchoes:
+    """Transmitters in turn; a pixel is a rough surface, interpolated where both pictures meet the same one."""
+
+    def __init__(self, pictures: Pictures, chirps: "_Chirps", pixels: int):
+        self._pictures, self._chirps = pictures, chirps
+        self._rough = np.exp(2j * np.pi * stream(1, "pixels").random(pixels**2))
+        self._before: BodyPicture | None = None
+
+    def samples(self, time_s: float) -> np.ndarray:
+        """(tx, rx, sample) of the chirps of one loop."""
+        before, after, share = _pair(self._pictures, time_s)
+        if before is not self._before:
+            self._meet(before, after)
+        config = self._chirps.config
+        turn = config.loop_period_s / len(config.tx_order) * MOTION_RATE_HZ
+        places_m = np.empty((config.num_tx, len(self._begin_m), 3))
+        for number, transmitter in enumerate(config.tx_order):
+            places_m[transmitter] = self._begin_m + (share + number * turn) * self._step_m
+        return self._chirps.samples(places_m, self._amplitude) + self._still
+
+    def _meet(self, before: BodyPicture, after: BodyPicture) -> None:
+        """Sorts pixels into those that move from one picture to the next and those that do not."""
+        kept = (before.distance_m > FAINTEST) & (after.distance_m > FAINTEST)
+        kept &= np.abs(before.distance_m - after.distance_m) < SAME_SURFACE_M
+        # a pixel's area is distance^2 / cos, what it scatters back falls as cos^2, the path loss divides by distance^2
+        amplitude = np.sqrt(np.maximum(before.cos, 1e-3)) * before.distance_m * self._rough
+        moves = kept & (after.place_m != before.place_m).any(axis=1)
+        still = kept & ~moves
+        self._begin_m, self._step_m = before.place_m[moves], (after.place_m - before.place_m)[moves]
+        self._amplitude, self._before = amplitude[moves], before
+        self._still = self._chirps.samples(before.place_m[still], amplitude[still])
 
 
 class _Chirps:
@@ -224,8 +255,9 @@ class _Chirps:
         self.tx_m, self.rx_m = np.asarray(config.tx_position_m), np.asarray(config.rx_position_m)
 
     def samples(self, places_m: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        """(tx, rx, sample) of points (tx, point, 3) with amplitudes (point,)."""
+        """(tx, rx, sample) of points (point, 3), or (tx, point, 3) where they move, with amplitudes (point,)."""
         config = self.config
+        places_m = np.broadcast_to(places_m, (config.num_tx, *places_m.shape[-2:]))
         weight = np.concatenate(
             [self._weights(place, amplitude, tx) for tx, place in zip(self.tx_m, places_m, strict=True)]
         )
