@@ -126,7 +126,7 @@ def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed
         rng = stream(seed, "joint noise", index)
         noisy = replace(
             piece,
-            joints_m=_smoothed(piece.joints_m, variant.smoothing_frames)
+            joints_m=smoothed(piece.joints_m, variant.smoothing_frames)
             + variant.joint_noise_m * rng.standard_normal(piece.joints_m.shape),
         )
         pose, num = noisy.pose(setup.shift_m, setup.height_m), int(piece.frame[-1]) + 1
@@ -141,7 +141,7 @@ def simulate(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant, seed
     return adcs
 
 
-def _smoothed(joints_m: np.ndarray, frames: float) -> np.ndarray:
+def smoothed(joints_m: np.ndarray, frames: float) -> np.ndarray:
     """Gaussian smoothing over time, of a width in frames."""
     return gaussian_filter1d(joints_m, frames, axis=0, mode="nearest") if frames else joints_m
 
@@ -173,10 +173,10 @@ def calibrate(pieces: list[MarsStretch], report: Callable[[str], object] = print
     """
     real: Clouds = [piece.clouds for piece in pieces]
     setup = Setup(height_m=round(body_height_m(pieces), 2), shift_m=(0.0, 0.0, HEIGHTS_M[0]))
-    setup = _levels(pieces, _centred(pieces, setup, real), real)
+    setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     x, y, _ = setup.shift_m
     setup = _best([replace(setup, shift_m=(x, y, z)) for z in HEIGHTS_M], pieces, real, report)
-    setup = _levels(pieces, _centred(pieces, setup, real), real)
+    setup = _own_levels(pieces, _centred(pieces, setup, real), real)
     report(f"estimated: {setup}")
     return setup
 
@@ -206,17 +206,20 @@ def _middle(cloud: PointCloud) -> np.ndarray:
     return np.array([cloud.x_m.mean(), cloud.y_m.mean(), cloud.z_m.mean()])
 
 
-def _levels(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
+def _own_levels(pieces: list[MarsStretch], setup: Setup, real: Clouds) -> Setup:
+    adcs = simulate(pieces, setup, MarsVariant())
+    return levels(setup, real, lambda tried: detect(adcs, pieces, tried, MarsVariant()))
+
+
+def levels(setup: Setup, real: Clouds, detected: Callable[[Setup], Clouds]) -> Setup:
     """Gain, then threshold, twice: the threshold decides which intensities remain."""
     wanted = np.mean([len(cloud.x_m) for piece in real for cloud in piece])
-    adcs = simulate(pieces, setup, MarsVariant())
     for _ in range(2):
-        found = detect(adcs, pieces, setup, MarsVariant())
-        setup = replace(setup, gain_db=round(setup.gain_db + _median_db(real) - _median_db(found), 1))
+        setup = replace(setup, gain_db=round(setup.gain_db + _median_db(real) - _median_db(detected(setup)), 1))
         low, high = THRESHOLDS
         while high - low > 30:
             middle = (low + high) // 2
-            clouds = detect(adcs, pieces, replace(setup, threshold=middle), MarsVariant())
+            clouds = detected(replace(setup, threshold=middle))
             many = np.mean([len(cloud.x_m) for piece in clouds for cloud in piece]) > wanted
             low, high = (middle, high) if many else (low, middle)
         setup = replace(setup, threshold=(low + high) // 2)
@@ -294,6 +297,11 @@ def measure(data: Path, run: StudyRun, report: Callable[[str], object] = print) 
     return scores
 
 
+def mars_digests(data: Path) -> dict[str, str]:
+    """The sha256 of each file of `test`."""
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in sorted(data.glob("*_test.csv"))}
+
+
 def _simulated(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) -> Clouds:
     return detect(simulate(pieces, setup, variant), pieces, setup, variant)
 
@@ -301,12 +309,8 @@ def _simulated(pieces: list[MarsStretch], setup: Setup, variant: MarsVariant) ->
 def _write(
     run: StudyRun, name: str, setup: Setup, data: Path, scores: dict[str, CloudScores], *, seconds: float
 ) -> None:
-    files = sorted(data.glob("*_test.csv"))
     row: dict[str, Any] = {
-        "dataset": {
-            "name": "MARS subject 1, test",
-            "sha256": {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files},
-        },
+        "dataset": {"name": "MARS subject 1, test", "sha256": mars_digests(data)},
         "n": scores[name].num_frames,
         "seeds": [0],
         "seconds": {"all": round(seconds, 1)},
