@@ -14,9 +14,12 @@ is cached, so a stopped run goes on, and another row costs its own time alone.
 """
 
 import argparse
+import functools
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +29,7 @@ from mmweaver.core.records import RadarCube, Scene
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M
 from mmweaver.datasets.dataset_store import read_plan, read_rooms
 from mmweaver.datasets.room_generation import generate_sequence, pose_of
-from mmweaver.metrics.scorecard import METRICS, scorecard
+from mmweaver.metrics.scorecard import METRICS, Representations
 from mmweaver.models.weights import load_weights, shipped_weights
 from mmweaver.paths.ray_traced import Simulator
 from mmweaver.paths.static_paths import AS_PUBLISHED
@@ -42,6 +45,7 @@ from studies.study import Reads
 COLUMNS = ("ra_ssim", "rd_ssim", "ra_difference_db", "rd_difference_db", "cssim", "psnr_db", "chamfer_m", "hausdorff_m")
 BASELINES, ORACLES = ("zeros", "generic_room_physics"), ("realization",)
 ROOM_PIXELS = 64  # of RF-Genesis with a room: every pixel of it is an echo
+ROOMS = 48  # sampled as those of learned_scores
 CLUTTER = ("low", "medium", "high")
 LEAST_ROOMS_BY_CLUTTER = 12
 CLUTTER_ROWS = (
@@ -103,14 +107,22 @@ def all_zeros(case: Case) -> RadarCube:
     return replace(truth, values=np.zeros_like(truth.values))
 
 
-def scores_of(case: Case, name: str, method: Method) -> dict[str, float]:
+def scores_of(case: Case, truth: Callable[[], Representations], name: str, method: Method) -> dict[str, float]:
     """{column: value} of one row in one room, with its CPU seconds."""
-    truth = case.room.cube(case.index)
     began = time.process_time()
     cube = method(case)
     seconds = time.process_time() - began
-    card = scorecard(with_best_gain(cube, truth) if name.startswith("rf_genesis") else cube, truth)
-    return {**{column: card.prediction[column] for column in COLUMNS}, "cpu_s": seconds}
+    reference = truth()
+    prediction = Representations(with_best_gain(cube, reference.cube) if name.startswith("rf_genesis") else cube)
+    return {**{column: METRICS[column].score(prediction, reference) for column in COLUMNS}, "cpu_s": seconds}
+
+
+def kinds_in_turn(cases: list[Case]) -> list[Case]:
+    """The cases in an order that takes one room of each kind after the other, so that any first part is balanced."""
+    of_kind: dict[str, list[Case]] = {}
+    for case in cases:
+        of_kind.setdefault(case.room.kind, []).append(case)
+    return [case for turn in zip_longest(*of_kind.values()) for case in turn if case is not None]
 
 
 def clutter_of(case: Case) -> float:
@@ -125,13 +137,14 @@ def clutter_of(case: Case) -> float:
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", type=Path, action=Reads, required=True, help="of mmweaver dataset, with signals")
     parser.add_argument("--split", default="test_room")
-    parser.add_argument("--most", type=int, default=48, help="rooms, sampled at random")
+    parser.add_argument("--most", type=int, default=ROOMS, help="of the 48 rooms, the kinds in turn")
     parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     plan = read_plan(options.data)
-    cases = cases_of(read_rooms(options.data), options.split, 1, plan, 0, options.most)
+    cases = cases_of(read_rooms(options.data), options.split, 1, plan, 0, ROOMS)
+    cases = kinds_in_turn(cases)[: options.most]
     network, card = load_weights(shipped_weights())
     methods = methods_of(network, make_room("office", 0, plan["seed"]).scene("day"))
     about = {"data_plan": plan, "weights": digest(shipped_weights()), "columns": COLUMNS}
@@ -139,9 +152,10 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
     each: list[Scores] = []
     for name, case in zip(names, cases, strict=True):
+        truth = functools.cache(lambda case=case: Representations(case.room.cube(case.index)))
         each.append(
             {
-                row: cache.figures(f"{name}_{row}", partial(scores_of, case, row, method))
+                row: cache.figures(f"{name}_{row}", partial(scores_of, case, truth, row, method))
                 for row, method in methods.items()
             }
         )
