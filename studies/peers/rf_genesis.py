@@ -14,6 +14,7 @@ import mitsuba as mi
 import numpy as np
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
+from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, PoseSequence, RadarCube
 from mmweaver.core.seeding import stream
@@ -28,6 +29,7 @@ MOTION_RATE_HZ = 30
 FAINTEST = 0.1  # distance and brightness below which it drops a pixel
 ENVIRONMENT_PIXELS, ENVIRONMENT_FIELD_DEG = 64, 60.0
 SAME_SURFACE_M = 0.1
+OLDEST_LLVM = 17  # 15 cannot compile a maximum of two floats
 Triangles = tuple[np.ndarray, np.ndarray]  # vertices (vertex, 3) in metres, faces (face, 3)
 
 
@@ -53,6 +55,7 @@ class RfGenesis:
 
     def adc(self, pose: PoseSequence, config: RadarConfig, num_frames: int) -> AdcCube:
         """The samples of a person, without noise and of unknown scale."""
+        _check_llvm()
         spread_s = config.loop_period_s if self.repaired else config.frame_period_s / config.num_loops
         frame_s = np.arange(num_frames)[:, None] * config.frame_period_s
         time_s = frame_s + np.arange(config.num_loops) * spread_s  # (frame, loop) of the first chirp
@@ -101,6 +104,16 @@ class BodyPicture:
 
 
 Pictures = dict[int, BodyPicture]
+
+
+def _check_llvm() -> None:
+    """Raises InputError for a compiler that ends the whole process at Mitsuba's code."""
+    found = dr.detail.llvm_version()
+    if found[0] < OLDEST_LLVM:
+        raise InputError(
+            f"RF-Genesis' tracer needs LLVM {OLDEST_LLVM} or newer, not {'.'.join(map(str, found))}; install one"
+            " (apt-get install libllvm19) and name its libLLVM in the environment as DRJIT_LIBLLVM_PATH"
+        )
 
 
 class _Camera:

@@ -6,13 +6,18 @@ The paper gives the size of the maps alone and its repository no code, so widths
 Reference: Li et al., Towards Domain-Independent and Real-Time Gesture Recognition Using mmWave Signal (TMC 2023).
 """
 
+from collections.abc import Callable
+
+import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mmweaver.core.seeding import stream
 from mmweaver.models.log_maps import MIDDLE_DB, SPREAD_DB
 
 MOVING = 1  # of the two range-azimuth maps: what is left without static clutter
 WIDTHS, FRAME_WIDTH, DROPPED = (8, 16, 32), 64, 0.4
+RATE = 2e-3
 
 
 class CnnLstm(nn.Module):
@@ -34,11 +39,28 @@ class CnnLstm(nn.Module):
         return self.last(self.over_time(each)[0].mean(dim=1))
 
 
-def range_angle_images(angle: Tensor) -> Tensor:
-    """Log maps (sequence, frame, 2, 64, 32) of the activity network -> DRAI (sequence, frame, 1, 32, 32).
+def range_angle_images(angle: Tensor, bins: int = 2) -> Tensor:
+    """Log maps (sequence, frame, 2, 64, 32) of the activity network -> DRAI (sequence, frame, 1, 64 / bins, 32).
 
-    The moving echoes' power, averaged over pairs of range bins; in the same units of 15 dB about 20 dB over the noise.
+    The moving echoes' power, averaged over so many range bins; in the same units of 15 dB about 20 dB over the noise.
     """
     power = 10 ** ((angle[:, :, MOVING].float() * SPREAD_DB + MIDDLE_DB) / 10)
-    pairs = power.unflatten(2, (-1, 2)).mean(dim=3)
+    pairs = power.unflatten(2, (-1, bins)).mean(dim=3)
     return ((10 * torch.log10(pairs) - MIDDLE_DB) / SPREAD_DB)[:, :, None]
+
+
+def trained(
+    network: nn.Module, draw: Callable[[np.random.Generator], tuple[Tensor, ...]], steps: int, seed: int
+) -> None:
+    """Trains on batches of inputs and labels, with a falling learning rate."""
+    network.train()
+    adam = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=1e-2)
+    fall = torch.optim.lr_scheduler.CosineAnnealingLR(adam, steps)
+    for step in range(steps):
+        *inputs, label = draw(stream(seed, "recogniser", step))
+        loss = nn.functional.cross_entropy(network(*inputs), label, label_smoothing=0.1)
+        adam.zero_grad()
+        loss.backward()
+        adam.step()
+        fall.step()
+    network.eval()

@@ -53,6 +53,23 @@ PEERS = RowTable(
         ("CPU, s", "{metrics.cpu_s:fixed.1}"),
     ),
 )  # fmt: skip
+PEER_CLOUDS = RowTable(
+    sources=("peer_clouds/mars_test",),
+    labels={
+        "centroid": "one point at the middle of the joints (baseline)",
+        "random_real_frame": "a recorded cloud of some other moment (baseline)",
+        "rf_genesis_as_released": "RF-Genesis, as released",
+        "rf_genesis_repaired": "RF-Genesis, repaired",
+        "simulator": "our physics",
+        "neighbouring_frame": "the recorded cloud of the frame before (oracle)",
+    },
+    columns=(
+        ("clouds", "{label}"), ("Chamfer, m", "{metrics.chamfer_m:interval.3}"),
+        ("Hausdorff, m", "{metrics.hausdorff_m:fixed.2}"), ("centroid, m", "{metrics.centroid_m:fixed.2}"),
+        ("Doppler TV", "{metrics.doppler:fixed.2}"), ("empty", "{metrics.empty:percent.0}"),
+        ("CPU-s, 400 frames", "{seconds.cpu:.0f}"),
+    ),
+)  # fmt: skip
 UNSEEN_METHODS = (
     "nearest_training_pose", "weaver", "weaver_with_background", "physics_in_photographed_room", "realization",
 )  # fmt: skip
@@ -151,7 +168,7 @@ COST = MatrixTable(
     ),
 )  # fmt: skip
 LEARNED = {
-    "peer_scores": PEERS,
+    "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN, "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
