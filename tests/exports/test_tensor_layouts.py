@@ -77,6 +77,20 @@ def test_hupr_is_read_back(result: StoredResult, tmp_path: Path):
     assert joints_m.shape == (4, 1, len(HUPR_JOINTS), 3)
 
 
+def test_hupr_frames_are_what_its_network_takes(result: StoredResult, tmp_path: Path):
+    """As HuPR's loader stacks them: 8 frames about one, 8 middle Doppler bins, parts, range, azimuth, elevation."""
+    write_hupr(result, tmp_path)
+    files = sorted((tmp_path / "hori").glob("*.npy"))
+    about = np.clip(np.arange(-4, 4) + 1, 0, len(files) - 1)
+    frames = np.stack([np.load(files[index]) for index in about])
+    middle = frames[:, 4:12]
+    parts = np.stack([middle.real, middle.imag], axis=2)
+    assert parts.shape == (8, 8, 2, 64, 64, 8)
+    assert np.ptp(parts, axis=(3, 4)).min() > 0, "a map of one value cannot be normalised"
+    power = np.abs(frames) ** 2
+    assert power[:, 4:12].sum() > power.sum() / 2, "most of a person's echoes have the velocities that are kept"
+
+
 def test_hupr_needs_its_radar(result: StoredResult, tmp_path: Path):
     other = replace(result.cube, config=PRESETS["awr1843"])
     wrong = replace(result, cube=other)
