@@ -315,6 +315,26 @@ LABELLED = PivotTable(
     cells=CURVE.cells, missing="",
 )  # fmt: skip
 
+ZERO_SHOT_POSE = RowTable(
+    sources=("zero_shot_pose/*",),
+    columns=(
+        ("split", "{dataset.split}"), ("poses by", "{method}"), ("root", "{metrics.root_all:.1f}"),
+        ("centroid", "{metrics.centroid_all:.1f}"), ("Procrustes", "{metrics.procrustes_all:.1f}"),
+        *((f"{group}, centroid", f"{{metrics.centroid_{group}:.1f}}") for group in ("torso", "head", "arms", "legs")),
+    ),
+)  # fmt: skip
+POSE_GAIN = RowTable(
+    sources=("pose_gain/*",),
+    columns=(
+        ("test", "{test}"), ("sequences", "{n}"), ("mean pose (baseline)", "{metrics.root.baseline.mean_pose:.1f}"),
+        ("without generated", "{metrics.root.baseline.without_generated:.1f}"),
+        ("with generated", "{metrics.root:.1f}"),
+        ("mean pose, centroid", "{metrics.centroid.baseline.mean_pose:.1f}"),
+        ("without, centroid", "{metrics.centroid.baseline.without_generated:.1f}"),
+        ("with, centroid", "{metrics.centroid:.1f}"),
+    ),
+)  # fmt: skip
+
 FAULTS = RowTable(
     sources=("injected_faults/*",),
     columns=(
@@ -384,7 +404,8 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
-    "blind_recognition": BLIND.render, "labelled_recognition": LABELLED.render,
+    "blind_recognition": BLIND.render, "zero_shot_pose": ZERO_SHOT_POSE.render, "pose_gain": POSE_GAIN.render,
+    "labelled_recognition": LABELLED.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
     "ablation": ablation_table, **{name: table.render for name, table in LEARNED.items()},
