@@ -84,15 +84,9 @@ def test_the_page_gives_a_loader_and_no_leak(place: Path):
 
 
 @pytest.mark.slow  # the test above makes the set by the same commands; test_train_recipes.py trains on one
-def test_ten_activities_become_a_trained_network(place: Path, capsys: pytest.CaptureFixture[str]):
+def test_ten_activities_become_a_trained_network(place: Path):
     (place / "activities.toml").write_text(TEN)
     make_set(30)
     report = json.loads((place / "set" / "leaks.json").read_text())
     assert report["verdict"] == "leaks: none found"
-    run_python(block("python"))
-    words = command("train activity")
-    capsys.readouterr()
-    assert main([*words, "--steps", "400", "--json"]) == 0
-    scores = json.loads(capsys.readouterr().out)["scores"]
-    assert scores["chance"]["test_accuracy"] == pytest.approx(0.1)
-    assert scores["this network"]["test_accuracy"] > 0.4
+    assert run_python(block("python"))["accuracy"] > 0.6  # 0.82 was measured; chance is 0.1
