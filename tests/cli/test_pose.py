@@ -33,7 +33,8 @@ def test_from_a_task_to_poses_and_scores(model: Path, tmp_path: Path, capsys: py
     points = str(tmp_path / "points.csv")
     np.savetxt(points, np.stack(columns, axis=1), delimiter=",", header="Frame,X,Y,Z,Doppler", comments="")
     assert main(["pose", str(model), "--points", points, "--out", str(tmp_path / "poses"), "--json"]) == 0
-    assert json.loads(capsys.readouterr().out)["frames"] == 20
+    summary = json.loads(capsys.readouterr().out)
+    assert summary["frames"] == summary["frames_with_points"] == 20
     with np.load(tmp_path / "poses" / "pose.npz") as held:
         assert held["joints_m"].shape == (20, 22, 3)
     assert (tmp_path / "poses" / "pose.png").stat().st_size > 5000

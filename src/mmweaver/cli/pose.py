@@ -47,9 +47,15 @@ def run(arguments: argparse.Namespace) -> int:
     rate_hz = estimator.settings.frame_rate_hz
     title = f"{recording.name}: as the radar sees the person; left limbs blue, right limbs red"
     draw_pose_strips([(title, pose.joints_m, None)], arguments.out / files[1], frame_rate_hz=rate_hz)
-    summary = {"out": str(arguments.out), "frames": recording.num_frames, "seconds": recording.num_frames / rate_hz}
+    seen = len(set(recording.cloud.frame.tolist()))
+    summary = {
+        "out": str(arguments.out), "frames": recording.num_frames, "frames_with_points": seen,
+        "seconds": recording.num_frames / rate_hz,
+    }  # fmt: skip
     if arguments.json:
         print(json.dumps(summary))
     elif not arguments.quiet:
-        print(f"wrote {arguments.out}: {recording.num_frames} poses, {summary['seconds']:.1f} s")
+        text = f"wrote {arguments.out}: {recording.num_frames} poses, {summary['seconds']:.1f} s"
+        guessed = recording.num_frames - seen
+        print(text + (f"; {guessed} frames have no points, their poses are guessed" if guessed else ""))
     return 0
