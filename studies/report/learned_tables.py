@@ -18,10 +18,12 @@ SCORES = RowTable(
     ),
 )  # fmt: skip
 SUMMARY = RowTable(
-    sources=("learned_scores/test_room",),
+    sources=("peer_scores/test_room", "learned_scores/test_room"),
     labels={
         "zeros": "all zeros (baseline)",
         "generic_room_physics": "physics in some other room (baseline)",
+        "rf_genesis_as_released": "RF-Genesis as released, 21 of the rooms ([peers](docs/peers.md))",
+        "rf_genesis_repaired_photographed_room": "RF-Genesis repaired, in the photographed room, the same 21",
         "weaver": "the network, from the photo",
         "physics_in_photographed_room": "physics, from the photo",
         "realization": "the true room, random phases (oracle for a photo)",
@@ -51,6 +53,14 @@ PEERS = RowTable(
         ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
         ("PSNR, dB", "{metrics.psnr_db:fixed.1}"), ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"),
         ("CPU, s", "{metrics.cpu_s:fixed.1}"),
+    ),
+)  # fmt: skip
+PEER_CLUTTER = RowTable(
+    sources=("peer_scores/clutter",),
+    columns=(
+        ("clutter", "{clutter}"), ("made by", "{method}"), ("rooms", "{n}"),
+        ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
+        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("cSSIM", "{metrics.cssim:fixed.3}"),
     ),
 )  # fmt: skip
 PEER_CLOUDS = RowTable(
@@ -168,7 +178,7 @@ COST = MatrixTable(
     ),
 )  # fmt: skip
 LEARNED = {
-    "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS,
+    "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN, "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
