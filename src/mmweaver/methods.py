@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 LEARNED_NOTE = UsualAssumption(
     "echoes were written by a network trained on simulated rooms; phases of surfaces and skin are sampled"
 )
+FIELDS_NOTE = (
+    "a hypernetwork wrote fields of power (recipe paper_power); each of their cells is a scatterer of sampled phase"
+)
 FIRST_ORDER_ALONE = "one bounce off rough surfaces and off the body: no paths over both"
 RECORDED = "static clutter is that of the background recording"
 
@@ -177,7 +180,8 @@ class Learned:
             motions = [FrameMotion.of(pose, config, num_frames, first_frame) for pose in poses]
             cube, adc = room.signal(motions, seed=seed, keep_adc=keep_adc, first_frame=first_frame)
         several = (SEVERAL_PEOPLE,) if len(poses) > 1 else ()
-        assumptions = (LEARNED_NOTE, *several, *_of_background(room.background))
+        note = FIELDS_NOTE if room.reads_cells else LEARNED_NOTE
+        assumptions = (note, *several, *_of_background(room.background))
         return Signal(cube=cube, adc=adc, assumptions=assumptions, method="weaver")
 
     def _encode(

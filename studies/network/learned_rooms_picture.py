@@ -1,6 +1,8 @@
 """Pictures of real rooms by both methods: physics and the network, of the same photo and sentence.
 
     python -m studies run learned_rooms_picture --rooms /path/to/rooms --out docs/images/weaver_rooms.png
+    python -m studies run learned_rooms_picture --rooms /path/to/rooms --power weights/paper_power.safetensors \
+        --out docs/images/paper_power_rooms.png
 
 There is no ground truth for these rooms; the picture is for inspection, not for scores.
 """
@@ -21,14 +23,18 @@ from studies.study import Reads
 
 TEXT = "a person walks towards the radar, then waves with the left hand"
 METHODS = ("physics", "weaver")
+POWER = "paper_power"
 FRAMES = 40
 
 
-def views_of(folder: Path, text: str = TEXT, *, frames: int = FRAMES, seed: int = 0) -> dict[str, FigureData]:
-    """The same room, motion and seed by each method."""
+def views_of(
+    folder: Path, text: str = TEXT, *, frames: int = FRAMES, seed: int = 0, power: Path | None = None
+) -> dict[str, FigureData]:
+    """The same room, motion and seed by each method, and with weights `power` of recipe paper_power."""
     found = {}
-    for name in METHODS:
-        weaver = Weaver(name)
+    methods = [Weaver(name) for name in METHODS]
+    methods += [] if power is None else [Weaver("weaver", weights=power)]
+    for name, weaver in zip((*METHODS, POWER), methods, strict=False):
         room = weaver.read_room(next(folder.glob("rgb.*")), folder / "depth.png", folder / "camera.json")
         made = weaver.generate(room, text, frames=frames, seed=seed, keep_adc=False, board="ideal")
         found[name] = FigureData(
@@ -44,18 +50,20 @@ def draw_rooms(path: Path, rooms: Sequence[dict[str, FigureData]]) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    count = len(rooms[0])
     with rc_context(STYLE):
-        figure = Figure(figsize=(17, 3.1 * len(rooms)), layout="constrained")
+        figure = Figure(figsize=(3.4 * (1 + 2 * count), 3.1 * len(rooms)), layout="constrained")
         FigureCanvasAgg(figure)
-        for row, views in zip(figure.subplots(len(rooms), 5, squeeze=False), rooms, strict=True):
+        for row, views in zip(figure.subplots(len(rooms), 1 + 2 * count, squeeze=False), rooms, strict=True):
             draw_photo(row[0], views[METHODS[0]])
             row[0].set_title(views[METHODS[0]].title.partition(":")[0])
-            for index, name in enumerate(METHODS):
-                draw_micro_doppler(row[1 + index], views[name])
-                draw_azimuth_with_clutter(row[3 + index], views[name])
-                power_bar(row[3 + index], views[name])
-                row[1 + index].set_title(f"{name}: Doppler over time")
-                row[3 + index].set_title(f"{name}: the room, from above")
+            for index, (name, view) in enumerate(views.items()):
+                over_time, above = row[1 + index], row[1 + count + index]
+                draw_micro_doppler(over_time, view)
+                draw_azimuth_with_clutter(above, view)
+                power_bar(above, view)
+                over_time.set_title(f"{name}: Doppler over time")
+                above.set_title(f"{name}: the room, from above")
         save_small(figure, path)
 
 
@@ -63,8 +71,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--rooms", type=Path, action=Reads, required=True, help="folders with rgb.png, depth.png and camera.json"
     )
+    parser.add_argument(
+        "--power", type=Path, action=Reads, help="weights of recipe paper_power, for columns of their own"
+    )
     parser.add_argument("--out", type=Path, default=Path("docs/images/weaver_rooms.png"))
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    draw_rooms(options.out, [views_of(folder) for folder in sorted(options.rooms.iterdir()) if folder.is_dir()])
+    draw_rooms(
+        options.out,
+        [views_of(folder, power=options.power) for folder in sorted(options.rooms.iterdir()) if folder.is_dir()],
+    )

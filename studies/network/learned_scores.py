@@ -18,7 +18,7 @@ import argparse
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +41,7 @@ from mmweaver.paths.static_paths import AS_PUBLISHED, Propagation
 from mmweaver.scene.procedural.procedural_room import make_room
 from mmweaver.scene.reconstruction import reconstruct
 from studies.manifest import StudyRun
+from studies.network.room_cache import RoomCache, digest
 from studies.paper.paper_method import paper_method
 from studies.result_rows import complete_rows, dataset_of
 from studies.study import Reads
@@ -75,6 +76,11 @@ class Case:
     @cached_property
     def true_scene(self) -> Scene:
         return make_room(self.room.kind, self.room.layout, self.seed_of_plan).scene(self.lighting)
+
+    @cached_property
+    def truth(self) -> RadarCube:
+        """The ground truth."""
+        return self.room.cube(self.index)
 
     @property
     def joints(self) -> tuple[np.ndarray, np.ndarray]:
@@ -151,31 +157,38 @@ def training_mean(train: list[StoredRoom], most: int = 60) -> Method:
     return method
 
 
-def scored(cases: list[Case], methods: dict[str, Method]) -> dict[str, dict[str, np.ndarray]]:
-    """{method: {column: value of each case}}, with baselines and CPU seconds."""
+def scored(
+    cases: list[Case], methods: dict[str, Method], caches: dict[str, RoomCache] | None = None
+) -> dict[str, dict[str, np.ndarray]]:
+    """{method: {column: value of each case}}, with baselines and CPU seconds. `caches`: of each method's scores."""
     rows: dict[str, dict[str, list[float]]] = {}
-
-    def add(name: str, values: dict[str, float]) -> None:
-        for column, value in values.items():
-            rows.setdefault(name, {}).setdefault(column, []).append(value)
-
     for case in cases:
-        truth = case.room.cube(case.index)
-        for name, method in methods.items():
-            began = time.process_time()
-            cube = method(case)
-            seconds = time.process_time() - began
-            card = scorecard(cube, truth)
-            if name == next(iter(methods)):
-                for floor, values in card.baselines.items():
-                    empty = _magnitude_nmse_db(_floor_cube(floor, truth), truth)
-                    add(floor, {**_columns(values), "magnitude_nmse_db": empty, "cpu_s": 0.0})
-            own = {
-                "magnitude_nmse_db": _magnitude_nmse_db(cube, truth), "energy_db": energy_db(cube, truth),
-                "cpu_s": seconds,
-            }  # fmt: skip
-            add(name, {**_columns(card.prediction), **own})
+        for number, (name, method) in enumerate(methods.items()):
+            cache = (caches or {}).get(name, RoomCache(None, {}))
+            each = cache.figures(f"{case.room.folder.name}_{case.index}", partial(_scores, case, method))
+            for row, values in {**(each["baselines"] if number == 0 else {}), name: each["own"]}.items():
+                for column, value in values.items():
+                    rows.setdefault(row, {}).setdefault(column, []).append(value)
     return {name: {column: np.array(values) for column, values in row.items()} for name, row in rows.items()}
+
+
+def _scores(case: Case, method: Method) -> dict[str, Any]:
+    """Scores of a method and of the baselines in one case."""
+    truth = case.truth
+    began = time.process_time()
+    cube = method(case)
+    seconds = time.process_time() - began
+    card = scorecard(cube, truth)
+    floors = {
+        name: {
+            **_columns(values), "magnitude_nmse_db": _magnitude_nmse_db(_floor_cube(name, truth), truth), "cpu_s": 0.0,
+        }
+        for name, values in card.baselines.items()
+    }  # fmt: skip
+    own = {
+        "magnitude_nmse_db": _magnitude_nmse_db(cube, truth), "energy_db": energy_db(cube, truth), "cpu_s": seconds,
+    }  # fmt: skip
+    return {"own": {**_columns(card.prediction), **own}, "baselines": floors}
 
 
 def _columns(values: dict[str, float]) -> dict[str, float]:
@@ -239,6 +252,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--each", type=int, default=1, help="sequences of each room")
     parser.add_argument("--most", type=int, help="rooms, sampled at random (default: all that have the split)")
     parser.add_argument("--only", nargs="*", help="rows (default: all)")
+    parser.add_argument("--runs", type=Path, help="folder for what is done, to go on from")
     parser.add_argument("--called", metavar="NAME", help="the result's name (default: the split)")
     parser.add_argument("--other-radar", metavar="NAME", help="data of another radar or length: a result of this name")
 
@@ -268,11 +282,17 @@ def run_study(options: argparse.Namespace, run: StudyRun) -> None:
     if options.power is not None:
         power, power_card = load_network(options.power)
         methods["paper_power"] = learned(power, lambda case: case.room)
+        methods["paper_power_wrong_photo"] = learned(power, lambda case: case.other)
         about["paper_power"] = power_card.__dict__
     if options.only:
         methods = {name: methods[name] for name in options.only}
     names = [f"{case.room.kind}_{case.room.layout}" for case in cases]
-    table = scored(cases, methods)
+    of = dict.fromkeys(("paper_power", "paper_power_wrong_photo"), options.power) | {"paper": options.paper}
+    caches = {
+        name: RoomCache(options.runs, {"data_plan": plan, "row": name, "weights": digest(of.get(name) or weights)})
+        for name in methods
+    }
+    table = scored(cases, methods, caches)
     rows = [_row(name, values, names, options.split) for name, values in table.items()]
     rows = complete_rows(
         rows, dataset=dataset_of(options.data), seeds=[0], baselines=BASELINES, oracles=ORACLES,

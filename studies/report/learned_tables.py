@@ -17,6 +17,18 @@ SCORES = RowTable(
         ("CPU, s", "{metrics.cpu_s:fixed.2}"),
     ),
 )  # fmt: skip
+POWER = RowTable(
+    sources=("learned_scores/paper_power",),
+    labels={
+        "zeros": "all zeros (baseline)",
+        "generic_room_physics": "physics in some other room (baseline)",
+        "paper_power": "`paper_power`",
+        "weaver": "`weaver`",
+        "physics_in_photographed_room": "physics, from the photo",
+        "realization": "the true room, random phases (oracle)",
+    },
+    columns=(("made by", "{label}"), ("rooms", "{n}"), *SCORES.columns[1:]),
+)
 SUMMARY = RowTable(
     sources=("peer_scores/test_room", "learned_scores/test_room"),
     labels={
@@ -183,5 +195,5 @@ LEARNED = {
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,
     "activity_gain": _gain("activity_gain/test_room"), "activity_gain_60": _gain("activity_gain/recordings_60"),
-    "real_or_simulated": REAL_OR_SIMULATED, "learned_cost": COST,
+    "real_or_simulated": REAL_OR_SIMULATED, "learned_cost": COST, "power_scores": POWER,
 }  # fmt: skip

@@ -22,6 +22,7 @@ from mmweaver.fields.scatterers.layers import Layers
 from mmweaver.fields.scatterers.scatterer_field import ScattererField
 from mmweaver.models.body_anchors import MIRRORED, NUM_ANCHORS, NUM_GHOSTS, facing
 from mmweaver.models.echo_network import EchoNetwork
+from mmweaver.models.power_network import PowerNetwork
 from mmweaver.models.scene_tensors import SceneTensors
 from mmweaver.motion.animation.resample import joints_and_velocities
 from mmweaver.paths.adc_synthesis import AdcSynthesis, one_thread
@@ -155,6 +156,11 @@ class LearnedRoom:
                     self.layer = self.layer + self.renderer.leakage(*self.board.leakage)
                     self._layer_rate = self._layer_rate + self.renderer.leakage(*self.board.leakage_rate)
         self._synthesis: tuple[AdcSynthesis, Tensor] | None = None
+
+    @property
+    def reads_cells(self) -> bool:
+        """Whether echoes are cells of a field rather than places on bodies."""
+        return isinstance(self.network, PowerNetwork)
 
     def paths(self, motions: Sequence[FrameMotion]) -> ScenePaths:
         """Paths of the room and of everybody, who occlude the room and each other."""
