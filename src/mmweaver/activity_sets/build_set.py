@@ -150,7 +150,8 @@ class SetBuilder:
         if self.out.is_dir() and not is_empty(self.out) and not (self.out / SET_FILE).is_file():
             raise InputError(f"{self.out} is not empty and holds no labelled set; choose another folder")
         text = json.dumps(self._description(), indent=1, ensure_ascii=False) + "\n"
-        if create_once(self.out / SET_FILE, text) != text:
+        held = create_once(self.out / SET_FILE, text)
+        if held != text and _without_command(held) != _without_command(text):
             raise InputError(f"{self.out} holds a set of other settings; choose another folder or the same settings")
 
     def _description(self) -> dict[str, Any]:
@@ -235,6 +236,11 @@ class SetBuilder:
         found = circumstances([part["joints"] for part in parts], label, **more)
         found["start_place"] = np.concatenate([found["start_place"], found["room"]], axis=1)
         return leak_report(found, label, np.asarray(columns["draw"]))
+
+
+def _without_command(text: str) -> dict[str, Any]:
+    """What a set follows from: words such as --quiet may differ when it is gone on with."""
+    return {**parse_json(text, SET_FILE), "command": ""}
 
 
 def split_of(groups: Sequence[Any], key: str, seed: int) -> list[str]:
