@@ -90,6 +90,11 @@ PEER_CLOUDS = RowTable(
         ("Hausdorff, m", "{metrics.hausdorff_m:fixed.2}"), ("centroid, m", "{metrics.centroid_m:fixed.2}"),
         ("Doppler TV", "{metrics.doppler:fixed.2}"), ("empty", "{metrics.empty:percent.0}"),
         ("CPU-s, 400 frames", "{seconds.cpu:.0f}"),
+WHOLE_ROOM = RowTable(
+    sources=("whole_room/test_room",),
+    columns=(
+        ("made by", "{method}"), ("rooms", "{num_rooms}"), ("range-azimuth, SSIM", "{metrics.ra_ssim:interval.2}"),
+        ("range-Doppler, SSIM", "{metrics.rd_ssim:interval.2}"), ("Chamfer, m", "{metrics.chamfer_m:fixed.2}"),
     ),
 )  # fmt: skip
 UNSEEN_METHODS = (
@@ -191,6 +196,8 @@ COST = MatrixTable(
 )  # fmt: skip
 LEARNED = {
     "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
+    "peer_scores": PEERS,
+    "whole_room": WHOLE_ROOM,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN, "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
     "paper_scores": PAPER, "paper_scores_few": PAPER_FEW, "activity_accuracy": ACCURACY,

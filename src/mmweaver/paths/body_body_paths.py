@@ -39,7 +39,8 @@ class BodyBodyPaths:
         assert second.second is not None, "paths of second order are asked for"
         self.first, self.second, self._parts = first, second, (first.second, second.second)
         rng = stream(first.traced.micro_seed, "room", "between people")
-        self._luck = rng.random(len(first.second.phase) * len(second.second.phase))
+        drawn = rng.random((len(first.second.phase), len(second.second.phase)))
+        self._luck = np.triu(drawn) + np.triu(drawn, 1).T  # whoever is named first
         self.pairs = [self._pairs(frame) for frame in range(first.num_frames)]
 
     def paths(self, frame: int, first_motion: np.ndarray, second_motion: np.ndarray) -> Paths:
@@ -67,7 +68,7 @@ class BodyBodyPaths:
         power *= one.traced.is_clear(a_m[:, None], b_m[None], ROOM_MARGIN_M)
         if power.sum() < FAINTEST_OF_DIRECT * (one.direct_power[frame] + other.direct_power[frame]):
             power = np.zeros_like(power)
-        pair, standing_for = roulette(power.ravel(), self._luck, MOST_PAIRS)
+        pair, standing_for = roulette(power.ravel(), self._luck.ravel(), MOST_PAIRS)
         first, second = np.unravel_index(pair, power.shape)
         size = np.sqrt(power.ravel()[pair] * standing_for)
         return _PartPairs(first=first, second=second, amplitude=size * own.phase[first] * others.phase[second])
