@@ -90,6 +90,8 @@ PEER_CLOUDS = RowTable(
         ("Hausdorff, m", "{metrics.hausdorff_m:fixed.2}"), ("centroid, m", "{metrics.centroid_m:fixed.2}"),
         ("Doppler TV", "{metrics.doppler:fixed.2}"), ("empty", "{metrics.empty:percent.0}"),
         ("CPU-s, 400 frames", "{seconds.cpu:.0f}"),
+    ),
+)  # fmt: skip
 WHOLE_ROOM = RowTable(
     sources=("whole_room/test_room",),
     columns=(
@@ -196,7 +198,6 @@ COST = MatrixTable(
 )  # fmt: skip
 LEARNED = {
     "peer_scores": PEERS, "peer_clouds": PEER_CLOUDS, "peer_clutter": PEER_CLUTTER,
-    "peer_scores": PEERS,
     "whole_room": WHOLE_ROOM,
     "learned_scores": SCORES, "learned_summary": SUMMARY, "learned_unseen": UNSEEN, "other_radars": OTHER_RADARS,
     "few_shot": FEW_SHOT, "capture_tuning": CAPTURE_TUNING, "photographed_room": PHOTOGRAPHED,
