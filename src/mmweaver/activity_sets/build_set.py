@@ -238,9 +238,10 @@ class SetBuilder:
         return leak_report(found, label, np.asarray(columns["draw"]))
 
 
-def _without_command(text: str) -> dict[str, Any]:
+def _without_command(text: str) -> Any:
     """What a set follows from: words such as --quiet may differ when it is gone on with."""
-    return {**parse_json(text, SET_FILE), "command": ""}
+    found = parse_json(text, SET_FILE)
+    return found | {"command": ""} if isinstance(found, dict) else found
 
 
 def split_of(groups: Sequence[Any], key: str, seed: int) -> list[str]:
