@@ -1,5 +1,7 @@
 """How people perform: single gestures brisk and wide by people who hold still, standing people still, others sway."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from mmweaver.core.seeding import stream
 from mmweaver.core.skeleton import joint
 from mmweaver.recognition.performance import PerformancePrior, perform, performer, task_variation
 from mmweaver.recognition.task_file import Mount
+from mmweaver.recognition.train_pose import POSE_PRIOR
 
 PRIOR = PerformancePrior()
 
@@ -34,3 +37,15 @@ def test_who_holds_still_sways_little(sentence: str, once: bool, calm: bool):
 
 def test_a_gesture_done_once_is_brisk():
     assert np.median(speeds_mps("a person pushes the right hand forward", "right_wrist", once=True)) > 1.2
+
+
+def test_the_feet_of_pose_networks_people_are_farther_apart():
+    found = []
+    for wider_m in (0.0, 0.3):
+        prior = replace(POSE_PRIOR, wider_m=(wider_m, wider_m))
+        who = performer(prior, task_variation(Mount()), 3, 0)
+        did = perform(who, prior, "a person raises both arms", seconds=4.0, once=False, rng=stream(0, "performance"))
+        apart_m = did.pose.joints_m[:, joint("left_ankle")] - did.pose.joints_m[:, joint("right_ankle")]
+        found.append(np.linalg.norm(apart_m[:, :2], axis=-1))
+    np.testing.assert_allclose(found[1] - found[0], 0.3, atol=0.03)
+    assert PRIOR.wider_m == (0.0, 0.0)

@@ -11,6 +11,7 @@ import numpy as np
 from mmweaver.core.errors import InputError
 from mmweaver.core.records import PoseSequence
 from mmweaver.core.seeding import stream
+from mmweaver.core.shapes import Joints
 from mmweaver.core.skeleton import joint
 from mmweaver.motion.compose import compose
 from mmweaver.motion.language.sentence import parse
@@ -43,7 +44,8 @@ class PerformancePrior:
     `on_spot` and `on_way`: the usual tempo of what is done in place, and of walks and runs in a room, relative to the
     motion library; `single` that of a single performance, which people repeat briskly and widely. `sway_mps`: speed of
     slow shifts of the whole body, log-uniform; `calm_sway_mps` of who holds still but for one gesture, or altogether.
-    `heading_deg`: standard deviation from facing the radar.
+    `heading_deg`: standard deviation from facing the radar. `wider_m`: how much farther apart than in the motion
+    library the feet of who stays in place are, uniform.
     """
 
     tempo_of_person: float = 0.2
@@ -58,6 +60,7 @@ class PerformancePrior:
     sway_mps: Span = (0.01, 0.25)
     calm_sway_mps: Span = (0.003, 0.04)
     heading_deg: float = 15.0
+    wider_m: Span = (0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +72,7 @@ class Performer:
     tempo: float
     amplitude: float
     heading_rad: float
+    wider_m: float
 
 
 def task_variation(mount: Mount) -> Variation:
@@ -101,6 +105,7 @@ def performer(prior: PerformancePrior, variation: Variation, index: int, seed: i
         tempo=float(np.exp(prior.tempo_of_person * tempo)),
         amplitude=float(np.exp(prior.amplitude_of_person * amplitude)),
         heading_rad=float(np.radians(prior.heading_deg) * heading),
+        wider_m=float(rng.uniform(*prior.wider_m)),
     )
 
 
@@ -143,6 +148,8 @@ def perform(
     if moves and tempo * pelvis_speed_mps(pose, lead_s, needed_s) < SLOWEST_MPS:
         raise InputError("the path ends before the recording does")
     joints_m = scaled_excursion(pose.joints_m, float(amplitude))
+    if not moves and who.wider_m:
+        joints_m = with_feet_apart(joints_m, who.wider_m)
     is_calm = once or all(step.lower in HELD and not step.upper for step in plan.steps)
     sway = float(np.exp(rng.uniform(*np.log(prior.calm_sway_mps if is_calm else prior.sway_mps))))
     joints_m = joints_m + sway_m(pose.time_s, sway, rng)
@@ -155,6 +162,18 @@ def perform(
         pose=_rested(pose, float(before_s), float(after_s)),
         lasts_s=float(before_s + time_s[-1] + after_s), surroundings=now,
     )  # fmt: skip
+
+
+def with_feet_apart(joints_m: Joints, wider_m: float) -> Joints:
+    """Joints (frame, joint, 3) with the feet `wider_m` farther apart, and the knees half as much."""
+    across = joints_m[:, joint("left_hip")] - joints_m[:, joint("right_hip")]
+    across = across * (1.0, 1.0, 0.0)
+    across = across / np.maximum(np.linalg.norm(across, axis=-1, keepdims=True), 1e-6)
+    wider = joints_m.copy()
+    for side, sign in (("left", 0.5), ("right", -0.5)):
+        for part, share in (("knee", 0.5), ("ankle", 1.0), ("foot", 1.0)):
+            wider[:, joint(f"{side}_{part}")] += sign * share * wider_m * across
+    return wider
 
 
 def _rested(pose: PoseSequence, before_s: float, after_s: float) -> PoseSequence:
