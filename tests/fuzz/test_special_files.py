@@ -41,6 +41,7 @@ WITH: dict[tuple[str, str], dict[str, str | None]] = {
     ("generate", "--motion"): {"--text": None}, ("generate", "--capture"): dict.fromkeys(ROOM),
     ("generate", "--body-model"): {"--text": None, "--motion": "MOTION"},
     ("dataset", "--activities"): {"--rooms": None, **ROOM},
+    ("dataset", "--from-results"): {"--rooms": None},
     ("dataset", "--room"): {"--rooms": None, "--activities": "A"},
     ("generate", "--motion-model"): {"--motion-model-for": "all"},
     ("generate", "--sam"): {"--segmenter": "builtin"},

@@ -109,7 +109,8 @@ def _drawn(context: StepContext, controls: Controls, aside: PerTime, up: PerTime
     on = rise((context.time_s - context.start_s + 0.4) / 0.5) if not context.first else np.ones_like(aside)
     for side in sides(context)[:1]:
         out = -aside if side == LEFT else aside
-        ahead = np.sqrt(np.maximum(_ARM**2 - size**2 * (out**2 + up**2), 0.06**2)) + _ACROSS * np.maximum(-out, 0.0)
+        ahead = np.sqrt(np.maximum(_ARM**2 - size**2 * (out**2 + up**2), 0.06**2))
+        ahead += _ACROSS * (np.hypot(out, 0.3) - out) / 2
         target = place(ahead, _MIDDLE[0] + size * out, _MIDDLE[1] + size * up, len(up))
         hand_to(controls, context.body, side, target, on, elbow=(-0.2, 0.5, -1.0))
     return controls
