@@ -316,12 +316,25 @@ LABELLED = PivotTable(
 )  # fmt: skip
 
 ZERO_SHOT_POSE = RowTable(
-    sources=("zero_shot_pose/*",),
+    sources=("zero_shot_pose/mars_*",),
     columns=(
         ("split", "{dataset.split}"), ("poses by", "{method}"), ("root", "{metrics.root_all:.1f}"),
         ("centroid", "{metrics.centroid_all:.1f}"), ("Procrustes", "{metrics.procrustes_all:.1f}"),
         *((f"{group}, centroid", f"{{metrics.centroid_{group}:.1f}}") for group in ("torso", "head", "arms", "legs")),
     ),
+)  # fmt: skip
+POSE_CURVE = RowTable(
+    sources=("zero_shot_pose/curve_*",),
+    columns=(
+        ("minutes of the person", "{minutes}"), ("generated people first, centroid", "{metrics.centroid_all:.1f}"),
+        ("without", "{metrics.centroid_all.baseline.without_generated:.1f}"),
+        ("generated first, legs", "{metrics.centroid_legs:.1f}"),
+        ("without, legs", "{metrics.centroid_legs.baseline.without_generated:.1f}"),
+    ),
+)  # fmt: skip
+GAIN_BY_NETWORK = PivotTable(
+    sources=("recogniser_gain/*",), rows=(("training", "{method}"),), across="{network} {test}",
+    cell_template="{metrics.accuracy:interval.2}",
 )  # fmt: skip
 POSE_GAIN = RowTable(
     sources=("pose_gain/*",),
@@ -404,7 +417,9 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "compose_times": COMPOSE_TIMES.render, "kitml": KITML.render, "strangers": STRANGERS.render,
     "activities": activities_table, "motiongpt": MOTIONGPT.render,
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
-    "blind_recognition": BLIND.render, "zero_shot_pose": ZERO_SHOT_POSE.render, "pose_gain": POSE_GAIN.render,
+    "blind_recognition": BLIND.render, "zero_shot_pose": ZERO_SHOT_POSE.render,
+    "pose_gain": POSE_GAIN.render, "pose_curve": POSE_CURVE.render,
+    "recogniser_gain": GAIN_BY_NETWORK.render,
     "labelled_recognition": LABELLED.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
