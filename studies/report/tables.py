@@ -332,6 +332,13 @@ POSE_CURVE = RowTable(
         ("without, legs", "{metrics.centroid_legs.baseline.without_generated:.1f}"),
     ),
 )  # fmt: skip
+SAMPLED = RowTable(
+    sources=("sampled_recordings/*",),
+    columns=(
+        ("training", "{method}"), ("sequences", "{n}"), ("accuracy", "{metrics.accuracy:interval.2}"),
+        ("less the baseline", "{metrics.gain:interval.2}"),
+    ),
+)  # fmt: skip
 GAIN_BY_NETWORK = PivotTable(
     sources=("recogniser_gain/*",), rows=(("training", "{method}"),), across="{network} {test}",
     cell_template="{metrics.accuracy:interval.2}",
@@ -419,7 +426,7 @@ TABLES: dict[str, Callable[[Path], str]] = {
     "zero_shot": zero_shot_table, "zero_shot_curve": CURVE.render, "zero_shot_limbs": LIMBS.render,
     "blind_recognition": BLIND.render, "zero_shot_pose": ZERO_SHOT_POSE.render,
     "pose_gain": POSE_GAIN.render, "pose_curve": POSE_CURVE.render,
-    "recogniser_gain": GAIN_BY_NETWORK.render,
+    "recogniser_gain": GAIN_BY_NETWORK.render, "sampled_recordings": SAMPLED.render,
     "labelled_recognition": LABELLED.render,
     "injected_faults": FAULTS.render, "damaged_sets": DAMAGED_SETS.render,
     "random_kills": RANDOM_KILLS.render, "hostile_input": HOSTILE_INPUT.render,
