@@ -101,19 +101,29 @@ def result_row(scores: dict[str, Any], data: dict[str, Any], how: str, role: str
     }  # fmt: skip
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
+def add_task_options(parser: argparse.ArgumentParser) -> None:
+    """Options of every study that trains recognisers of a task and scores them on its recordings."""
     parser.add_argument("task", choices=sorted(path.stem for path in TASKS.glob("*.toml")))
-    parser.add_argument("--role", choices=("development", "frozen", "blind"), required=True)
     parser.add_argument("--recordings", type=Path, action=Reads, required=True)
     parser.add_argument("--sequences", type=Path, required=True, help="folder of generated sequences; made if missing")
     parser.add_argument("--people", type=int, default=TrainingOptions().sequences)
 
 
-def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+def add_options(parser: argparse.ArgumentParser) -> None:
+    add_task_options(parser)
+    parser.add_argument("--role", choices=("development", "frozen", "blind"), required=True)
+
+
+def task_data(options: argparse.Namespace) -> tuple[RecognitionTask, GeneratedWindows, list[PointRecording]]:
+    """A task with its generated windows and its recordings."""
     task = read_task(TASKS / f"{options.task}.toml")
     sequences = generate_sequences(SequenceRecipe.of(task), options.people, options.sequences)
     made = generated_windows(sequences, task, TrainingOptions())
-    recordings = recordings_of(options.task, options.recordings, task)
+    return task, made, recordings_of(options.task, options.recordings, task)
+
+
+def run_study(options: argparse.Namespace, run: StudyRun) -> None:
+    task, made, recordings = task_data(options)
     data = {"name": options.task, "sha256": content_of(options.recordings)["sha256"]}
     rows = []
     for how in ("alone", "adapted"):

@@ -10,28 +10,23 @@ too few recordings has fewer rows.
 import argparse
 import time
 from dataclasses import asdict, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mmweaver.recognition.generated_sequences import SequenceRecipe, generate_sequences
 from mmweaver.recognition.recogniser import recognition_features
 from mmweaver.recognition.scoring import balanced_accuracy
-from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.task_recordings import windows_of
 from mmweaver.recognition.train_recogniser import (
     GeneratedWindows,
     TrainingOptions,
-    generated_windows,
     trees_of,
     with_labelled,
 )
 from studies.manifest import StudyRun, content_of
-from studies.recognition.blind_recognition import TASKS, recordings_of
+from studies.recognition.blind_recognition import add_task_options, task_data
 from studies.recognition.zero_shot_curve import chosen_recordings
 from studies.schema import metric
-from studies.study import Reads
 
 EACH, SEEDS = (0, 1, 5, 20), (0, 1, 2)
 TREES = 150
@@ -82,17 +77,11 @@ def curve(
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("task", choices=sorted(path.stem for path in TASKS.glob("*.toml")))
-    parser.add_argument("--recordings", type=Path, action=Reads, required=True)
-    parser.add_argument("--sequences", type=Path, required=True, help="folder of generated sequences; made if missing")
-    parser.add_argument("--people", type=int, default=TrainingOptions().sequences)
+    add_task_options(parser)
 
 
 def run_study(options: argparse.Namespace, run: StudyRun) -> None:
-    task = read_task(TASKS / f"{options.task}.toml")
-    sequences = generate_sequences(SequenceRecipe.of(task), options.people, options.sequences)
-    made = generated_windows(sequences, task, TrainingOptions())
-    recordings = recordings_of(options.task, options.recordings, task)
+    task, made, recordings = task_data(options)
     windows = [windows_of(one, task.recordings) for one in recordings]
     number = {label: place for place, label in enumerate(task.recordings.labels)}
     rows = curve(

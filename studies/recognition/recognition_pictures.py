@@ -17,9 +17,8 @@ from mmweaver.recognition.task_file import read_task
 from mmweaver.recognition.task_recordings import windows_of
 from mmweaver.recognition.window_features import STILL_MPS
 from studies.manifest import StudyRun
-from studies.recognition.blind_recognition import TASKS, recordings_of
+from studies.recognition.blind_recognition import TASKS, add_task_options, recordings_of
 from studies.recognition.zero_shot_pictures import draw
-from studies.study import Reads
 
 RANGES_M, WIDE = (0.5, 4.0), 1.7
 
@@ -35,10 +34,8 @@ def median_windows(windows: Sequence[PointRecording]) -> dict[str, PointRecordin
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("task", choices=sorted(path.stem for path in TASKS.glob("*.toml")))
-    parser.add_argument("--recordings", type=Path, action=Reads, required=True)
-    parser.add_argument("--sequences", type=Path, required=True, help="folder of generated sequences; made if missing")
-    parser.add_argument("--people", type=int, default=8)
+    add_task_options(parser)
+    parser.set_defaults(people=8)
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
 
 

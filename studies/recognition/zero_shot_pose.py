@@ -1,4 +1,4 @@
-"""How well are poses of a real person told from points by a network that was trained on generated people alone?
+"""How well does a network trained on generated people alone recover poses of a real person from points?
 
     python -m studies run zero_shot_pose --recordings MARS/subject1 --split validate --sequences FOLDER \\
         --models weights/pose_mars.safetensors

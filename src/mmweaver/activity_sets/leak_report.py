@@ -80,9 +80,9 @@ def circumstances(
     first_m, order = np.stack([one[0] for one in joints_m]), np.arange(len(joints_m))
     facing = np.stack([_facing(one) for one in first_m])
     body = first_m - first_m[:, :1]
-    forward = np.stack([facing[:, 0], facing[:, 1]], axis=1)[:, None] * body[..., :2]
-    aside = np.stack([-facing[:, 1], facing[:, 0]], axis=1)[:, None] * body[..., :2]
-    posture = np.stack([forward.sum(axis=-1), aside.sum(axis=-1), body[..., 2]], axis=-1)
+    ahead = np.stack([-facing[:, 1], facing[:, 0]], axis=1)
+    right_m, ahead_m = (np.sum(direction[:, None] * body[..., :2], axis=-1) for direction in (facing, ahead))
+    posture = np.stack([right_m, ahead_m, body[..., 2]], axis=-1)
     rows = {
         "start_place": first_m[:, joint("pelvis"), :2], "heading": facing, "duration": [len(one) for one in joints_m],
         "order": order, "order_in_cycle": order % len(set(label.tolist())), **more,

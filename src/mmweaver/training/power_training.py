@@ -112,7 +112,7 @@ def write_power_weights(out: Path, data: Path, trainer: Trainer) -> Path:
 
 
 def map_differences(data: Path, trainer: Trainer) -> Figures:
-    """Mean differences of expected power maps in dB, as recipe `weaver` is judged: of the network and of empty maps."""
+    """Mean differences of expected power maps in dB, as for recipe `weaver`: of the network and of empty maps."""
     recipe, rooms = trainer.recipe, examples(data, "validation")
     assert isinstance(recipe, PowerRecipe)
     assert isinstance(trainer.learner, PowerLearner)

@@ -19,7 +19,7 @@ _WITH_ARMS = words_in(
 )
 
 
-# Activities in which one hand or foot is not told from the other.
+# Activities in which one hand or foot is not distinguished from the other.
 _WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms hips shrug stretch hands_up breathe")
 _WITH_ONE_FOOT = words_in(
     """
