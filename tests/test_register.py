@@ -62,6 +62,7 @@ def mmweaver(env: dict[str, str], *argv: str) -> subprocess.CompletedProcess[str
     )
 
 
+@pytest.mark.slow
 def test_the_page_that_says_how(tmp_path: Path):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs" / "extend.md").read_text(), re.DOTALL)
     assert len(blocks) >= 5

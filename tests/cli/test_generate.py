@@ -263,6 +263,7 @@ def test_what_stops_it_halfway_leaves_nothing(
 
 
 @posix_only
+@pytest.mark.slow
 def test_a_disk_that_takes_no_more(tmp_path: Path):
     """A limit on the size of files makes a write fail for real, within the cube."""
     import resource
