@@ -32,7 +32,7 @@ from mmweaver.dsp.detection import check_points, detect, needs_adc
 from mmweaver.formats.radar_file import load_firmware, load_radar
 from mmweaver.formats.ti_calibration import read_ti_calibration
 from mmweaver.generation import Generation, Room
-from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Signal, physics_with
+from mmweaver.methods import DEFAULT_METHOD, METHODS, Learned, Method, Physics, Signal, physics_with
 from mmweaver.motion.animation.resample import resample
 from mmweaver.motion.compose import Motion
 from mmweaver.motion.continuous import ContinuousMotion
@@ -128,6 +128,13 @@ class Weaver(RoomReader):
         file = _found(source, revision)
         trained_for = read_card(file).radar
         return cls("weaver", radar or (trained_for if trained_for in PRESETS else "awr1843"), weights=file, **options)
+
+    @property
+    def is_standard(self) -> bool:
+        """Whether METHODS gives, by the name alone, a method that makes the same signals."""
+        if self.weights is not None or self.method_name not in METHODS:
+            return False
+        return not isinstance(self.method, Physics) or self.method.propagation == Physics().propagation
 
     @staticmethod
     def read_motion(
@@ -258,8 +265,11 @@ class Weaver(RoomReader):
         return streamer.chunks(sentences)
 
     @single_precision()
-    def carry_out(self, request: Request, room: Room) -> Generation:
-        """What `generate` does with a request that is already parsed. Raises InputError where the room has no place."""
+    def carry_out(self, request: Request, room: Room, people: tuple[Motion, ...] | None = None) -> Generation:
+        """What `generate` does with a request that is already parsed, or whose motions are composed already (`people`).
+
+        Raises InputError where the room has no place.
+        """
         poses = request.radar_poses or (AT_CAMERA,)
         if room.background is not None and len(poses) > 1:
             raise InputError("a background recording is of one radar; give one radar pose, that of the recording")
@@ -268,7 +278,7 @@ class Weaver(RoomReader):
         stages = Stages(self._listener)
         stages.seconds.update(room.seconds)
         with stages("compose the motion"):
-            people = compose_request(request, room.scene)
+            people = compose_request(request, room.scene) if people is None else people
         results = [self._recorded(request, replace(room, scene=scene), people, method, stages) for scene in scenes]
         return replace(results[0], further=tuple(results[1:]))
 

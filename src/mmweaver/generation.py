@@ -18,6 +18,7 @@ from mmweaver.figures.preview import preview_figure
 from mmweaver.geometry.aligned_photo import AlignedPhoto
 from mmweaver.result_folder import BOARD_FILE, file_digest, plain, radar_folder, save_results
 from mmweaver.scene.affordances.landmarks import with_given_landmarks
+from mmweaver.scene.photo.posed_photo import PosedPhoto
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,6 +36,7 @@ class Room(ShownByFacts):
     inputs: dict[str, Any]
     seconds: dict[str, float]
     background: RadarCube | None = None  # a recording by the same radar in the same place, nobody present
+    views: tuple[PosedPhoto, ...] = ()  # further photos that the scene was made of
 
     def facts(self) -> dict[str, str]:
         """The photo's and the scene's."""

@@ -124,4 +124,4 @@ class RoomReader:
     ) -> Room:  # fmt: skip
         with stages("reconstruct the room"):
             scene = reconstruct_together(photo, others, assumptions=assumptions)
-        return Room(scene=scene, inputs=inputs, seconds=stages.seconds)
+        return Room(scene=scene, inputs=inputs, seconds=stages.seconds, views=tuple(others))

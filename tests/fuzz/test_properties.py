@@ -26,7 +26,7 @@ from mmweaver.core.records import AdcCube, CubeGrid, PointCloud, PoseSequence, R
 from mmweaver.core.safe_files.safe_zarr import open_zarr
 from mmweaver.core.skeleton import NUM_JOINTS
 from mmweaver.core.tensor_files import read_tensors, write_tensors
-from mmweaver.datasets.zarr_arrays import put_array
+from mmweaver.datasets.zarr_arrays import put_array, put_sequences
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.exports.cloud_layouts import write_mars, write_radhar
 from mmweaver.exports.tensor_layouts import write_mmmesh, write_rf_genesis
@@ -225,8 +225,11 @@ def test_radars_tensors_and_zarr_arrays_are_read_as_they_were_written(depth: int
         (tmp_path / "radar.json").write_text(named.to_json(), encoding="utf-8")
         assert load_radar(str(tmp_path / "radar.json")) == named
         axes = tuple(f"axis_{k}" for k in range(values.ndim))
-        sequences = 2 if sharded and values.size else 0
-        put_array(zarr.open_group(tmp_path / "set", mode="w"), "a", values, axes, sequences=sequences)
+        group = zarr.open_group(tmp_path / "set", mode="w")
+        if sharded and values.ndim > 1 and values.size:
+            put_sequences(group, "a", values.dtype.name, values.shape, axes, values)
+        else:
+            put_array(group, "a", values, axes)
         found = open_zarr(tmp_path / "set").numbers("a", axes, kinds=values.dtype.kind)
         assert found.dtype == values.dtype
         assert np.array_equal(found, values)

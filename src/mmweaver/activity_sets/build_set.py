@@ -5,8 +5,8 @@ Finished sequences are kept in `parts/`, so it may be stopped at any time and st
 
 import json
 import shutil
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -36,6 +36,7 @@ from mmweaver.datasets.activity_store import (
     bytes_of_signals,
     write_set,
 )
+from mmweaver.datasets.signals_on_demand import SetGeometry, moving_power_db, storable
 from mmweaver.datasets.zarr_arrays import packed_iq
 from mmweaver.features import point_table
 from mmweaver.formats.npz_files import read_npz, write_npz
@@ -82,6 +83,13 @@ class SetBuilder:
         self.out, self.activities, self.rooms, self.weaver, self.options = out, activities, list(rooms), weaver, options
         self.command, self.activities_text, self.given = command, activities_text, given
         self._board = find_board(options.board, weaver.radar, options.seed)
+        if options.iq == "none" and not weaver.is_standard:
+            raise InputError(
+                "signals are made on demand by the methods as they are installed; leave out weights, bounces and"
+                " clutter of your own, or store signals (--iq float16)"
+            )
+        if options.iq == "none" and any(room.background is not None for room in self.rooms):
+            raise InputError("signals on demand have no background recording; leave it out, or store signals")
 
     @cached_property
     def plan(self) -> list[PlannedSequence]:
@@ -167,7 +175,9 @@ class SetBuilder:
         file = self.out / PARTS / f"{number:06d}.npz"
         if file.is_file():
             return
-        made = self.weaver.carry_out(self._request(one), self.rooms[one.draw.room])
+        request, room = self._request(one), self.rooms[one.draw.room]
+        people = tuple(replace(each, pose=storable(each.pose)) for each in compose_request(request, room.scene))
+        made = self.weaver.carry_out(request, room, people)
         iq, iq_scale = packed_iq(made.cube, self.options.iq)
         power = float(np.mean(np.abs(made.cube.values) ** 2)) * made.cube.scale**2
         arrays = {
@@ -175,7 +185,14 @@ class SetBuilder:
             "point_frame": made.points.frame.astype(np.int32), "iq_scale": np.float64(iq_scale),
             "height": np.float64(made.pose.height_m), "energy_db": np.float64(10 * np.log10(max(power, 1e-300))),
             "pace": np.float64(np.mean([step.pace for step in made.meta["plan"].steps])),
-        } | ({} if self.options.iq == "none" else {"iq": iq})  # fmt: skip
+        }  # fmt: skip
+        if self.options.iq == "none":
+            arrays |= {
+                "motion": made.motion.joints_m.astype(np.float32), "motion_time": made.motion.time_s,
+                "girth": np.float64(made.motion.girth), "moving_power_db": np.float64(moving_power_db(made.cube)),
+            }  # fmt: skip
+        else:
+            arrays["iq"] = iq
         with atomic_file(file) as temporary:
             write_npz(temporary, **arrays)
 
@@ -198,12 +215,30 @@ class SetBuilder:
         }
         config = self._request(self.plan[0]).config
         with staged_folder(self.out, overwrite=True) as stage:
-            signals = (np.asarray(read_npz(self._part_file(number))["iq"]) for number in range(len(parts)))
+            signals = self._geometry(parts) if self.options.iq == "none" else self._of_parts("iq")
             write_set(stage, config, self.activities.labels, columns, arrays, signals, self.options.iq)
             report = self._leaks(columns, parts, stage)
             (stage / LEAKS_FILE).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
             (stage / ACTIVITIES_FILE).write_text(self.activities_text, encoding="utf-8")
             shutil.copyfile(self.out / SET_FILE, stage / SET_FILE)
+
+    def _of_parts(self, name: str) -> Iterator[np.ndarray]:
+        """An array of each part, one in memory at a time."""
+        return (np.asarray(read_npz(self._part_file(number))[name]) for number in range(len(self.plan)))
+
+    def _geometry(self, parts: list[dict[str, np.ndarray]]) -> SetGeometry:
+        """What signals are made from on demand."""
+        return SetGeometry(
+            method=self.weaver.method_name, board=self.weaver.board_of(self._request(self.plan[0]), self.rooms[0])[0],
+            rooms=[(room.scene.photo, room.views) for room in self.rooms],
+            time_s=next(self._of_parts("motion_time")), motions_m=self._of_parts("motion"),
+            sequences={
+                "seed": np.array([self._request(one).seed for one in self.plan], np.int64),
+                "height_m": np.array([float(part["height"]) for part in parts]),
+                "girth": np.array([float(each) for each in self._of_parts("girth")]),
+                "moving_power_db": np.array([float(each) for each in self._of_parts("moving_power_db")]),
+            },
+        )  # fmt: skip
 
     def _part_file(self, number: int) -> Path:
         return self.out / PARTS / f"{number:06d}.npz"

@@ -57,7 +57,8 @@ def add_activity_options(group: Options) -> None:
     group.add_argument("--method", help="weaver, the network (default), or physics")
     group.add_argument(
         "--iq", choices=("float16", "float32", "none"),
-        help="how signals are stored (default float16, an error below 0.05 %%); none: joints and points alone",
+        help="how signals are stored (default float16, an error below 0.05 %%); none: joints, points and what signals"
+        " are made from when they are read, in a thirtieth of the space",
     )  # fmt: skip
 
 

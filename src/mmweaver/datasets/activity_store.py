@@ -1,7 +1,8 @@
 """A labelled set of activities on disk: one Zarr group that xarray opens with coordinates.
 
     OUT/sequences.zarr/               attributes: radar, label_names, schema_version
-        iq        (sequence, frame_time, range, radial_velocity, antenna, part)  float16 or float32, times iq_scale
+        iq        (sequence, frame_time, range, radial_velocity, antenna, part)  float16 or float32, times iq_scale;
+                  without it signals are made from geometry/ when asked for (`signals_on_demand`)
         iq_scale  (sequence)   sqrt(mW)
         joints_m  (sequence, frame_time, joint, axis)   float32
         points    (point, column)   float32: x, y, z in metres, radial velocity in m/s, SNR in dB
@@ -32,6 +33,7 @@ from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.core.skeleton import JOINT_NAMES
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
 from mmweaver.datasets.dataset_plan import shell_words
+from mmweaver.datasets.signals_on_demand import GEOMETRY, SetGeometry, SignalsOnDemand, write_set_geometry
 from mmweaver.datasets.zarr_arrays import IQ_DIMENSIONS, consolidate, put_array, put_texts, write_iq, zarr_module
 from mmweaver.formats.npz_files import POINT_COLUMNS
 
@@ -50,10 +52,10 @@ FARTHEST_M = 1000.0  # of joints and points; what is beyond is damage
 
 def write_set(
     folder: Path, config: RadarConfig, labels: tuple[str, ...], columns: dict[str, Any], arrays: dict[str, np.ndarray],
-    signals: Iterable[np.ndarray] = (), kind: str = "none",
+    signals: Iterable[np.ndarray] | SetGeometry, kind: str,
 ) -> None:  # fmt: skip
     """Writes a new store into the folder: `columns` along the sequences, `arrays` as described above, `signals` packed
-    one by one by `zarr_arrays.packed_iq` to a kind of IQ_KINDS.
+    one by one by `zarr_arrays.packed_iq` to a kind of IQ_KINDS, or what they are made from on demand.
     """
     group: Any = zarr_module().open_group(folder / STORE, mode="w")
     frames = arrays["joints_m"].shape[1]
@@ -80,7 +82,9 @@ def write_set(
     ):
         put_array(group, name, arrays[name], dimensions)
     group["points"].attrs["columns"] = list(POINT_COLUMNS)
-    if kind != "none":
+    if isinstance(signals, SetGeometry):
+        write_set_geometry(group, signals)
+    else:
         put_array(group, "iq_scale", arrays["iq_scale"], ("sequence",))
         write_iq(group, kind, (len(columns["label"]), *CubeGrid.of(config, frames).shape, 2), signals)
     consolidate(folder / STORE)
@@ -109,12 +113,16 @@ class ActivitySet:
     point_sequence: np.ndarray  # (point,)
     point_frame: np.ndarray  # (point,)
     iq_scale: np.ndarray | None  # (sequence,); None where no signals are stored
+    on_demand: SignalsOnDemand | None  # then makes them; None in sets of mmweaver before 1.0, too
 
     def __len__(self) -> int:
         return len(self.columns["label"])
 
     def cube(self, index: int) -> RadarCube:
-        """The cube of one sequence in sqrt(mW). Raises InputError where none is stored, or its file is damaged."""
+        """The cube of one sequence in sqrt(mW), stored or made now. Raises InputError where a file is damaged."""
+        if self.on_demand is not None:
+            room, subject = (int(self.columns[name][index]) for name in ("room", "subject"))
+            return self.on_demand.cube(index, room=room, subject=subject)
         if self.iq_scale is None:
             raise InputError(f"{self.files.folder} was made without signals; only joints and points are stored")
         grid = CubeGrid.of(self.config, self.joints_m.shape[1])
@@ -151,7 +159,7 @@ def read_activity_set(folder: Path) -> ActivitySet:
         raise InputError(f"{folder} is not complete; make the rest with: {made_by}")
     files = CheckedFolder.of(folder, made_by)
     files.require_sums()
-    files.check(but=(f"{STORE}/iq/c/",))
+    files.check(but=(f"{STORE}/iq/c/", f"{STORE}/{GEOMETRY}/motion_m/c/"))
     with files.reading():
         group = open_zarr(folder / STORE)
         if group.attr("schema_version", int) != SCHEMA_VERSION:
@@ -170,9 +178,12 @@ def _activity_set(files: CheckedFolder, group: ZarrFolder) -> ActivitySet:
         columns[name] = group.numbers(name, each, kinds=kind[0], **limits)
     group.numbers("label", each, kinds="i", low=0, high=len(labels) - 1)
     pose, near = ("sequence", "frame_time", len(JOINT_NAMES), 3), {"low": -FARTHEST_M, "high": FARTHEST_M}
+    config = RadarConfig.from_json(json.dumps(group.attr("radar", dict)))
+    joints_m = group.numbers("joints_m", pose, kinds="f", **near)
+    is_made = group.has_group(GEOMETRY)
     return ActivitySet(
-        files=files, arrays=group, config=RadarConfig.from_json(json.dumps(group.attr("radar", dict))),
-        label_names=labels, columns=columns, joints_m=group.numbers("joints_m", pose, kinds="f", **near),
+        files=files, arrays=group, config=config, label_names=labels, columns=columns, joints_m=joints_m,
+        on_demand=SignalsOnDemand(files, f"{STORE}/{GEOMETRY}/", config, joints_m.shape[1]) if is_made else None,
         points=group.numbers("points", ("point", len(POINT_COLUMNS)), kinds="f", **near),
         point_sequence=group.numbers("point_sequence", ("point",), kinds="iu", low=0, high=len(columns["label"])),
         point_frame=group.numbers("point_frame", ("point",), kinds="iu", low=0, high=MOST),

@@ -57,16 +57,23 @@ class CheckedFolder:
             raise self.damaged(f"{self.folder} is damaged ({reason})") from error
 
 
+def stored_sequence(
+    files: CheckedFolder, arrays: ZarrFolder, below: str, name: str, index: int, shape: tuple[int, ...], **limits: float
+) -> np.ndarray:
+    """One sequence of an array that `zarr_arrays.put_sequences` wrote, float32 of `shape`.
+
+    `below`: where its group lies in the folder, ending in "/"; only the shard that holds the sequence is checked and
+    read. `limits`: `low` and `high` of its numbers. Raises InputError where it is damaged.
+    """
+    files.check(f"{below}{name}/zarr.json")
+    with files.reading():
+        files.check(f"{below}{name}/c/{index // arrays.rows_a_file(name)}/")
+        return arrays.row(name, index, shape, kinds="f", **limits).astype(np.float32)
+
+
 def stored_iq(
     files: CheckedFolder, arrays: ZarrFolder, below: str, index: int, shape: tuple[int, ...], scale: float
 ) -> np.ndarray:
-    """The signals of one sequence of a group of sequences, complex64 (frame, range, doppler, antenna), in sqrt(mW).
-
-    `below`: where the group lies in the folder, ending in "/"; only the shard that holds the sequence is checked and
-    read. Raises InputError where it is damaged.
-    """
-    files.check(f"{below}iq/zarr.json")
-    with files.reading():
-        files.check(f"{below}iq/c/{index // arrays.rows_a_file('iq')}/")
-        pairs = arrays.row("iq", index, (*shape, 2), kinds="f").astype(np.float32)
+    """The signals of one sequence of a group, complex64 (frame, range, doppler, antenna), in sqrt(mW)."""
+    pairs = stored_sequence(files, arrays, below, "iq", index, (*shape, 2))
     return np.ascontiguousarray(pairs * np.float32(scale)).view(np.complex64)[..., 0]

@@ -27,13 +27,13 @@ import numpy as np
 from mmweaver.core.checksums import check_file
 from mmweaver.core.errors import InputError
 from mmweaver.core.radar_config import RadarConfig
-from mmweaver.core.records import CameraIntrinsics, ClassMask, CubeGrid, RadarCube, RgbdPhoto
+from mmweaver.core.records import CubeGrid, RadarCube, RgbdPhoto
 from mmweaver.core.safe_files.safe_text import parse_json, read_text
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
 from mmweaver.datasets.checked_folder import CheckedFolder, stored_iq
 from mmweaver.datasets.dataset_plan import PEOPLE_HEIGHT_M, check_plan, command_of, room_name
 from mmweaver.datasets.geometry_store import GEOMETRY, StoredGeometry
-from mmweaver.scene.photo.camera_file import camera_numbers
+from mmweaver.datasets.photo_arrays import stored_photo
 
 PLAN_FILE = "plan.json"
 FARTHEST_M, FASTEST_MPS = 1000.0, 1000.0  # of joints and depths; what is beyond is damage
@@ -173,26 +173,10 @@ def _stored_room(files: CheckedFolder, group: ZarrFolder, config: RadarConfig, d
         group.check_shape(name, (len(values),), one_each)
     return StoredRoom(
         files=files, kind=group.attr("kind", str), layout=group.attr("layout", int),
-        lighting=group.attr("lighting", str), photo=_photo(group),
+        lighting=group.attr("lighting", str), photo=stored_photo(group),
         static=(static[..., 0] + 1j * static[..., 1]).astype(np.complex64), joints_m=joints_m,
         joint_velocity_mps=group.numbers("joint_velocity_mps", pose, kinds="f", low=-FASTEST_MPS, high=FASTEST_MPS),
         person=group.numbers(people, one_each, kinds="iu", low=0, high=len(PEOPLE_HEIGHT_M) - 1), **words,
         seed=group.numbers("seed", one_each, kinds="iu", low=0), config=config,
         geometry=StoredGeometry(files=files, config=config) if group.has_group(GEOMETRY) else None, device=device,
     )  # fmt: skip
-
-
-def _photo(group: ZarrFolder) -> RgbdPhoto:
-    rgb = group.numbers("photo_rgb", ("row", "column", 3), kinds="u", high=255).astype(np.uint8)
-    depth_m = group.numbers("photo_depth_m", ("row", "column"), kinds="f", low=0, high=FARTHEST_M, nan=True)
-    names, classes = group.words("class_names"), None
-    if names:
-        index = group.numbers("photo_class", ("row", "column"), kinds="u", high=len(names) - 1)
-        classes = ClassMask(index=index.astype(np.uint8), names=names)
-    height, width = depth_m.shape
-    numbers = camera_numbers(group.attr("camera", dict), group.path)
-    camera = CameraIntrinsics(
-        fx=numbers["fx"], fy=numbers["fy"], cx=numbers["cx"], cy=numbers["cy"],
-        width=round(numbers.get("width", width)), height=round(numbers.get("height", height)),
-    )  # fmt: skip
-    return RgbdPhoto(rgb=rgb, depth_m=depth_m.astype(np.float64), intrinsics=camera, classes=classes)

@@ -5,7 +5,6 @@ follows from plan.json, which the first process creates; each completes what is 
 """
 
 import hashlib
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +23,7 @@ from mmweaver.core.staging import is_staged, remove, staging_path, sync, sync_tr
 from mmweaver.datasets.dataset_plan import ACTIVITIES, RADAR_FILE, DatasetPlan
 from mmweaver.datasets.dataset_store import PLAN_FILE, is_done
 from mmweaver.datasets.geometry_store import write_geometry
+from mmweaver.datasets.photo_arrays import put_photo
 from mmweaver.datasets.room_generation import GeneratedRoom, GeneratedSequence, TracedSequence
 from mmweaver.datasets.zarr_arrays import packed_iq, put_array, put_texts, write_iq, zarr_module
 
@@ -150,7 +150,8 @@ def write_room(folder: Path, generated: GeneratedRoom) -> None:
     with staged_folder(resolved(folder) / generated.spec.name, keep_existing=True) as partial:
         group = zarr_module().open_group(partial, mode="w")
         _put_sequences(group, generated)
-        _put_photo(group, generated)
+        put_photo(group, generated.photo)
+        _put_clutter(group, generated.static)
         group.attrs.update(_attributes(generated))
 
 
@@ -177,22 +178,15 @@ def _put_sequences(group: Any, generated: GeneratedRoom) -> None:
         put_texts(group, "split", [s.spec.split for s in sequences])
 
 
-def _put_photo(group: Any, generated: GeneratedRoom) -> None:
-    photo, static = generated.photo, generated.static
-    put_array(group, "photo_rgb", photo.rgb, ("row", "column", "colour"))
-    put_array(group, "photo_depth_m", photo.depth_m.astype(np.float32), ("row", "column"))
-    if photo.classes is not None:
-        put_array(group, "photo_class", photo.classes.index, ("row", "column"))
+def _put_clutter(group: Any, static: np.ndarray) -> None:
     put_array(group, "empty_iq", np.stack([np.real(static), np.imag(static)], -1), ("range", "antenna", "part"))
 
 
 def _attributes(generated: GeneratedRoom) -> dict[str, Any]:
-    spec, photo, sequences = generated.spec, generated.photo, generated.sequences
+    spec, sequences = generated.spec, generated.sequences
     return {
         "kind": spec.kind, "layout": spec.layout, "lighting": spec.lighting, "checksums": SUMS_FILE,
         "activity": [s.spec.activity for s in sequences], "text": [s.spec.text for s in sequences],
         "split": [s.spec.split for s in sequences], "index": [s.spec.index for s in sequences],
         "refused": [list(entry) for entry in generated.refused],
-        "camera": asdict(photo.intrinsics),
-        "class_names": list(photo.classes.names) if photo.classes else [],
     }  # fmt: skip

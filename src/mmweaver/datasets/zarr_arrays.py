@@ -29,9 +29,9 @@ def zarr_module() -> Any:
 
 
 def put_array(
-    group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...], *, packing: Any = None, sequences: int = 0
-) -> None:
-    """Writes one array as one chunk, or, with `sequences`, one chunk a sequence in shards of at most so many.
+    group: Any, name: str, values: np.ndarray, dimensions: tuple[str, ...], *, packing: Any = None
+) -> None:  # fmt: skip
+    """Writes one array as one chunk.
 
     `packing`: the codec of its bytes (default Zstandard). Chunks of nothing but zeros are written too, so that a file
     that is missing is damage, which Zarr itself takes for zeros.
@@ -39,42 +39,53 @@ def put_array(
     from zarr.codecs import Crc32cCodec, ZstdCodec
 
     values = np.ascontiguousarray(values)
-    options: dict[str, Any] = {"chunks": values.shape if values.size else (1,) * values.ndim}
-    if sequences:
-        rest = values.shape[1:]
-        options = {"chunks": (1, *rest), "shards": (min(sequences, len(values)), *rest)}
     array = group.create_array(
         name, shape=values.shape, dtype=values.dtype, dimension_names=dimensions, overwrite=True,
-        compressors=[packing or ZstdCodec(), Crc32cCodec()], config={"write_empty_chunks": True}, **options,
+        compressors=[packing or ZstdCodec(), Crc32cCodec()], config={"write_empty_chunks": True},
+        chunks=values.shape if values.size else (1,) * values.ndim,
     )  # fmt: skip
     array[...] = values
+    _put_unit(array, name)
+
+
+def _put_unit(array: Any, name: str) -> None:
     unit = UNITS.get(name, "m" if name.endswith("_m") else "")
     if unit:
         array.attrs["units"] = unit
 
 
-def write_iq(group: Any, kind: str, shape: tuple[int, ...], sequences: Iterable[np.ndarray]) -> None:
-    """Writes the signals of `shape` (sequence, frame, range, doppler, antenna, part), one sequence after another.
+def put_sequences(
+    group: Any, name: str, kind: str, shape: tuple[int, ...], dimensions: tuple[str, ...],
+    sequences: Iterable[np.ndarray], *, packing: Sequence[Any] = (),
+) -> None:  # fmt: skip
+    """Writes an array of `shape` (sequence, ...) and number type `kind`, one sequence after another.
 
-    A sequence is a chunk, without compression, so that its size says nothing of its content; chunks are in shards of
-    at most SHARD_BYTES. `kind`: float16 or float32.
+    A sequence is a chunk, packed by the codecs `packing`; chunks are in shards of at most SHARD_BYTES.
     """
     from zarr.codecs import Crc32cCodec
 
     bytes_each = int(np.prod(shape[1:])) * np.dtype(kind).itemsize
     in_shard = min(max(1, SHARD_BYTES // bytes_each), shape[0])
     array = group.create_array(
-        "iq", shape=shape, chunks=(1, *shape[1:]), shards=(in_shard, *shape[1:]), dtype=kind, overwrite=True,
-        dimension_names=IQ_DIMENSIONS, compressors=[Crc32cCodec()], config={"write_empty_chunks": True},
+        name, shape=shape, chunks=(1, *shape[1:]), shards=(in_shard, *shape[1:]), dtype=kind, overwrite=True,
+        dimension_names=dimensions, compressors=[*packing, Crc32cCodec()], config={"write_empty_chunks": True},
     )  # fmt: skip
-    array.attrs["units"] = UNITS["iq"]
-    array.attrs["part_names"] = ["in-phase", "quadrature"]
+    _put_unit(array, name)
     kept: list[np.ndarray] = []
     for number, values in enumerate(sequences, start=1):
         kept.append(values)
         if len(kept) == in_shard or number == shape[0]:
             array[number - len(kept) : number] = np.stack(kept)
             kept = []
+
+
+def write_iq(group: Any, kind: str, shape: tuple[int, ...], sequences: Iterable[np.ndarray]) -> None:
+    """Writes the signals of `shape` (sequence, frame, range, doppler, antenna, part) as float16 or float32.
+
+    Without compression, so that the size of a sequence says nothing of its content.
+    """
+    put_sequences(group, "iq", kind, shape, IQ_DIMENSIONS, sequences)
+    group["iq"].attrs["part_names"] = ["in-phase", "quadrature"]
 
 
 def packed_iq(cube: RadarCube, kind: str = "float16") -> tuple[np.ndarray, float]:

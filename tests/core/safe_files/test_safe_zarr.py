@@ -12,16 +12,17 @@ import zarr
 
 from mmweaver.core.errors import InputError
 from mmweaver.core.safe_files.safe_zarr import ZarrFolder, open_zarr
-from mmweaver.datasets.zarr_arrays import put_array
+from mmweaver.datasets.zarr_arrays import put_array, put_sequences
 
 PLACES = np.arange(60.0).reshape(4, 5, 3)
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Path:
+def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr("mmweaver.datasets.zarr_arrays.SHARD_BYTES", 60)  # two of these sequences
     group = zarr.open_group(tmp_path / "set", mode="w")
     put_array(group, "place_m", PLACES, ("sequence", "frame", "axis"))
-    put_array(group, "iq", PLACES.astype("f2"), ("sequence", "frame", "axis"), sequences=2)
+    put_sequences(group, "iq", "float16", PLACES.shape, ("sequence", "frame", "axis"), PLACES.astype("f2"))
     put_array(group, "seed", np.arange(4), ("sequence",))
     group.attrs.update({"kind": "office", "text": ["a", "b"]})
     return tmp_path / "set"
