@@ -45,6 +45,16 @@ class SignalDiffusion(nn.Module):
         self.blocks = nn.ModuleList(_Block() for _ in range(BLOCKS))
         nn.init.zeros_(self.leave.weight)
         nn.init.zeros_(self.leave.bias)
+        self.register_buffer("unit_log", torch.zeros(config.num_range_bins))
+
+    @property
+    def unit(self) -> Tensor:
+        """What signals are divided by in each range, (range,), sqrt(mW)."""
+        return 10.0**self.unit_log
+
+    def set_unit(self, unit: Tensor) -> None:
+        """Sets it; its logarithm is what is stored, which half precision holds to a percent."""
+        self.unit_log = unit.log10()
 
     def forward(self, noisy: Tensor, time: Tensor, motion: Tensor, picture: Tensor) -> Tensor:
         """Complex (frame, loop, range, antenna) at times (frame,) -> the same without noise and window."""

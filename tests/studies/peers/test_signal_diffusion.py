@@ -1,8 +1,12 @@
 """The small diffusion: its ends, and that a network which knew the signal would lead there."""
 
+from pathlib import Path
+
 import torch
 
 from mmweaver.core.presets import AWR1843
+from mmweaver.models.weights import WeightsCard, save_weights
+from studies.peers.diffusion_training import RECIPE, load_diffusion
 from studies.peers.signal_diffusion import SignalDiffusion, levels, mixed, sampled
 
 
@@ -27,3 +31,15 @@ def test_sampling_ends_at_what_the_network_restores():
 
 def test_it_has_one_to_two_million_parameters():
     assert 1e6 < sum(parameter.numel() for parameter in SignalDiffusion(AWR1843).parameters()) < 2e6
+
+
+def test_its_weights_hold_the_unit_of_signals_in_half_precision(tmp_path: Path):
+    unit = torch.logspace(-7, -4, 64)
+    network = SignalDiffusion(AWR1843)
+    network.set_unit(unit)
+    about = {"licence": "MIT", "dataset_sha256": "", "radar": "awr1843", "steps": 1, "seed": 0, "validation_loss": 1.0}
+    card = WeightsCard(recipe=RECIPE, mmweaver_version="0", **about)
+    save_weights(tmp_path / "weights.safetensors", network, card)
+    again = SignalDiffusion(AWR1843)
+    load_diffusion(tmp_path / "weights.safetensors", again)
+    assert torch.allclose(again.unit, unit, rtol=0.02)
