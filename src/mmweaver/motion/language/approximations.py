@@ -62,6 +62,11 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
         (r"\b(?:dodg|evad|avoid|duck|block|parr)(?:es|s|ing|ies|ying) (?:an? |the |some )?(?:[a-z]+ )?(?:punch|hit|blow|attack|kick|strike)(?:es|s)?\b(?: in a (?:box )?fight)?(?: by leaning)?",
          "crouches ", f"{_AS} crouching"),
         (rf"\bbend(?:s|ing) {_OWN}knees?\b(?: slightly| a (?:little )?bit| deeply)?|\bknee[- ]bend(?:s|ing)?\b", "squats", "bent knees are shown as a squat"),
+        (rf"\b(?:rotat|swirl|circl|roll|spin)(?:e?s|ing) (?:them\b|{_OWN}(?:{_SIDE} )?(?:arms?|shoulders)\b)(?: (?:a?round|in circles|forwards?|backwards?))*", "circles the arms", f"{_AS} circling the arms"),
+        (rf"\b(?:rotat|swirl|circl|roll|spin|turn)(?:e?s|ing) {_OWN}({_SIDE} )?(?:hands?|wrists?|forearms?)\b(?: (?:a?round|in circles))*", r"stirs the soup with the \1 hand", "a turning hand is shown as stirring"),
+        (rf"\btap(?:s|ping) {_OWN}({_SIDE} )?(?:foot|feet|toes|heels?)\b(?: on the (?:floor|ground))?", r"stamps with the \1 foot", "a tapping foot is shown as stamping"),
+        (rf"\bswing(?:s|ing) {_OWN}({_SIDE} )?leg\b(?: (?:back and forth|forwards? and backwards?|around|in circles?|out|forwards?))*", r"raises the \1 leg", "a swinging leg is shown as a leg that is raised"),
+        (rf"\b(?:put|plac|set)(?:s|es|ting|ing) (?:it|them) (?:back(?! down| to)|on|onto|in|into) (?!(?:the )?(?:floor|ground)\b)(?:{_OWN}[a-z]+(?: side)?)?(?=$|[ ,.])", "reaches for something", "is shown as reaching out with a hand"),
         (rf"\bmov(?:es|ing) (?:his or her |{_OWN})({_SIDE} )?(?:hands?|arms?)(?: [a-z]+){{0,7}}? (?:in )?(?:an? |the form of an? )?(?:[a-z-]+ )?circles?\b", r"stirs the soup with the \1 hand", "a circling hand is shown as stirring"),
     )),
     *(Approximation(pattern, instead, how) for pattern, instead, how in (
@@ -330,7 +335,7 @@ APPROXIMATIONS: tuple[Approximation, ...] = (
          r"(?:pushed|shoved|hit|puched)[a-z ]*", "", "what it looks like is not shown"),
         (r"\blike (?:an? )?(?:crab|robot|model|soldier|bodybuilder|wings?|bird|plane|airplane|duck|penguin|ape|monkey|old man|stork|chicken|dog|cat|boxer|bodybuilder|dancer)s?\b|\bcrab-?wise\b", "",
          "whom it resembles is not shown"),
-        (r"\b(?:jump|hop)(s|ing)? (?:up )?(?:and |while )(?:turn(?:s|ing)?|rotat(?:es|ing)|spin(?:s|ning)?)\b", "jumps, then turns",
+        (r"\b(?:jump|hop)(s|ing)? (?:up )?(?:and |while )(?:turn(?:s|ing)?|rotat(?:es|ing)|spin(?:s|ning)?)\b(?! \d)", "jumps, then turns",
          "jump and turn are shown one after the other"),
         # nothing that moves
         (r"\b(?:laugh|sing|smil|grin|cr(?:y|i)|whistl|shout|scream|talk|speak|chat|listen|think|hum|snor|blink|wink|sniff|rest|relax|"

@@ -15,6 +15,7 @@ from mmweaver.motion.language.lexicon import (
     FILLERS,
     FLOOR_VERBS,
     LEG_VERBS,
+    MANNERS,
     MANY,
     NEGATIONS,
     NOT_HUMAN,
@@ -24,6 +25,7 @@ from mmweaver.motion.language.lexicon import (
     OWN,
     RADAR,
     SEATS,
+    SIZES,
     SPEEDS,
     STEPPING,
     TARGETS,
@@ -35,7 +37,7 @@ from mmweaver.motion.language.places import MARK as PLACE
 from mmweaver.motion.language.places import Place, place_of
 from mmweaver.motion.language.plan import Step
 from mmweaver.motion.language.suggestions import not_known
-from mmweaver.motion.language.verb_steps import GAITS, LEGS, step_of
+from mmweaver.motion.language.verb_steps import GAITS, LEGS, facing_of, step_of, target_of
 from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import Word
 
@@ -95,6 +97,9 @@ class ParsedClause:
             clauses=(*last.clauses, more.number),
             place=last.place or about.place,
             distance_m=last.distance_m or about.distance_m,
+            target=last.target or (target_of(more.words) if last.lower in ("walk", "jog") else ""),
+            facing=last.facing or facing_of(more.words),
+            foot=last.foot or about.foot,
         )
 
     def go_on(self, more: "ParsedClause") -> None:
@@ -309,6 +314,8 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
         raise InputError(not_known(clause.text, "move"))
     if {word.text for word in words} & {"uppercut", "uppercuts", "hook", "hooks"}:
         parsed.approximate(f"the kind of punch in {clause.text!r} is not distinguished")
+    if moved is not None and {word.text for word in words} & ARMS and sum(word.is_activity for word in words):
+        parsed.approximate(f"how the arms move in {clause.text!r} is not shown")
     odd = _unknown_manner(words)
     if odd:
         raise InputError(not_known(clause.text, odd))
@@ -316,9 +323,18 @@ def _note_unknown(words: list[Word], clause: Clause, parsed: ParsedClause, *, ha
         doing = (text.endswith("ing") and len(text) > 4) or (text.endswith("ed") and len(text) > 3)
         if doing and text not in NOUNS_LIKE_VERBS:
             raise InputError(not_known(clause.text, text))
+    subject = _subject(words) if clause.number == 0 else ""
+    unknown = [text for text in unknown if text not in (subject, "if")]
     if unknown:
-        listed = ", ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
-        parsed.approximate(f"of the text, {listed} says nothing that can be acted out and was ignored")
+        listed = " and ".join(repr(text.replace("_", " ").replace("-", " ")) for text in unknown)
+        parsed.approximate(f"{listed} {'is' if len(unknown) == 1 else 'are'} not shown")
+
+
+def _subject(words: list[Word]) -> str:
+    """The noun before the first verb, if the clause begins with one: 'burglar' of 'a burglar tiptoes'."""
+    if len(words) > 2 and words[0].text in ("a", "an", "the") and words[2].is_verb and not words[1].is_verb:
+        return words[1].text
+    return ""
 
 
 def _unknown_manner(words: list[Word]) -> str:
@@ -345,6 +361,8 @@ def is_known(word: Word) -> bool:
     return (
         word.is_verb
         or text in FILLERS
+        or text in MANNERS
+        or text in SIZES
         or text in DIRECTIONS
         or text in SPEEDS
         or text in NUMBERS
@@ -357,7 +375,7 @@ def is_known(word: Word) -> bool:
         or text in TARGETS
         or text in LEGS
         or text.startswith(("arc", "deg", "from_", "on_", "fraction_", "rounds_"))
-        or text in ("onback", "onbelly", "highkick", "frontlunge")
+        or text in ("onback", "onbelly", "highkick", "frontlunge", "reach_high")
         or text.replace(".", "").isdigit()
         or len(text) == 1
     )

@@ -8,8 +8,9 @@ _SIDE = r"((?:left |right )?)"
 _ARM = r"(arms?|hands?)"
 _UP = r"(?:straight up|all the way up|up(?:wards?)?)"
 _STAYS = (
-    r"(?:,? (?:and|then) (?:it |they |(?:keeps|holds|leaves) (?:it|them) )?(?:stays?|there|up|up there|raised|in place)?"
-    r"(?: ?(?:straight )?(?:above|over) (?:the|his|her|their) heads?)?)"
+    r"(?:,? (?:and|then) (?:it |they |(?:keeps|holds|leaves) (?:it|them) )?(?:stays?|there|up there|up|raised|in place)"
+    r"(?: (?:up|there))?(?: ?(?:straight )?(?:above|over) (?:the|his|her|their) heads?)?"
+    r"|,? (?:and|then) (?:keeps|holds|leaves) (?:it|them)(?: ?(?:straight )?(?:above|over) (?:the|his|her|their) heads?))"
 )
 _OF_LEG = r"(?:with|on|to|onto) (?:the |his |her |their )?(left|right)(?: leg| foot| side)?"
 _LUNGE = r"(?:side|lateral|sideways?)[- ]?lunge"
@@ -58,7 +59,7 @@ GESTURE_PHRASES: tuple[tuple[str, str], ...] = (
     (r"\b(?:the |his |her |its )?(left|right) (?:hand|palm) covers (?:the|his|her) mouth\b", r" yawns \1 hand "),
     (r"\b(?:the |his |her |its )?(?:straight )?(left|right) (?:arm|hand) draws ([^,.;]*\b(?:circle|z))\b",
      r" draws \2 with the \1 arm "),
-    (rf"\b(?:lifts?|lifting|rais(?:es|ing)) {_OWN}{_SIDE}{_ARM} {_UP}(?:{_STAYS})\b", r" raise_and_hold \1 \2 "),
+    (rf"\b(?:lifts?|lifting|rais(?:es|ing)) {_OWN}{_SIDE}{_ARM} {_UP}(?:{_STAYS})?\b", r" raise_and_hold \1 \2 "),
     (rf"\b(?:lifts?|lifting|rais(?:es|ing)) {_OWN}{_SIDE}{_ARM} straight up(?! and down)\b", r" raise_and_hold \1 \2 "),
     (rf"\b(?:lowers?|lowering|drops|lets) {_OWN}{_SIDE}{_ARM} (?:from above (?:the|his|her) head )?(?:fall |drop |sink )?"
      r"(?:straight )?down(?: and (?:it|they) stays? down)?\b", r" lower_arm \1 \2 "),

@@ -195,33 +195,54 @@ FILLERS = words_in(
     had will would can could should may might shall and or with in on at to for from of by into onto over_to up
     down off out near next beside behind between through across along until till during so very really quite
     fairly rather just only then now still while bit little some any each every per all again together himself
-    herself themselves itself myself person man woman human guy lady boy girl user subject child kid adult someone
-    somebody he she it they i you who which figure individual participant patient gentleman male female actor
-    player student tenant resident speaker character young old elderly tall short big small large long wide medium
-    narrow humans normal
-    normally regular average casual casually comfortably comfortable relaxed happily happy sad sadly
-    nervously angrily politely friendly confidently quietly silently steadily steady natural naturally simply
-    repeatedly continuously constantly several few many multiple times time speed pace fashion manner way style
-    motion movement movements moderate moderately usual usually side direction line room place position spot area
-    middle centre center front end start beginning point distance wall window door table desk kitchen living
-    office bedroom corridor hallway lab tv television plant shelf hello goodbye bye hi greeting friend attention
-    audience help air high higher overhead above chest mouth lips water coffee tea juice beer wine milk soda cup
-    glass mug bottle straw refreshing hot cold warm glass_of body upright straight_up feet deep deeply low fully
-    halfway half full once more round rhythm rhythmically beat loudly loud enthusiastic excited excitedly proudly
-    cheerfully joyfully smoothly bag combo combination hooks hook uppercut uppercuts jabs straight_punch opponent
-    invisible imaginary shadow where when as because order what how here clearly visibly slightly somewhat lightly
-    hard strongly strong firmly stationary motionless motionlessly immobile perfectly completely moment second
-    seconds minute exercise exercises workout gym set sets repetitions reps fitness jacks steps pairs large-ish
-    meters metres meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them
-    something anything first about whole complete successive consecutive row close someone's person's man's user's
-    woman's arm's drunk drunken sharp tight careful recovery awkward rough starting ending performing doing object
-    thing things ball box book soup pot surface board plate food meal dish bowl handle screen keyboard computer
-    laptop cloth whiteboard blackboard letter note pen apple sandwich breakfast lunch dinner rope cart plane waist
-    breast breast-high chest-high hair teeth sink mirror newspaper magazine mail email towards_it it's
-    reading_glasses tempo pose posture stance kind sort type_of lot music song hall quick-ish sudden suddenly
-    normal-speed relatively tiny huge bigger larger smaller greater instrument virtual fridge cupboard lamp shoes
-    toilet bath shower bathroom garden street path track route trajectory consecutively successively subsequently
-    than meanwhile both-handed right-handed right-hand
+    herself themselves itself myself person man woman human guy lady boy girl user subject child kid adult
+    someone somebody he she it they i you who which figure individual participant patient gentleman male female
+    actor player student tenant resident speaker character young old elderly tall short big small large long
+    wide medium narrow humans normal normally regular average casual casually comfortably comfortable relaxed
+    quietly silently steadily steady natural naturally simply repeatedly continuously constantly several few
+    many multiple times time speed pace fashion manner way style motion movement movements moderate moderately
+    usual usually side direction line room place position spot area middle centre center front end start
+    beginning point distance wall window door table desk kitchen living office bedroom corridor hallway lab tv
+    television plant shelf hello goodbye bye hi greeting friend attention audience help air high higher overhead
+    above chest mouth lips water coffee tea juice beer wine milk soda cup glass mug bottle straw refreshing hot
+    cold warm glass_of body upright straight_up feet deep deeply low fully halfway half full once more round
+    rhythm beat smoothly bag combo combination hooks hook uppercut uppercuts jabs straight_punch opponent
+    invisible imaginary shadow where when as because order what how here clearly visibly slightly somewhat
+    lightly stationary motionless motionlessly immobile perfectly completely moment second seconds minute
+    exercise exercises workout gym set sets repetitions reps fitness jacks steps pairs large-ish meters metres
+    meter metre m cm width apart shirt jacket hat red blue black white green please kindly him them something
+    anything first about whole complete successive consecutive row close someone's person's man's user's woman's
+    arm's drunk drunken tight careful recovery starting ending performing doing object thing things ball box
+    book soup pot surface board plate food meal dish bowl handle screen keyboard computer laptop cloth
+    whiteboard blackboard letter note pen apple sandwich breakfast lunch dinner rope cart plane waist breast
+    breast-high chest-high hair teeth sink mirror newspaper magazine mail email towards_it it's reading_glasses
+    tempo pose posture stance kind sort type_of lot music song hall quick-ish normal-speed relatively tiny huge
+    bigger larger smaller greater instrument virtual fridge cupboard lamp shoes toilet bath shower bathroom
+    garden street path track route trajectory consecutively successively subsequently than meanwhile both-handed
+    right-handed right-hand floor ground sides aside suddenly sudden past toward beneath
+    """
+)
+# How something is done, in ways that no movement of the library shows: known, and said to be left out.
+MANNERS = words_in(
+    """
+    happily happy sad sadly nervously angrily politely friendly confidently proudly cheerfully joyfully excited
+    excitedly enthusiastic loudly loud hard strongly strong firmly awkward rough sharp rhythmically sudden
+    suddenly joyful cheerful furiously anxiously anxious nervous angry calm bored boredly tired tiredly
+    exhausted elegantly gracefully clumsily clumsy stiffly stiff aggressively aggressive dramatically wildly
+    hesitantly tentatively playfully sternly forcefully powerfully heavily
+    """
+)
+# Sizes of a movement.
+SIZES = words_in(
+    """
+    big large small little tiny huge long short wide narrow high deep low bigger larger smaller greater giant
+    mini exaggerated tight
+    """
+)
+# Before a place that a walk passes or goes to.
+PASSED = words_in(
+    """
+    to towards toward between through across along behind past into onto around under beneath out from beside
     """
 )
 # Verbs with which "step" or "steps" is a noun.
@@ -270,5 +291,19 @@ NOUNS_LIKE_VERBS = words_in(
 )
 # What the spelling correction knows in addition to verbs.
 ALL_WORDS = frozenset().union(
-    ARMS, BOTH, DIRECTIONS, FILLERS, MANY, NEGATIONS, NOT_HUMAN, NUMBERS, OTHER_MOVEMENT, RADAR, SEATS, SPEEDS, TARGETS
+    ARMS,
+    BOTH,
+    DIRECTIONS,
+    FILLERS,
+    MANNERS,
+    MANY,
+    NEGATIONS,
+    NOT_HUMAN,
+    NUMBERS,
+    OTHER_MOVEMENT,
+    RADAR,
+    SEATS,
+    SIZES,
+    SPEEDS,
+    TARGETS,
 )

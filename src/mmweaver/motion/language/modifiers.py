@@ -135,7 +135,8 @@ def _token(about: Step, text: str, texts: set[str]) -> Step:
         return replace(about, style="back" if text == "onback" else "front")
     if text == "lookdown":
         return replace(about, facing="down")
-    return replace(about, style={"highkick": "high", "frontlunge": "frontlunge"}.get(text, about.style))
+    styles = {"highkick": "high", "reach_high": "high", "frontlunge": "frontlunge"}
+    return replace(about, style=styles.get(text, about.style))
 
 
 _PUSHED_FROM = {

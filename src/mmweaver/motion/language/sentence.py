@@ -9,9 +9,9 @@ from mmweaver.motion.language.activities import BY_KEY
 from mmweaver.motion.language.approximations import with_approximations
 from mmweaver.motion.language.clause_parser import ParsedClause, parse_clause
 from mmweaver.motion.language.clauses import split_clauses
+from mmweaver.motion.language.coverage import not_shown, sizes_not_shown
 from mmweaver.motion.language.described_person import described_person
 from mmweaver.motion.language.left_out import parse_with_less
-from mmweaver.motion.language.lost_words import lost_words
 from mmweaver.motion.language.modifiers import OPPOSITE
 from mmweaver.motion.language.normal_forms import in_normal_form
 from mmweaver.motion.language.places import room_of
@@ -85,7 +85,7 @@ def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPla
     text, notes = correct_spelling(text)
     words = words_of(text)
     _check_turning_jumps(text, words)
-    parsed_clauses, records = _parsed_clauses(words, notes, leave_out=leave_out)
+    parsed_clauses, every_clause, records = _parsed_clauses(words, notes, leave_out=leave_out)
     if not parsed_clauses:
         raise InputError(not_known(text.strip()) if text.strip() else "no activity is named")
     sequence = _in_sequence(parsed_clauses, one_by_one=leave_out)
@@ -95,7 +95,7 @@ def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPla
         if before.lower == "raise_leg" and step.lower in ("stomp", "kick") and not step.foot:
             sequence[number] = replace(step, foot=before.foot)
     steps = carried_over(with_postures(sequence))
-    _note_lost_words(parsed_clauses, steps, records, notes)
+    _note_what_is_not_shown(given_text, every_clause, steps, records, notes)
     if len(steps) > MOST_STEPS:
         raise InputError(f"the text asks for {len(steps)} movements, {MOST_STEPS} are allowed; say fewer")
     room = room_of(given_text)
@@ -112,15 +112,17 @@ def _parsed(text: str, given_text: str, *, leave_out: bool = False) -> MotionPla
 
 def _parsed_clauses(
     words: list[Word], notes: list[str], *, leave_out: bool
-) -> tuple[list[ParsedClause], dict[int, ClauseRecord]]:
-    """The clauses that name an activity, and a record of every clause by its number."""
+) -> tuple[list[ParsedClause], list[ParsedClause], dict[int, ClauseRecord]]:
+    """The clauses that name an activity, all clauses, and a record of every clause by its number."""
     found: list[ParsedClause] = []
+    every_clause: list[ParsedClause] = []
     records: dict[int, ClauseRecord] = {}
     ahead: ParsedClause | None = None  # modifiers before the first verb: "is carefully and slowly walking"
     for clause in split_clauses(words):
         parsed = parse_with_less(clause, is_first=not found) if leave_out else parse_clause(clause)
         if not parsed.steps and not parsed.unknown and parsed.approximations and not found:
             parsed.steps, parsed.forms = [Step(clause=clause.text, clauses=(clause.number,))], ["s"]
+        every_clause.append(parsed)
         notes += parsed.notes
         status = APPROXIMATED if parsed.approximations else DONE
         records[clause.number] = ClauseRecord(clause.text, status, "; ".join(parsed.approximations))
@@ -131,25 +133,41 @@ def _parsed_clauses(
         if ahead is not None and found:
             found[0].absorb(ahead)
             ahead = None
-    return found, records
+    return found, every_clause, records
 
 
-def _note_lost_words(
-    parsed_clauses: list[ParsedClause], steps: list[Step], records: dict[int, ClauseRecord], notes: list[str]
+def _note_what_is_not_shown(
+    given_text: str,
+    every_clause: list[ParsedClause],
+    steps: list[Step],
+    records: dict[int, ClauseRecord],
+    notes: list[str],
 ) -> None:
-    """Says of each clause which sides, arms, circles and counts its steps do not have."""
-    for parsed in parsed_clauses:
+    """Says of each clause what its steps do not show; sizes are looked for in the sentence: phrases take them away."""
+
+    def say(number: int, how: str) -> None:
+        if how not in records[number].how:
+            records[number] = records[number].lowered_to(APPROXIMATED, how)
+            notes.append(f"of {records[number].clause!r}, {how}")
+
+    for parsed in every_clause:
         own = [step for step in steps if parsed.number in step.clauses]
-        for how in [*parsed.lost, *(lost_words(parsed.words, own) if own else ())]:
-            records[parsed.number] = records[parsed.number].lowered_to(APPROXIMATED, how)
-            notes.append(f"of {parsed.text!r}, {how}")
+        for how in [*parsed.lost, *not_shown(parsed.words, own)]:
+            say(parsed.number, how)
+    for how in sizes_not_shown(given_text, steps):
+        size = how.split("'")[1]
+        say(next((n for n, record in sorted(records.items()) if size in record.clause.split()), max(records)), how)
 
 
 def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
     """Adds a clause to those found, or what it says to the one before. Raises InputError for one that is not known."""
     if parsed.adds_nothing and found and parsed.link in ("and", "comma", "then", "while"):
         other = _other_limb(found[-1].steps[-1], parsed)
-        if other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
+        other_side = _with_the_other_one(found[-1].steps[-1], parsed)
+        if other is None and other_side is not None:
+            found[-1].steps.append(other_side)
+            found[-1].forms.append("s")
+        elif other is None and _goes_elsewhere(found[-1].steps[-1], parsed):
             found[-1].go_on(parsed)
         elif other is None and _once_more(found[-1].steps[-1], parsed):
             found[-1].steps.append(
@@ -160,6 +178,13 @@ def _take(parsed: ParsedClause, found: list[ParsedClause]) -> None:
             found[-1].absorb(parsed)
         else:
             found[-1].steps[-1] = overlay(found[-1].steps[-1], other)
+    elif parsed.steps and _says_more_of_it(found, parsed):
+        last, more = found[-1].steps[-1], parsed.steps[0]
+        found[-1].steps[-1] = replace(
+            last, hand=last.hand or more.hand, foot=last.foot or more.foot, count=last.count or more.count,
+            speed=last.speed or more.speed, direction=last.direction or more.direction,
+            clauses=(*last.clauses, parsed.number),
+        )  # fmt: skip
     elif parsed.steps and not _is_its_end(found, parsed):
         found.append(parsed)
     elif parsed.steps or (found and _needs_no_step([step for one in found for step in one.steps], parsed)):
@@ -185,6 +210,16 @@ def _once_more(last: Step, parsed: ParsedClause) -> bool:
     return parsed.link == "then" and on_the_spot and parsed.about.direction in OPPOSITE
 
 
+def _with_the_other_one(last: Step, parsed: ParsedClause) -> Step | None:
+    """The last movement again with the other hand or foot: 'punches with the left hand, then the right'."""
+    about, in_turn = parsed.about, parsed.link in ("then", "comma")
+    side = about.hand or about.foot or about.direction
+    if not in_turn or side not in OPPOSITE or OPPOSITE[side] not in (last.hand, last.foot) or last.moves:
+        return None
+    limb = {"hand": side} if last.hand else {"foot": side}
+    return replace(last, **limb, count=about.count or last.count, clauses=(parsed.number,))
+
+
 def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     """Whether a clause without a verb is the next part of a walk: 'walks two steps forwards, then two to the left'."""
     direction = parsed.about.direction
@@ -199,6 +234,20 @@ def _goes_elsewhere(last: Step, parsed: ParsedClause) -> bool:
     )
 
 
+def _says_more_of_it(found: list[ParsedClause], parsed: ParsedClause) -> bool:
+    """Whether a participle only describes the movement before it: 'is boxing, throwing punches with both hands'."""
+    participle = parsed.form == "ing" or (found and found[-1].form == "ing" and parsed.link == "comma")
+    if not found or not participle or parsed.link not in ("comma", "while") or len(parsed.steps) > 1:
+        return False
+    last, more = found[-1].steps[-1], parsed.steps[0]
+    same = (last.lower, last.upper) == (more.lower, more.upper)
+    alike = all(
+        not one or not other or one == other
+        for one, other in ((last.hand, more.hand), (last.foot, more.foot), (last.direction, more.direction))
+    )
+    return same and alike and not last.moves and last.lower not in JUMPING
+
+
 def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> bool:
     """Whether a clause only ends the movement before it: 'lifts a foot and puts it down', 'is pushed and stumbles'."""
     if not parsed_clauses:
@@ -210,7 +259,8 @@ def _is_its_end(parsed_clauses: list[ParsedClause], parsed: ParsedClause) -> boo
         parsed_clauses[-1].steps[-1] = replace(before, direction=now.direction, style=now.style)
     again = before.lower in JUMPING and now.lower in JUMPING and parsed.link == "comma" and parsed.form == "ing"
     described = again and not (now.direction or now.count or now.foot)  # "jumps to the left, jumping off both feet"
-    return described or (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
+    lifted = (before.lower, now.lower) == ("march", "raise_leg") and parsed.form == "ing"
+    return described or lifted or (before.lower, now.lower) in (("raise_leg", "put_down"), ("stumble", "stumble"))
 
 
 def _check_turning_jumps(text: str, words: list[Word]) -> None:
@@ -224,6 +274,8 @@ def _needs_no_step(steps: list[Step], parsed: ParsedClause) -> bool:
     before, words = steps[-1], set(parsed.unknown) | set(parsed.text.split())
     if before.upper in ("raise", "arms_out") or before.lower == "raise_leg":
         return bool(LOWERING & words)
+    if before.lower in (*JUMPING, "hop_one_leg"):
+        return bool({"land", "lands", "landing"} & words)
     return any(step.lower == "stumble" for step in steps) and bool(RECOVERING & words)
 
 

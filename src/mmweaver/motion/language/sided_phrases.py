@@ -7,12 +7,23 @@ _HAVING = r"(?:(?:has|have|having|with|holds?|holding|keeps?|keeping|puts?) )?"
 _TO_SIDES = r"(?:to (?:the|both|his|her|its|their) sides?|sideways|horizontal(?:ly)?)"
 _AHEAD = r"(?:forwards?|ahead|to the front|in front(?: of (?:him|her|it|them)(?:self)?)?)"
 
+_TRUNK = rf"(?:{_OWN}(?:upper body|torso|trunk|body) )?"
 _GAIT = r"walks?|walking|goes|going|runs?|running|jogs?|jogging|moves|moving|paces|pacing|strolls|strolling"
 _WIDE = r"(?: (?:small|big|large|wide|tight|narrow|full|whole|complete))*"
 
 # Replaced in this order, before `gesture_phrases.GESTURE_PHRASES`.
 SIDED_PHRASES: tuple[tuple[str, str], ...] = (
+    # the trunk
+    (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to |towards )?(?:the |his |her |its |their )?(left|right)(?: side)?\b", r" lean_over \1 "),
+    (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:over )?(?:to (?:the|one|both|each) sides?|from side to side|sideways|left and right|side to side)\b", " lean_over "),
+    (rf"\b(?:leans?|leaning|tilts?|tilting|bends|bending) {_TRUNK}(?:far |slightly |a bit )?back(?:wards?)?\b(?! (?:on|against|in|into|to|up))", " lean_over backwards "),
+    (rf"\b(?:twist|rotat|swivel|turn)(?:e?s|ing) {_OWN}(?:upper body|torso|trunk|waist|hips)\b(?: (?:from )?(?:side to side|left and right|left to right)| to (?:both sides|the left and (?:the )?right))?",
+     " twist_trunk "),
+    (rf"\btwist(?:s|ing)?(?: {_OWN}body)?(?: (?:from )?(?:side to side|left and right|left to right)| (?:at|from|in) the waist)", " twist_trunk "),
+    (rf"\btwist(?:s|ing) {_OWN}body\b", " twist_trunk "),
+    (r"\breach(?:es|ing)? (?:high )?(?:up(?:wards?)?|overhead)(?: high| in(?:to)? the air| overhead| above (?:the|his|her|their) head)?\b", " reach reach_high "),
     # circles and curves
+    (r"\bs[- ]shaped? (?=path|line|curve|way)|\bs shape\b", "s-shape "),
     (rf"\b({_GAIT})((?: [a-z]+ly)?)(?: in| along| around)? (two|three|four|five|[2-5]){_WIDE}(?: ({_CLOCK}|left|right))?{_WIDE} (?:circles|rounds)\b",
      r"\1\2 in_circle rounds_\3 \4 "),
     (rf"\b({_GAIT})((?: [a-z]+ly)?) ({_CLOCK})(?! (?:{_CLOCK}|circles?|rounds?|in|on|along|around|quarter|half|turn|a|\d))", r"\1\2 in a circle \3"),
@@ -73,5 +84,5 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     # the floor
     (r"\bup from the lying\b(?: (?:position|on the (?:ground|floor)))?", "up from lying"),
     (rf"\brais(?:es|ing) (?:up )?(?:on|to) {_OWN}knees\b", " kneels "),
-    (r"\bstay(?:s|ing) (?:lying|laid)\b(?: there)?", " lies "),
+    (r"\b(?:stay|remain)(?:s|ing) (?:(?:lying|laid)\b(?: there)?|(?:down )?on the (?:floor|ground))", " lies "),
 )  # fmt: skip

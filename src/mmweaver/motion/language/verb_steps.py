@@ -9,8 +9,9 @@ from mmweaver.motion.language.verbs import ACTIVITY_OF_LEMMA
 from mmweaver.motion.language.words import Word
 
 LEGS = frozenset(["leg", "legs", "knee", "knees", "foot", "feet", "left_leg", "right_leg"])
-ON_ONE_LEG = frozenset(["leg", "left_leg", "right_leg"])
+ON_ONE_LEG = frozenset(["leg", "foot", "left_leg", "right_leg"])
 SIDES = {"left": 1.0, "right": -1.0}
+AROUND = frozenset(["past", "behind", "between", "around", "along", "beside"])  # a seat that one does not walk to
 AIMED = ("point", "look_around")
 GAITS = ("walk", "jog", "limp", "stagger", "crawl")
 
@@ -38,7 +39,7 @@ def step_of(words: list[Word], at: int, about: Step, clause_text: str) -> Step:
     elif lower in ("stand", "sit", "squat", "jumping_jacks") or upper:
         step = _in_place(step, words)
     else:
-        step = replace(step, direction="", arc_deg=0.0, turn_deg=0.0, facing=_facing(words))
+        step = replace(step, direction="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
     return replace(step, on_feet=lower == "stand" and word.lemma == "stand")
 
 
@@ -67,11 +68,11 @@ def _arms_step(step: Step, texts: set[str]) -> Step:
 
 def _goes_somewhere(step: Step, words: list[Word]) -> bool:
     """Whether somebody who carries something walks: a direction or a place to go to is named."""
-    return bool(_target(words)) or step.direction not in ("", "spot", "backwards")
+    return bool(target_of(words)) or step.direction not in ("", "spot", "backwards")
 
 
 def _in_place(step: Step, words: list[Word]) -> Step:
-    facing = _facing(words)
+    facing = facing_of(words)
     if step.upper in AIMED:
         facing = step.facing or (step.direction if step.direction in SIDES else "")
         facing = facing or ("towards" if step.upper == "point" and {w.text for w in words} & RADAR else "")
@@ -95,12 +96,12 @@ def _going_step(step: Step, words: list[Word], at: int) -> Step:
         direction = "towards"
     if direction == "around":
         direction = "pacing"
-    if step.seat and direction in ("", "backwards", "forwards", "towards"):
+    if step.seat and direction in ("", "backwards", "forwards", "towards") and not texts & AROUND:
         direction = "seat"
-    target = _target(words)
+    target = target_of(words)
     if target and direction in ("towards", "forwards") and not texts & RADAR:
         direction = "" if not step.seat else "seat"
-    step = replace(step, direction=direction, hand="", target=target, facing=_facing(words))
+    step = replace(step, direction=direction, hand="", target=target, facing=facing_of(words))
     if ("sideways" in texts and step.lower == "walk") or _is_step_aside(step, words, at):
         return _sideways_step(replace(step, lower="sidestep"), words, at)
     if direction == "spot":
@@ -126,7 +127,7 @@ def _is_step_aside(step: Step, words: list[Word], at: int) -> bool:
     return noun and few and step.direction in SIDES and step.lower == "walk" and not step.arc_deg
 
 
-def _target(words: list[Word]) -> str:
+def target_of(words: list[Word]) -> str:
     """The landmark that a walk leads to: 'to the door', 'towards the open window', 'reaches the table'."""
     for i, word in enumerate(words):
         if word.text in ("to", "towards", "toward", "reaches", "reach", "at", "for", "approaches", "approaching"):
@@ -170,13 +171,13 @@ def _jumping_step(step: Step, words: list[Word], at: int) -> Step:
     if texts & ON_ONE_LEG:
         if step.direction not in ("", "spot"):
             raise InputError(f"{step.clause!r}: hopping on one leg is done on the spot only; leave the direction out")
-        return replace(step, lower="hop_one_leg", direction="", facing=_facing(words))
+        return replace(step, lower="hop_one_leg", direction="", facing=facing_of(words))
     if "sideways" in texts and step.direction in ("", "spot"):
         return replace(step, lower="leap", direction="right")
     if step.direction in ("left", "right", "forwards", "backwards", "back", "towards", "away"):
         direction = "backwards" if step.direction == "back" else step.direction
         return replace(step, lower="leap", direction=direction)
-    return replace(step, direction="", facing=_facing(words))
+    return replace(step, direction="", facing=facing_of(words))
 
 
 def _stumbling_step(step: Step, words: list[Word], at: int) -> Step:
@@ -220,7 +221,7 @@ def _leg_step(step: Step, words: list[Word], at: int) -> Step:
         return _going_step(replace(step, lower="walk"), words, at)
     if step.lower == "lunge" and step.direction in SIDES and not step.foot:
         raise InputError(f"{step.clause!r}: lunging is known ahead only; leave the side out")
-    return replace(step, direction="", hand="", arc_deg=0.0, turn_deg=0.0, facing=_facing(words))
+    return replace(step, direction="", hand="", arc_deg=0.0, turn_deg=0.0, facing=facing_of(words))
 
 
 def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
@@ -229,7 +230,14 @@ def _sideways_step(step: Step, words: list[Word], at: int) -> Step:
     return replace(step, hand="", arc_deg=0.0, turn_deg=0.0)
 
 
-def _facing(words: list[Word]) -> str:
+def _leaning_step(step: Step, words: list[Word], at: int) -> Step:
+    """To the own side that is named, or back; else to both sides in turn."""
+    direction = "backwards" if step.direction in ("back", "backwards") else step.direction
+    direction = direction if direction in (*SIDES, "backwards") else ""
+    return replace(step, direction=direction, hand="", foot="", arc_deg=0.0, turn_deg=0.0)
+
+
+def facing_of(words: list[Word]) -> str:
     """What the person faces during another activity: 'waves facing the radar', 'facing left'."""
     for i, word in enumerate(words):
         if word.text in ("facing", "faces"):
@@ -250,4 +258,5 @@ _BY_LOWER = {
     "fall_off": _falling_off_step,
     **dict.fromkeys(("kick", "stomp", "raise_leg", "one_leg", "lunge", "march"), _leg_step),
     "sidestep": _sideways_step,
+    "lean": _leaning_step,
 }

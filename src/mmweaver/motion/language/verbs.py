@@ -35,6 +35,8 @@ ACTIVITY_OF_LEMMA: dict[str, tuple[str, str]] = {
     **_all("stomp stamp", "stomp"),
     "bow": ("bow", ""),
     "bend": ("bend", ""),
+    "lean_over": ("lean", ""),
+    "twist_trunk": ("twist", ""),
     **_all("pick_up", "pick_up"),
     **_all("put_down", "put_down"),
     **_all("dance", "dance"),

@@ -58,6 +58,8 @@ POSTURES: Registry[Callable[[StepContext], Controls]] = Registry(
         ("raise_leg", legs.raising_leg),
         ("bow", bending.bowing),
         ("bend", bending.bending),
+        ("lean", bending.leaning),
+        ("twist", bending.twisting),
         ("pick_up", bending.picking_up),
         ("put_down", bending.putting_down),
         ("dance", dancing.dancing),

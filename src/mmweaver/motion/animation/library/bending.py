@@ -1,9 +1,16 @@
-"""Bending the trunk: bowing, bending down, picking up from the floor and putting down."""
+"""Bending the trunk: bowing, bending down, leaning, twisting, picking up from the floor and putting down."""
 
 import numpy as np
 
 from mmweaver.motion.animation.controls import LEFT, RIGHT, Controls
-from mmweaver.motion.animation.library.movement_primitives import crouched, mix_arm, repeats, shift_pelvis, sides
+from mmweaver.motion.animation.library.movement_primitives import (
+    crouched,
+    cycles,
+    mix_arm,
+    repeats,
+    shift_pelvis,
+    sides,
+)
 from mmweaver.motion.animation.library.standing import upright
 from mmweaver.motion.animation.profiles import plateau
 from mmweaver.motion.animation.step_context import StepContext
@@ -47,6 +54,40 @@ def bending(context: StepContext) -> Controls:
         _hinge(controls, h, down, deep)
         shift_pelvis(controls, 0.0, 0.0, -0.025 * h * down)
         controls.arm_rad[:, :, 0] += (0.95 * deep * down)[:, None]
+    return controls
+
+
+def leaning(context: StepContext) -> Controls:
+    """The trunk leans to one side or back and comes up; to both sides in turn where none is named."""
+    controls, time_s, h = upright(context), context.time_s, context.body.height_m
+    deep = float(context.rng.uniform(0.4, 0.6))
+    for k, (begin, lasts) in enumerate(repeats(context, 2.0, 1.2, 3.0)):
+        down = plateau(time_s, begin, begin + lasts, 0.4 * lasts, 0.4 * lasts)
+        if context.step.direction == "backwards":
+            shift_pelvis(controls, 0.05 * h * down, 0.0, -0.01 * h * down)
+            controls.pelvis_rad[:, 1] -= 0.15 * deep * down
+            controls.spine_rad[:, 1] -= 0.7 * deep * down
+            controls.head_rad[:, 0] += 0.2 * down
+            continue
+        left_first = context.step.direction != "right"
+        right = -1.0 if left_first == (k % 2 == 0 or bool(context.step.direction)) else 1.0  # roll: right side down
+        shift_pelvis(controls, 0.0, 0.035 * h * right * down, -0.006 * h * down)
+        controls.pelvis_rad[:, 0] += 0.15 * deep * right * down
+        controls.spine_rad[:, 0] += deep * right * down
+    return controls
+
+
+def twisting(context: StepContext) -> Controls:
+    """The trunk turns to one side and the other over feet that stay, forearms level in front."""
+    controls, time_s = upright(context), context.time_s
+    rate, end_s = cycles(context, context.tempo(0.3, 0.45, 0.7), 0.25, 0.9)
+    on = plateau(time_s, context.start_s, end_s, 0.5, 0.5)
+    yaw = on * np.sin(2 * np.pi * rate * (time_s - context.start_s))
+    wide = float(context.rng.uniform(0.65, 0.9))
+    controls.pelvis_rad[:, 2] += 0.35 * wide * yaw
+    controls.spine_rad[:, 2] += wide * yaw
+    for side in (LEFT, RIGHT):
+        mix_arm(controls, side, np.tile([0.35, 0.3, 0.5, 1.5], (len(time_s), 1)), on)
     return controls
 
 

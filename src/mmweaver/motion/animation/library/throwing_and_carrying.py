@@ -99,8 +99,10 @@ def carrying(context: StepContext, controls: Controls) -> Controls:
 
 
 def reaching(context: StepContext, controls: Controls) -> Controls:
-    """A hand reaches for something ahead at table height and comes back with it."""
+    """A hand reaches for something ahead at table height, or up, and comes back with it."""
     time_s, n, hands = context.time_s, len(context.time_s), sides(context)
+    if context.step.style == "high":
+        return _reaching_up(context, controls)
     up = float(context.rng.uniform(-0.08, 0.03))
     for begin, lasts in repeats(context, 1.7, 1.1, 2.6):
         on = plateau(time_s, begin, begin + lasts, 0.3 * lasts, 0.3 * lasts)
@@ -110,6 +112,21 @@ def reaching(context: StepContext, controls: Controls) -> Controls:
             hand_to(controls, context.body, side, target, on, (-0.5, 0.6, -1.0))
         controls.spine_rad[:, 1] += 0.24 * out
         controls.head_rad[:, 0] += 0.12 * out
+    return controls
+
+
+def _reaching_up(context: StepContext, controls: Controls) -> Controls:
+    """A hand reaches up ahead of the head, the trunk stretches after it."""
+    time_s, hands = context.time_s, sides(context)
+    up = float(context.rng.uniform(2.5, 2.85))
+    for begin, lasts in repeats(context, 1.9, 1.2, 2.8):
+        out = plateau(time_s, begin, begin + lasts, 0.36 * lasts, 0.36 * lasts)
+        for side in hands:
+            mix_arm(controls, side, np.tile([up, 0.12, 0.0, 0.12], (len(time_s), 1)), out)
+            controls.arm_rad[:, side, 3] += 1.1 * np.sin(np.pi * out)
+        if len(hands) == 1:
+            controls.spine_rad[:, 0] += (-0.1 if hands[0] == RIGHT else 0.1) * out
+        controls.head_rad[:, 0] -= 0.3 * out
     return controls
 
 

@@ -1,0 +1,153 @@
+"""Every word of a clause is carried out by one of its steps, says nothing about the movement, or is named as not shown.
+
+Checked once all clauses have their steps: sides, arms, circles, numbers, manners, sizes and places that no step has.
+"""
+
+import re
+from collections.abc import Sequence
+
+from mmweaver.motion.language.activities import BY_KEY
+from mmweaver.motion.language.lexicon import ARMS, MANNERS, NUMBERS, PASSED, SIZES, TARGETS, TIMES
+from mmweaver.motion.language.plan import Step
+from mmweaver.motion.language.verbs import words_in
+from mmweaver.motion.language.words import Word
+
+_SIDES = frozenset({"left", "right"})
+# Activities of the whole body in which the arms have their part, or words for hands that name a place.
+_WITH_ARMS = words_in(
+    """
+    crawl push_ups plank downward_dog jumping_jacks limb_extension fall pick_up put_down dance kneel_down kneel_up kneel
+    get_up stand_up stretch sit_down one_leg golf turn stumble warrior_pose tree_pose lie lie_down recline lie_on_seat
+    bow stairs side_lunge lunge
+    """
+)
+
+
+# Activities in which one hand or foot is not distinguished from the other.
+_WITHOUT_ONE_HAND = words_in("clap type read nod shake_head look_around cross_arms hips shrug stretch hands_up breathe")
+_WITH_ONE_FOOT = words_in(
+    """
+    limp hop_one_leg one_leg kick stomp raise_leg lunge side_lunge limb_extension kneel_down kneel_up stairs tree_pose
+    warrior_pose
+    """
+)
+
+
+def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
+    """What of a clause is in none of the steps that carry it out, as sentences for its record."""
+    texts = [word.text for word in words]
+    lost = [f"{text!r} is not shown" for text in texts if text in MANNERS]
+    lost += [f"the number {text!r} is not kept" for text in _lost_numbers(words, steps)]
+    lost += [f"{place!r} is not shown" for place in _lost_places(texts, steps)]
+    if _side_of_a_limb(texts) and not any(step.hand or step.foot for step in steps):
+        lost.append("which hand or foot it is is not shown")
+    elif _SIDES & set(texts) and not any(_has_side(step) for step in steps):
+        lost.append("the side is not shown")
+    if ARMS & set(texts) and not any(step.upper or step.lower in _WITH_ARMS for step in steps):
+        lost.append("what the arms do is not shown")
+    if "in_circle" in texts and not any(_is_round(step) for step in steps):
+        lost.append("the circle is not shown")
+    if "sideways" in texts and not any(_has_side(step) or step.lower == "sidestep" for step in steps):
+        lost.append("the side is not shown")
+    if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
+        lost.append("how often is not kept")
+    handed = [step for step in steps if step.hand and (step.upper or step.lower in ("pick_up", "put_down"))]
+    if any(step.hand in _SIDES for step in steps) and all(step.upper in _WITHOUT_ONE_HAND for step in handed):
+        lost.append("which hand or foot it is is not shown")
+    if any(step.foot and step.lower not in _WITH_ONE_FOOT for step in steps):
+        lost.append("which foot it is is not shown")
+    return list(dict.fromkeys(lost))
+
+
+def _side_of_a_limb(texts: list[str]) -> bool:
+    """Whether a side names a hand or a leg, not a direction."""
+    for i, text in enumerate(texts):
+        if text in ("left_leg", "right_leg"):
+            return True
+        if text in _SIDES and ARMS & set(texts[i + 1 : i + 3]) and not {"with", "and"} & set(texts[i + 1 : i + 2]):
+            return True
+    return False
+
+
+def _has_side(step: Step) -> bool:
+    """Whether a step goes, turns, looks or is done to one side, or with one hand or foot."""
+    directed = step.moves or step.lower in ("turn", "stumble", "leap", "sidestep", "walk", "jog", "lean")
+    sides = {step.direction if directed else "", step.style, step.facing, step.hand, step.foot}
+    signed = (step.arc_deg and step.style != "either") or (step.turn_deg and step.style != "either")
+    placed = step.place is not None or step.target
+    return bool(
+        sides & {"left", "right", "both", "side", "seat"} or signed or placed or step.lower in ("sidestep", "lean")
+    )
+
+
+def _is_round(step: Step) -> bool:
+    return bool(
+        step.direction == "circle"
+        or step.arc_deg
+        or step.turn_deg
+        or step.lower == "turn"
+        or step.upper in ("draw_circle", "stir", "arm_circles", "wipe")
+    )
+
+
+def _is_counted(step: Step) -> bool:
+    """Whether it is done as often as the sentence says."""
+    countable = BY_KEY[step.upper or step.lower].counted_s is not None
+    return bool(
+        (step.count and (countable or step.count == 1)) or abs(step.turn_deg) >= 360.0 or abs(step.arc_deg) >= 360.0
+    )
+
+
+def _lost_numbers(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
+    """Numbers of movements that no step has; "one", and numbers of limbs, are no such numbers."""
+    kept = {float(step.count) for step in steps} | {step.seconds for step in steps} | {0.0, 1.0}
+    kept |= {step.distance_m for step in steps}
+    turned_deg = {abs(step.turn_deg) for step in steps} | {abs(step.arc_deg) for step in steps}
+    kept |= turned_deg | {angle / whole for angle in turned_deg for whole in (90.0, 180.0, 360.0)}
+    if any(step.place is not None for step in steps):
+        kept |= {step.place.distance_m for step in steps if step.place is not None}
+    lost = []
+    for i, word in enumerate(words):
+        if word.text in TIMES or not (word.text in NUMBERS or word.text.isdigit()):
+            continue
+        following = [other for other in words[i + 1 : i + 3] if other.text not in SIZES]
+        counted = following and (following[0].is_activity or following[0].text in ("step", "steps", "times", "circles"))
+        if counted and float(NUMBERS.get(word.text, word.text)) not in kept:
+            lost.append(word.text)
+    return lost
+
+
+def _lost_places(texts: list[str], steps: Sequence[Step]) -> list[str]:
+    """Phrases like "through the door" and "to the window" of a walk that goes nowhere in particular."""
+    if not any(step.moves for step in steps) or any(step.target or step.place or step.uses_seat for step in steps):
+        return []
+    if any(step.upper or step.direction == "seat" for step in steps):
+        return []  # the thing is what the hands are at, or the seat
+    lost = []
+    for i, text in enumerate(texts):
+        if text not in PASSED:
+            continue
+        noun = next((k for k in range(i + 1, min(i + 5, len(texts))) if texts[k] in TARGETS), None)
+        if noun is not None:
+            lost.append(" ".join(texts[i : noun + 1]))
+    return lost
+
+
+_SIZED = (
+    "steps? strides? circles? jumps? leaps? hops? bows? kicks? waves? curves? arcs? bends? punch(?:es)? movements?"
+    " motions? squats? lunges? rounds? laps?"
+).replace(" ", "|")
+_SIZE = re.compile(
+    rf"\b({'|'.join(sorted(SIZES))})(?:,? (?:and )?[a-z-]+)?? (?:{_SIZED})\b"
+    r"|\b(high|deeply|low|wide|widely|far)(?= *(?:$|[,.;]| and\b| then\b| while\b))"
+)
+# Activities that are as large as that anyway, or known in two sizes.
+_LARGE = words_in("raise raise_hold draw_circle draw_z breathe arms_out hands_up arm_extension stretch")
+
+
+def sizes_not_shown(text: str, steps: Sequence[Step]) -> list[str]:
+    """The sizes of movements that a sentence names; no movement of the library is larger or smaller on request."""
+    if any(step.upper in _LARGE or step.style == "high" or step.lower in ("crouch", "fall") for step in steps):
+        return []
+    found = [match[1] or match[2] for match in _SIZE.finditer(text.lower())]
+    return [f"{size!r} is not shown" for size in dict.fromkeys(found)]
