@@ -16,6 +16,8 @@ from torch import Tensor
 
 from mmweaver.core.constants import SPEED_OF_LIGHT_MPS
 from mmweaver.core.radar_config import RadarConfig
+from mmweaver.core.tensor_record import TensorRecord
+from mmweaver.paths.fast_time import FastTime, phasor
 from mmweaver.paths.frame_clock import FrameClock, Segment
 from mmweaver.paths.paths import Paths, ScenePaths, StaticPaths
 from mmweaver.paths.transmit_elements import TransmitElements
@@ -23,7 +25,6 @@ from mmweaver.paths.transmit_elements import TransmitElements
 if TYPE_CHECKING:
     from mmweaver.paths.board_effects import BoardEffects
 
-COARSE = 16  # samples of which the fast-time factor is made, and steps between them
 ROWS_AT_ONCE = 2048  # static paths, which bounds memory
 
 
@@ -46,6 +47,7 @@ class AdcSynthesis:
         since_middle_s = (np.arange(self.config.num_samples) - self.config.num_samples / 2) / self.config.sample_rate_hz
         self._turn_per_m = torch.from_numpy((per_m * since_middle_s).astype(np.complex64)).to(self.device)
         self._extra_m = 0.0 if board is None else board.extra_length_m
+        self._fast = FastTime(self.config)
         self._segments = [_SegmentFactors(segment, self.device) for segment in self.clock.segments]
 
     def moving(self, paths: Paths) -> Tensor:
@@ -69,38 +71,45 @@ class AdcSynthesis:
 
         With `weight` (set, path), float or complex, those of so many sums of weighted paths: (set, tx, rx, sample).
         """
-        config = self.config
         weights = torch.ones(1, len(paths)) if weight is None else weight
         some = weights.ne(0).any(dim=0).nonzero()[:, 0]
         chosen = paths if len(some) == len(paths) else paths[some]
-        amplitude = (weights[:, some] * chosen.amplitude).to(torch.complex64)  # (set, path)
-        count = len(weights)
-        adc = torch.zeros((2, count, config.num_tx, config.num_rx, config.num_samples), dtype=torch.complex64)
-        adc = adc.to(self.device)
-        for first in range(0, len(some), ROWS_AT_ONCE):
+        total = None
+        for first in range(0, max(len(some), 1), ROWS_AT_ONCE):
             rows = slice(first, first + ROWS_AT_ONCE)
-            length_m = self._elements.lengths(chosen.length_m[rows]).to(self.device)
-            mean_m = length_m.mean(dim=(1, 2))
-            slow = phasor(length_m / config.wavelength_m) * amplitude[:, rows].to(self.device)[..., None, None]
-            late = slow * (length_m - mean_m[:, None, None]).float()
-            left = torch.stack([slow, late]).flatten(3).transpose(2, 3).flatten(0, 2)  # (2 * set * tx * rx, path)
-            fast = fast_time((mean_m + self._extra_m) / SPEED_OF_LIGHT_MPS, 0.0, config)
-            adc += (left @ fast).view(adc.shape)
-        samples = self.array.mixed(adc[0].addcmul_(adc[1], self._turn_per_m), 1)
-        samples = self._elements.slots(samples, 1)
+            part = self._static_factors(chosen[rows]).summed(weights[:, some[rows]].to(self.device))
+            total = part if total is None else total + part
+        assert total is not None
+        samples = self._recorded(total)
         return samples[0] if weight is None else samples
+
+    def _static_factors(self, paths: StaticPaths) -> "_StaticFactors":
+        length_m = self._elements.lengths(paths.length_m).to(self.device)
+        mean_m = length_m.mean(dim=(1, 2))
+        amplitude = paths.amplitude.to(torch.complex64).to(self.device)
+        slow = phasor(length_m / self.config.wavelength_m) * amplitude[:, None, None]
+        late = slow * (length_m - mean_m[:, None, None]).float()
+        fast = self._fast.factor((mean_m + self._extra_m) / SPEED_OF_LIGHT_MPS, 0.0)
+        return _StaticFactors(pairs=torch.stack([slow, late], dim=1), fast=fast)
+
+    def _recorded(self, plain_and_tilted: Tensor) -> Tensor:
+        """Samples (set, tx, rx, sample) of sums (2, set, tx, rx, sample) of the factors of static paths."""
+        plain, tilted = plain_and_tilted
+        return self._elements.slots(self.array.mixed(plain.addcmul(tilted, self._turn_per_m), 1), 1)
 
     def occluded(self, paths: ScenePaths) -> Tensor:
         """Samples of the static paths that are occluded in each frame, complex64 (frame, tx, rx, sample)."""
         weight = paths.occluded.float()
         if self.device.type != "cpu":
             return self.static(paths.static, weight)
+        some = weight.any(dim=0).nonzero()[:, 0]
+        factors = self._static_factors(paths.static[some])
         # each frame on its own: its bits do not depend on which others are asked for
-        return torch.cat([self.static(paths.static, weight[frame : frame + 1]) for frame in range(len(weight))])
+        return torch.cat([self._recorded(factors.summed(frame[None])) for frame in weight[:, some]])
 
     def leakage(self, length_m: Tensor, amplitude: Tensor) -> Tensor:
         """Samples of leakage, complex64 (tx, rx, sample), the same in every loop; `BoardEffects.leakage` gives it."""
-        fast = fast_time(length_m / SPEED_OF_LIGHT_MPS, 0.0, self.config)  # (tap, sample)
+        fast = self._fast.factor(length_m / SPEED_OF_LIGHT_MPS, 0.0)  # (tap, sample)
         adc = torch.tensordot(self._elements.of_pairs(amplitude), fast, dims=([0], [0]))
         return self._elements.slots(adc, 0)
 
@@ -116,25 +125,47 @@ class AdcSynthesis:
         if paths.amplitude.shape[-1] == 0:
             adc.zero_()
             return
+        bands = None
+        if self.device.type == "cpu" and len(paths) == 1:
+            paths = paths[:, paths.length_m[0].argsort()]
+            bands = self._fast.bands(paths.length_m[0] / SPEED_OF_LIGHT_MPS)
         length_m = paths.departure.at(segment.node_s).norm(dim=-1) + paths.arrival.at(segment.node_s).norm(dim=-1)
         by_chirp_m = (length_m @ segment.to_chirps).unflatten(-1, (-1, config.num_tx))  # (frame, path, loop, tx)
         by_block_m = length_m @ segment.to_blocks  # (frame, path, block)
         shift_hz = length_m @ segment.slope_at_blocks / config.wavelength_m
+        by_chirp_m = by_chirp_m.transpose(2, 3)  # (frame, path, tx, loop)
         carrier = phasor(by_chirp_m / config.wavelength_m) * paths.amplitude[..., None, None]
         array = self.array(*(end.at(segment.block_s) for end in (paths.departure, paths.arrival)), paths.is_reciprocal)
         between = segment.between_blocks.to(torch.complex64)
         for index, block in enumerate(segment.segment.blocks):
-            phases = torch.einsum("fpbtr,bl->fpltr", array.phase, between[:, block])
-            later_m = (by_chirp_m[:, :, block] - by_block_m[..., index, None, None]).float()
+            phases = torch.einsum("fpbtr,bl->fptrl", array.phase, between[:, block])
+            later_m = (by_chirp_m[..., block] - by_block_m[..., index, None, None]).float()
+            chirp = carrier[..., None, block]
+            left = torch.empty((*chirp.shape[:2], 2, *phases.shape[2:]), dtype=phases.dtype, device=phases.device)
+            slow, late = left.unbind(2)  # (frame, path, tx, rx, loop)
+            torch.mul(chirp, phases, out=slow)
+            torch.mul(chirp, array.excess[:, :, index, ..., None], out=late)
+            late += slow * later_m[..., None, :]
             delay_s = (by_block_m[..., index] + self._extra_m) / SPEED_OF_LIGHT_MPS
-            fast = fast_time(delay_s, shift_hz[..., index], config)
-            for m in range(config.num_tx):
-                chirp = carrier[:, :, block, m, None]
-                slow = chirp * phases[:, :, :, m]  # (frame, path, loop, rx)
-                late = slow * later_m[..., m, None] + chirp * array.excess[:, :, index, None, m]
-                both = torch.cat([slow.flatten(2), late.flatten(2)], dim=2).transpose(1, 2) @ fast
-                plain, tilted = both.unflatten(1, (2, -1, config.num_rx)).unbind(1)
-                adc[:, block, m] = plain.addcmul_(tilted, self._turn_per_m)
+            both = self._fast.summed(left.flatten(2), delay_s, shift_hz[..., index], bands)
+            plain, tilted = both.unflatten(1, (2, config.num_tx, config.num_rx, -1)).unbind(1)
+            adc[:, block] = plain.addcmul_(tilted, self._turn_per_m).movedim(3, 1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _StaticFactors(TensorRecord):
+    """Static paths as sums over them need them."""
+
+    pairs: Tensor  # (path, 2, tx, rx) complex64: of each pair of antennas, and the same times how much longer it is
+    fast: Tensor  # (path, sample) complex64
+
+    def summed(self, weight: Tensor) -> Tensor:
+        """Sums (2, set, tx, rx, sample) of paths with weights (set, path), real or complex."""
+        some = weight.ne(0).any(dim=0).nonzero()[:, 0]
+        chosen = self if len(some) == len(weight[0]) else self[some]
+        left = weight[:, some].T.to(torch.complex64)[:, None, :, None, None] * chosen.pairs[:, :, None]
+        shape = (*left.shape[1:], self.fast.shape[-1])
+        return (left.flatten(1).T @ chosen.fast).view(shape)
 
 
 class _SegmentFactors:
@@ -217,22 +248,6 @@ def unpadded(paths: Paths) -> Paths:
     there = paths.amplitude.ne(0).any(dim=0).nonzero()[:, 0]
     longest = int(there[-1]) + 1 if len(there) else 0
     return paths if longest == paths.amplitude.shape[1] else paths[:, :longest]
-
-
-def phasor(cycles: Tensor) -> Tensor:
-    """exp(2 pi j cycles), complex64; wrapped in double precision first."""
-    angle = (cycles - cycles.round()).to(torch.float32).mul_(2 * math.pi)
-    return torch.complex(angle.cos(), angle.sin())
-
-
-def fast_time(delay_s: Tensor, shift_hz: Tensor | float, config: RadarConfig) -> Tensor:
-    """Fast-time factor (..., sample) of beats S tau + shift, zero phase in the middle of the sampling (eq. 7)."""
-    slope, num = config.chirp_slope_hz_per_s, config.num_samples
-    cycles_a_sample = ((slope * delay_s + shift_hz) / config.sample_rate_hz)[..., None]
-    fine = phasor(cycles_a_sample * torch.arange(COARSE, device=delay_s.device))
-    steps = COARSE * torch.arange(-(-num // COARSE), device=delay_s.device) - num / 2
-    rough = phasor(cycles_a_sample * steps - (slope * delay_s**2 / 2)[..., None])
-    return (rough[..., :, None] * fine[..., None, :]).flatten(-2)[..., :num]
 
 
 def _double(values: np.ndarray, device: torch.device) -> Tensor:

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from mmweaver.dsp.point_response import PointResponse, Points
 from mmweaver.dsp.windows import doppler_window_middle
-from mmweaver.paths.adc_synthesis import phasor
+from mmweaver.paths.fast_time import phasor
 from mmweaver.paths.frame_clock import FrameClock
 from mmweaver.paths.paths import Paths, StaticPaths
 

@@ -19,7 +19,8 @@ from mmweaver.core.tensor_record import TensorRecord
 from mmweaver.dsp.cube import doppler_weight, slot_compensation, tdm_compensation
 from mmweaver.dsp.window_kernels import WindowKernel
 from mmweaver.dsp.windows import hann
-from mmweaver.paths.adc_synthesis import ArrayPhases, phasor, unpadded
+from mmweaver.paths.adc_synthesis import ArrayPhases, unpadded
+from mmweaver.paths.fast_time import phasor
 from mmweaver.paths.frame_clock import FrameClock, Segment
 from mmweaver.paths.paths import Paths, StaticPaths
 from mmweaver.paths.transmit_elements import TransmitElements

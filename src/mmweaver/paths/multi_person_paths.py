@@ -63,7 +63,10 @@ class PeoplePaths:
         """How many people take each static path away in one frame, uint8 (path,): at most one with mutual occlusion."""
         count = np.zeros(len(self.room.paths), np.uint8)
         if self.mutual and self.each:
-            near = np.unique(np.concatenate([one.near_body(frame) for one in self.each]))
+            is_near = np.zeros(len(count), bool)
+            for one in self.each:
+                is_near[one.near_body(frame)] = True
+            near = np.flatnonzero(is_near)
             count[occluded_by(self.hulls[frame], self.room.paths, near)] = 1
         elif not self.mutual:
             for one in self.each:
