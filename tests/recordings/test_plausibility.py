@@ -13,8 +13,10 @@ from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
 from mmweaver.formats.dca1000 import write_bin
-from mmweaver.recordings.plausibility import implausible
+from mmweaver.formats.radar_file import load_radar
+from mmweaver.recordings.plausibility import BETTER_ORDER, implausible
 from mmweaver.recordings.processing import process_recording
+from mmweaver.recordings.transmitter_order import agreements
 
 RADAR = replace(AWR1843, num_loops=16, num_samples=64, sample_rate_hz=1.13e6, first_range_bin=0, num_range_bins=64)
 
@@ -72,6 +74,15 @@ def test_the_order_of_the_transmitters(recording: Path):
     found = read(recording / "adc_data.bin", tx_order=(2, 0, 1))
     assert len(found) == 1
     assert found[0].endswith("--tx-order 0,2,1")
+
+
+@pytest.mark.parametrize("radar", ["iwr6843aop", "iwr6843ods"])
+def test_transmitters_above_each_other(radar: str):
+    config = replace(load_radar(radar), num_loops=8, num_samples=64, first_range_bin=0, num_range_bins=64)
+    found = agreements(radar_cube(room(config, 2)))
+    own = found.pop(config.tx_order)
+    assert own > 0.5
+    assert max(found.values()) < own - BETTER_ORDER
 
 
 @pytest.mark.parametrize("lanes", [2, 4])

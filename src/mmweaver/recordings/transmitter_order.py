@@ -2,8 +2,9 @@
 
 Receivers of one transmitter are sampled in the same chirp, so their correlation at each horizontal distance is right
 whatever the order. Antennas of two transmitters at the same distance must be correlated alike, cell by cell, up to a
-phase that all cells share (channel errors, elevation); in a wrong order they are not. Many scatterers in a cell do not
-matter, as they would to a plane wave. Reference: decision 166.
+phase that all cells share (channel errors); in a wrong order they are not. Receivers in one row say nothing of heights,
+whose phase is then taken for one that cells share, too; receivers in two rows (AOP, ODS) also tell transmitters apart
+that lie above each other. Many scatterers in a cell do not matter, as they would to a plane wave. Decision 166.
 """
 
 from itertools import permutations
@@ -50,14 +51,16 @@ def _agreement(signal: np.ndarray, config: RadarConfig) -> float:
     """Of cells (cell, transmitter, receiver): the coherence of what two transmitters see with what one sees."""
     place = (2 * config.antenna_position_m / config.wavelength_m).reshape(*signal.shape[1:], 3)[..., [0, 2]]
     within = _correlations(signal, place, [(tx, tx) for tx in range(config.num_tx)])
+    one_row = all(up == 0 for _, up in within)
     agreed = possible = 0.0
     for tx in range(config.num_tx):
         for other in range(tx):
             sums: dict[float, tuple[complex, float]] = {}
             for (across, up), value in _correlations(signal, place, [(tx, other)]).items():
                 own = within.get((across, up))
-                left_up = up if own is None else 0.0  # a height that no receivers of one chirp have
-                own = within.get((across, 0.0)) if own is None else own
+                left_up = 0.0
+                if own is None and one_row:
+                    left_up, own = up, within.get((across, 0.0))
                 if own is not None:
                     so_far, most = sums.get(left_up, (0j, 0.0))
                     size = np.linalg.norm(value) * np.linalg.norm(own)
