@@ -12,7 +12,7 @@ from mmweaver.core.presets import AWR1843
 from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube
 from mmweaver.dsp.cube import radar_cube
-from mmweaver.formats.dca1000 import write_bin
+from mmweaver.formats.dca1000 import adc_of_words, words_of, write_bin
 from mmweaver.formats.radar_file import load_radar
 from mmweaver.recordings.plausibility import BETTER_ORDER, implausible
 from mmweaver.recordings.processing import process_recording
@@ -101,6 +101,24 @@ def test_another_radars_layout(recording: Path):
     other = replace(other, tx_position_m=RADAR.tx_position_m[:2], tx_order=(0, 1), num_loops=12)
     found = read(recording / "adc_data.bin", other)
     assert any("768 samples apart" in text for text in found)
+
+
+def test_a_loop_read_twice_as_long_names_the_likelier_radar():
+    """A frame of an AWR1843 as an IWR6843 with twice the samples: the number of words fits, and so do two loops."""
+    adc = room(replace(RADAR, num_samples=256, sample_rate_hz=4.51e6, num_range_bins=256), 2)
+    twice = replace(RADAR, num_samples=512, num_loops=8, sample_rate_hz=9e6, num_range_bins=256)
+    assert implausible(adc, radar_cube(adc)) == []
+    words, _ = words_of(adc, counts_per_unit=1.0)
+    again = adc_of_words(words.reshape(-1), twice)
+    found = implausible(again, radar_cube(again))
+    assert any("3 TX x 4 RX x 256 samples (presets: awr1843" in text for text in found)
+
+
+def test_frames_that_came_at_another_rate():
+    adc = room(RADAR, 3)
+    own_s, slow_s = (period_s * np.arange(3) for period_s in (RADAR.frame_period_s, 0.4))
+    assert implausible(adc, radar_cube(adc), frame_time_s=own_s) == []
+    assert "every 400.0 ms" in implausible(adc, radar_cube(adc), frame_time_s=slow_s)[0]
 
 
 def test_floating_point_numbers_are_no_counts(recording: Path, tmp_path: Path):

@@ -6,16 +6,20 @@ echoes as their neighbours do, and what comes nearer has a negative radial veloc
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
+from mmweaver.core.presets import PRESETS
+from mmweaver.core.radar_config import RadarConfig
 from mmweaver.core.records import AdcCube, RadarCube
 from mmweaver.core.safe_files.regular_files import open_regular
+from mmweaver.core.shapes import PerFrame
 from mmweaver.dsp.cube import remove_static
 from mmweaver.dsp.spectra import range_doppler_power
 from mmweaver.dsp.windows import hann
-from mmweaver.formats.dca1000 import LANES, read_bin
+from mmweaver.formats.dca1000 import LANES, adc_of_words, upright, words_of
 from mmweaver.recordings.transmitter_order import agreements
 
 FRAMES_LOOKED_AT = 8
@@ -27,21 +31,28 @@ BETTER_LIKENESS = 0.25  # that another layout must have more
 SCATTERED = 0.6  # times the ranges that echoes fill in another layout of the lanes, at which that is likelier
 LEAST_ORDER = 0.3  # how well static echoes must fit an order of transmitters to be evidence
 BETTER_ORDER = 0.06  # that another order of transmitters must fit static echoes better
+SAME_LIKENESS = 0.05
+USUAL_SAMPLES = (64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512)
+OTHER_PERIOD = 0.15  # of the time between frames
 FEWEST_MOVING_FRAMES = 6
 
 
-def implausible(adc: AdcCube, cube: RadarCube, path: Path | None = None) -> list[str]:
+def implausible(
+    adc: AdcCube, cube: RadarCube, path: Path | None = None, *, iq_order: str | None = None,
+    frame_time_s: PerFrame | None = None,
+) -> list[str]:  # fmt: skip
     """What does not fit, a sentence each with the likelier reading; empty where all is plausible.
 
-    `path`: the .bin that the samples come from.
+    `path`: the .bin that the samples come from; `iq_order`: as which they were read, of int16 words; `frame_time_s`:
+    when packets of the frames arrived.
     """
     few = replace(adc, samples=adc.samples[:FRAMES_LOOKED_AT])
     found = [*_number_type(path), *_values(adc)]
     if any("constant" in text or "numbers of" in text for text in found):
         return found  # too little to check more
-    found += [*_lanes(few, path)]
+    found += [*_lanes(few, iq_order)]
     if not found:
-        found += [*_beat_sign(few), *_layout(few)]
+        found += [*_beat_sign(few), *_layout(few), *_period(adc.config, frame_time_s)]
     if not found:
         found += [*_transmitters(cube), *_velocity_sign(cube)]
     return found
@@ -79,14 +90,19 @@ def _values(adc: AdcCube) -> Iterator[str]:
         yield f"{100 * clipped:.1f} % of the samples are clipped at full scale; record with less receiver gain"
 
 
-def _lanes(adc: AdcCube, path: Path | None) -> Iterator[str]:
+def _lanes(adc: AdcCube, iq_order: str | None) -> Iterator[str]:
     """Words of two lanes read as four, or the other way round: the spectrum of each chirp is scattered."""
     config = adc.config
-    if path is None or path.suffix.lower() != ".bin" or config.num_rx != LANES or not config.complex_samples:
+    if iq_order is None or config.num_rx != LANES or not config.complex_samples:
         return
+    two = replace(adc, samples=adc.samples[:2])
+    words, _ = words_of(two, iq_order=iq_order, counts_per_unit=1.0)
     other = 2 if config.lvds_lanes == LANES else LANES
-    again = read_bin(path, replace(config, lvds_lanes=other), frames=slice(0, 2))
-    if _occupied(again) < SCATTERED * _occupied(replace(adc, samples=adc.samples[:2])):
+    again = adc_of_words(
+        words.reshape(-1), replace(config, lvds_lanes=other, frame_words_before=0, frame_words_after=0),
+        iq_order=iq_order,
+    )  # fmt: skip
+    if _occupied(again) < SCATTERED * _occupied(two):
         yield (
             f"read as {other} lanes the echoes of a chirp gather at fewer ranges than as {config.lvds_lanes}; try"
             f" --lanes {other}, or another --radar"
@@ -117,39 +133,74 @@ def _beat_sign(adc: AdcCube) -> Iterator[str]:
 
 
 def _layout(adc: AdcCube) -> Iterator[str]:
-    """Chirps of one transmitter, one loop apart, resemble each other in any room; else the layout is another."""
+    """Chirps of one transmitter, one loop apart, resemble each other in any room; else the layout is another.
+
+    Where they resemble each other after half a loop, too, and more than chirps of different antennas do, the loop is
+    read twice as long as it is.
+    """
     config = adc.config
     if config.num_loops < 2:
         return
     stream = adc.samples if config.is_coded else adc.samples[:, :, list(config.tx_order)]
-    flat = stream.reshape(len(stream), -1)
+    flat = upright(stream, config).reshape(len(stream), -1)  # as the converter gave them
     loop = config.num_slots * config.num_rx * config.num_samples
     own = _likeness(flat, loop)
+    layouts: dict[int, list[tuple[int, int, int]]] = {}
+    for slots, rx, samples in product((1, 2, 3, 4), (1, 2, 3, 4), sorted({*USUAL_SAMPLES, config.num_samples})):
+        if (lag := slots * rx * samples) * 4 <= flat.shape[1]:
+            layouts.setdefault(lag, []).append((slots, rx, samples))
     if own >= LEAST_LIKENESS:
-        return
-    others = {
-        (slots, rx, samples): _likeness(flat, slots * rx * samples)
-        for slots in (1, 2, 3, 4, 6, 12) for rx in (1, 2, 3, 4)
-        for samples in {64, 96, 100, 128, 200, 240, 256, 304, 320, 384, 400, 512, config.num_samples}
-        if slots * rx * samples * 4 <= flat.shape[1]
-    }  # fmt: skip
-    best = max(
-        others, key=lambda key: (round(others[key], 2), -abs(key[2] - config.num_samples), -key[1]), default=None
-    )
-    if best is not None and others[best] > own + BETTER_LIKENESS:
-        slots, rx, samples = best
+        flat = flat[:2]
+        others = {lag: _likeness(flat, lag) for lag in layouts if lag < loop and loop % lag == 0}
+        likely = [lag for lag, likeness in others.items() if likeness > own - SAME_LIKENESS]
+        if not likely:
+            return
+        lag = min(likely)
+        chirps = [config.num_samples * number for number in range(1, config.num_slots * config.num_rx)]
+        beyond = float(np.median([_likeness(flat, one) for one in chirps if one % lag] or [1.0]))
+    else:
+        others = {lag: _likeness(flat, lag) for lag in layouts}
+        lag = min((one for one in others if others[one] > max(others.values()) - SAME_LIKENESS), default=loop)
+        beyond = own
+    if others.get(lag, 0.0) > beyond + BETTER_LIKENESS:
+        slots, rx, samples = max(
+            layouts[lag],
+            key=lambda one: (one[1] == config.num_rx, _presets(*one) != "", round(_likeness(flat, one[2]), 1), -one[0]),
+        )
         yield (
-            f"chirps one loop ({loop} samples) apart are alike to {own:.2f} only, but {slots * rx * samples} samples"
-            f" apart to {others[best]:.2f}, as with {slots} TX x {rx} RX x {samples} samples; --radar is probably not"
-            " the radar that recorded it"
+            f"chirps one loop ({loop} samples) apart are alike to {own:.2f}, but {lag} samples apart to"
+            f" {others[lag]:.2f}, as with {slots} TX x {rx} RX x {samples} samples{_presets(slots, rx, samples)};"
+            " --radar is probably not the radar that recorded it"
+        )
+
+
+def _presets(slots: int, rx: int, samples: int) -> str:
+    """Which presets have such loops, in brackets."""
+    found = [
+        name
+        for name, radar in PRESETS.items()
+        if (radar.num_slots, radar.num_rx, radar.num_samples) == (slots, rx, samples)
+    ]
+    return f" (presets: {', '.join(found)})" if found else ""
+
+
+def _period(config: RadarConfig, frame_time_s: PerFrame | None) -> Iterator[str]:
+    """Packets tell when frames came."""
+    if frame_time_s is None or len(frame_time_s) < 3:
+        return
+    period_s = float(np.median(np.diff(frame_time_s)))
+    if abs(period_s / config.frame_period_s - 1) > OTHER_PERIOD:
+        yield (
+            f"the packets of a frame came every {1e3 * period_s:.1f} ms, the frames of this radar every"
+            f" {1e3 * config.frame_period_s:.1f} ms; --radar is probably not the radar that recorded it"
         )
 
 
 def _likeness(flat: np.ndarray, lag: int) -> float:
     """Mean normalised correlation of a stream (frame, sample) with itself a lag later."""
     before, after = flat[:, :-lag], flat[:, lag:]
-    product = np.abs(np.vdot(before, after))
-    return float(product / max(np.linalg.norm(before) * np.linalg.norm(after), 1e-300))
+    common = np.abs(np.vdot(before, after))
+    return float(common / max(np.linalg.norm(before) * np.linalg.norm(after), 1e-300))
 
 
 def _transmitters(cube: RadarCube) -> Iterator[str]:
