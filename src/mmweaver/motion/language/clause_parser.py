@@ -81,7 +81,7 @@ class ParsedClause:
         """Applies the modifiers of a clause without an activity to the last step."""
         last, about = self.steps[-1], more.about
         if last.direction and about.direction and last.direction != about.direction:
-            if last.moves and self._leads_back(last, about):
+            if last.moves and self._leads_back(last, about, more.number):
                 return
             raise InputError(
                 f"{self.text!r} and {more.text!r} name two directions; say which movement goes where, with 'then'"
@@ -115,19 +115,20 @@ class ParsedClause:
         )  # fmt: skip
         self.forms.append("s")
 
-    def _leads_back(self, last: Step, about: Step) -> bool:
+    def _leads_back(self, last: Step, about: Step, number: int) -> bool:
         """'Walks forwards and backwards', 'steps aside and then back': the other direction is a step of its own."""
         if last.lower == "sidestep":
             other = {"left": "right", "right": "left"}.get(last.direction, "")
             if about.direction not in ("back", "backwards", other) or not other:
                 return False
-            self.steps.append(replace(last, direction=other, count=about.count or last.count))
+            other_way = {"direction": other}
         elif (
             about.direction in ("back", "backwards", "forwards") and last.lower in ("walk", "jog") and not last.arc_deg
         ):
-            self.steps.append(replace(last, direction=about.direction, count=about.count or last.count))
+            other_way = {"direction": about.direction}
         else:
             return False
+        self.steps.append(replace(last, **other_way, count=about.count or last.count, clauses=(*last.clauses, number)))
         self.forms.append("s")
         return True
 

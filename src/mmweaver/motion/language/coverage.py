@@ -49,6 +49,8 @@ def not_shown(words: Sequence[Word], steps: Sequence[Step]) -> list[str]:
         lost.append("the circle is not shown")
     if "sideways" in texts and not any(_has_side(step) or step.lower == "sidestep" for step in steps):
         lost.append("the side is not shown")
+    if {"backwards", "backward"} & set(texts) and not any(_goes_back(step) for step in steps):
+        lost.append("'backwards' is not shown")
     if {*TIMES, "times"} & set(texts) and not any(_is_counted(step) for step in steps):
         lost.append("how often is not kept")
     handed = [step for step in steps if step.hand and (step.upper or step.lower in ("pick_up", "put_down"))]
@@ -78,6 +80,11 @@ def _has_side(step: Step) -> bool:
     return bool(
         sides & {"left", "right", "both", "side", "seat"} or signed or placed or step.lower in ("sidestep", "lean")
     )
+
+
+def _goes_back(step: Step) -> bool:
+    back = step.direction in ("backwards", "back", "pacing", "away") or step.style == "back"
+    return back or step.place is not None or step.lower in ("lie", "lie_down", "fall", "turn")
 
 
 def _is_round(step: Step) -> bool:

@@ -151,7 +151,7 @@ def _note_what_is_not_shown(
             notes.append(f"of {records[number].clause!r}, {how}")
 
     for parsed in every_clause:
-        own = [step for step in steps if parsed.number in step.clauses]
+        own = [step for step in steps if parsed.number in step.clauses] or steps
         for how in [*parsed.lost, *not_shown(parsed.words, own)]:
             say(parsed.number, how)
     for how in sizes_not_shown(given_text, steps):
