@@ -226,9 +226,10 @@ FILLERS = words_in(
 MANNERS = words_in(
     """
     happily happy sad sadly nervously angrily politely friendly confidently proudly cheerfully joyfully excited
-    excitedly enthusiastic loudly loud hard strongly strong firmly awkward rough sharp rhythmically     joyful cheerful furiously anxiously anxious nervous angry calm bored boredly tired tiredly
-    exhausted elegantly gracefully clumsily clumsy stiffly stiff aggressively aggressive dramatically wildly
-    hesitantly tentatively playfully sternly forcefully powerfully heavily
+    excitedly enthusiastic loudly loud hard strongly strong firmly awkward rough sharp rhythmically joyful
+    cheerful furiously anxiously anxious nervous angry calm bored boredly tired tiredly exhausted elegantly
+    gracefully clumsily clumsy stiffly stiff aggressively aggressive dramatically wildly hesitantly tentatively
+    playfully sternly forcefully powerfully heavily
     """
 )
 # Sizes of a movement.
