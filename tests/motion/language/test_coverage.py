@@ -90,3 +90,18 @@ def test_what_stays_unknown_is_refused() -> None:
     """No coverage makes a handstand of something else."""
     with pytest.raises(InputError, match="handstand"):
         parse("a person does a handstand")
+
+
+@pytest.mark.parametrize(
+    ("sentence", "keys"),
+    [
+        ("a person is facing forward and walks backward", ["stand", "walk"]),
+        ("a person stands up from a seated position", ["stand_up"]),
+        ("a person moves along a clockwise path", ["walk"]),
+        ("touches back of head with right hand", ["comb"]),
+        ("raise both arms in the air", ["raise"]),
+    ],
+)
+def test_words_that_unread_prompts_had_in_another_meaning(sentence: str, keys: list[str]) -> None:
+    """Facing forward is no turn, and the back of the head no direction."""
+    assert [step.upper or step.lower for step in parse(sentence).steps] == keys

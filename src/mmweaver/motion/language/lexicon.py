@@ -28,7 +28,7 @@ IRREGULAR = {
     "went": "go", "gone": "go", "came": "come", "made": "make", "did": "do", "does": "do", "done": "do", "took": "take",
     "gave": "give", "began": "begin", "kept": "keep", "leapt": "leap", "threw": "throw", "goes": "go",
     "froze": "freeze", "fell": "fall", "ate": "eat", "wrote": "write", "lying": "lie", "knelt": "kneel",
-    "laying": "lie", "shook": "shake", "bowed": "bow",
+    "laying": "lie", "shook": "shake", "bowed": "bow", "spun": "spin",
     "seated": "seated", "has": "have", "had": "have",
 }  # fmt: skip
 BASE_VERB_SPEED = {"stroll": -1, "amble": -1, "saunter": -1, "sprint": 1, "march": 0}
@@ -174,7 +174,7 @@ OTHER_MOVEMENT = words_in(
     """
     rolling-over figure-eight wheel wheels gap ontop stoop sway podest curves sticks shuffles touchdown mirrored
     square ellipse oval loop loops number torso trunk defense defence guard defensive gymnastics gymnastic angle
-    s-shape s-curve slalom eight figure break breakdance breakdancing mid-air midair stairs stair staircase
+    s-shape s-curve slalom eight break breakdance breakdancing mid-air midair stairs stair staircase
     stairway upstairs downstairs ladder ramp slope hill uphill downhill beam rail handrail railing trampoline
     treadmill bike bicycle like allfours diagonally zigzag obstacle hurdle over knees knee leg legs foot tiptoe
     tiptoes handstand cartwheel floor ground wheelchair swimming flip somersault asleep crossed spiral triangle

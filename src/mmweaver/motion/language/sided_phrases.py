@@ -22,7 +22,14 @@ SIDED_PHRASES: tuple[tuple[str, str], ...] = (
     (rf"\btwist(?:s|ing)?(?: {_OWN}body)?(?: (?:from )?(?:side to side|left and right|left to right)| (?:at|from|in) the waist)", " twist_trunk "),
     (rf"\btwist(?:s|ing) {_OWN}body\b", " twist_trunk "),
     (r"\breach(?:es|ing)? (?:high )?(?:up(?:wards?)?|overhead)(?: high| in(?:to)? the air| overhead| above (?:the|his|her|their) head)?\b", " reach reach_high "),
+    # where somebody faces who walks anyway, and from where somebody gets up
+    (r"\b(?:is |are )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)(?= and\b| then\b|,)", " stands "),
+    (r"(?:,? (?:while|but|and))? (?:still |always |is )?fac(?:es|ing) (?:straight )?(?:forwards?|ahead)\b", " "),
+    (r"\b(?:stand|get|ris)(?:s|ing|es)? up from (?:an? |the |his |her |their )?(?:seated|sitting) (?:position|pose|posture)\b", " stand_up "),
+    (r"\brais(es|ing|e) ((?:both |his |her |its |their |the )*(?:left |right )?(?:arms?|hands?)) (?:up )?in(?:to)? the air\b", r"rais\1 \2 up"),
+    (r"\b(pick(?:s|ing)?) (something|an? (?:object|item|thing))(?! (?:up|from|off|out))", r"\1 up \2"),
     # circles and curves
+    (rf"\b(?:along|in|on|through|by) (?:an?|the) ({_CLOCK}) (?:path|direction|way|manner|motion|route|fashion)\b", r"in a circle \1"),
     (r"\bs[- ]shaped? (?=path|line|curve|way)|\bs shape\b", "s-shape "),
     (rf"\b({_GAIT})((?: [a-z]+ly)?)(?: in| along| around)? (two|three|four|five|[2-5]){_WIDE}(?: ({_CLOCK}|left|right))?{_WIDE} (?:circles|rounds)\b",
      r"\1\2 in_circle rounds_\3 \4 "),
